@@ -121,6 +121,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--engine", choices=("fast", "reference"), default="fast")
     parser.add_argument("--reduce", action="store_true", help="by partial order")
     parser.add_argument("--cores", type=int, help="on how many cores at most")
+    parser.add_argument("--threads", type=int, help="on how many threads at most")
     parser.add_argument("--minutes", type=float, help="how long at most")
     parser.add_argument("--gigabytes", type=float, help="how much memory at most, in units of 2³⁰ bytes")
     parser.add_argument("--most", type=int, help="how many configurations at most")
@@ -128,6 +129,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     if given.cores is not None:
         os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: given.cores])
+    from checker.engines.fast.loading import ALONE  # noqa: PLC0415  # its time is measured
+
+    ALONE.set(True)  # as the command line does: nobody else compiles in this process
     with Compiling() as compiled:
         import checker.engines.fast.explorer  # noqa: F401, PLC0415  # its time is measured, apart from the search's
 
@@ -199,7 +203,8 @@ def _search(mission: "ElaboratedMission", given: argparse.Namespace) -> "Explora
     seconds = None if given.minutes is None else 60 * given.minutes
     memory = None if given.gigabytes is None else int(given.gigabytes * 2**30)
     limits = Limits(configurations=given.most, seconds=seconds, memory=memory)
-    return explore(mission.initial, limits=limits, engine=Engine(given.engine), reduce=reducer)
+    engine = Engine(given.engine)
+    return explore(mission.initial, limits=limits, engine=engine, reduce=reducer, threads=given.threads)
 
 
 def _marked(mission: "ElaboratedMission", marks: list[int], began: float) -> Explored:

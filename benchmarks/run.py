@@ -1,7 +1,8 @@
 """Measure the patrol beside SPIN: assert the counts, then run both in turns, with cold and warm starts.
 
-Usage: `python benchmarks/run.py [--turns N] [--output FILE] AGENTSxSIDE[+handover] ...`. The reference engine takes
-part where there are few configurations.
+Both run on one core and on two. The reference engine takes part where there are few configurations.
+
+Usage: `python benchmarks/run.py [--turns N] [--output FILE] AGENTSxSIDE[+handover] ...`
 """
 
 import argparse
@@ -16,15 +17,16 @@ from pathlib import Path
 from machine import describe
 from ours import Explored, explored
 from patrol import COUNTS, mission_text, promela_text, starts
-from spin import Searched, agree, missing, prepared, searched
+from spin import Searched, agree, missing, prepared, prepared_for, searched
 
 RESULTS = Path(__file__).parent / "results" / "patrol.json"
 
 FEW = 20_000
 """Up to so many configurations the reference engine takes part."""
 
-FAST, ONE_CORE = "bigactors, fast", "bigactors, fast, one core"
-REFERENCE, SPIN = "bigactors, reference", "SPIN, no reduction"
+FAST, ONE_CORE = "bigactors, fast, two cores", "bigactors, fast, one core"
+REFERENCE = "bigactors, reference"
+SPIN, SPIN_TWO = "SPIN, no reduction", "SPIN, no reduction, two cores"
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,11 +80,17 @@ def measure(size: Size, turns: int) -> dict[str, list[Run]]:
     """Run the tools in turns; raises SystemExit unless every run has the counts that are known."""
     with tempfile.TemporaryDirectory() as folder:
         say(f"{size}: SPIN is compiled, and its depth is looked for")
-        model = prepared(promela_text(size.agents, size.side, size.handover), Path(folder))
+        text = promela_text(size.agents, size.side, size.handover)
+        alone, two = (Path(folder) / name for name in ("alone", "two"))
+        alone.mkdir()
+        two.mkdir()
+        model = prepared(text, alone)
+        model_of_two = prepared_for(2, text, two, model.depth)
         tools: dict[str, Callable[[], Run]] = {
-            FAST: lambda: explored(size.text),
+            FAST: lambda: explored(size.text, "--threads", "2"),
             ONE_CORE: lambda: explored(size.text, "--cores", "1"),
             SPIN: lambda: searched(model),
+            SPIN_TWO: lambda: searched(model_of_two),
         }
         if size.counts is not None and size.counts[0] <= FEW:
             tools[REFERENCE] = lambda: explored(size.text, "--engine", "reference")
@@ -96,8 +104,8 @@ def measure(size: Size, turns: int) -> dict[str, list[Run]]:
 
 
 def _assert_counts(size: Size, runs: dict[str, list[Run]]) -> None:
-    theirs = _counts(runs[SPIN])
-    ours = _counts(run for name, several in runs.items() if name != SPIN for run in several)
+    theirs = _counts([*runs[SPIN], *runs[SPIN_TWO]])
+    ours = _counts(run for name, several in runs.items() if "SPIN" not in name for run in several)
     if len(ours) != 1 or size.counts not in (None, *ours) or not all(agree(*ours, each) for each in theirs):
         counts = sorted(ours | theirs)
         raise SystemExit(f"{size}: the counts are {counts}, and should all be {size.counts}")
@@ -116,11 +124,13 @@ def median(runs: Sequence[Run]) -> Run:
     return next(run for run in runs if run.seconds == middle)
 
 
-def ratios(ours: Run, alone: Run, peer: Run) -> dict[str, float]:
-    """Return how many times SPIN's rate ours is, on all cores and on one, and what part of its memory it takes."""
+def ratios(ours: Run, alone: Run, peer: Run, two: Run) -> dict[str, float]:
+    """Return how many times SPIN's rate ours is, and our own on one core, and what part of SPIN's memory it takes."""
     return {
         "configurations_per_second": peer.seconds / ours.seconds,
         "on_one_core": peer.seconds / alone.seconds,
+        "two_beside_two": two.seconds / ours.seconds,
+        "two_beside_one": alone.seconds / ours.seconds,
         "memory": ours.memory / peer.memory,
         "search_alone": peer.seconds / (getattr(ours, "searching", None) or ours.seconds),
     }
@@ -133,7 +143,7 @@ def result(size: Size, runs: dict[str, list[Run]]) -> dict[str, object]:
         "size": str(size),
         "configurations": medians[FAST].configurations,
         "transitions": medians[FAST].transitions,
-        "ratio_to_spin": ratios(medians[FAST], medians[ONE_CORE], medians[SPIN]),
+        "ratio_to_spin": ratios(*(medians[name] for name in (FAST, ONE_CORE, SPIN, SPIN_TWO))),
         "median": {name: figures(run) for name, run in medians.items()},
         "turns": {name: [asdict(run) for run in several] for name, several in runs.items()},
     }

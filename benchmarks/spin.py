@@ -46,6 +46,7 @@ CUT = "max search depth too small"
 
 _STORED = re.compile(r"^\s*(\S+) states, stored", re.MULTILINE)
 _TRANSITIONS = re.compile(r"^\s*(\S+) transitions \(= stored\+matched\)", re.MULTILINE)
+_MEMORY = re.compile(r"^\s*(\S+)\s+total actual memory usage", re.MULTILINE)
 _ERRORS = re.compile(r"errors: (\d+)")
 _REACHED = re.compile(r"depth reached (\d+)")
 _PROGRESS = re.compile(r"States=\s*(\S+) Transitions=\s*(\S+) Memory=\s*(\S+)(?:\s+t=\s*(\S+))?")
@@ -127,11 +128,19 @@ def agree(counts: Sequence[int], printed: Sequence[int]) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """A compiled verifier, how deep its stack has to be, and the seconds that translating and compiling took."""
+    """A compiled verifier.
+
+    Attributes:
+        folder: Where it is.
+        depth: How deep its stack has to be.
+        preparing: The seconds that translating and compiling took.
+        cores: On how many it searches.
+    """
 
     folder: Path
     depth: int
     preparing: float
+    cores: int = 1
 
 
 def search(promela: str, folder: Path) -> Searched:
@@ -149,12 +158,18 @@ def prepared(promela: str, folder: Path) -> Prepared:
     return Prepared(folder, _depth(folder), preparing)
 
 
+def prepared_for(cores: int, promela: str, folder: Path, depth: int) -> Prepared:
+    """Compile a model for a search on several cores, which is as deep as on one at most."""
+    return Prepared(folder, depth, _compile(promela, folder, *COMPILE, UNREDUCED, f"-DNCORE={cores}"), cores)
+
+
 def searched(model: Prepared) -> Searched:
-    """Search all of a prepared model."""
+    """Search all of a prepared model; of several processes, which share memory, SPIN says how much they take."""
     report = _verify(model.folder, model.depth)
     if CUT in report.text:
         raise SpinError(f"the search was cut at {model.depth:,} steps")
-    return report.searched(model.preparing)
+    found = report.searched(model.preparing)
+    return found if model.cores == 1 else replace(found, memory=float(_found(_MEMORY, report.text)))
 
 
 def bounded(
@@ -293,7 +308,11 @@ def _marks(text: str) -> list[dict[str, float]]:
 
 
 def _count(pattern: re.Pattern[str], output: str) -> int:
+    return int(float(_found(pattern, output)))
+
+
+def _found(pattern: re.Pattern[str], output: str) -> str:
     found = pattern.search(output)
     if found is None:
-        raise SpinError(f"the report has no count: {output}")
-    return int(float(found[1]))
+        raise SpinError(f"the report has no such figure: {output}")
+    return found[1]

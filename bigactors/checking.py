@@ -114,6 +114,7 @@ class How:
     reduce: tuple[Reduction, ...] = ()
     keeping: Keeping | None = None
     cluster: Cluster | None = None
+    threads: int | None = None
     times: bool = False
 
 
@@ -137,6 +138,7 @@ def check_mission(
                 reduce=how.reduce,
                 keeping=how.keeping and _of_this(how.keeping, mission, limits),
                 cluster=how.cluster,
+                threads=how.threads,
                 times=how.times,
             )
         if how.times:

@@ -81,6 +81,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     reduce: Iterable[Reduction] = (),
     keeping: Keeping | None = None,
     cluster: Cluster | None = None,
+    threads: int | None = None,
     times: bool = False,
 ) -> Report:
     """Explore everything that is reachable and decide the properties.
@@ -99,6 +100,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
         reduce: What may let it visit less.
         keeping: What the fast explorer keeps on the way, and what it doubts; where it is said, that one explores.
         cluster: With whom, where Ray is the engine.
+        threads: On how many threads at most the fast explorer explores; by default on as many as there are cores.
         times: Whether the report is to say when flights may begin and end, of a mission with `timing`.
 
     Raises:
@@ -115,9 +117,8 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     reducer = _reduced(initial, reductions, formulas) if reductions else None
     if reducer is not None and engine is Engine.RAY:
         raise RefusedError(reducer.names[0], "the ray explorer does not reduce; leave --engine out")
-    options = Options(
-        limits, report, reduce=reducer, keeping=keeping or Keeping(), cluster=cluster or Cluster()
-    )
+    kept, crew = keeping or Keeping(), cluster or Cluster()
+    options = Options(limits, report, reduce=reducer, keeping=kept, cluster=crew, threads=threads)
 
     def run(engine: Engine, exploring: Limits) -> Report:
         exploration = replace(options, engine=engine, limits=exploring)

@@ -44,6 +44,7 @@ LIBRARIES = {
     "cv2": ("adapters/camera/libraries.py",),
     "rasterio": ("adapters/camera/libraries.py",),
     "numba": ("checker/",),
+    "llvmlite": ("checker/engines/fast/prefetch.py",),  # what numba has no name for
     "ray": ("checker/engines/cluster/ray_crew.py",),
     "scipy": ("checker/properties/temporal/components.py", "bigraphs/sampling.py"),
     "pytest": ("bigactors/pytest_plugin.py",),

@@ -152,6 +152,13 @@ def _exploring(parser: Parser) -> None:
         "the mission's size)",
     )
     group.add_argument(
+        "--threads",
+        metavar="N",
+        type=at_least_one,
+        help="let the fast explorer use at most N threads; what it finds is the same for every N (default: as many as "
+        "there are cores; with --reduce one)",
+    )
+    group.add_argument(
         "--reduce",
         metavar="NAMES",
         type=reductions,

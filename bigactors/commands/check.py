@@ -54,7 +54,15 @@ def run(options: Namespace) -> Exit:
     outputs = outputs_of(options)
     engine = options.engine and Engine(options.engine)
     reductions = tuple(map(Reduction, options.reduce))
-    how = How(engine, options.violations, reductions, keeping_of(options), cluster_of(options), options.times)
+    how = How(
+        engine,
+        options.violations,
+        reductions,
+        keeping_of(options),
+        cluster_of(options),
+        threads_of(options),
+        options.times,
+    )
     variation = variation_of(options)
 
     def check(interruption: Interruption) -> Iterator[Checked | Failed]:
@@ -126,6 +134,16 @@ def cluster_of(options: Namespace) -> Cluster | None:
             )
         return None
     return Cluster(options.workers or Cluster().workers, options.address)
+
+
+def threads_of(options: Namespace) -> int | None:
+    """Return on how many threads it explores at most, None where nothing is asked for."""
+    if options.threads is not None and options.engine in ("reference", "ray"):
+        raise Mistake(
+            "--threads is of the fast explorer", "leave --engine out, or say --workers with --engine ray"
+        )
+    threads: int | None = options.threads
+    return threads
 
 
 def keeping_of(options: Namespace) -> Keeping | None:

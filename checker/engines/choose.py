@@ -37,15 +37,15 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
     reduce: Reduced | None = None,
     keeping: Keeping | None = None,
     cluster: Cluster | None = None,
+    threads: int | None = None,
 ) -> Exploration:
     """Visit everything that is reachable, breadth-first.
 
     Each configuration is given to each of `inspect` as it is expanded, in the order of discovery; the rest are the
     attributes of `Options`.
     """
-    options = Options(
-        limits or Limits(), report, every, engine, edges, reduce, keeping or Keeping(), cluster or Cluster()
-    )
+    kept, crew = keeping or Keeping(), cluster or Cluster()
+    options = Options(limits or Limits(), report, every, engine, edges, reduce, kept, crew, threads)
     return explore_by(initial, tuple(inspect), options)
 
 

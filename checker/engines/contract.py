@@ -157,6 +157,7 @@ class Options:
         reduce: What lets it visit less.
         keeping: What explorers with rows keep on the way, and what is doubted.
         cluster: With whom, on several processes or machines.
+        threads: On how many threads the fast engine explores; None for as many as there are cores.
     """
 
     limits: Limits = field(default_factory=Limits)
@@ -167,6 +168,7 @@ class Options:
     reduce: Reduced | None = None
     keeping: Keeping = Keeping()
     cluster: Cluster = Cluster()
+    threads: int | None = None
 
 
 @dataclass(slots=True)

@@ -10,17 +10,16 @@ from numba import njit
 
 from checker.engines.fast.columns import WORD
 from checker.engines.fast.kernel import (
-    BLOCK,
     CUT,
     LIMIT,
     PLACE,
     SIZE,
-    TOUCHED,
     WORDS,
     Batch,
     State,
 )
-from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed, touch
+from checker.engines.fast.prefetch import prefetch
+from checker.engines.fast.table import AHEAD, Words, bits_for, entry_of, fetch, find, hashed
 
 _ONE, _TWO, _HALF, _TOP = np.uint64(1), np.uint64(2), np.uint64(32), np.uint64(58)
 _PLACE, _WORD = np.uint64(PLACE), np.uint64(WORD)
@@ -124,41 +123,38 @@ def deal(
         np.uint64(len(sent) // (width + 1) - 1),
     )
     found, last, base = np.int64(0), np.int64(-1), np.uint64(0)
-    for begin in range(0, gathered, BLOCK):
-        end = min(begin + BLOCK, gathered)
-        touched = np.uint64(touch(words, table, hashes, begin, end, width))
-        for k in range(begin, end):
-            touched += sent[(hashes[k] & last_place) * (wide + _ONE)]
-        state[TOUCHED] = np.int64(touched)
-        for k in range(begin, end):
-            counts[batch.steps[k]] += 1
-            where = find(words, table, rows, k, hashes[k], width, bits)
-            if where >= 0:
-                continue
-            to, lately = np.uint64(k) * wide, (hashes[k] & last_place) * (wide + _ONE)
-            same = sent[lately] == _ONE
+    for k in range(gathered):
+        fetch(words, table, hashes, k, gathered, width, bits)
+        if k + AHEAD < gathered:
+            prefetch(sent, (hashes[k + AHEAD] & last_place) * (wide + _ONE))
+        counts[batch.steps[k]] += 1
+        where = find(words, table, rows, k, hashes[k], width, bits)
+        if where >= 0:
+            continue
+        to, lately = np.uint64(k) * wide, (hashes[k] & last_place) * (wide + _ONE)
+        same = sent[lately] == _ONE
+        for j in range(wide):
+            same = same and sent[lately + _ONE + j] == rows[to + j]
+        if same:
+            continue
+        at = np.uint64(reached_from[k]) * wide
+        if reached_from[k] != last:
+            last, base = reached_from[k], key_of(words, at, own)
+        owner = _owner(words, at, rows, to, width, base, own)
+        if owner != me:
+            sent[lately] = _ONE
             for j in range(wide):
-                same = same and sent[lately + _ONE + j] == rows[to + j]
-            if same:
-                continue
-            at = np.uint64(reached_from[k]) * wide
-            if reached_from[k] != last:
-                last, base = reached_from[k], key_of(words, at, own)
-            owner = _owner(words, at, rows, to, width, base, own)
-            if owner != me:
-                sent[lately] = _ONE
-                for j in range(wide):
-                    sent[lately + _ONE + j] = rows[to + j]
-                chosen[found], owners[found] = k, owner
-                found += 1
-            elif size < limit:
-                for j in range(wide):
-                    words[np.uint64(size) * wide + j] = rows[to + j]
-                origins[size] = np.uint64(reached_from[k] * own.workers + me)
-                table[-where - 1] = entry_of(hashes[k], size, bits)
-                size += 1
-            else:
-                state[CUT] += 1
+                sent[lately + _ONE + j] = rows[to + j]
+            chosen[found], owners[found] = k, owner
+            found += 1
+        elif size < limit:
+            for j in range(wide):
+                words[np.uint64(size) * wide + j] = rows[to + j]
+            origins[size] = np.uint64(reached_from[k] * own.workers + me)
+            table[-where - 1] = entry_of(hashes[k], size, bits)
+            size += 1
+        else:
+            state[CUT] += 1
     state[SIZE] = size
     return found
 
@@ -171,21 +167,19 @@ def settle(
     rows, hashes = batch.words, batch.hashes
     width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
     bits = np.uint32(bits_for(len(table)))
-    for begin in range(0, count, BLOCK):
-        end = min(begin + BLOCK, count)
-        state[TOUCHED] = touch(words, table, hashes, begin, end, width)
-        for k in range(begin, end):
-            found = find(words, table, rows, k, hashes[k], width, bits)
-            if found >= 0:
-                continue
-            if size >= limit:
-                state[CUT] += 1
-                continue
-            for j in range(width):
-                words[size * width + j] = rows[k * width + j]
-            origins[size] = reached_from[k]
-            table[-found - 1] = entry_of(hashes[k], size, bits)
-            size += 1
+    for k in range(count):
+        fetch(words, table, hashes, k, count, width, bits)
+        found = find(words, table, rows, k, hashes[k], width, bits)
+        if found >= 0:
+            continue
+        if size >= limit:
+            state[CUT] += 1
+            continue
+        for j in range(width):
+            words[size * width + j] = rows[k * width + j]
+        origins[size] = reached_from[k]
+        table[-found - 1] = entry_of(hashes[k], size, bits)
+        size += 1
     state[SIZE] = size
 
 

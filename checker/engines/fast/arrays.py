@@ -12,12 +12,14 @@ class Growing:
     Attributes:
         room: The array with its room; what lies beyond `size` means nothing.
         size: How much of it is used.
+        shared: Whether other threads may read it while it grows: then it grows by being copied.
     """
 
-    __slots__ = ("room", "size")
+    __slots__ = ("room", "shared", "size")
 
-    def __init__(self, kind: type[np.generic], room: int = 1024) -> None:
+    def __init__(self, kind: type[np.generic], room: int = 1024, *, shared: bool = False) -> None:
         self.room: NDArray[Any] = np.zeros(room, kind)
+        self.shared = shared
         self.size = 0
 
     @property
@@ -46,7 +48,11 @@ class Growing:
         wanted = self.size + count
         if wanted > len(self.room):
             more = len(self.room) // (2 if len(self.room) < 1 << 20 else 8)
-            self.room.resize(max(wanted, len(self.room) + more), refcheck=False)
+            room = max(wanted, len(self.room) + more)
+            if self.shared:
+                self.room = np.concatenate((self.room, np.zeros(room - len(self.room), self.room.dtype)))
+            else:
+                self.room.resize(room, refcheck=False)
 
     def __len__(self) -> int:
         return self.size

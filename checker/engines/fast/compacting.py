@@ -13,19 +13,18 @@ from typing import Any
 import numpy as np
 
 from checker.engines.fast.kernel import (
-    BLOCK,
     CUT,
-    EXPANDED,
     KEPT,
     LIMIT,
     PROBED,
     SIZE,
-    TOUCHED,
     Batch,
     State,
+    room_for,
 )
 from checker.engines.fast.loops import njit
-from checker.engines.fast.table import Words, slot_of
+from checker.engines.fast.prefetch import prefetch
+from checker.engines.fast.table import AHEAD, Words, slot_of
 
 _ONE, _WORD, _FOLD, _MULTIPLIER = map(np.uint64, (1, 64, 29, 0xBF58476D1CE4E5B9))
 
@@ -59,44 +58,42 @@ def store_tags(
     origins: Any,
     table: Any,
     batch: Batch,
-    gathered: int,
-    at: int,
-    counts: State,
+    begin: int,
+    end: int,
     state: State,
     bits: int,
-) -> None:
-    """Look up what was gathered of the rows before `at`, as `kernel.store` does, by tags alone."""
+) -> int:
+    """Look up some of what was gathered, as `kernel.store` does, by tags alone."""
     width, size, limit = state[KEPT], state[SIZE], state[LIMIT]
     slots = np.uint64(len(table))
-    touched = np.uint64(0)
-    for begin in range(0, gathered, BLOCK):
-        end = min(begin + BLOCK, gathered)
-        for k in range(begin, end):
-            touched += np.uint64(table[slot_of(batch.hashes[k], len(table))])
-        for k in range(begin, end):
-            counts[batch.steps[k]] += 1
-            tag = table.dtype.type(tag_of(batch.hashes[k], bits))
-            slot = slot_of(batch.hashes[k], len(table))
-            probed = np.int64(0)
-            while table[slot] != 0 and table[slot] != tag:
-                probed += 1
-                slot += _ONE
-                if slot == slots:
-                    slot = np.uint64(0)
-            if table[slot] != 0:
-                continue
-            if size >= limit:
-                state[CUT] += 1
-                continue
-            for j in range(width):
-                words[size * width + j] = batch.kept[k * width + j]
-            origins[size] = batch.origins[k]
-            table[slot] = tag
-            size += 1
-            state[PROBED] += probed
-    state[TOUCHED] = np.int64(touched & _ONE)
+    room = room_for(words, origins, table, width)
+    for k in range(begin, end):
+        if k + AHEAD < end:
+            prefetch(table, slot_of(batch.hashes[k + AHEAD], len(table)))
+        tag = table.dtype.type(tag_of(batch.hashes[k], bits))
+        slot = slot_of(batch.hashes[k], len(table))
+        probed = np.int64(0)
+        while table[slot] != 0 and table[slot] != tag:
+            probed += 1
+            slot += _ONE
+            if slot == slots:
+                slot = np.uint64(0)
+        if table[slot] != 0:
+            continue
+        if size >= limit:
+            state[CUT] = 1
+            continue
+        if size >= room:
+            end = k
+            break
+        for j in range(width):
+            words[size * width + j] = batch.kept[k * width + j]
+        origins[size] = batch.origins[k]
+        table[slot] = tag
+        size += 1
+        state[PROBED] += probed
     state[SIZE] = size
-    state[EXPANDED] = at
+    return end
 
 
 @njit(cache=True)

@@ -15,7 +15,7 @@ from checker.engines.fast.compiling import compilation_reported
 from checker.engines.fast.graph import GraphSurvey
 from checker.engines.fast.inspecting import inspect_fast
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.space import Space
+from checker.engines.fast.space import Space, cores
 from checker.limits import Bound, BoundMet, Limits, Part, Stop, bounded, is_full, memory_left
 from semantics.state.configuration import Configuration
 
@@ -91,7 +91,12 @@ class _Explorer:
         self.learner = Learner(initial.setting, initial.state, limits.pending)  # type: ignore[arg-type]  # a stored one
         self.reduce = options.reduce
         self.space = Space(
-            self.learner, limits.configurations, self.choosing(), self.exchanging(), options.keeping.compact
+            self.learner,
+            limits.configurations,
+            self.choosing(),
+            self.exchanging(),
+            options.keeping.compact,
+            options.threads or cores(),
         )
         self.space.left = self.left
         self.journey = Journey(0, 1, 0.0)
@@ -238,7 +243,7 @@ class _Explorer:
     def advance(self) -> None:
         """Expand some rows of a layer; begin the next one where it ends."""
         space, end = self.space, self.journey.layer_end
-        space.advance(min(space.expanded + CHUNK, end))
+        space.advance(min(space.expanded + CHUNK, end), end)
         if space.expanded == end and space.size > end:
             self.layers.append(space.size - end)
             self.journey = Journey(self.journey.depth + 1, space.size, self.journey.seconds)

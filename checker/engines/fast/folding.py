@@ -20,6 +20,7 @@ from checker.engines.fast.loops import njit
 from checker.engines.fast.pages import Pages, more
 from checker.engines.fast.table import (
     Words,
+    alone,
     bits_for,
     entry_of,
     find,
@@ -300,7 +301,7 @@ class Pool:
         self._index = Pages(np.uint32, 1)
         self._index = Pages(np.uint32, slots_for(room))
         bits = bits_for(len(self._index.room))
-        rebuild(self._words.room, len(self), self.width, self._index.room, write_numbers, bits)
+        rebuild(self._words.room, len(self), self.width, self._index.room, write_numbers, bits, alone)
         self.interned.counts[MOST], self.interned.counts[BITS] = (
             min(room, most_in(len(self._index.room))),
             bits,

@@ -1,8 +1,7 @@
 """The compiled loops: evaluate the trees on the frontier, and maintain the exact visited set.
 
 Rows are packed words (see `columns.Packing`), and found again by a table (see `table`). Successors are gathered, and
-their places there and the rows found are touched one after another before any is compared: what these loops wait for
-is memory, which answers many questions at once.
+then looked up one after another, while memory is asked for what those some places behind will be compared with.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
@@ -32,7 +31,7 @@ from checker.engines.fast.leaves import (
     WRITES_END,
 )
 from checker.engines.fast.loops import njit
-from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed, touch
+from checker.engines.fast.table import Words, bits_for, entry_of, fetch, find, hashed, most_in
 from checker.engines.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
 
 Ints = NDArray[np.int32]
@@ -71,10 +70,12 @@ class Batch(NamedTuple):
 
     Attributes:
         words: Their words.
-        kept: What is kept of them: their words, or the roots into which these are folded.
+        kept: What is kept of them: their words, or what these are folded into.
         hashes: The hashes of what is kept.
-        origins, steps: From where each was reached, and by which transition.
-        leaves: Room for the leaves of one row.
+        origins, steps: From where each was reached, and the transitions that led there.
+        leaves: Room for those of one row.
+        later: Rows that were put off: for each its number, and how many transitions and successors came before it.
+        lately: For some of the bits of a hash the last successor that had them.
     """
 
     words: Words
@@ -83,40 +84,27 @@ class Batch(NamedTuple):
     origins: State
     steps: Ints
     leaves: Ints
+    later: State
+    lately: Ints
 
 
-(
-    AT,
-    SIZE,
-    LIMIT,
-    WORDS,
-    KEPT,
-    TURNS,
-    ALPHA,
-    GATHERED,
-    TREE,
-    NODE,
-    CODE,
-    CUT,
-    CROWDS,
-    EXPANDED,
-    PROBED,
-    TOUCHED,
-) = range(16)
+STATE = 18
+AT, SIZE, LIMIT, WORDS, KEPT, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED, PROBED = range(
+    15
+)
+SIFTED, PUT_OFF, SEEN = range(15, STATE)
 """What stands where in the loops' state: the row that comes next, how many rows there are and may be, words a row and
 how many are kept of it, whether requests wait for their turn, the column that says which agents there are (-1: always
 the same), how many successors are gathered, what was not known, whether rows were left out or not followed, up to which
-row all successors are stored, how many tags were compared, and nothing of meaning."""
-
-STATE = 16
-BLOCK = 1 << 12
-"""Successors that are looked up at once: what is touched for them fits a core's own cache."""
+row all successors are stored, how many tags were compared, how many successors were not found, how many rows were put
+off, and below which number rows may be looked up."""
 
 WIDE, UNSORTED, FULL = -2, -3, -4
 """What stands in the place of a node where one row has more successors than a batch holds, where it is not known what
 represents one of them, and where there is no room for the nodes into which one is folded."""
 
-PLACE, MOVE = 3, 5
+PLACE, MOVE, LATER = 3, 5, 3
+_QUARTER = np.uint64(40)
 
 _ONE, _PIECE, _STEP, _MEMORY = map(np.uint64, (1, 32, 36, 65 - MEMORY.bit_length()))
 _MULTIPLIER = np.uint64(0x9E3779B97F4A7C15)
@@ -276,35 +264,112 @@ def is_repeated(target: Words, taken: Ints, steps: Ints, began: int, end: int, s
     return False
 
 
-@njit(cache=True, nogil=True)
-def store(
-    words: Words, origins: Any, table: Any, batch: Batch, gathered: int, at: int, counts: State, state: State
-) -> None:
-    """Look up what was gathered of the rows before `at`: what is new becomes a row, with where it was reached from.
+@njit(cache=True, inline="always")
+def room_for(words: Words, origins: Any, table: Any, width: int) -> int:
+    """Return how many rows there may be before something must grow."""
+    return min(len(words) // width, len(origins), most_in(len(table)))
 
-    There must be room for so many new rows. It may run beside `gather`: they touch nothing of each other's.
+
+@njit(cache=True, nogil=True)
+def store(words: Words, origins: Any, table: Any, batch: Batch, begin: int, end: int, state: State) -> int:
+    """Look up some of what was gathered: what is new becomes a row, with where it was reached from.
+
+    Return the first for which there is no room, the end where there is room for all. Others may look up rows that were
+    there before.
     """
-    target, hashes, reached_from, taken = batch.kept, batch.hashes, batch.origins, batch.steps
+    target, hashes, reached_from = batch.kept, batch.hashes, batch.origins
     width, size, limit = state[KEPT], state[SIZE], state[LIMIT]
     bits = np.uint32(bits_for(len(table)))
-    for begin in range(0, gathered, BLOCK):
-        end = min(begin + BLOCK, gathered)
-        state[TOUCHED] = touch(words, table, hashes, begin, end, width)
-        for k in range(begin, end):
-            counts[taken[k]] += 1
-            found = find(words, table, target, k, hashes[k], width, bits)
-            if found >= 0:
-                continue
-            if size >= limit:
-                state[CUT] += 1
-                continue
-            for j in range(width):
-                words[size * width + j] = target[k * width + j]
-            origins[size] = reached_from[k]
-            table[-found - 1] = entry_of(hashes[k], size, bits)
-            size += 1
+    room = room_for(words, origins, table, width)
+    for k in range(begin, end):
+        fetch(words, table, hashes, k, end, width, bits)
+        found = find(words, table, target, k, hashes[k], width, bits)
+        if found >= 0:
+            continue
+        if size >= limit:
+            state[CUT] = 1
+            continue
+        if size >= room:
+            end = k
+            break
+        for j in range(width):
+            words[size * width + j] = target[k * width + j]
+        origins[size] = reached_from[k]
+        table[-found - 1] = entry_of(hashes[k], size, bits)
+        size += 1
     state[SIZE] = size
-    state[EXPANDED] = at
+    return end
+
+
+@njit(cache=True, nogil=True)
+def count(steps: Ints, begin: int, end: int, counts: State) -> None:
+    """Count transitions that were followed."""
+    for k in range(begin, end):
+        counts[steps[k]] += 1
+
+
+@njit(cache=True, inline="always")
+def keep(batch: Batch, k: int, left: int, width: int) -> None:
+    """Move a successor to the end of those that are left."""
+    for j in range(width):
+        batch.kept[left * width + j] = batch.kept[k * width + j]
+    batch.hashes[left], batch.origins[left] = batch.hashes[k], batch.origins[k]
+
+
+@njit(cache=True, inline="always")
+def note_later(later: State, put_off: int, k: int, left: int) -> int:
+    """Note for rows put off before a successor how many are left before it; return how many rows have it noted."""
+    while LATER * put_off < len(later) and later[LATER * put_off + 2] <= k:
+        later[LATER * put_off + 2] = left
+        put_off += 1
+    return put_off
+
+
+@njit(cache=True, nogil=True)
+def drop_repeated(batch: Batch, state: State) -> None:
+    """Leave of what was gathered only successors that were not gathered just before: most of those that come again."""
+    target, hashes, lately = batch.kept, batch.hashes, batch.lately
+    later = batch.later[: LATER * state[PUT_OFF]]
+    width, gathered = state[KEPT], state[GATHERED]
+    last_place = np.uint64(len(lately) - 1)
+    lately[:] = 0
+    left, noted = np.int64(0), np.int64(0)
+    for k in range(gathered):
+        noted = note_later(later, noted, k, left)
+        place = (hashes[k] >> _QUARTER) & last_place
+        before = np.int64(lately[place]) - 1
+        same = before >= 0
+        if same:
+            for j in range(width):
+                same = same and target[before * width + j] == target[k * width + j]
+        if not same:
+            keep(batch, k, left, width)
+            left += 1
+            lately[place] = left
+    note_later(later, noted, gathered, left)
+    state[SIFTED] = left
+
+
+@njit(cache=True, nogil=True)
+def sift(words: Words, table: Any, batch: Batch, state: State) -> None:
+    """Leave of what is left only successors that are none of the rows below some number.
+
+    Meanwhile others may store rows from that number on: such a row is never taken for found, since its words may not
+    all be seen here yet.
+    """
+    target, hashes, later = batch.kept, batch.hashes, batch.later[: LATER * state[PUT_OFF]]
+    width, seen, several = state[KEPT], state[SEEN], state[SIFTED]
+    bits = np.uint32(bits_for(len(table)))
+    left, noted = np.int64(0), np.int64(0)
+    for k in range(several):
+        noted = note_later(later, noted, k, left)
+        fetch(words, table, hashes, k, several, width, bits)
+        found = find(words, table, target, k, hashes[k], width, bits)
+        if found < 0 or found >= seen:
+            keep(batch, k, left, width)
+            left += 1
+    note_later(later, noted, several, left)
+    state[SIFTED] = left
 
 
 @njit(cache=True, nogil=True)
@@ -314,14 +379,15 @@ def gather(  # one loop, so that its arrays are taken out of their tuples only o
     """Gather the successors of rows up to a number, or until half of the batch is full; False at what is not known.
 
     A row's successors are gathered each once: first what its agents are served, then what they do themselves, then what
-    the environment does. They are folded at once where rows are (`f`): that is compiled apart.
+    the environment does. As long as there is room to note it, a row of which something is not known, or too much is
+    pending, is put off. Successors are folded at once where rows are (`f`): that is compiled apart.
     """
     root, nodes, leads, columns = m.root, m.nodes, m.next, m.columns
     copies, writes, parts = m.copies, m.writes, m.part
     agents_from, agents, clauses = m.agents_from, m.agents, m.clauses
     all_leaves, steps, masks = m.leaves, m.steps, m.masks
     target, made, hashes, origins = batch.words, batch.kept, batch.hashes, batch.origins
-    taken, leaves = batch.steps, batch.leaves
+    taken, leaves, later = batch.steps, batch.leaves, batch.later
     width, kept, known = state[WORDS], state[KEPT], True
     adding = state[SIZE] < state[LIMIT]  # of what can't become a row, nothing is added
     while known and state[AT] < until and state[GATHERED] <= len(hashes) // 2:
@@ -345,9 +411,12 @@ def gather(  # one loop, so that its arrays are taken out of their tuples only o
                 break
             leaves[k] = -reference - 1
             flags |= all_leaves[LEAF * (-reference - 1) + FLAGS]
-        end = state[GATHERED]
+        end, may_wait = state[GATHERED], LATER * state[PUT_OFF] < len(later)
         if known and flags & CROWDED:
-            state[CROWDS] += 1
+            if len(later):
+                known = False  # it is counted where it is expanded at last
+            else:
+                state[CROWDS] += 1
         elif known:
             turn = first_turn(all_leaves, steps, leaves, last - first) if state[TURNS] else np.int64(-1)
             began = end
@@ -400,6 +469,12 @@ def gather(  # one loop, so that its arrays are taken out of their tuples only o
         if known:
             state[GATHERED] = end
             state[AT] += 1
+        elif may_wait:
+            at = LATER * state[PUT_OFF]
+            later[at], later[at + 1], later[at + 2] = row, state[GATHERED], state[GATHERED]
+            state[PUT_OFF] += 1
+            state[AT] += 1
+            known = True
     return known
 
 
@@ -430,11 +505,9 @@ def look_up(words: Words, table: Any, batch: Batch, targets: Any, state: State) 
     target, hashes = batch.kept, batch.hashes
     width = state[KEPT]
     bits = np.uint32(bits_for(len(table)))
-    for begin in range(0, len(targets), BLOCK):
-        end = min(begin + BLOCK, len(targets))
-        state[TOUCHED] = touch(words, table, hashes, begin, end, width)
-        for k in range(begin, end):
-            targets[k] = find(words, table, target, k, hashes[k], width, bits)
+    for k in range(len(targets)):
+        fetch(words, table, hashes, k, len(targets), width, bits)
+        targets[k] = find(words, table, target, k, hashes[k], width, bits)
 
 
 @njit(cache=True, _nrt=True)

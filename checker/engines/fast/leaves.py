@@ -68,11 +68,8 @@ class Leaves:
     __slots__ = ("copies", "leaves", "part", "rule", "steps", "writes")
 
     def __init__(self) -> None:
-        self.leaves = Growing(np.int32)
-        self.steps = Growing(np.int32)
-        self.writes = Growing(np.int32)
-        self.copies = Growing(np.int32)
-        self.part = Growing(np.int32)
+        self.leaves, self.steps, self.writes = (Growing(np.int32, shared=True) for _ in range(3))
+        self.copies, self.part = (Growing(np.int32, shared=True) for _ in range(2))
         self.rule = Growing(np.int32)
 
     def add(self, steps: Sequence[Step], flags: int = 0) -> int:

@@ -8,7 +8,6 @@ import os
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -32,6 +31,8 @@ from checker.engines.fast.kernel import (
     LIMIT,
     NODE,
     PROBED,
+    PUT_OFF,
+    SEEN,
     SIZE,
     TREE,
     TURNS,
@@ -39,6 +40,7 @@ from checker.engines.fast.kernel import (
 )
 from checker.engines.fast.learner import Actor, CodedSource, Learner
 from checker.engines.fast.pages import Pages
+from checker.engines.fast.pipeline import Pipeline, Slice
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.table import bits_for, most_in, rebuild, slots_for, slots_within, write_numbers
 from checker.engines.fast.trees import RECORD
@@ -50,10 +52,13 @@ from semantics.state.signature import Name
 from semantics.successors import by_clause, moves, served
 
 BATCH = 1 << 15
-"""Successors that a batch has room for; it is stored when half of that is gathered."""
+"""Successors that a batch has room for; rows are expanded until half of that is gathered."""
 
-WORTH = 1 << 12
-"""From how many successors on they are stored beside the gathering of the next: handing over takes time, too."""
+FEW = 1 << 6
+"""Rows of the first slice, and of the next one where what was found ahead turned out to be worth nothing."""
+
+LATER_ROWS = 1 << 10
+"""How many rows of a slice may be put off."""
 
 FIRST_ROWS = 1 << 15
 MOST_ROWS = (1 << 31) - 1
@@ -78,6 +83,13 @@ class Space:
         compact: How many bits a tag has, where the table has tags instead of numbers (see `compacting`).
         actors: How many actors a configuration may have, as far as is known: agents' two each, and the environment's.
         left: Says how many bytes of memory may be taken besides: the table grows by less where they end.
+        pipeline: Expands rows ahead of what is stored.
+        stored: How many rows other threads may look up.
+        pace: How many rows the next slice has, if one has not too many successors.
+        breadth: How many successors a row of the last slice had.
+        changes: How many times rows were packed anew.
+        shown: What is known, as other threads may read it while more is learned; None where it is out of date.
+        spare: Batches of slices that were stored.
     """
 
     ORIGIN: type[np.generic] = np.uint32
@@ -91,6 +103,7 @@ class Space:
         choosing: "Choosing | None" = None,
         exchanging: "Exchanging | None" = None,
         compact: int | None = None,
+        threads: int = 1,
     ) -> None:
         self.learner = learner
         self.left: Callable[[], float] = lambda: math.inf
@@ -101,11 +114,13 @@ class Space:
         self.compact = compact
         self.state = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
-        self.beside = ThreadPoolExecutor(1) if cores() > 1 else None
-        self.storing: Future[None] | None = None
+        self.pipeline = Pipeline(threads, self._expand_slice, self._sift)
+        self.stored = self.changes = 0
+        self.pace, self.breadth = FEW, 1.0
+        self.shown: kernel.Model | None = None
+        self.spare: list[kernel.Batch] = []
         self.packing: Packing
         self.batch: kernel.Batch
-        self.full: kernel.Batch
         self.state[TURNS] = learner.setting.scheduler is Scheduler.FCFS
         self.learned: list[tuple[int, int, int, int]] = []
         self.clauses = [learner.tree(Actor(by_clause, clause)) for clause in learner.setting.environment]
@@ -114,7 +129,7 @@ class Space:
         self.trees: tuple[NDArray[np.int32], ...] = ()
         self.counts = Growing(np.int64)
         self.met = self.counts if choosing is None else Growing(np.int64)
-        self.masks = Growing(np.uint64)
+        self.masks = Growing(np.uint64, shared=True)
         self.located = 0
         self.grown = -1
         self.rows = Rows(1, FIRST_ROWS, self.ORIGIN)
@@ -182,22 +197,90 @@ class Space:
 
     # --- expanding ------------------------------------------------------------------------------------------------
 
-    def advance(self, until: int) -> None:
-        """Expand rows up to a number, learning what is not known on the way."""
-        self.state[AT], self.state[GATHERED] = self.expanded, 0
+    def advance(self, until: int, end: int | None = None) -> None:
+        """Expand rows up to a number or somewhat farther, but never beyond an end, learning what is not known."""
         if self.choosing is not None:
             self._advance_by(self.choosing, until)
             return
-        try:
-            while self.state[AT] < until:
-                known = self._gather(until)
-                self._stored()
-                self._hand_over()
-                if not known:
-                    self._stored()
-                    self._miss()
-        finally:
-            self._stored()
+        while self.expanded < until:
+            if self.exchanging is None and self.rows.folded is None:
+                self._commit(self._next(until if end is None else end))
+            else:
+                self._expand_here(until)
+
+    def _next(self, end: int) -> Slice:
+        """Return the slice that comes next, expanded; let others go ahead, as far as rows are stored.
+
+        No slice lies on both sides of some end.
+        """
+        pipeline = self.pipeline
+        if pipeline.begin is not None and pipeline.begin > self.expanded:  # a batch was full before its end
+            pipeline.ahead.appendleft(self._slice(self.expanded, pipeline.begin))
+        elif pipeline.ahead and pipeline.ahead[0].epoch != self._epoch:
+            pipeline.drop()
+        begin = self.expanded if pipeline.end is None else pipeline.end
+        while not pipeline.is_full and begin < (stop := end if begin < end else self.size):
+            rows = min(self.pace, int(BATCH / 2 / self.breadth), pipeline.fair(stop - begin))
+            part = self._slice(begin, min(begin + max(rows, 1), stop))
+            pipeline.add(part)
+            begin = part.end
+        return pipeline.take()
+
+    def _slice(self, begin: int, end: int) -> Slice:
+        """Return rows as a slice, to be expanded by what is known now."""
+        if self.shown is None:
+            trees = self.learner.trees
+            copies = [each.used.copy() for each in (trees.root, trees.nodes, trees.next)]
+            self.shown = self.model._replace(root=copies[0], nodes=copies[1], next=copies[2])
+        self.stored = self.size
+        state = self.state.copy()
+        state[[AT, GATHERED, PUT_OFF]] = begin, 0, 0
+        batch = self.spare.pop() if self.spare else self._batch(BATCH, LATER_ROWS)
+        return Slice(begin, end, self._epoch, self.shown, batch, state)
+
+    @property
+    def _epoch(self) -> int:
+        """A number that changes whenever what was found ahead may be worth nothing."""
+        return self.changes + self.learner.trees.forgotten
+
+    def _expand_slice(self, part: Slice) -> None:
+        """Expand a slice, in any thread."""
+        kernel.gather(part.model, self.rows.words, None, part.batch, part.state, part.end)  # rows are plain
+        kernel.drop_repeated(part.batch, part.state)
+
+    def _sift(self, part: Slice) -> None:
+        """Leave of a slice only what is none of the rows that are stored; tags are compared where they are stored."""
+        if self.compact is None:
+            part.state[SEEN] = self.stored
+            kernel.sift(self.rows.words, self.table.room, part.batch, part.state)
+
+    def _commit(self, part: Slice) -> None:
+        """Store what was found in a slice; rows that were put off are expanded when their turn comes."""
+        steps = found = 0
+        for row, steps_before, found_before in part.put_off():
+            self._store(part.batch, (steps, steps_before), (found, found_before), row)
+            steps, found = steps_before, found_before
+            while self.expanded == row:
+                self._expand_here(row + 1)
+            if self._epoch != part.epoch:
+                self.pipeline.drop()
+                self.pace = FEW
+                return
+        self._store(part.batch, (steps, part.gathered), (found, part.sifted), part.at)
+        self.breadth = max(part.gathered / (part.at - part.begin), 0.5)
+        self.pace = min(2 * self.pace, BATCH)
+        if len(part.batch.leaves) == self.actors:
+            self.spare.append(part.batch)
+
+    def _expand_here(self, until: int) -> None:
+        """Expand rows up to a number, or until a batch is full, learning what is not known on the way."""
+        self.state[AT], self.state[GATHERED] = self.expanded, 0
+        known = self._gather(until)
+        gathered = int(self.state[GATHERED])
+        self._store(self.batch, (0, gathered), (0, gathered), int(self.state[AT]))
+        self.state[GATHERED] = 0
+        if not known:
+            self._miss()
 
     def _advance_by(self, choosing: "Choosing", until: int) -> None:
         """Expand rows up to a number, following what is chosen."""
@@ -227,31 +310,26 @@ class Space:
             known if self.exchanging is None else self.exchanging.represent(self.batch, self.state) and known
         )
 
-    def _hand_over(self) -> None:
-        """Let what was gathered be stored, and another batch take what comes next."""
-        gathered, self.state[GATHERED] = int(self.state[GATHERED]), 0
-        self._make_room(gathered)
-        self.batch, self.full = self.full, self.batch
-        if self.beside is not None and gathered >= WORTH:
-            self.storing = self.beside.submit(self._store, gathered, int(self.state[AT]))
-        else:
-            self._store(gathered, int(self.state[AT]))
+    def _store(self, batch: kernel.Batch, steps: tuple[int, int], found: tuple[int, int], at: int) -> None:
+        """Store what was gathered of the rows before one: some transitions, and successors that may be new."""
+        kernel.count(batch.steps, *steps, self.counts.room)
+        begin, end = found
+        while begin < end:  # the table grows just when it is full, whatever is stored at once
+            self._make_room(1)
+            begin = self._store_some(batch, begin, end)
+        self.state[EXPANDED] = at
+        self.stored = self.size
 
-    def _store(self, gathered: int, at: int) -> None:
-        """Store what was gathered of the rows before one."""
-        arrays = (self.rows.words, self.rows.origins, self.table.room, self.full, gathered, at)
+    def _store_some(self, batch: kernel.Batch, begin: int, end: int) -> int:
+        """Store some of the successors of a batch, as far as there is room, and return how far."""
+        arrays = (self.rows.words, self.rows.origins, self.table.room, batch, begin, end, self.state)
+        loop: Callable[..., int] = kernel.store
         if self.compact is None:
-            kernel.store(*arrays, self.counts.room, self.state)
-            return
+            return loop(*arrays)
         from checker.engines.fast.compacting import store_tags  # noqa: PLC0415  # compiled where it is wanted
 
-        store_tags(*arrays, self.counts.room, self.state, self.compact)
-
-    def _stored(self) -> None:
-        """Wait until what was handed over is stored."""
-        if self.storing is not None:
-            storing, self.storing = self.storing, None
-            storing.result()
+        loop = store_tags
+        return loop(*arrays, self.compact)
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the leaf that each row leads to in a tree, learning what is not known on the way."""
@@ -279,7 +357,7 @@ class Space:
                 self._miss()
 
     def _miss(self) -> None:
-        look()  # everything that was gathered is stored
+        look()
         if self.state[NODE] == kernel.WIDE:
             self._make_batches(2 * len(self.batch.hashes))
             self._see()
@@ -307,6 +385,7 @@ class Space:
         if node >= 0:
             column = learner.columns.all[learner.trees.column_of(node)]
             if learner.trees.settle(node, code, column):
+                self.shown = None
                 return False
         learner.learn(tree, CodedSource(learner.columns, where, words.tolist()))
         return True
@@ -385,6 +464,7 @@ class Space:
         self.model = kernel.Model._make(
             (*(each.room for each in learned), self.masks.room, self.packing.columns, *self.trees)
         )
+        self.shown = self.model if self.pipeline.threads == 1 else None
         if self.choosing is not None:
             self.choosing.see(groups, self.packing, len(self.batch.hashes))
         if self.exchanging is not None:
@@ -440,12 +520,15 @@ class Space:
         new = packing(room, old.words)
         if new.words > self.PLAIN:  # then a transition changes few pieces of a row
             new = packing_in_order(room, self.learner.by_home(), old.words)
+        self.pipeline.drop()
         self.rows.repack(self.size, shifts(old, new), new.words, fold=new.words > self.PLAIN)
         self._pack_as(new, len(self.batch.hashes))
         self._rebuild(len(self.table.room))
 
     def _pack_as(self, where: Packing, successors: int) -> None:
         """Let all that looks at rows, and batches for so many successors, be of the packing that rows have."""
+        self.pipeline.drop()
+        self.changes += 1
         self.packing, self.state[WORDS], self.state[KEPT] = where, where.words, self.rows.kept
         self.grown = -1
         self.masks.size = self.located = 0
@@ -463,8 +546,9 @@ class Space:
         self.state[SIZE] = 1
 
     def _make_batches(self, successors: int) -> None:
-        """Make two empty batches; what they held must have been stored."""
-        self.batch, self.full = (self._batch(successors) for _ in range(2))
+        """Make an empty batch; what it held must have been stored."""
+        self.batch = self._batch(successors)
+        self.spare.clear()
         self.state[GATHERED] = 0
 
     def _take_turns(self, actors: int) -> None:
@@ -473,7 +557,7 @@ class Space:
             self.actors = actors
             self._make_batches(len(self.batch.hashes))
 
-    def _batch(self, successors: int) -> kernel.Batch:
+    def _batch(self, successors: int, later: int = 0) -> kernel.Batch:
         folded = self.rows.folded is not None
         whole = 0 if folded and self.choosing is None else successors
         words = np.zeros(whole * self.packing.words, np.uint64)
@@ -484,12 +568,16 @@ class Space:
             np.zeros(successors, np.int64),
             np.zeros(successors, np.int32),
             np.zeros(self.actors, np.int32),
+            np.zeros(kernel.LATER * later, np.int64),
+            np.zeros(BATCH if later else 0, np.int32),
         )
 
     def _make_room(self, rows: int) -> None:
         """Make room for so many new rows."""
         wanted = min(self.size + rows, int(self.state[LIMIT]))
-        self.rows.reserve(wanted)
+        if wanted > self.rows.room:
+            self.pipeline.rest()
+            self.rows.reserve(wanted)
         if most_in(len(self.table.room)) < wanted:
             self._rebuild(self._slots(wanted))
 
@@ -506,19 +594,23 @@ class Space:
         Raises:
             OSError: There is no such folder, or no room in it.
         """
+        self.pipeline.rest()
         self.rows.spill(folder, self.size)
 
     def _rebuild(self, slots: int) -> None:
+        self.pipeline.rest()
         self.table = Pages(np.uint32, 1)  # give the old one back before the next is taken
         rows = (self.rows.words, self.size, self.rows.kept)
         if self.compact is None:
             self.table = Pages(np.uint32, slots)
-            rebuild(*rows, self.table.room, write_numbers, bits_for(len(self.table.room)))
+            rebuild(
+                *rows, self.table.room, write_numbers, bits_for(len(self.table.room)), self.pipeline.divide
+            )
             return
         from checker.engines.fast.compacting import write_tags  # noqa: PLC0415  # compiled where it is wanted
 
         self.table = Pages(np.uint32 if self.compact <= 32 else np.uint64, slots)
-        rebuild(*rows, self.table.room, write_tags, self.compact)
+        rebuild(*rows, self.table.room, write_tags, self.compact, self.pipeline.divide)
 
 
 def cores() -> int:

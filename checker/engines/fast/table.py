@@ -14,22 +14,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.loops import njit
+from checker.engines.fast.prefetch import prefetch
 
 Words = NDArray[np.uint64]
 Write = Callable[[Words, Any, Any, int], None]
+Share = Callable[[Callable[[range], Any], int], list[Any]]
 
 PARTS = 16
-"""Parts of a table; rows that belong into one are entered one after another, so that they meet in a few pages."""
+"""Parts of a table that may be filled by different threads."""
 
 ENTERED = 1 << 14
-"""Rows that are put into the order of those parts at once."""
+"""Rows that are looked at at once when a table is filled."""
 
-AHEAD = 256
-"""Rows whose slots are touched before the first of them is entered."""
+AHEAD = 32
+"""How many places ahead memory is asked for a row, and twice as far for the slot that names it."""
 
 _MULTIPLIER = np.uint64(0x9E3779B97F4A7C15)
 _HALF, _ONE = np.uint64(32), np.uint64(1)
-_PART = np.uint64(60)
+_PART, _SIXTY_FOUR = np.uint64(60), np.uint64(64)
 
 
 @njit(cache=True, inline="always")
@@ -123,27 +125,32 @@ def find(
     return found
 
 
-@njit(cache=True)
-def touch(words: Words, table: Any, hashes: Words, begin: int, end: int, width: int) -> int:
-    """Read what successors will be compared with, so that the memory fetches it side by side."""
-    wide = np.uint64(width)
-    bits = np.uint32(bits_for(len(table)))
-    numbers = np.uint32((np.int64(1) << np.int64(bits)) - 1)
-    touched = np.uint64(0)
-    for k in range(np.uint64(begin), np.uint64(end)):
-        touched += np.uint64(table[slot_of(hashes[k], len(table))])
-    for k in range(np.uint64(begin), np.uint64(end)):
-        entry = table[slot_of(hashes[k], len(table))]
-        if entry != 0 and entry >> bits == np.uint32(hashes[k]) >> bits:
-            touched += words[(np.uint64(entry & numbers) - _ONE) * wide]
-    return np.int64(touched & _ONE)
+@njit(cache=True, inline="always")
+def fetch(words: Words, table: Any, hashes: Words, k: int, end: int, width: int, bits: np.uint32) -> None:
+    """Ask for what successors some places behind one, up to an end, will be compared with: a slot, then its row."""
+    far, near = k + 2 * AHEAD, k + AHEAD
+    if far < end:
+        prefetch(table, slot_of(hashes[far], len(table)))
+    if near < end:
+        entry = table[slot_of(hashes[near], len(table))]
+        if entry != 0 and entry >> bits == np.uint32(hashes[near]) >> bits:
+            numbers = np.uint32((np.int64(1) << np.int64(bits)) - 1)
+            prefetch(words, (np.uint64(entry & numbers) - _ONE) * np.uint64(width))
 
 
 # --- entering all rows anew -------------------------------------------------------------------------------------------
 
 
-def rebuild(words: Words, size: int, width: int, table: Any, write: Write, bits: int) -> None:
+def alone(work: Callable[[range], Any], parts: int) -> list[Any]:
+    """Do some work with so many parts, all of them in this thread."""
+    return [work(range(parts))]
+
+
+def rebuild(words: Words, size: int, width: int, table: Any, write: Write, bits: int, share: Share) -> None:
     """Fill an empty table with the rows, all of them different.
+
+    Each part of the table is filled by one thread, in the order of the rows. The few that have no room in their part
+    come last, so that what stands where does not depend on how many threads there are.
 
     Args:
         words: The rows.
@@ -152,29 +159,39 @@ def rebuild(words: Words, size: int, width: int, table: Any, write: Write, bits:
         table: The table.
         write: Writes entries for the hashes and numbers of rows: `write_numbers`, or `compacting.write_tags`.
         bits: What it is given besides.
+        share: Does some work with ranges of parts, in several threads, and returns what comes of each.
     """
-    hashes, rows = np.zeros(ENTERED, np.uint64), np.zeros(ENTERED, np.int64)
-    entries = np.zeros(ENTERED, table.dtype)
-    for begin in range(0, size, ENTERED):
-        some = slice(0, min(ENTERED, size - begin))
-        order(words, begin, width, hashes[some], rows[some])
-        write(hashes[some], rows[some], entries[some], bits)
-        enter(table, hashes[some], entries[some])
+
+    def fill(parts: range) -> list[tuple[Words, Any]]:
+        hashes, rows = np.zeros(ENTERED, np.uint64), np.zeros(ENTERED, np.int64)
+        entries = np.zeros(ENTERED, table.dtype)
+        left = [(hashes[:0], entries[:0])]
+        for begin in range(0, size, ENTERED):
+            end = min(begin + ENTERED, size)
+            count = choose(words, begin, end, width, parts.start, parts.stop, hashes, rows)
+            write(hashes[:count], rows[:count], entries[:count], bits)
+            over = enter(table, hashes[:count], entries[:count], PARTS)
+            left.append((hashes[:over].copy(), entries[:over].copy()))
+        return left
+
+    found = [each for several in share(fill, PARTS) for each in several]
+    hashes, entries = (np.concatenate(each) for each in zip(*found, strict=True))
+    order = np.argsort(hashes >> _PART, kind="stable")
+    enter(table, hashes[order], entries[order], 1)
 
 
-@njit(cache=True, _nrt=True)
-def order(words: Words, begin: int, width: int, hashes: Words, rows: Any) -> None:
-    """Note the hashes and numbers of as many rows, ordered by the parts of a table into which they belong."""
-    mixed, ends = np.empty(len(hashes), np.uint64), np.zeros(PARTS + 1, np.int64)
-    for k in range(len(hashes)):
-        mixed[k] = hashed(words, (begin + k) * width, width)
-        ends[np.int64(mixed[k] >> _PART) + 1] += 1
-    for part in range(PARTS):
-        ends[part + 1] += ends[part]
-    for k in range(len(hashes)):
-        part = np.int64(mixed[k] >> _PART)
-        hashes[ends[part]], rows[ends[part]] = mixed[k], begin + k
-        ends[part] += 1
+@njit(cache=True, nogil=True)
+def choose(
+    words: Words, begin: int, end: int, width: int, first: int, last: int, hashes: Words, rows: Any
+) -> int:
+    """Note the hashes and numbers of those of some rows that belong into some parts; return how many they are."""
+    low, wide = np.uint64(first) << _PART, (np.uint64(last - first) << _PART) - _ONE
+    count = np.int64(0)
+    for row in range(begin, end):
+        mixed = hashed(words, row * width, width)
+        hashes[count], rows[count] = mixed, row
+        count += mixed - low <= wide
+    return count
 
 
 @njit(cache=True)
@@ -184,20 +201,26 @@ def write_numbers(hashes: Words, rows: Any, entries: Any, bits: int) -> None:
         entries[k] = entry_of(hashes[k], rows[k], np.uint32(bits))
 
 
-@njit(cache=True)
-def enter(table: Any, hashes: Words, entries: Any) -> None:
-    """Enter what no slot holds yet; slots are touched some ahead."""
-    slots = np.uint64(len(table))
-    touched = np.uint64(0)
-    for begin in range(0, len(hashes), AHEAD):
-        end = min(begin + AHEAD, len(hashes))
-        for k in range(begin, end):
-            touched += np.uint64(table[slot_of(hashes[k], len(table))])
-        for k in range(begin, end):
-            slot = slot_of(hashes[k], len(table))
-            while table[slot] != 0:
-                slot += _ONE
-                if slot == slots:
-                    slot = np.uint64(0)
+@njit(cache=True, nogil=True)
+def enter(table: Any, hashes: Words, entries: Any, parts: int) -> int:
+    """Enter what no slot holds yet, in the part that it belongs into; move what finds no room there to the front.
+
+    Return how many those are. Of one part there is no end: there is room, if only from its beginning on.
+    """
+    slots, left = np.uint64(len(table)), np.int64(0)
+    for k in range(len(hashes)):
+        if k + AHEAD < len(hashes):
+            prefetch(table, slot_of(hashes[k + AHEAD], len(table)))
+        slot, end = slot_of(hashes[k], len(table)), slots
+        if parts > 1:
+            end = (((hashes[k] >> _PART) + _ONE) * slots) >> (_SIXTY_FOUR - _PART)
+        while slot < end and table[slot] != 0:
+            slot += _ONE
+            if slot == end and parts == 1:
+                slot = np.uint64(0)
+        if slot < end:
             table[slot] = entries[k]
-    hashes[0] = touched  # so that the compiler reads what is touched
+        else:
+            hashes[left], entries[left] = hashes[k], entries[k]
+            left += 1
+    return left

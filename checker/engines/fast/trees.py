@@ -43,6 +43,7 @@ class Trees:
         next: References, window by window.
         asks: For each inner node what it asks.
         answers: For each inner node that asks a yes or no, the reference that each answer leads to.
+        forgotten: How many times a tree was forgotten.
     """
 
     root: Growing = field(default_factory=lambda: Growing(np.int32))
@@ -50,6 +51,7 @@ class Trees:
     next: Growing = field(default_factory=lambda: Growing(np.int32))
     asks: list[Ask] = field(default_factory=list)
     answers: list[dict[bool, int]] = field(default_factory=list)
+    forgotten: int = 0
 
     def plant(self) -> int:
         """Return the number of a new tree that knows nothing."""
@@ -94,6 +96,7 @@ class Trees:
     def forget(self, tree: int) -> None:
         """Forget all that a tree knows."""
         self.root.room[tree] = UNKNOWN
+        self.forgotten += 1
 
     def _new_node(self, ask: Ask, column: int) -> int:
         self.asks.append(ask)

@@ -19,7 +19,7 @@ from checker import Engine, Keeping, Limits, check, explore
 from checker.engines.cluster import explorer as cluster
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
-from checker.engines.fast import explorer, kernel, space
+from checker.engines.fast import explorer, kernel, pipeline, space
 from checker.engines.fast.rows import Rows
 from checker.reduction import Reduced, Reduction
 from semantics import Scheduler
@@ -48,7 +48,7 @@ def small_rooms(monkeypatch):
     """Let rooms grow, batches be too small for a row, and the clock be looked at after every other row."""
     monkeypatch.setattr(space, "FIRST_ROWS", 8)
     monkeypatch.setattr(space, "BATCH", 8)
-    monkeypatch.setattr(space, "WORTH", 4)
+    monkeypatch.setattr(pipeline, "WORTH", 4)
     monkeypatch.setattr(explorer, "CHUNK", 2)
 
 

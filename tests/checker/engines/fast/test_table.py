@@ -12,6 +12,7 @@ from checker.engines.fast.learner import Learner
 from checker.engines.fast.space import Space
 from checker.engines.fast.table import (
     ENTERED,
+    alone,
     bits_for,
     find,
     hashed,
@@ -32,6 +33,11 @@ def rows(count, seed=0):
     return np.random.default_rng(seed).integers(0, 1 << 63, WIDTH * count, dtype=np.uint64)
 
 
+def one_by_one(work, parts):
+    """Do some work part by part, the last first, as threads might."""
+    return [work(range(part, part + 1)) for part in reversed(range(parts))]
+
+
 def found(words, table, target, k):
     mixed = np.uint64(hashed(target, WIDTH * k, WIDTH))
     return find(words, table, target, k, mixed, WIDTH, np.uint32(bits_for(len(table))))
@@ -42,7 +48,7 @@ def test_a_table_that_is_filled_finds_each_row_and_no_other(count):
     words, others = rows(count), rows(count, seed=1)
     slots = next(slots for slots in range(count, 3 * count) if most_in(slots) >= count)
     table = np.zeros(slots, np.uint32)
-    rebuild(words, count, WIDTH, table, write_numbers, bits_for(slots))
+    rebuild(words, count, WIDTH, table, write_numbers, bits_for(slots), alone)
     assert np.count_nonzero(table) == count
     some = range(0, count, max(count // 1000, 1))
     assert [found(words, table, words, k) for k in some] == list(some)
@@ -53,7 +59,7 @@ def test_a_table_that_is_filled_finds_each_row_and_no_other(count):
 def test_tags_stand_at_or_behind_the_slots_of_their_hashes(kind, bits):
     count = 1000
     words, table = rows(count), np.zeros(slots_for(count), kind)
-    rebuild(words, count, WIDTH, table, write_tags, bits)
+    rebuild(words, count, WIDTH, table, write_tags, bits, alone)
     assert np.count_nonzero(table) == count
     for row in range(count):
         mixed = np.uint64(hashed(words, WIDTH * row, WIDTH))
@@ -61,6 +67,17 @@ def test_tags_stand_at_or_behind_the_slots_of_their_hashes(kind, bits):
         while table[slot] != tag:
             assert table[slot] != 0
             slot = (slot + 1) % len(table)
+
+
+@pytest.mark.parametrize(("kind", "write"), [(np.uint32, write_numbers), (np.uint64, write_tags)])
+def test_a_table_is_filled_alike_whoever_fills_its_parts(kind, write):
+    count = 20_000
+    words, slots = rows(count), count * 3 // 2
+    tables = [np.zeros(slots, kind) for _ in range(2)]
+    for table, share in zip(tables, (alone, one_by_one), strict=True):
+        rebuild(words, count, WIDTH, table, write, 40 if write is write_tags else bits_for(slots), share)
+    assert np.array_equal(*tables)
+    assert np.count_nonzero(tables[0]) == count
 
 
 def test_a_table_takes_at_most_nine_bytes_a_row_each_time_when_it_grows():

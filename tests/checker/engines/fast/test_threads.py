@@ -1,0 +1,195 @@
+"""Several threads: whatever they do at once, everything that one thread finds is found, with the same numbers."""
+
+import threading
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from checked_missions import interrupted_at
+from hypothesis import given
+from scale import examples
+from shipped import UNTIMED
+
+import checker.limits
+from bigactors.cli import main
+from checker import Engine, Keeping, Limits, check, explore, report_text
+from checker.engines.archive import read_archive
+from checker.engines.contract import Options
+from checker.engines.fast import explorer, pipeline, space
+from checker.engines.fast.checkpoint import KINDS, SCHEMA
+from checker.engines.fast.explorer import explore_fast
+from checker.engines.fast.rows import Rows
+from semantics import strategies
+from semantics.races.monitor import monitored
+from specs.elaboration import load_mission
+
+MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
+SOME = Limits(configurations=3_000)
+SEVERAL = (2, 3, 4)
+
+
+@pytest.fixture(autouse=True)
+def small_slices(monkeypatch):
+    """Let small missions have many slices, some of which are too large for their batch, and rooms that grow."""
+    monkeypatch.setattr(space, "FIRST_ROWS", 64)
+    monkeypatch.setattr(space, "BATCH", 64)
+    monkeypatch.setattr(space, "FEW", 4)
+    monkeypatch.setattr(space, "LATER_ROWS", 3)
+    monkeypatch.setattr(pipeline, "WORTH", 1)
+
+
+def start(name):
+    return load_mission(MISSIONS / f"{name}.mission").initial
+
+
+def seen(initial, threads, **options):
+    """Return all that an exploration found, and in which order it learned."""
+    found = explore(initial, engine=Engine.FAST, threads=threads, **{"limits": SOME, **options})
+    inner = found.survey.space
+    rows = inner.rows.words[: inner.size * inner.rows.kept]
+    numbers = (found.depth, found.expanded, found.transitions, found.rules, found.bounds, found.rule_runs)
+    return (rows.tolist(), list(map(int, found.origins)), numbers, inner.learned, inner.probed)
+
+
+@pytest.mark.parametrize("threads", SEVERAL)
+@pytest.mark.parametrize("name", UNTIMED)
+def test_a_mission_is_explored_alike_by_any_number_of_threads(name, threads):
+    assert seen(start(name), threads) == seen(start(name), 1)
+
+
+@pytest.mark.parametrize("name", ["oil_spill", "takeover", "rendezvous"])
+def test_a_monitored_mission_is_explored_alike_by_any_number_of_threads(name):
+    initial = monitored(start(name))
+    assert [seen(initial, threads) for threads in SEVERAL] == [seen(initial, 1)] * len(SEVERAL)
+
+
+@given(strategies.initial_configurations())
+@examples(40)
+def test_generated_missions_are_explored_alike_by_any_number_of_threads(initial):
+    alone = seen(initial, 1, limits=Limits(configurations=300))
+    assert seen(initial, 3, limits=Limits(configurations=300)) == alone
+
+
+@pytest.mark.parametrize("name", UNTIMED)
+def test_reports_are_the_same_for_any_number_of_threads(name):
+    mission = load_mission(MISSIONS / f"{name}.mission")
+    limits = Limits(configurations=1_000)
+    reports = [check(mission, limits=limits, engine=Engine.FAST, threads=threads) for threads in (1, 4)]
+    told = [list(report_text(name, replace(each, seconds=0.0))) for each in reports]
+    assert told[0] == told[1]
+
+
+def test_other_threads_expand_slices_and_sift_them(monkeypatch):
+    done = set()
+
+    def noted(name):
+        do = getattr(space.Space, name)
+
+        def note(self, part):
+            done.add((name, threading.current_thread() is threading.main_thread()))
+            do(self, part)
+
+        monkeypatch.setattr(space.Space, name, note)
+
+    noted("_expand_slice")
+    noted("_sift")
+    alone = seen(start("rendezvous"), 1, limits=Limits())
+    assert done == {("_expand_slice", True)}
+    assert seen(start("rendezvous"), 4, limits=Limits()) == alone
+    assert {("_expand_slice", False), ("_sift", False)} <= done
+    assert ("_sift", True) not in done
+
+
+@pytest.mark.parametrize("bits", [16, 32, 64])
+def test_hashes_leave_the_same_out_for_any_number_of_threads(bits):
+    keeping = Keeping(compact=bits)
+    alone = seen(start("rendezvous"), 1, keeping=keeping, limits=Limits())
+    for threads in SEVERAL:
+        assert seen(start("rendezvous"), threads, keeping=keeping, limits=Limits()) == alone
+
+
+@pytest.mark.parametrize("threads", SEVERAL)
+def test_rows_go_over_to_files_under_several_threads(tmp_path, monkeypatch, threads):
+    spill, spilled, asked = Rows.spill, [], []
+
+    def noted(rows, folder, used):
+        spill(rows, folder, used)
+        spilled.append(used)
+
+    def taken():
+        asked.append(True)
+        return 2 if len(asked) > 20 and not spilled else 0
+
+    monkeypatch.setattr(explorer, "CHUNK", 128)
+    monkeypatch.setattr(Rows, "spill", noted)
+    monkeypatch.setattr(checker.limits, "memory_taken", taken)
+    limits = Limits(memory=1, spill=str(tmp_path))
+    assert seen(start("rendezvous"), threads, limits=limits) == seen(start("rendezvous"), 1, limits=Limits())
+    assert 100 < spilled[0] < 18_000
+
+
+@pytest.mark.parametrize("threads", SEVERAL)
+def test_without_memory_several_threads_stop_and_say_so(monkeypatch, threads):
+    asked = []
+
+    def taken():
+        asked.append(True)
+        return 2 if len(asked) > 200 else 0
+
+    monkeypatch.setattr(checker.limits, "memory_taken", taken)
+    found = explore(start("rendezvous"), engine=Engine.FAST, threads=threads, limits=Limits(memory=1))
+    assert [str(bound) for bound in found.bounds] == ["the memory limit of 0 MB"]
+    assert 10 < found.expanded < found.size
+    whole = explore(start("rendezvous"), engine=Engine.FAST, threads=1)
+    assert list(found.configurations) == list(whole.configurations)[: found.size]
+
+
+@pytest.mark.parametrize(("before", "after"), [(1, 4), (4, 1), (3, 2)])
+def test_other_threads_go_on_from_a_checkpoint(tmp_path, before, after):
+    initial = start("rendezvous")
+    limits, stop = interrupted_at(4_000, Limits())
+    keeping = Keeping(str(tmp_path), digest="d")
+    cut = explore(
+        initial, engine=Engine.FAST, limits=limits, keeping=keeping, threads=before, report=stop, every=0.0
+    )
+    assert not cut.complete
+    resumed = seen(initial, after, keeping=Keeping(str(tmp_path), True, "d"), limits=Limits())
+    assert resumed[:2] == seen(initial, 1, limits=Limits())[:2]
+
+
+def test_a_checkpoint_at_the_end_is_the_same_whoever_wrote_it(tmp_path):
+    read = []
+    for threads in (1, 4):
+        folder = tmp_path / str(threads)
+        keeping = Keeping(str(folder), digest="d")
+        explore(start("takeover"), engine=Engine.FAST, keeping=keeping, threads=threads, limits=SOME)
+        head, arrays = read_archive(folder / "exploration.checkpoint", SCHEMA, KINDS)
+        assert head.pop("seconds") > 0
+        read.append((head, {name: each.tolist() for name, each in arrays.items()}))
+    assert read[0] == read[1]
+
+
+def test_a_row_with_more_successors_than_a_batch_holds_is_stored_in_its_turn(monkeypatch):
+    monkeypatch.setattr(space, "BATCH", 4)
+    few = [seen(start("oil_spill"), threads) for threads in (1, 3)]
+    monkeypatch.setattr(space, "BATCH", 64)
+    assert few == [seen(start("oil_spill"), 1)] * 2
+
+
+def test_threads_are_of_the_fast_explorer(capsys):
+    assert main(["check", "oil_spill", "--engine", "reference", "--threads", "2"]) == 2
+    assert "--threads is of the fast explorer\n  hint: leave --engine out" in capsys.readouterr().err
+
+
+def test_the_command_line_passes_the_number_of_threads_on(monkeypatch, capsys):
+    asked, explored = [], explore_fast
+
+    def noted(initial, inspect, options: Options):
+        asked.append(options.threads)
+        return explored(initial, inspect, options)
+
+    monkeypatch.setattr("checker.engines.fast.explorer.explore_fast", noted)
+    main(["check", "oil_spill", "--engine", "fast", "--threads", "3", "--no-traces"])
+    assert set(asked) == {3}
+    assert np.all(capsys.readouterr().out)
