@@ -80,7 +80,7 @@ class Valuations:
             self.begun = True
             self.still = asked(self.atoms or tuple(atoms_of(self.formula)), c)
         elif self.still is not None and any(
-            c.state.ask(cell, question, *constants) != said
+            c.ask(cell, question, *constants) != said
             for (cell, question, constants), said in self.still.items()
         ):
             self.still = None

@@ -105,7 +105,7 @@ class Recorder:
         """Ask a cell, and note the yes or no."""
         if not self.varies(cell):
             self.scopes[-1].taken.add(cell)
-            return question(self.still.read(cell), *constants)
+            return bool(question(self.still.read(cell), *constants))
         ask = Ask(cell, None, question, constants)
         answer: bool = self._note(ask, lambda: bool(question(self.source.skeleton(cell), *constants)))
         return answer
@@ -230,29 +230,30 @@ class Conclusion:
 
     def read(self, cell: Cell) -> Any:
         """Return what was written, else what was there."""
-        written = self._written(cell)
+        written = self.written(cell)
         value = written[cell] if cell in written else self.recorder.read(cell)
         return value.of(self.recorder.read(cell)) if isinstance(value, Edited) else value
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Ask what was written, else what was there."""
-        if cell in self._written(cell):
+        if cell in self.written(cell):
             return bool(question(self.read(cell), *constants))
         return self.recorder.test(cell, question, *constants)
 
     def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
         """Ask what was written, else what was there."""
-        if cell in self._written(cell):
+        if cell in self.written(cell):
             return question(self.read(cell), *constants)
         return self.recorder.ask(cell, question, *constants)
 
     def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
         """Return what an edit makes of what was written, else of what was there."""
-        if cell in self._written(cell):
+        if cell in self.written(cell):
             return edit(self.read(cell), *constants)
         return self.recorder.edited(cell, edit, *constants)
 
-    def _written(self, cell: Cell) -> Changes:
+    def written(self, cell: Cell) -> Changes:
+        """Return what was written, as far as a cell may be among it."""
         if cell in self.changes or not self.families:
             return self.changes
         return merged(each for family in self.families for each in family.values()) | self.changes
@@ -281,7 +282,8 @@ class Conclusion:
         return all(self._agrees(other, cell) for cell in sorted(self.changed(self) | other.changed(other)))
 
     def _agrees(self, other: "Conclusion", cell: Cell) -> bool:
-        one, two = (each._written(cell).get(cell) for each in (self, other))
+        """Tell whether a cell has one value in both: the same edit has, whatever it is made of."""
+        one, two = (each.written(cell).get(cell) for each in (self, other))
         return (isinstance(one, Edited) and one == two) or bool(self.read(cell) == other.read(cell))
 
     def __hash__(self) -> int:

@@ -1,4 +1,4 @@
-"""The first run of a search to something: the fewest steps, of those the first by their numbers, as early as they may."""
+"""The first run to something: the fewest steps, of those the first by their numbers, each as early as may be."""
 
 from __future__ import annotations
 

@@ -70,8 +70,8 @@ class Zones(NamedTuple):
         begins: Where that of each zone begins.
         sums: The sum of its bounds: what holds it has none smaller.
         places: The location of each.
-        following: For each zone the next one that later ones of its location are compared with, `COVERED` where a zone of
-            its layer holds it.
+        following: For each zone the next one that later ones of its location are compared with, `COVERED` where another
+            one of its layer holds it.
         heads: For each location the first such zone.
         ranks: For each row which it was among those that were met; -1 where it was not.
         order: The rows that were met, in that order, each with the rank of the row before it.
@@ -251,7 +251,7 @@ def ways_of(m: Model, z: Zones, begin: int, last: int) -> int:
 def is_full(z: Zones, state: State, ways: int, largest: int) -> bool:
     """Tell whether there is no room for what so many edges lead to."""
     room = state[MISSED] = 2 * ways
-    return (
+    return bool(
         state[COUNT] + room > len(z.begins)
         or state[USED] + room * largest * largest > len(z.bounds)
         or GROUP * (state[GROUPS] + ways + 1) > len(z.groups)

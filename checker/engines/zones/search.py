@@ -72,9 +72,7 @@ class Search:
         """
         until = self.count + zones
         while self._goes_on and self.count < until:
-            why = kernel.advance(
-                self.model, self.zones, self.state, self._largest, until, self._scratch
-            )
+            why = kernel.advance(self.model, self.zones, self.state, self._largest, until, self._scratch)
             if why == kernel.FULL:
                 self._see(int(self.state[MISSED]))
             elif why == kernel.MISS:
@@ -152,8 +150,8 @@ class Search:
         found = (self.bounds, self.begins, self.sums, self.places, self.following, self.heads)
         self.zones = kernel.Zones(*(each.room for each in (*found, self.ranks, self.rows, self.groups)))
         shape = (self._largest, self._largest)
-        matrices = (np.zeros(shape, np.int32) for _ in range(3))
-        self._scratch = kernel.Scratch(*matrices, np.zeros((4, 1 + self._largest), np.int32))
+        d, e, f = (np.zeros(shape, np.int32) for _ in range(3))
+        self._scratch = kernel.Scratch(d, e, f, np.zeros((4, 1 + self._largest), np.int32))
 
     # --- what was found
 
@@ -235,8 +233,8 @@ class Route(Search):
 
     def _begin(self) -> None:
         self.left.size = 0
-        self.left.extend(len(self.automaton), FREE)
-        self.left.room[: self.left.size] = steps_left(self.automaton, self.ends)
+        self.left.extend(len(self.automaton))
+        self.left.used[:] = steps_left(self.automaton, self.ends)
         super()._begin()
         self.state[LAYER], self.state[LONGEST] = FREE, self.length
         self.state[AT], self.state[GROUPS] = 0, 1

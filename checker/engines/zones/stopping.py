@@ -24,8 +24,8 @@ from checker.engines.zones.dates import (
     whole,
     without,
 )
-from checker.engines.zones.network import Network
 from checker.engines.zones.first_run import first_run
+from checker.engines.zones.network import Network
 from checker.engines.zones.observers import Meter, Observer, Watch
 from checker.engines.zones.search import Search
 from checker.limits import look

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from functools import cached_property
 from typing import TypeVar, overload
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from checker.engines.runs import Run
 from checker.engines.tick_times import control_pairs
-from checker.engines.times import Moments, Stop, Wait
+from checker.engines.times import Moments, Span, Stop, TakenStep, Wait
 from checker.engines.zones.automaton import (
     EDGE,
     EDGES,
@@ -215,7 +215,7 @@ class ZoneTimes:
         if asked is None and rule(Watch.OFF, self.network.first) is Watch.OFF:
             return Wait(0)
         meter = Meter(most + 1, goal=(Watch.ON, most + 1))
-        observer, search = self._explored(Observer(self.network, rule, meter))
+        observer, search = self.explored(Observer(self.network, rule, meter))
         if search.found < 0:
             return Wait(max(_shown(observer, search, Watch.ON), default=0))
         run = self._measured(search).run()
@@ -239,7 +239,7 @@ class ZoneTimes:
 
     def _first(self, rule: Rule) -> Run | None:
         """Return the first run of those that come first to an end."""
-        observer, search = self._explored(Observer(self.network, rule, Meter(upper=MOST)))
+        observer, search = self.explored(Observer(self.network, rule, Meter(upper=MOST)))
         ends = [
             -int(zone[0, observer.clock(place)])
             for place, zone in search
@@ -249,10 +249,11 @@ class ZoneTimes:
             return None
         earliest = min(ends)
         meter = Meter(upper=earliest, most=earliest, goal=(Watch.END, 0))
-        _, search = self._explored(Observer(self.network, rule, meter))
+        _, search = self.explored(Observer(self.network, rule, meter))
         return self._measured(search).run()
 
-    def _explored(self, observer: Observer) -> tuple[Observer, Search]:
+    def explored(self, observer: Observer) -> tuple[Observer, Search]:
+        """Return an observer with a search of its automaton, to the end or to what it looks for."""
         search = Search(observer.automaton, 0, observer.first_ages())
         search.finish(look)
         return observer, search
@@ -274,18 +275,23 @@ class ZoneTimes:
 
         It is counted up to a constant that grows until either is found.
         """
-        most = max(least, 2 * max(self.network.caps.values(), default=0) + 1)
+        most = max(least, self.enough)
         while True:
-            observer, search = self._explored(
+            observer, search = self.explored(
                 Observer(self.network, rule, Meter(most + 1, goal=(where, most + 1)))
             )
             if search.found < 0:
                 return max(_shown(observer, search, where), default=NEVER)
-            if self._goes_round(observer, self._measured(search)):
+            if self.goes_round(observer, self._measured(search)):
                 return math.inf
             most *= 4
 
-    def _goes_round(self, observer: Observer, dates: Dates) -> bool:
+    @property
+    def enough(self) -> int:
+        """For how many ticks a clock is counted first, where nobody knows how long it may run."""
+        return 2 * max(self.network.caps.values(), default=0) + 1
+
+    def goes_round(self, observer: Observer, dates: Dates) -> bool:
         """Tell whether a run comes to the same again, as far as what may follow is concerned, while a clock runs."""
         history = dates.history()
         seen: dict[tuple[int, tuple[int, ...]], int] = {}
@@ -308,6 +314,14 @@ class ZoneTimes:
             if stays > max(left, default=0) and stays > 0:
                 return True
         return False
+
+    # --- when steps are taken
+
+    def spans(self, steps: Sequence[Set[TakenStep]]) -> list[Span]:
+        """Return for each of some sets of steps when one of them is taken."""
+        from checker.engines.zones.spans import Spans  # noqa: PLC0415 - few ask for them
+
+        return Spans(self, steps).found()
 
     # --- endurance, and whether time goes on
 
