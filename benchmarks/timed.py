@@ -19,6 +19,7 @@ from pathlib import Path
 
 from timed_family import text
 
+from checker import Limits
 from checker.engines.choose import explore
 from checker.engines.contract import Engine, Exploration
 from checker.engines.zones.interchange import model_of
@@ -45,45 +46,48 @@ KNOWN = {
 def main() -> None:
     """Print a row for each mission."""
     parser = argparse.ArgumentParser(description=__doc__)
-    default = ["fcfs:2x3", "fcfs:3x1", "2x3", "3x1", "3x3", "4x1"]
+    default = ["fcfs:2x3", "fcfs:3x1", "fcfs:3x2", "2x3", "3x1", "3x3", "4x1"]
     parser.add_argument("cases", nargs="*", default=default, metavar="[fcfs:]UAVSxPLACES")
-    for case in parser.parse_args().cases:
+    parser.add_argument("--most", type=int, default=2_000_000, help="so many zones are explored at the most")
+    given = parser.parse_args()
+    for case in given.cases:
         scheduler, _, size = case.rpartition(":")
         uavs, places = map(int, size.split("x"))
-        print(row(uavs, places, scheduler or "program_order"), flush=True)  # noqa: T201
+        print(row(uavs, places, scheduler or "program_order", given.most), flush=True)  # noqa: T201
 
 
-def row(uavs: int, places: int, scheduler: str) -> str:
+def row(uavs: int, places: int, scheduler: str, most: int | None = None) -> str:
     """Explore one mission by both."""
     with tempfile.TemporaryDirectory() as folder:
         began = time.process_time()
-        found = explored(text(uavs, places, scheduler=scheduler), Path(folder))
+        found = explored(text(uavs, places, scheduler=scheduler), Path(folder), most)
         seconds = time.process_time() - began
         assert isinstance(found.times, ZoneTimes)
         size = (found.size, found.times.search.count)
         assert KNOWN.get((scheduler, uavs, places), size) == size, size
-        ours = f"{size[0]:,} configurations, {size[1]:,} zones in {seconds:.2f} s, {again(found.times)}"
-        peer = beside(uavs, places, Path(folder)) if scheduler == "program_order" else ""
+        known = again(found.times) if found.complete else f"{found.bounds[0]} was met"
+        ours = f"{size[0]:,} configurations, {size[1]:,} zones in {seconds:.2f} s, {known}"
+        peer = beside(uavs, places, Path(folder)) if found.complete and scheduler == "program_order" else ""
         return f"{uavs} UAVs, {places} places, {scheduler}: {ours}{peer}"
 
 
-def explored(mission: str, folder: Path) -> Exploration:
-    """Explore a mission by zones."""
+def explored(mission: str, folder: Path, most: int | None = None) -> Exploration:
+    """Explore a mission by zones, up to a number of them."""
     path = folder / "timed_family.mission"
     path.write_text(mission, encoding="utf-8")
-    return explore(load_mission(path).initial, engine=Engine.FAST)
+    return explore(load_mission(path).initial, engine=Engine.FAST, limits=Limits(configurations=most))
 
 
 def again(times: ZoneTimes) -> str:
     """Search the automaton that is known, and say how quickly."""
     network = times.network
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> (20 if sys.platform == "darwin" else 10)
     network.automaton.forget()
     began = time.process_time()
     search = Search(network.automaton, network.first, network.first_ages)
     search.finish(lambda: None)
     seconds = time.process_time() - began
     assert search.count == times.search.count
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> (20 if sys.platform == "darwin" else 10)
     return f"known: {search.count / seconds:,.0f} zones/s, {peak:,} MiB in all"
 
 
