@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from checker.engines.times import NO_SPAN, TakenStep, Times
@@ -12,7 +12,7 @@ from semantics.state.configuration import Configuration
 from semantics.state.requests import FLY
 from semantics.state.signature import REGION, Name
 from semantics.timing.bounds import Bound, bound_of, timed_by
-from semantics.timing.clocks import TimedStep
+from semantics.timing.clocks import Situation, TimedStep
 from semantics.timing.dates import clock_text
 from semantics.timing.intervals import ANY_TIME, Interval
 
@@ -103,20 +103,19 @@ def flights_of(times: Times) -> tuple[Flight, ...]:
     """Return the flights that are made in time, in the order of their first beginnings."""
     begun: dict[_Key, set[TakenStep]] = {}
     ended: dict[_Key, set[TakenStep]] = {}
+    set_out: dict[tuple[FLY, Name], dict[_Key, None]] = {}
     said: dict[_Key, tuple[Interval, Bound]] = {}
-    for place, situation in enumerate(times.situations):
-        for at in sorted(times.taken(place)):
-            step = situation.steps[at]
-            fly = _flight_of(step)
-            if fly is None:
-                continue
-            steps = begun if step.transition.label.rule == "command" else ended
-            for key in _keys(situation.c, fly):
-                steps.setdefault(key, set()).add(TakenStep(place, at))
-                if steps is ended:
-                    interval = timed_by(situation, step).interval
-                    known = said.get(key, (interval, Bound()))[0]
-                    said[key] = _both(known, interval), bound_of(situation, step)
+    for at, situation, fly in _steps_of_flights(times, "command"):
+        for key in _keys(situation.c, fly):
+            begun.setdefault(key, set()).add(at)
+            set_out.setdefault((fly, key[0]), {})[key] = None
+    for at, situation, fly in _steps_of_flights(times, "commit"):
+        step = situation.steps[at.step]
+        interval, bound = timed_by(situation, step).interval, bound_of(situation, step)
+        for arriving in _keys(situation.c, fly):
+            for key in _begun_as(arriving, set_out.get((fly, arriving[0]), ())):
+                ended.setdefault(key, set()).add(at)
+                said[key] = _both(said.get(key, (interval, bound))[0], interval), bound
     spans = times.spans([*begun.values(), *ended.values()])
     begins = dict(zip(begun, spans, strict=False))
     ends = dict(zip(ended, spans[len(begun) :], strict=True))
@@ -137,6 +136,22 @@ def _key(flight: Flight) -> _Key:
     return flight.vehicle, flight.agent, flight.origin, flight.destination
 
 
+def _steps_of_flights(times: Times, rule: str) -> Iterator[tuple[TakenStep, Situation, FLY]]:
+    """Yield the steps by a rule that are taken at some time, with the flights that they begin or end."""
+    for place, situation in enumerate(times.situations):
+        for at in sorted(times.taken(place)):
+            step = situation.steps[at]
+            fly = _flight_of(step)
+            if fly is not None and step.transition.label.rule == rule:
+                yield TakenStep(place, at), situation, fly
+
+
+def _begun_as(arriving: _Key, set_out: Iterable[_Key]) -> list[_Key]:
+    """Return as which flights one may have begun: where L has lost where the vehicle set out, as any of these."""
+    known = list(set_out)
+    return [arriving] if arriving in known or not known else known
+
+
 def _flight_of(step: TimedStep) -> FLY | None:
     """Return the flight that a step begins or ends."""
     label, target = step.transition.label, step.transition.target
@@ -147,7 +162,7 @@ def _flight_of(step: TimedStep) -> FLY | None:
 
 
 def _keys(c: Configuration, fly: FLY) -> Iterator[_Key]:
-    """Yield what tells flights apart; L has a vehicle where it set out until it arrives."""
+    """Yield what tells flights apart; L has a vehicle where it set out, until it learns otherwise."""
     for vehicle, place in moved(fly.reaction, fly.match):
         yield vehicle, fly.agent, c.structure.logical.parent(vehicle) or REGION, place
 
