@@ -10,7 +10,7 @@ PARTS  := $(PAGE)/parts/LICENSES.txt
 SMOKE  := $(addprefix tests/,missions paper semantics/state/test_cells.py \
 	$(addprefix bigactors/test_,big.py cli.py engines.py missions.py public_names.py run.py))
 
-.PHONY: parts demo live-demo test test-long lint types test-wheel wheel constraints storm fuzz bounds bench bench-bigraphs bench-cluster bench-time docs pictures clean
+.PHONY: parts demo live-demo test test-long lint types test-wheel wheel constraints storm fuzz bounds bench bench-bigraphs bench-cluster bench-time time-oracle docs pictures clean
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -89,6 +89,9 @@ bench-bigraphs: $(STAMP)  ## the bigraph engine beside BigraphER, up to 100,000 
 
 bench-time: $(STAMP)  ## zones of the timed family; TCHECKER=tck-reach puts TChecker's beside them
 	$(BIN)/python benchmarks/timed.py
+
+time-oracle: $(STAMP)  ## TChecker's verdicts on shipped missions with times and 200 generated ones; TCHECKER=tck-reach
+	BIGACTORS_FUZZ=1 $(BIN)/python -m pytest tests/checker/engines/zones/test_tchecker.py
 
 bench-cluster: $(STAMP)  ## the patrol with Ray workers beside one process (some 5 minutes)
 	$(BIN)/python benchmarks/cluster.py 2x6 2x6+handover

@@ -1,8 +1,10 @@
 """Zones beside TChecker's: `make bench-time`, which prints a table; TCHECKER names its program `tck-reach`.
 
-A mission of the timed family is explored, which runs the rules once in each configuration, and then once more, when
-the automaton is known: so long the compiled loops take. TChecker searches the same automaton (`bigactors export`) with
-subsumption (`-a covreach`); its time is what it says of its search alone, without what it works out before.
+A mission of the timed family is explored, which learns the rules on the way, and then once more, when the automaton is
+known: so long the compiled loops take. Under `program_order` the UAVs are independent. So TChecker gets a network of as
+many processes, each of them one UAV's automaton with its endurance (`bigactors export`), and searches that with
+subsumption (`-a covreach`). Zones are those that were followed, of both. Seconds are the processor's, of TChecker its
+whole run's.
 """
 
 import argparse
@@ -17,68 +19,110 @@ from pathlib import Path
 
 from timed_family import text
 
+from checker import Limits
 from checker.engines.choose import explore
 from checker.engines.contract import Engine, Exploration
 from checker.engines.zones.interchange import model_of
 from checker.engines.zones.search import Search
 from checker.engines.zones.tchecker import tchecker_text
 from checker.engines.zones.zone_times import ZoneTimes
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
 from specs.elaboration import load_mission
 
-KNOWN = {(1, 3): (25, 25), (2, 2): (682, 3_206), (2, 3): (2_490, 12_589)}
+KNOWN = {
+    ("fcfs", 1, 3): (25, 25),
+    ("fcfs", 2, 2): (682, 1_889),
+    ("fcfs", 2, 3): (2_490, 7_103),
+    ("fcfs", 3, 1): (5_393, 28_544),
+    ("program_order", 2, 3): (365, 893),
+    ("program_order", 3, 1): (1_044, 5_527),
+    ("program_order", 3, 3): (6_017, 41_399),
+    ("program_order", 4, 1): (10_122, 164_287),
+}
 """How many configurations and zones some of the family have."""
 
 
 def main() -> None:
     """Print a row for each mission."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("cases", nargs="*", default=["1x3", "2x2", "2x3"], metavar="UAVSxPLACES")
-    for case in parser.parse_args().cases:
-        uavs, places = map(int, case.split("x"))
-        print(row(uavs, places), flush=True)  # noqa: T201
+    default = ["fcfs:2x3", "fcfs:3x1", "fcfs:3x2", "2x3", "3x1", "3x3", "4x1"]
+    parser.add_argument("cases", nargs="*", default=default, metavar="[fcfs:]UAVSxPLACES")
+    parser.add_argument("--most", type=int, default=2_000_000, help="so many zones are explored at the most")
+    given = parser.parse_args()
+    for case in given.cases:
+        scheduler, _, size = case.rpartition(":")
+        uavs, places = map(int, size.split("x"))
+        print(row(uavs, places, scheduler or "program_order", given.most), flush=True)  # noqa: T201
 
 
-def row(uavs: int, places: int) -> str:
+def row(uavs: int, places: int, scheduler: str, most: int | None = None) -> str:
     """Explore one mission by both."""
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder, f"timed_family_{uavs}_{places}.mission")
-        path.write_text(text(uavs, places), encoding="utf-8")
         began = time.process_time()
-        found = explore(load_mission(path).initial, engine=Engine.FAST)
+        found = explored(text(uavs, places, scheduler=scheduler), Path(folder), most)
         seconds = time.process_time() - began
         assert isinstance(found.times, ZoneTimes)
         size = (found.size, found.times.search.count)
-        assert KNOWN.get((uavs, places), size) == size, size
-        ours = f"{size[0]:,} configurations, {size[1]:,} zones in {seconds:.2f} s, {again(found.times)}"
-        return f"{uavs} UAVs, {places} places: {ours}{beside(found, Path(folder))}"
+        assert KNOWN.get((scheduler, uavs, places), size) == size, size
+        known = again(found.times) if found.complete else f"{found.bounds[0]} was met"
+        ours = f"{size[0]:,} configurations, {size[1]:,} zones in {seconds:.2f} s, {known}"
+        peer = beside(uavs, places, Path(folder)) if found.complete and scheduler == "program_order" else ""
+        return f"{uavs} UAVs, {places} places, {scheduler}: {ours}{peer}"
+
+
+def explored(mission: str, folder: Path, most: int | None = None) -> Exploration:
+    """Explore a mission by zones, up to a number of them."""
+    path = folder / "timed_family.mission"
+    path.write_text(mission, encoding="utf-8")
+    return explore(load_mission(path).initial, engine=Engine.FAST, limits=Limits(configurations=most))
 
 
 def again(times: ZoneTimes) -> str:
     """Search the automaton that is known, and say how quickly."""
     network = times.network
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> (20 if sys.platform == "darwin" else 10)
     network.automaton.forget()
     began = time.process_time()
     search = Search(network.automaton, network.first, network.first_ages)
     search.finish(lambda: None)
     seconds = time.process_time() - began
     assert search.count == times.search.count
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> (20 if sys.platform == "darwin" else 10)
     return f"known: {search.count / seconds:,.0f} zones/s, {peak:,} MiB in all"
 
 
-def beside(found: Exploration, folder: Path) -> str:
-    """Let TChecker search the same automaton, if it is here."""
+def beside(uavs: int, places: int, folder: Path) -> str:
+    """Let TChecker search the same zones, if it is here."""
     program = os.environ.get("TCHECKER")
     if program is None:
         return ""
-    assert isinstance(found.times, ZoneTimes)
-    model = folder / "model.tck"
-    model.write_text(tchecker_text(model_of(found.times, None, "family")), encoding="utf-8")
+    model = folder / "network.tck"
+    model.write_text(network(uavs, places, folder), encoding="utf-8")
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     said = subprocess.run([program, "-a", "covreach", str(model)], capture_output=True, text=True, check=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     told = dict(re.findall(r"^([A-Z_]+) (\S+)$", said.stdout, re.MULTILINE))
-    states, seconds = int(told["STORED_STATES"]), float(told["RUNNING_TIME_SECONDS"])
-    peak = int(told["MEMORY_MAX_RSS"]) >> 10
-    return f"; TChecker: {states:,} zones, {states / seconds:,.0f} zones/s, {peak:,} MiB"
+    zones, peak = int(told["VISITED_STATES"]), int(told["MEMORY_MAX_RSS"]) >> 10
+    return f"; TChecker: {zones:,} zones in {seconds:.2f} s, {zones / seconds:,.0f} zones/s, {peak:,} MiB"
+
+
+def network(uavs: int, places: int, folder: Path) -> str:
+    """Return the family's mission for TChecker: a process for each UAV, whose names are its own."""
+    lines = ["system:family"]
+    for i in range(uavs):
+        found = explored(text(uavs, places, scheduler="program_order", only=[i]), folder)
+        assert isinstance(found.times, ZoneTimes)
+        model = model_of(found.times, Property(PropertyKind.ENDURANCE, "endurance"), "family")
+        for line in tchecker_text(model).splitlines()[1:]:
+            kind, *rest = line.split(":")
+            renamed = re.sub(r"\bx(\d+)\b", rf"x{i}_\1", line)
+            if kind == "event":
+                renamed = f"event:e{i}_{rest[0]}"
+            elif kind == "edge":
+                renamed = re.sub(r"^((?:[^:]*:){4})", rf"\1e{i}_", renamed)
+            lines.append(re.sub(r"\bmission\b", f"uav{i}", renamed))
+    return "\n".join([*lines, ""])
 
 
 if __name__ == "__main__":

@@ -1,10 +1,18 @@
 """The timed family: UAVs that each go round places of their own and come home, on batteries that just last."""
 
+from collections.abc import Iterable
 
-def text(uavs: int, places: int, tick: int = 10) -> str:
-    """Write the mission of so many UAVs, each with so many places to go to, in ticks of so many seconds."""
+
+def text(
+    uavs: int, places: int, tick: int = 10, scheduler: str = "fcfs", only: Iterable[int] | None = None
+) -> str:
+    """Write the mission of so many UAVs, each with so many places to go to, in ticks of so many seconds.
+
+    With `only` it has but these of them: what the others do is independent of it, unless the scheduler has one queue.
+    """
     world, programs, timing = [], [], []
-    for i in range(uavs):
+    flying = range(uavs) if only is None else only
+    for i in flying:
         west = -8.5 + 0.2 * i
         names = [f"place{i}_{k}" for k in range(places)]
         for k, name in enumerate((f"home{i}", *names)):
@@ -22,8 +30,10 @@ def text(uavs: int, places: int, tick: int = 10) -> str:
             "signature {\n  kind Location contains Location, UAV\n  kind UAV driven\n}\n",
             "world {\n" + "\n".join(world) + "\n}\n",
             "\n".join(programs),
-            "scheduler fcfs\ncontrol timed\n",
+            f"scheduler {scheduler}\ncontrol timed\n",
             f"timing {{\n  tick {tick} s\n" + "\n".join(timing) + f"\n  agents react within {tick} s\n}}\n",
-            f'check {{\n  endurance\n  within 2 h "there": actually uav0 in place0_{places - 1}\n}}\n',
+            "check {\n  endurance\n"
+            + "".join(f'  within 2 h "there{i}": actually uav{i} in place{i}_{places - 1}\n' for i in flying)
+            + "}\n",
         ]
     )

@@ -127,8 +127,6 @@ def check(  # noqa: PLR0913 - each says one thing of a check
 
     if (keeping is not None and reducer is None) or limits.spill is not None:
         engine = engine or Engine.FAST
-    if times and timed:
-        engine = engine or Engine.REFERENCE  # only ticks know when flights begin and end
     impatient = limits.seconds is None or limits.seconds > PATIENCE
     if engine is None and impatient:
         tried = run(Engine.REFERENCE, replace(limits, seconds=PATIENCE))

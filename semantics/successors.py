@@ -35,7 +35,7 @@ def steps(c: Configuration, a: Name) -> Iterator[Transition | Fault]:
 
 def served(c: Configuration, a: Name) -> Iterator[Transition]:
     """Yield what is done about an agent's pending requests."""
-    if c.eta.of(a):
+    if c.eta.in_line(a):
         for rule in rules_of(c.setting.control):
             if rule in SERVING:
                 yield from rule(c, a)

@@ -40,7 +40,7 @@ NOT_RUN = {
     "ARCHITECTURE.md": 9,
     "README.md": 2,
     "docs/explanation/live.md": 2,
-    "docs/explanation/performance.md": 1,
+    "docs/explanation/performance.md": 2,
     "docs/how-to/bigraphs.md": 1,
     "docs/how-to/camera.md": 6,
     "docs/how-to/cluster.md": 2,

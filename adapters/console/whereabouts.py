@@ -11,7 +11,7 @@ from adapters.console.view import Json
 from physical import Geometry
 from physical.frame import E7
 from semantics.state.canonical import written
-from semantics.state.cells import Cell, Cells, Part, Question
+from semantics.state.cells import Cell, Cells, Edit, Part, Question
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import InTransit, PhysicalModel, Placed
 from semantics.state.signature import Name
@@ -46,7 +46,15 @@ class _Reading:
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Ask one question of a cell."""
+        return bool(self.ask(cell, question, *constants))
+
+    def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
+        """Ask one question of a cell."""
         return question(self.read(cell), *constants)
+
+    def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
+        """Return what an edit makes of a cell's value."""
+        return edit(self.read(cell), *constants)
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
         """Return what a pointwise definition says of each name."""

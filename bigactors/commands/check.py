@@ -201,8 +201,7 @@ def remedies(mission: ElaboratedMission, report: Report) -> str:
     """Return what may let an exploration that was cut off come to its end."""
     less: tuple[str, ...] = ()
     if mission.setting.timing is not None:
-        larger = "give timing a larger tick, of which all durations are whole numbers"
-        less = (f"{larger}, or leave out --times, which counts every tick" if report.schedule else larger,)
+        less = ("give timing a larger tick, of which all durations are whole numbers",)
     elif not report.reduced and (sound := reductions_of(mission)):
         less = (f"visit less with --reduce {','.join(map(str, sound))} (docs/explanation/reduction.md)",)
     smaller = "name fewer entities and places, or let fewer bigActors act at once"

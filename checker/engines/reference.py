@@ -165,4 +165,4 @@ def _itself(c: Configuration) -> Configuration:
 
 def crowded(c: Configuration, most: int) -> bool:
     """Tell whether some agent has more pending requests or messages than are explored."""
-    return any(len(c.eta.of(a)) > most or len(c.alpha.mailbox(a)) > most for a in c.alpha.names())
+    return any(c.eta.count(a) > most or len(c.alpha.mailbox(a)) > most for a in c.alpha.names())

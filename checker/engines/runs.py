@@ -85,6 +85,19 @@ def groups(start: Node, follow: Follow[Node]) -> Iterator[Group[Node]]:
         layer = following
 
 
+def layers(start: Node, follow: Follow[Node]) -> Iterator[list[Node]]:
+    """Yield all states, layer by layer: those that so many steps lead to, and fewer do not."""
+    met = {start}
+    layer = _waiting([start], follow, met)
+    while layer:
+        look()
+        yield layer
+        targets = (to for state in layer for step, to in follow(state) if step != DELAY and to not in met)
+        fresh = list(dict.fromkeys(targets))
+        met.update(fresh)
+        layer = _waiting(fresh, follow, met)
+
+
 def _waiting(states: list[Node], follow: Follow[Node], met: set[Node]) -> list[Node]:
     """Return some states with those that waiting there leads to; what was met before is left out."""
     for state in states:  # grows on the way

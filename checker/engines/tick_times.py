@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence, Set
 from functools import cached_property
 from itertools import combinations
 
 from checker.engines.runs import DELAY, Run, dated, first_run
 from checker.engines.timeline import Timeline
-from checker.engines.times import Moments, Stop, Wait
-from checker.properties.durations import longest, stopped
+from checker.engines.times import NO_SPAN, Moments, Span, Stop, TakenStep, Wait
+from checker.properties.durations import first_ticks, last_ticks, longest, stopped
 from semantics.properties.propositions import Proposition, holds
 from semantics.races.monitor import CONTROLS
 from semantics.state.configuration import Transition
@@ -171,6 +171,20 @@ class Ticks:
             for takes, source in sources.get(state, ()):
                 (waiting.append if takes else waiting.appendleft)((ticks + takes, source))
         return left
+
+    def spans(self, steps: Sequence[Set[TakenStep]]) -> list[Span]:
+        """Return for each of some sets of steps when one of them is taken."""
+        sets: dict[tuple[int, int], list[int]] = {}
+        for number, several in enumerate(steps):
+            for place, step in several:
+                sets.setdefault((self.timeline.order[place], step), []).append(number)
+        found = [NO_SPAN] * len(steps)
+        ticks = zip(first_ticks(self.edges), last_ticks(self.edges), strict=True)
+        for (at, _), edges, (first, last) in zip(self.timeline.states, self.edges, ticks, strict=True):
+            for number in (number for step, _ in edges for number in sets.get((at, step), ())):
+                known = found[number]
+                found[number] = Span(min(known.earliest, first), max(known.latest, last))
+        return found
 
     # --- endurance, and whether time goes on
 

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 
 from checker.engines.contract import Exploration, Inspect, Options, Progress
 from checker.engines.reference import crowded
-from checker.engines.runs import DELAY, groups
+from checker.engines.runs import DELAY, layers
 from checker.engines.tick_times import Ticks
 from checker.engines.timeline import Timeline
 from checker.engines.times import inspect_in_time
@@ -70,15 +70,19 @@ def _progress(timeline: Timeline, count: int, seconds: float) -> Progress:
 
 def _summarise(timeline: Timeline, found: Exploration) -> Ticks:
     """Write down the configurations in the order of discovery, and each transition that is taken, once."""
-    places: dict[int, int] = {}
-    origins: list[int] = []
-    for group in groups(0, timeline.edges.__getitem__):
-        number = timeline.configuration(group.states[0])
-        if number not in places:
-            places[number] = len(origins)
-            before = group.states[0] if group.before is None else group.before.states[0]
-            origins.append(places[timeline.configuration(before)])
-            found.depth = len(group.steps)
+    places, origins = {timeline.configuration(0): 0}, [0]
+    for depth, layer in enumerate(layers(0, timeline.edges.__getitem__)):
+        follow = sorted(
+            (places[timeline.configuration(state)], step, timeline.configuration(target))
+            for state in layer
+            for step, target in timeline.edges[state]
+            if step != DELAY
+        )
+        for before, _, number in follow:
+            if number not in places:
+                places[number] = len(origins)
+                origins.append(before)
+                found.depth = depth + 1
     timeline.order = list(places)
     found.expanded, found.origins = len(origins), origins
     found.configurations = [timeline.situations[number].c for number in timeline.order]

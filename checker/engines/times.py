@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Final, NamedTuple, Protocol
 
 from checker.engines.runs import Run
 from checker.properties.inspections import InTime
@@ -43,6 +44,26 @@ class Moments:
     first: Run | None
     latest: float
     may_wait: bool
+
+
+class TakenStep(NamedTuple):
+    """A step of a configuration, both by their numbers."""
+
+    place: int
+    step: int
+
+
+class Span(NamedTuple):
+    """When something happens, in ticks from the start: at the earliest, and at the latest.
+
+    The earliest is infinite where it never happens, the latest where nothing bounds it.
+    """
+
+    earliest: float
+    latest: float
+
+
+NO_SPAN: Final = Span(math.inf, -math.inf)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +121,9 @@ class Times(Protocol):
 
     def moments(self, formula: Proposition) -> Moments:
         """Return when something is first true."""
+
+    def spans(self, steps: Sequence[Set[TakenStep]]) -> list[Span]:
+        """Return for each of some sets of steps when one of them is taken."""
 
     def exhausted(self) -> tuple[dict[str, Run], int]:
         """Return the first run on which each vehicle is aloft for too long, and how many configurations show that."""

@@ -9,7 +9,6 @@ from functools import cached_property
 
 from checker.engines.contract import Exploration
 from checker.engines.runs import Run
-from checker.engines.tick_times import Ticks
 from checker.engines.times import Times
 from checker.limits import BoundMet
 from checker.properties.critical_path import Leg, critical_path, way_to
@@ -183,16 +182,11 @@ class Deadlines:
         path = self._path(run, trace, lambda c: is_restored(c, vehicle), since)
         return Violation("exhausted", message, trace, details, subject=vehicle, path=path)
 
-    def schedule(self, asked: Iterable[Property]) -> Schedule | None:
-        """Return when flights may begin and end, and what `time` properties ask for may first be true.
-
-        Whole ticks know that; None of an exploration by zones.
-        """
-        if not isinstance(self.times, Ticks):
-            return None
+    def schedule(self, asked: Iterable[Property]) -> Schedule:
+        """Return when flights may begin and end, and what `time` properties ask for may first be true."""
         times = [each for each in asked if each.kind is PropertyKind.TIME]
         found = tuple(Milestone(each.name, self._first(each)) for each in times)
-        return Schedule(self.timing.tick, flights_of(self.times.timeline), found, self.found.complete)
+        return Schedule(self.timing.tick, flights_of(self.times), found, self.found.complete)
 
     def _first(self, asked: Property) -> Moments:
         found = self.times.moments(asked.formula)

@@ -1,6 +1,7 @@
 """How long runs may stay among some states, and whether time can go on: graphs whose edges take a tick, or none."""
 
 import math
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
@@ -77,6 +78,40 @@ def components(graph: Graph, inside: Sequence[bool]) -> Iterator[list[int]]:
                         component.append(stack.pop())
                     waiting.difference_update(component)
                     yield component
+
+
+def first_ticks(graph: Graph) -> list[float]:
+    """Return for each state after how many ticks it is reached first from the first state."""
+    first = [math.inf] * len(graph)
+    first[0] = 0
+    waiting = deque([0])
+    while waiting:
+        state = waiting.popleft()
+        if state % LOOKING == 0:
+            look()
+        for step, target in graph[state]:
+            ticks = first[state] + (step == DELAY)
+            if ticks < first[target]:
+                first[target] = ticks
+                (waiting.append if step == DELAY else waiting.appendleft)(target)
+    return first
+
+
+def last_ticks(graph: Graph) -> list[float]:
+    """Return for each state after how many ticks it is reached last, infinitely many by a loop in which time passes."""
+    last = [NEVER] * len(graph)
+    last[0] = 0
+    for component in reversed(list(components(graph, [True] * len(last)))):
+        members = set(component)
+        ticks = max(last[state] for state in component)
+        if any(step == DELAY and target in members for state in component for step, target in graph[state]):
+            ticks = math.inf
+        for state in component:
+            last[state] = ticks
+            for step, target in graph[state]:
+                if target not in members:
+                    last[target] = max(last[target], ticks + (step == DELAY))
+    return last
 
 
 def stopped(graph: Graph, open_ends: Sequence[bool]) -> list[bool]:

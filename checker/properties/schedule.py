@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Final
 
-from checker.engines.runs import DELAY
-from checker.engines.timeline import Timeline
-from checker.limits import look
-from checker.properties.durations import LOOKING, NEVER, components
+from checker.engines.times import NO_SPAN, TakenStep, Times
 from semantics.behaviours.reaction_rules import moved
 from semantics.state.configuration import Configuration
 from semantics.state.requests import FLY
 from semantics.state.signature import REGION, Name
 from semantics.timing.bounds import Bound, bound_of, timed_by
-from semantics.timing.clocks import TimedStep
+from semantics.timing.clocks import Situation, TimedStep
 from semantics.timing.dates import clock_text
 from semantics.timing.intervals import ANY_TIME, Interval
 
@@ -40,9 +35,6 @@ class Moments:
     def is_never(self) -> bool:
         """Whether it happens in no run."""
         return math.isinf(self.earliest)
-
-
-NO_MOMENT: Final = Moments(math.inf, NEVER)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,40 +98,58 @@ class Schedule:
 _Key = tuple[Name, Name, Name, Name]
 """Vehicle, agent, origin, destination."""
 
-_Steps = set[tuple[int, int]]
-"""Steps of configurations, both by their numbers."""
 
-
-def flights_of(timeline: Timeline) -> tuple[Flight, ...]:
+def flights_of(times: Times) -> tuple[Flight, ...]:
     """Return the flights that are made in time, in the order of their first beginnings."""
-    begun: dict[_Key, _Steps] = {}
-    ended: dict[_Key, _Steps] = {}
+    begun: dict[_Key, set[TakenStep]] = {}
+    ended: dict[_Key, set[TakenStep]] = {}
+    set_out: dict[tuple[FLY, Name], dict[_Key, None]] = {}
     said: dict[_Key, tuple[Interval, Bound]] = {}
-    for number, at in sorted(timeline.taken):
-        situation = timeline.situations[number]
-        step = situation.steps[at]
-        fly = _flight_of(step)
-        if fly is None:
-            continue
-        steps = begun if step.transition.label.rule == "command" else ended
+    for at, situation, fly in _steps_of_flights(times, "command"):
         for key in _keys(situation.c, fly):
-            steps.setdefault(key, set()).add((number, at))
-            if steps is ended:
-                interval = timed_by(situation, step).interval
-                known = said.get(key, (interval, Bound()))[0]
-                said[key] = _both(known, interval), bound_of(situation, step)
-    begins, ends = _moments(timeline, begun), _moments(timeline, ended)
+            begun.setdefault(key, set()).add(at)
+            set_out.setdefault((fly, key[0]), {})[key] = None
+    for at, situation, fly in _steps_of_flights(times, "commit"):
+        step = situation.steps[at.step]
+        interval, bound = timed_by(situation, step).interval, bound_of(situation, step)
+        for arriving in _keys(situation.c, fly):
+            for key in _begun_as(arriving, set_out.get((fly, arriving[0]), ())):
+                ended.setdefault(key, set()).add(at)
+                said[key] = _both(said.get(key, (interval, bound))[0], interval), bound
+    spans = times.spans([*begun.values(), *ended.values()])
+    begins = dict(zip(begun, spans, strict=False))
+    ends = dict(zip(ended, spans[len(begun) :], strict=True))
     found = [
         Flight(
             *key,
             said.get(key, (ANY_TIME,))[0],
-            begins.get(key, NO_MOMENT),
-            ends.get(key, NO_MOMENT),
+            Moments(*begins.get(key, NO_SPAN)),
+            Moments(*ends.get(key, NO_SPAN)),
             said.get(key, (ANY_TIME, Bound()))[1],
         )
         for key in dict.fromkeys((*begun, *ended))
     ]
-    return tuple(sorted(found, key=lambda each: (each.begins.earliest, each.ends.earliest, each.vehicle)))
+    return tuple(sorted(found, key=lambda each: (each.begins.earliest, each.ends.earliest, *_key(each))))
+
+
+def _key(flight: Flight) -> _Key:
+    return flight.vehicle, flight.agent, flight.origin, flight.destination
+
+
+def _steps_of_flights(times: Times, rule: str) -> Iterator[tuple[TakenStep, Situation, FLY]]:
+    """Yield the steps by a rule that are taken at some time, with the flights that they begin or end."""
+    for place, situation in enumerate(times.situations):
+        for at in sorted(times.taken(place)):
+            step = situation.steps[at]
+            fly = _flight_of(step)
+            if fly is not None and step.transition.label.rule == rule:
+                yield TakenStep(place, at), situation, fly
+
+
+def _begun_as(arriving: _Key, set_out: Iterable[_Key]) -> list[_Key]:
+    """Return as which flights one may have begun: where L has lost where the vehicle set out, as any of these."""
+    known = list(set_out)
+    return [arriving] if arriving in known or not known else known
 
 
 def _flight_of(step: TimedStep) -> FLY | None:
@@ -152,7 +162,7 @@ def _flight_of(step: TimedStep) -> FLY | None:
 
 
 def _keys(c: Configuration, fly: FLY) -> Iterator[_Key]:
-    """Yield what tells flights apart; L has a vehicle where it set out until it arrives."""
+    """Yield what tells flights apart; L has a vehicle where it set out, until it learns otherwise."""
     for vehicle, place in moved(fly.reaction, fly.match):
         yield vehicle, fly.agent, c.structure.logical.parent(vehicle) or REGION, place
 
@@ -160,56 +170,3 @@ def _keys(c: Configuration, fly: FLY) -> Iterator[_Key]:
 def _both(one: Interval, other: Interval) -> Interval:
     hi = None if one.hi is None or other.hi is None else max(one.hi, other.hi)
     return Interval(min(one.lo, other.lo), hi)
-
-
-def _first_ticks(timeline: Timeline) -> list[float]:
-    """Return for each state after how many ticks it is reached first."""
-    first = [math.inf] * len(timeline.states)
-    first[0] = 0
-    waiting = deque([0])
-    while waiting:
-        state = waiting.popleft()
-        if state % LOOKING == 0:
-            look()
-        for step, target in timeline.edges[state]:
-            ticks = first[state] + (step == DELAY)
-            if ticks < first[target]:
-                first[target] = ticks
-                (waiting.append if step == DELAY else waiting.appendleft)(target)
-    return first
-
-
-def _last_ticks(timeline: Timeline) -> list[float]:
-    """Return for each state after how many ticks it is reached last, infinitely many by a loop in which time passes."""
-    last = [NEVER] * len(timeline.states)
-    last[0] = 0
-    for component in reversed(list(components(timeline.edges, [True] * len(last)))):
-        members = set(component)
-        ticks = max(last[state] for state in component)
-        if any(
-            step == DELAY and target in members
-            for state in component
-            for step, target in timeline.edges[state]
-        ):
-            ticks = math.inf
-        for state in component:
-            last[state] = ticks
-            for step, target in timeline.edges[state]:
-                if target not in members:
-                    last[target] = max(last[target], ticks + (step == DELAY))
-    return last
-
-
-def _moments(timeline: Timeline, steps: Mapping[_Key, _Steps]) -> dict[_Key, Moments]:
-    """Return for each flight when one of its steps is taken, from the first time to the last."""
-    flights: dict[tuple[int, int], list[_Key]] = {}
-    for key, each in steps.items():
-        for step in each:
-            flights.setdefault(step, []).append(key)
-    found: dict[_Key, Moments] = {}
-    ticks = zip(_first_ticks(timeline), _last_ticks(timeline), strict=True)
-    for (number, _), edges, (first, last) in zip(timeline.states, timeline.edges, ticks, strict=True):
-        for key in (key for step, _ in edges for key in flights.get((number, step), ())):
-            known = found.get(key, NO_MOMENT)
-            found[key] = Moments(min(known.earliest, first), max(known.latest, last))
-    return found

@@ -27,7 +27,7 @@ from semantics.properties.propositions import (
     holds,
 )
 from semantics.state import cells
-from semantics.state.cells import Cell, Cells, Changes, Question, State, Written, is_, merged
+from semantics.state.cells import Cell, Cells, Changes, Edit, Question, State, Written, is_, merged
 from semantics.state.configuration import Configuration
 
 MOST_ATOMS: Final = 64
@@ -80,7 +80,7 @@ class Valuations:
             self.begun = True
             self.still = asked(self.atoms or tuple(atoms_of(self.formula)), c)
         elif self.still is not None and any(
-            c.test(cell, question, *constants) != said
+            c.ask(cell, question, *constants) != said
             for (cell, question, constants), said in self.still.items()
         ):
             self.still = None
@@ -114,7 +114,7 @@ def is_still(configurations: Iterable[Configuration], atoms: tuple[Atom, ...]) -
     return True
 
 
-Answers = dict[tuple[Cell, Question, tuple[Any, ...]], bool]
+Answers = dict[tuple[Cell, Question, tuple[Any, ...]], Any]
 """What was asked of cells, with the answers."""
 
 
@@ -133,8 +133,16 @@ class Asking:
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Ask a cell."""
-        self.answers[cell, question, constants] = found = self.cells.test(cell, question, *constants)
+        return bool(self.ask(cell, question, *constants))
+
+    def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
+        """Ask a cell."""
+        self.answers[cell, question, constants] = found = self.cells.ask(cell, question, *constants)
         return found
+
+    def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
+        """Return what an edit makes of a cell's value."""
+        return edit(self.read(cell), *constants)
 
     def each(self, names: Iterable[str], part: Callable[[str], cells.Part]) -> Mapping[str, cells.Part]:
         """Return what a pointwise definition says of each name."""

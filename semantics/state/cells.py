@@ -24,8 +24,11 @@ MONITOR = "watch"
 """Cells whose first word begins so belong to the race monitor; configurations are counted without them."""
 
 
-Question = Callable[..., bool]
+Question = Callable[..., Any]
 """What may be asked of a cell's value, and some constants; of None too, where there is no such cell (yet)."""
+
+Edit = Callable[..., Any]
+"""What makes another value of a cell's value and some constants."""
 
 
 def is_(value: object, constant: object) -> bool:
@@ -51,6 +54,12 @@ class Cells(Protocol):
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Ask one question of a cell: only the yes or no is learned."""
+
+    def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
+        """Ask one question of a cell that has an answer other than yes or no: only that is learned."""
+
+    def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
+        """Return what an edit makes of a cell's value, to be written back there: nothing is learned of the value."""
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
         """Return what a pointwise definition says of each name: no part depends on another."""
@@ -85,8 +94,20 @@ class Written:
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Ask what was written, else what was there."""
         if cell in self.changes:
-            return question(self.changes[cell], *constants)
+            return bool(question(self.changes[cell], *constants))
         return self.cells.test(cell, question, *constants)
+
+    def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
+        """Ask what was written, else what was there."""
+        if cell in self.changes:
+            return question(self.changes[cell], *constants)
+        return self.cells.ask(cell, question, *constants)
+
+    def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
+        """Return what an edit makes of what was written, else of what was there."""
+        if cell in self.changes:
+            return edit(self.changes[cell], *constants)
+        return self.cells.edited(cell, edit, *constants)
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
         """Return what a pointwise definition says of each name."""
@@ -150,7 +171,15 @@ class Row:
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Ask one question of a cell."""
+        return bool(question(self.read(cell), *constants))
+
+    def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
+        """Ask one question of a cell."""
         return question(self.read(cell), *constants)
+
+    def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
+        """Return what an edit makes of a cell's value."""
+        return edit(self.read(cell), *constants)
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
         """Return what a pointwise definition says of each name."""

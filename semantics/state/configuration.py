@@ -6,7 +6,7 @@ from typing import Any
 
 from semantics.state.agents import Agents
 from semantics.state.brief import cut
-from semantics.state.cells import MONITOR, Cell, Changes, Part, Question, Row, State, merged
+from semantics.state.cells import MONITOR, Cell, Changes, Edit, Part, Question, Row, State, merged
 from semantics.state.eta import Eta, Pending
 from semantics.state.requests import REQUESTS, Received, Request
 from semantics.state.setting import Setting
@@ -46,6 +46,14 @@ class Configuration:
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Ask one question of a cell."""
         return self.state.test(cell, question, *constants)
+
+    def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
+        """Ask one question of a cell that has an answer other than yes or no."""
+        return self.state.ask(cell, question, *constants)
+
+    def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
+        """Return what an edit makes of a cell's value."""
+        return self.state.edited(cell, edit, *constants)
 
     def with_(self, *changes: Changes) -> "Configuration":
         """Return the configuration with these cells written; later changes win."""

@@ -1,10 +1,10 @@
 """The pending requests η as a view over cells, and the queues in which the three schedulers serve them."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from semantics.races.provenance import NOTHING, Provenance
-from semantics.state.cells import AGENTS, MONITOR, QUEUE, Cell, Cells, Changes
+from semantics.state.cells import AGENTS, MONITOR, QUEUE, Cell, Cells, Changes, Edit
 from semantics.state.requests import FLY, READY, SND, Request, request_key
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
@@ -53,30 +53,53 @@ class Eta:
     def all(self) -> tuple[Pending, ...]:
         """Return every pending request: the agents' in order of their names, then the queue of `fcfs` as asked."""
         agents: tuple[Name, ...] = self.cells.read(AGENTS)
-        if self.setting.scheduler is Scheduler.FCFS:
+        if self._shares:
             return tuple(each for cell in (*map(line_cell, agents), QUEUE) for each in self._at(cell))
         return tuple(each for agent in agents for each in self.of(agent))
 
+    def own(self, agent: Name) -> tuple[Pending, ...]:
+        """Return the requests that stand in an agent's own line: all that are READY or FLY do."""
+        return tuple(self._at(line_cell(agent)))
+
+    def count(self, agent: Name) -> int:
+        """Return how many requests an agent has."""
+        if not self._shares:
+            return len(self.of(agent))
+        in_queue: int = self.cells.ask(QUEUE, count_of, agent)
+        return len(self.own(agent)) + in_queue
+
     def in_line(self, agent: Name) -> tuple[Pending, ...]:
         """Return the requests of an agent that may be served next (under `fcfs` apart from others' turns)."""
-        waiting = [each for each in self.of(agent) if not isinstance(each.request, READY)]
+        asked = (*self.own(agent), *self._first_in_queue(agent)) if self._shares else self.of(agent)
+        waiting = [each for each in asked if not isinstance(each.request, READY)]
         if self.setting.scheduler is Scheduler.UNORDERED:
             return tuple(waiting)
         line = [each for each in waiting if not isinstance(each.request, SND)]
         return (*line[:1], *(each for each in waiting if isinstance(each.request, SND)))
 
+    def _first_in_queue(self, agent: Name) -> Iterator[Pending]:
+        """Yield an agent's messages in the queue, and the first of its other requests: no rule asks for more of it."""
+        found: tuple[tuple[int, Request], ...] = self.cells.ask(QUEUE, first_of, agent)
+        for position, request in found:
+            kept = self.cells.read((MONITOR, *QUEUE))[position] if self.setting.monitored else NOTHING
+            yield Pending(request, QUEUE, position, kept)
+
     def ready(self, agent: Name) -> tuple[Pending, ...]:
         """Return the observations of an agent that may be delivered next."""
-        ready = tuple(each for each in self.of(agent) if isinstance(each.request, READY))
+        ready = tuple(each for each in self.own(agent) if isinstance(each.request, READY))
         return ready if self.setting.scheduler is Scheduler.UNORDERED else ready[:1]
 
     def adding(self, request: Request, rests_on: Provenance = NOTHING) -> Changes:
         """Write η + request."""
         cell = self._cell(request)
+        if cell == QUEUE:
+            return self._edit(appended, (request,), (rests_on,))
         return self._write(cell, [*self._at(cell), Pending(request, cell, -1, rests_on)])
 
     def removing(self, pending: Pending) -> Changes:
         """Write η − request."""
+        if pending.cell == QUEUE:
+            return self._edit(without, (pending.position,), (pending.position,))
         line = list(self._at(pending.cell))
         return self._write(pending.cell, line[: pending.position] + line[pending.position + 1 :])
 
@@ -89,13 +112,18 @@ class Eta:
         line[pending.position] = Pending(request, pending.cell, pending.position, kept)
         return self._write(pending.cell, line)
 
+    @property
+    def _shares(self) -> bool:
+        """Whether all agents share one queue."""
+        return self.setting.scheduler is Scheduler.FCFS
+
     def _cells(self, agent: Name) -> tuple[Cell, ...]:
         more = {Scheduler.FCFS: (QUEUE,), Scheduler.PROGRAM_ORDER: (sends_cell(agent),)}
         return (line_cell(agent), *more.get(self.setting.scheduler, ()))
 
     def _cell(self, request: Request) -> Cell:
         """Return where a request stands."""
-        if self.setting.scheduler is Scheduler.FCFS and not isinstance(request, READY | FLY):
+        if self._shares and not isinstance(request, READY | FLY):
             return QUEUE
         is_message = self.setting.scheduler is Scheduler.PROGRAM_ORDER and isinstance(request, SND)
         return sends_cell(request.agent) if is_message else line_cell(request.agent)
@@ -114,6 +142,14 @@ class Eta:
             if agent is None or request.agent == agent:
                 yield Pending(request, cell, position, kept)
 
+    def _edit(self, edit: Edit, of_requests: tuple[Any, ...], of_provenance: tuple[Any, ...]) -> Changes:
+        """Write the queue with an edit, which need not know what others asked for."""
+        changes: Changes = {QUEUE: self.cells.edited(QUEUE, edit, *of_requests)}
+        if self.setting.monitored:
+            watch = (MONITOR, *QUEUE)
+            changes[watch] = self.cells.edited(watch, edit, *of_provenance)
+        return changes
+
     def _write(self, cell: Cell, line: list[Pending]) -> Changes:
         if self.setting.scheduler is Scheduler.UNORDERED or cell[0] == "sends":
             line = sorted(
@@ -128,3 +164,25 @@ class Eta:
 def is_asked_by(queue: tuple[Request, ...] | None, agent: Name) -> bool:
     """Ask of a queue whether an agent has a request there."""
     return any(each.agent == agent for each in queue or ())
+
+
+def count_of(queue: tuple[Request, ...] | None, agent: Name) -> int:
+    """Ask of a queue how many requests of an agent it has."""
+    return sum(each.agent == agent for each in queue or ())
+
+
+def first_of(queue: tuple[Request, ...] | None, agent: Name) -> tuple[tuple[int, Request], ...]:
+    """Ask of a queue for an agent's messages, and the first of its other requests, each with its position."""
+    own = [(position, each) for position, each in enumerate(queue or ()) if each.agent == agent]
+    first = next((each for each in own if not isinstance(each[1], SND)), None)
+    return tuple(each for each in own if each is first or isinstance(each[1], SND))
+
+
+def appended(line: tuple[Any, ...] | None, member: object) -> tuple[Any, ...]:
+    """Return a line with one more at its end."""
+    return (*(line or ()), member)
+
+
+def without(line: tuple[Any, ...], position: int) -> tuple[Any, ...]:
+    """Return a line without what stands at a position."""
+    return line[:position] + line[position + 1 :]

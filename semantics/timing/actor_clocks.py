@@ -176,7 +176,7 @@ def of_requests(c: Configuration, a: Name, served: Iterable[Transition | Fault])
 
 
 def _flights(c: Configuration, a: Name, enabled: set[Request]) -> Iterator[Running]:
-    for fly in dict.fromkeys(each.request for each in c.eta.of(a)):
+    for fly in dict.fromkeys(each.request for each in c.eta.own(a)):
         if isinstance(fly, FLY):
             interval = interval_of_flight(c, fly)
             if interval != ANY_TIME or timing_of(c).motions:

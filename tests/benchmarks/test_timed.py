@@ -20,9 +20,26 @@ def test_uavs_are_there_in_time_and_home_on_their_batteries(engine):
     assert (report.configurations, report.transitions) == (25, 31)
     assert {each.outcome.value for each in report.verdicts} == {"holds"}
     # 3 ticks until it takes off, then 3 flights of 6.05 km at 18 m/s, 34 ticks each, with a tick between two
-    assert report.verdicts["there"].note == "after 17:50 at the latest"
+    assert report.verdicts["there0"].note == "after 17:50 at the latest"
 
 
 def test_a_row_says_how_many_zones_there_are(monkeypatch):
     monkeypatch.delenv("TCHECKER", raising=False)
-    assert timed.row(1, 3).startswith("1 UAVs, 3 places: 25 configurations, 25 zones in ")
+    said = timed.row(1, 3, "fcfs")
+    assert said.startswith("1 UAVs, 3 places, fcfs: 25 configurations, 25 zones in ")
+
+
+def test_others_learn_nothing_anew_of_a_queue_that_all_share(tmp_path):
+    found = timed.explored(timed_family.text(2, 3), tmp_path)
+    assert (found.size, found.times.search.count) == (2490, 7103)
+    assert found.times.network.learner.runs == 1890  # it was 7,857 when rules read the queue whole
+
+
+def test_processes_of_a_network_share_no_names(tmp_path):
+    lines = timed.network(2, 1, tmp_path).splitlines()
+    declared = [line for line in lines if line.split(":")[0] in ("event", "process", "clock")]
+    assert len(set(declared)) == len(declared)
+    for i, other in ((0, 1), (1, 0)):
+        own = [line for line in lines if f":uav{i}:" in line]
+        assert own
+        assert not any(f"x{other}_" in line or f"e{other}_" in line for line in own)

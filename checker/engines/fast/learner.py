@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from checker.engines.fast.columns import Columns, Packing, Writes
 from checker.engines.fast.leaves import ALIKE, CROWDED, NO_TURN, STEP, UNLIKE, Effect, Leaves, Step
-from checker.engines.fast.recording import Ask, Recorder, Scope, Source
+from checker.engines.fast.recording import Ask, Edited, Recorder, Scope, Source
 from checker.engines.fast.skeletons import agents_of, mobile_names, settled
 from checker.engines.fast.trees import Trees
 from checker.engines.fast.writing import Concluded, Relearn, Varies, Writing
@@ -121,11 +121,11 @@ class Learner:
     writing: Writing = field(init=False)
     trees: Trees = field(default_factory=Trees)
     leaves: Leaves = field(default_factory=Leaves)
-    owners: list[Actor | PartOf | Question] = field(default_factory=list)
+    owners: list[Actor | PartOf | Edited | Question] = field(default_factory=list)
     taken: defaultdict[Cell, set[int]] = field(default_factory=lambda: defaultdict(set))
     writers: defaultdict[Cell, set[int]] = field(default_factory=lambda: defaultdict(set))
     homes: dict[Cell | Name, int] = field(default_factory=dict)
-    planted: dict[Actor, int] = field(default_factory=dict)
+    planted: dict[Actor | Edited, int] = field(default_factory=dict)
     varying: set[Cell] = field(default_factory=set)
     rules: dict[str, int] = field(default_factory=dict)
     labels: dict[Hashable, Known] = field(default_factory=dict)
@@ -144,8 +144,8 @@ class Learner:
             if cell[0] in PREDICTED or (cell[0] in ("placement", "parent") and cell[-1] in mobile):
                 self.varying.add(cell)
 
-    def tree(self, actor: Actor) -> int:
-        """Return the number of an actor's tree."""
+    def tree(self, actor: Actor | Edited) -> int:
+        """Return the number of the tree of an actor, or of an edit, which whoever makes it shares."""
         if actor not in self.planted:
             self.planted[actor] = self._plant(actor)
         return self.planted[actor]
@@ -154,7 +154,7 @@ class Learner:
         """Return the number of a new tree for a question."""
         return self._plant(question)
 
-    def _plant(self, owner: Actor | PartOf | Question) -> int:
+    def _plant(self, owner: Actor | PartOf | Edited | Question) -> int:
         self.owners.append(owner)
         return self.trees.plant()
 
@@ -171,6 +171,9 @@ class Learner:
             if isinstance(owner, PartOf):
                 owner.recorder.source = source  # it agrees on all that the rules themselves asked
                 self._learn_part(tree, owner, source)
+                return True
+            if isinstance(owner, Edited):
+                self._learn_edit(tree, owner, source)
                 return True
             recorder = Recorder(source, self.still, self.varying.__contains__, self.columns.mobile)
             if isinstance(owner, Actor):
@@ -202,7 +205,7 @@ class Learner:
         is_full = actor.rules is served and is_crowded(c, str(actor.about), self.pending)
         parts = [[self._plant(PartOf(recorder, each, name)) for name in each.apart] for each in concluded]
         for each, trees in zip(concluded, parts, strict=True):
-            each.effect.parts = trees
+            each.effect.parts = [*trees, *map(self.tree, each.edits)]
         for each in concluded:
             self._note_writer(tree, each.effect.writes)
         leaf = self.leaves.add(self._steps(actor, concluded), CROWDED if is_full else 0)
@@ -228,6 +231,12 @@ class Learner:
         self._note_writer(tree, writes)
         self._grow(tree, scope, self.leaves.add([Step(Effect(writes))]), source)
 
+    def _learn_edit(self, tree: int, edited: Edited, source: CodedSource) -> None:
+        scope = Scope({Ask(edited.cell): source.skeleton(edited.cell)})
+        writes = self.writing.edit(edited, source.skeleton(edited.cell))
+        self._note_writer(tree, writes)
+        self._grow(tree, scope, self.leaves.add([Step(Effect(writes))]), source)
+
     def _note_writer(self, tree: int, writes: Writes) -> None:
         cells = dict.fromkeys(self.columns.all[number].place[0] for number, _ in writes)
         owner = self.owners[tree]
@@ -239,7 +248,11 @@ class Learner:
 
     def _home(self, actor: Actor) -> int:
         """Return the number of whom an actor is about: its first tree."""
-        return min(tree for each, tree in self.planted.items() if each.about == actor.about)
+        return min(
+            tree
+            for each, tree in self.planted.items()
+            if isinstance(each, Actor) and each.about == actor.about
+        )
 
     def by_home(self) -> list[int]:
         """Return the numbers of all columns, those together that one actor writes."""
@@ -301,7 +314,7 @@ def _key(step: Transition) -> Hashable:
 
 def is_crowded(c: Configuration, a: Name, most: int) -> bool:
     """Tell whether an agent has more pending requests or messages than are explored."""
-    return len(c.eta.of(a)) > most or c.test(mailbox_cell(a), is_longer, most)
+    return c.eta.count(a) > most or c.test(mailbox_cell(a), is_longer, most)
 
 
 def is_longer(value: tuple[object, ...] | None, most: int) -> bool:

@@ -8,15 +8,15 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from checker.engines.fast.skeletons import Hole, put_together
+from checker.engines.fast.skeletons import Hole, has_no_holes, put_together, taken_apart
 from semantics.behaviours.observations import Fact
-from semantics.state.cells import Cell, Changes, Part, Question, Row, State, merged
+from semantics.state.cells import Cell, Changes, Edit, Part, Question, Row, State, merged
 from semantics.state.signature import Name
 
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """What is asked of a column: its value, or (with a question) a yes or no.
+    """What is asked of a column: its value, or (with a question) what a question makes of it, mostly a yes or no.
 
     Attributes:
         cell: The cell.
@@ -43,6 +43,19 @@ class Source(Protocol):
 
     def fact(self, cell: Cell, number: int, name: Name) -> Fact:
         """Return what a hole of a cell says of a mobile name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Edited:
+    """Stands for what an edit makes of a cell's value, as long as nobody looks at it."""
+
+    cell: Cell
+    edit: Edit
+    constants: tuple[Any, ...]
+
+    def of(self, value: Any) -> Any:
+        """Return what it makes of a value."""
+        return self.edit(value, *self.constants)
 
 
 @dataclass(slots=True)
@@ -92,10 +105,27 @@ class Recorder:
         """Ask a cell, and note the yes or no."""
         if not self.varies(cell):
             self.scopes[-1].taken.add(cell)
-            return question(self.still.read(cell), *constants)
+            return bool(question(self.still.read(cell), *constants))
         ask = Ask(cell, None, question, constants)
-        answer: bool = self._note(ask, lambda: question(self.source.skeleton(cell), *constants))
+        answer: bool = self._note(ask, lambda: bool(question(self.source.skeleton(cell), *constants)))
         return answer
+
+    def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
+        """Ask a cell, and note the answer."""
+        if not self.varies(cell):
+            self.scopes[-1].taken.add(cell)
+            return question(self.still.read(cell), *constants)
+        answer = self._note(
+            Ask(cell, None, question, constants), lambda: question(self.source.skeleton(cell), *constants)
+        )
+        return put_together(answer, lambda hole: Heard(self, cell, hole))
+
+    def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
+        """Return what an edit makes of a cell's value, unread where no observation stands in either."""
+        is_plain = not taken_apart(constants, self.mobile)[1]
+        if is_plain and self.varies(cell) and self.test(cell, has_no_holes):
+            return Edited(cell, edit, constants)
+        return edit(self.read(cell), *constants)
 
     def hear(self, cell: Cell, number: int, name: Name) -> Fact:
         """Return what an observation says of a mobile name, and note it."""
@@ -200,17 +230,30 @@ class Conclusion:
 
     def read(self, cell: Cell) -> Any:
         """Return what was written, else what was there."""
-        written = self._written(cell)
-        return written[cell] if cell in written else self.recorder.read(cell)
+        written = self.written(cell)
+        value = written[cell] if cell in written else self.recorder.read(cell)
+        return value.of(self.recorder.read(cell)) if isinstance(value, Edited) else value
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Ask what was written, else what was there."""
-        written = self._written(cell)
-        if cell in written:
-            return question(written[cell], *constants)
+        if cell in self.written(cell):
+            return bool(question(self.read(cell), *constants))
         return self.recorder.test(cell, question, *constants)
 
-    def _written(self, cell: Cell) -> Changes:
+    def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
+        """Ask what was written, else what was there."""
+        if cell in self.written(cell):
+            return question(self.read(cell), *constants)
+        return self.recorder.ask(cell, question, *constants)
+
+    def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
+        """Return what an edit makes of what was written, else of what was there."""
+        if cell in self.written(cell):
+            return edit(self.read(cell), *constants)
+        return self.recorder.edited(cell, edit, *constants)
+
+    def written(self, cell: Cell) -> Changes:
+        """Return what was written, as far as a cell may be among it."""
         if cell in self.changes or not self.families:
             return self.changes
         return merged(each for family in self.families for each in family.values()) | self.changes
@@ -236,9 +279,12 @@ class Conclusion:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Conclusion) or self.recorder is not other.recorder:
             return NotImplemented
-        return all(
-            self.read(cell) == other.read(cell) for cell in sorted(self.changed(self) | other.changed(other))
-        )
+        return all(self._agrees(other, cell) for cell in sorted(self.changed(self) | other.changed(other)))
+
+    def _agrees(self, other: "Conclusion", cell: Cell) -> bool:
+        """Tell whether a cell has one value in both: the same edit has, whatever it is made of."""
+        one, two = (each.written(cell).get(cell) for each in (self, other))
+        return (isinstance(one, Edited) and one == two) or bool(self.read(cell) == other.read(cell))
 
     def __hash__(self) -> int:
         return hash(id(self.recorder))  # what is written may be what was there

@@ -93,6 +93,11 @@ def holes(skeleton: Any) -> Iterator[Hole]:
             yield from holes(skeleton.message)
 
 
+def has_no_holes(skeleton: Any) -> bool:
+    """Ask of a skeleton whether no observation stands in it."""
+    return next(holes(skeleton), None) is None
+
+
 def _mapped(value: Any, kind: type, change: Callable[[Any], Any], *, sets: bool = False) -> Any:
     """Return a value with its parts of a kind changed, the same object where there are none.
 

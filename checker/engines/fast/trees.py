@@ -42,7 +42,9 @@ class Trees:
         nodes: For each inner node `RECORD` numbers.
         next: References, window by window.
         asks: For each inner node what it asks.
-        answers: For each inner node that asks a yes or no, the reference that each answer leads to.
+        answers: For each inner node that asks a question, the reference that each answer leads to.
+        waiting: For each such node the codes whose answer leads nowhere yet, by that answer.
+        answered: For how many codes each such node was asked.
         forgotten: How many times a tree was forgotten.
     """
 
@@ -50,7 +52,9 @@ class Trees:
     nodes: Growing = field(default_factory=lambda: Growing(np.uint64))
     next: Growing = field(default_factory=lambda: Growing(np.int32))
     asks: list[Ask] = field(default_factory=list)
-    answers: list[dict[bool, int]] = field(default_factory=list)
+    answers: list[dict[Any, int]] = field(default_factory=list)
+    waiting: list[dict[Any, list[int]]] = field(default_factory=list)
+    answered: list[int] = field(default_factory=list)
     forgotten: int = 0
 
     def plant(self) -> int:
@@ -101,6 +105,8 @@ class Trees:
     def _new_node(self, ask: Ask, column: int) -> int:
         self.asks.append(ask)
         self.answers.append({})
+        self.waiting.append({})
+        self.answered.append(0)
         return self.nodes.append(column, *[0] * (RECORD - 1)) // RECORD
 
     def _follow(self, node: int, answer: Any) -> int:
@@ -147,11 +153,14 @@ class Trees:
         self.nodes.room[RECORD * node + LOW : RECORD * node + WORD] = first, last - first + 1, base
 
     def _fill(self, node: int, column: Column) -> None:
-        """Answer a node's yes or no for every code that its window holds and its column has."""
-        ask, answers = self.asks[node], self.answers[node]
+        """Answer a node's question for every code that its window holds and its column has: for each once."""
+        ask, answers, waiting = self.asks[node], self.answers[node], self.waiting[node]
         _, width, base = self.window(node)
         assert ask.question is not None
-        for code in range(min(width, len(column.values))):
-            if self.next.room[base + code] == UNKNOWN:
-                answer = ask.question(column.value(code), *ask.constants)
-                self.next.room[base + code] = answers.get(answer, UNKNOWN)
+        end = min(width, len(column.values))
+        for code in range(self.answered[node], end):
+            answer = ask.question(column.value(code), *ask.constants)
+            waiting.setdefault(answer, []).append(code)
+        self.answered[node] = max(self.answered[node], end)
+        for answer in answers.keys() & waiting.keys():
+            self.next.room[base + np.array(waiting.pop(answer))] = answers[answer]

@@ -6,7 +6,7 @@ from typing import Any
 
 from checker.engines.fast.columns import Columns, Place, Writes
 from checker.engines.fast.leaves import Effect
-from checker.engines.fast.recording import Conclusion, Heard, Pointwise
+from checker.engines.fast.recording import Conclusion, Edited, Heard, Pointwise
 from checker.engines.fast.skeletons import Family, taken_apart
 from checker.engines.fast.trees import LearningError
 from semantics.behaviours.observations import NOTHING_SEEN
@@ -41,6 +41,7 @@ class Concluded:
         said: What is said name by name in holes: the cell, the hole's number, the family.
         families: What is written name by name.
         apart: The names about which that is worked out apart.
+        edits: What is made of cells, whatever they hold.
     """
 
     step: Transition
@@ -48,6 +49,7 @@ class Concluded:
     said: list[tuple[Cell, int, Family]] = field(default_factory=list)
     families: tuple[Mapping[Name, Changes], ...] = ()
     apart: tuple[Name, ...] = ()
+    edits: list[Edited] = field(default_factory=list)
 
 
 @dataclass(slots=True)
@@ -92,15 +94,22 @@ class Writing:
         inner = Concluded(found.step)
         for cell, value in merged(family[name] for family in found.families if name in family).items():
             self._write(cell, value, inner)
-        if inner.said or inner.effect.copies:
+        if inner.said or inner.edits or inner.effect.copies:
             raise LearningError(f"what {found.step.label} writes about {name} has parts of its own")
         return writes + inner.effect.writes
+
+    def edit(self, edited: Edited, value: Any) -> Writes:
+        """Return what an edit writes over a value; neither has observations in it."""
+        return [self._coded((edited.cell,), edited.of(value))]
 
     def _about_still(self, state: Conclusion) -> Iterator[Changes]:
         apart = self.columns.apart
         return (family[name] for family in state.families for name in family if name not in apart)
 
     def _write(self, cell: Cell, value: Any, found: Concluded) -> None:
+        if isinstance(value, Edited):
+            found.edits.append(value)
+            return
         skeleton, families = taken_apart(value, self.columns.mobile)
         if cell not in self.varying:
             if cell in self.still.layout.index and self.still.read(cell) == value:

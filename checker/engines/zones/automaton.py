@@ -78,8 +78,9 @@ class Automaton:
 
     Attributes:
         locations: Of each `LOCATION` numbers: one more than it has clocks, where its parts are, its goal.
-        edges: Of each `EDGE` numbers; the last are its rule and the group that it was first taken in.
+        edges: Of each `EDGE` numbers; the last are its rule and after how many steps it was first taken.
         lower, upper: For each clock the largest constant that it is compared with from below and from above.
+        rows: The row of each location: those of one row are followed side by side.
         largest: One more than the most clocks that a location has.
     """
 
@@ -91,6 +92,7 @@ class Automaton:
     clocks: Growing = field(default_factory=_numbers)
     lower: Growing = field(default_factory=_numbers)
     upper: Growing = field(default_factory=_numbers)
+    rows: Growing = field(default_factory=_numbers)
     largest: int = 1
 
     def __len__(self) -> int:
@@ -121,6 +123,7 @@ class Automaton:
         goal, least = (NONE, 0) if location.goal is None else location.goal[:2]
         size = 1 + len(location.clocks)
         self.largest = max(self.largest, size)
+        self.rows.append(len(self))
         return self.locations.append(size, clocks, begin, end, UNKNOWN, UNKNOWN, goal, least) // LOCATION
 
     def leave(self, location: int, edges: Iterable[Edge]) -> None:
@@ -159,8 +162,18 @@ class Automaton:
         begin, end = self._record(location)[EDGES : EDGES_END + 1]
         return self.edges.room[EDGE * max(begin, 0) : EDGE * max(end, 0)].reshape(-1, EDGE)
 
+    def arrows(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return where the edges that were taken begin and end."""
+        locations, edges = self.locations.used.reshape(-1, LOCATION), self.edges.used.reshape(-1, EDGE)
+        begins = locations[:, EDGES]
+        counts = np.where(begins < 0, 0, locations[:, EDGES_END] - begins)
+        order = np.argsort(np.where(counts > 0, begins, len(edges)), kind="stable")
+        sources = np.repeat(order, counts[order])
+        taken = edges[:, FIRST] >= 0
+        return sources[taken], edges[taken, TARGET].astype(np.int64)
+
     def firsts(self, location: int) -> list[tuple[int, int]]:
-        """Return each step of a location that was taken, with the group that it was first taken in."""
+        """Return each step of a location that was taken, with the number of steps before it at the least."""
         return [(int(each[STEP]), int(each[FIRST])) for each in self._edges(location) if each[FIRST] >= 0]
 
     def forget(self) -> None:

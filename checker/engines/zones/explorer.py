@@ -89,19 +89,17 @@ def _stop(search: Search, limits: Limits, seconds: float, *, goes_on: bool) -> B
 
 
 def _progress(search: Search, seconds: float) -> Progress:
-    followed, groups = search.progress
-    return Progress(search.count, 0, 0, groups - followed, search.count / max(seconds, 1e-9))
+    waiting = search.count - search.followed
+    return Progress(search.count, 0, 0, waiting, search.count / max(seconds, 1e-9))
 
 
 def _summarise(times: ZoneTimes, found: Exploration) -> None:
     """Write down the configurations in the order of discovery, and each transition that is taken, once."""
-    network, records = times.network, times.search.group_records()
-    places = np.zeros(network.size, np.int64)
-    places[times.order] = np.arange(len(times.order))
-    found.origins = places[times.numbers[np.maximum(records[times.firsts, 0], 0)]].tolist()
+    network = times.network
+    found.origins = times.search.origins.tolist()
     found.times, found.expanded = times, len(times.order)
     found.configurations = OfRows(network.configuration, times.order)
-    found.depth = len(times.search.steps_to(int(times.firsts[-1])))
+    found.depth = times.search.deepest
     names = {number: name for name, number in network.learner.rules.items()}
     rules, counts = np.unique(times.taken_rules(), return_counts=True)
     found.rules = Counter(

@@ -1,9 +1,12 @@
 """The compiled loops: what follows from zones, and which of it is new.
 
-A group is what one sequence of steps leads to; groups are numbered in the order of those sequences, the shortest first,
-and zones stand in the order of their groups. A zone within another one of its location is not kept; one that holds
-others takes their place in what later ones are compared with, and they are followed nevertheless, so that whatever is
-reached is reached first by the first sequence that leads there.
+Zones are followed layer by layer: a layer is what so many steps lead to and fewer do not. In a layer, those of one row
+are followed side by side, step by step, and rows in the order in which they were met first. A zone within another one
+of its location is not kept; one that holds others takes their place in what later ones are compared with, and of its
+own layer they are dropped.
+
+To find the first run to something (`checker.engines.runs`) a search goes group by group instead: a group is what one
+sequence of steps leads to, the first of a layer's sequences first, and nothing that was kept is dropped.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
@@ -42,7 +45,10 @@ State = NDArray[np.int64]
 
 
 class Model(NamedTuple):
-    """A timed automaton, as the loops see it; see `Automaton`."""
+    """A timed automaton, as the loops see it; see `Automaton`.
+
+    `left` has for each location how many steps are left from there to what is looked for, 0 where nothing is known.
+    """
 
     locations: Ints
     edges: Ints
@@ -52,6 +58,8 @@ class Model(NamedTuple):
     clocks: Ints
     lower: Ints
     upper: Ints
+    rows: Ints
+    left: Ints
 
 
 class Zones(NamedTuple):
@@ -62,10 +70,13 @@ class Zones(NamedTuple):
         begins: Where that of each zone begins.
         sums: The sum of its bounds: what holds it has none smaller.
         places: The location of each.
-        following: For each zone the next one that later ones of its location are compared with.
+        following: For each zone the next one that later ones of its location are compared with, `COVERED` where another
+            one of its layer holds it.
         heads: For each location the first such zone.
-        groups: For each group three numbers: the group before, the step, and its first zone; its last is the one before
-            the next group's first.
+        ranks: For each row which it was among those that were met; -1 where it was not.
+        order: The rows that were met, in that order, each with the rank of the row before it.
+        groups: In a search for a run, for each group three numbers: the group before, the step, and its first zone; its
+            last is the one before the next group's first.
     """
 
     bounds: Ints
@@ -74,18 +85,23 @@ class Zones(NamedTuple):
     places: Ints
     following: Ints
     heads: Ints
+    ranks: Ints
+    order: Ints
     groups: Ints
 
 
-GROUP = 3
+COVERED = -2
+
+GROUP, RANK = 3, 2
 BEFORE, BY, BEGIN = range(GROUP)
 
-AT, GROUPS, COUNT, USED, FOUND, MISSED, STATE = range(7)
-"""The numbers of a state: the next group to be followed, how many groups, zones and bounds there are, the group that
-was found first, and how many zones there is no room for."""
+AT, LAYER, DEPTH, COUNT, USED, FOUND, MISSED, GROUPS, RANKED, LONGEST, STATE = range(11)
+"""The numbers of a state: the next zone to be followed (or group), the first zone of the layer that is made, after how
+many steps, how many zones and bounds there are, after how many steps what is looked for was found, how many zones there
+is no room for, how many groups there are, how many rows were met, and how many steps there may be."""
 
 DONE, MISS, FULL = range(3)
-"""Why the loops return; at a MISS nobody knows what leads from some location of the next group."""
+"""Why the loops return; at a MISS nobody knows what leads from some location of what comes next."""
 
 
 @njit(cache=True, inline="always")
@@ -107,6 +123,12 @@ def meets(m: Model, edge: int, d: Matrix, size: int) -> bool:
         if most >= 0 and not restrict(d, size, clock, 0, most):
             return False
     return True
+
+
+@njit(cache=True)
+def before_rank(m: Model, z: Zones, state: State) -> int:
+    """Return the rank of the row that is followed, 0 at first."""
+    return 0 if state[RANKED] == 0 or state[GROUPS] > 0 else np.int64(z.ranks[m.rows[z.places[state[AT]]]])
 
 
 @njit(cache=True)
@@ -135,6 +157,8 @@ def keep(m: Model, z: Zones, state: State, location: int, d: Matrix, size: int) 
                 z.heads[location] = following
             else:
                 z.following[before] = following
+            if zone >= state[LAYER]:
+                z.following[zone] = COVERED
         else:
             before = zone
         zone = following
@@ -147,9 +171,14 @@ def keep(m: Model, z: Zones, state: State, location: int, d: Matrix, size: int) 
     z.heads[location] = new
     state[COUNT] += 1
     state[USED] += size * size
+    row = m.rows[location]
+    if z.ranks[row] < 0:
+        z.ranks[row] = state[RANKED]
+        z.order[RANK * state[RANKED]], z.order[RANK * state[RANKED] + 1] = row, before_rank(m, z, state)
+        state[RANKED] += 1
     goal = m.locations[at + GOAL]
     if goal >= 0 and state[FOUND] < 0 and d[goal, 0] >= m.locations[at + LEAST]:
-        state[FOUND] = state[GROUPS]  # the group that is being made
+        state[FOUND] = state[DEPTH]
 
 
 @njit(cache=True)
@@ -186,14 +215,16 @@ def enter(m: Model, z: Zones, state: State, location: int, d: Matrix, e: Matrix,
 def follow(
     m: Model, z: Zones, state: State, zone: int, edge: int, d: Matrix, e: Matrix, f: Matrix, bounds: Matrix
 ) -> None:
-    """Keep what an edge leads to from a zone."""
+    """Keep what an edge leads to from a zone, if that is not too far from what is looked for."""
+    target, sources = m.edges[edge + TARGET], m.edges[edge + SOURCES] - 1
+    if state[DEPTH] + m.left[target] > state[LONGEST]:
+        return
     size = m.locations[LOCATION * z.places[zone] + SIZE]
     load(z, zone, size, d)
     if not meets(m, edge, d, size):
         return
     if m.edges[edge + FIRST] < 0:
-        m.edges[edge + FIRST] = state[AT]
-    target, sources = m.edges[edge + TARGET], m.edges[edge + SOURCES] - 1
+        m.edges[edge + FIRST] = state[DEPTH] - 1
     after = m.locations[LOCATION * target + SIZE]
     e[0, 0] = 0
     for i in range(1, after):
@@ -205,52 +236,127 @@ def follow(
 
 
 @njit(cache=True)
-def advance(m: Model, z: Zones, state: State, largest: int, until: int) -> int:
-    """Follow groups up to a number of zones; say why that ended."""
-    d, e, f = (
-        np.zeros((largest, largest), np.int32),
-        np.zeros((largest, largest), np.int32),
-        np.zeros((largest, largest), np.int32),
+def ways_of(m: Model, z: Zones, begin: int, last: int) -> int:
+    """Return how many edges lead from some zones, -1 where that is not known."""
+    ways = np.int64(0)
+    for zone in range(begin, last):
+        at = LOCATION * z.places[zone]
+        if m.locations[at + EDGES] < 0:
+            return -1
+        ways += m.locations[at + EDGES_END] - m.locations[at + EDGES]
+    return ways
+
+
+@njit(cache=True)
+def is_full(z: Zones, state: State, ways: int, largest: int) -> bool:
+    """Tell whether there is no room for what so many edges lead to."""
+    room = state[MISSED] = 2 * ways
+    return bool(
+        state[COUNT] + room > len(z.begins)
+        or state[USED] + room * largest * largest > len(z.bounds)
+        or GROUP * (state[GROUPS] + ways + 1) > len(z.groups)
     )
-    bounds = np.zeros((4, largest + 1), np.int32)
-    while state[AT] < state[GROUPS] and state[COUNT] < until and state[FOUND] < 0:
+
+
+@njit(cache=True)
+def next_step(m: Model, z: Zones, begin: int, last: int, step: int) -> int:
+    """Return the step after another one that leads from some zones, -1 where there is none."""
+    following = np.int64(-1)
+    for zone in range(begin, last):
+        at = LOCATION * z.places[zone]
+        for edge in range(EDGE * m.locations[at + EDGES], EDGE * m.locations[at + EDGES_END], EDGE):
+            if step < m.edges[edge + STEP]:
+                if following < 0 or m.edges[edge + STEP] < following:
+                    following = np.int64(m.edges[edge + STEP])
+                break
+    return following
+
+
+class Scratch(NamedTuple):
+    """Matrices to work in."""
+
+    d: Matrix
+    e: Matrix
+    f: Matrix
+    bounds: Matrix
+
+
+@njit(cache=True)
+def take(m: Model, z: Zones, state: State, begin: int, last: int, step: int, s: Scratch) -> None:
+    """Take one step from some zones."""
+    for zone in range(begin, last):
+        at = LOCATION * z.places[zone]
+        for edge in range(EDGE * m.locations[at + EDGES], EDGE * m.locations[at + EDGES_END], EDGE):
+            if m.edges[edge + STEP] == step:
+                follow(m, z, state, zone, edge, s.d, s.e, s.f, s.bounds)
+
+
+@njit(cache=True)
+def advance(m: Model, z: Zones, state: State, largest: int, until: int, s: Scratch) -> int:
+    """Follow the zones of a layer, row by row, up to a number of zones; say why that ended."""
+    while state[AT] < state[LAYER] and state[COUNT] < until:
+        begin = state[AT]
+        row, last = m.rows[z.places[begin]], begin + 1
+        while last < state[LAYER] and m.rows[z.places[last]] == row:
+            last += 1
+        ways = ways_of(m, z, begin, last)
+        if ways < 0:
+            return MISS
+        if is_full(z, state, ways, largest):
+            return FULL
+        step = next_step(m, z, begin, last, -1)
+        while step >= 0:
+            take(m, z, state, begin, last, step, s)
+            step = next_step(m, z, begin, last, step)
+        state[AT] = last
+    return DONE
+
+
+@njit(cache=True)
+def arrange(m: Model, z: Zones, state: State, kept: State) -> None:
+    """Leave some zones of the layer that was made, in an order; the others are covered."""
+    begin = state[LAYER]
+    used = z.begins[begin]
+    renamed = np.full(state[COUNT] - begin, -1, np.int64)
+    for k in range(len(kept)):
+        renamed[kept[k] - begin] = begin + k
+    bounds, begins = z.bounds[used : state[USED]].copy(), z.begins[begin : state[COUNT]].copy()
+    sums, places = z.sums[begin : state[COUNT]].copy(), z.places[begin : state[COUNT]].copy()
+    following = z.following[begin : state[COUNT]].copy()
+    are_heads = np.zeros(len(kept), np.bool_)
+    for k in range(len(kept)):
+        are_heads[k] = z.heads[places[kept[k] - begin]] == kept[k]
+    for k in range(len(kept)):
+        old, new = kept[k] - begin, begin + k
+        if are_heads[k]:
+            z.heads[places[old]] = new
+        z.sums[new], z.places[new], z.begins[new] = sums[old], places[old], used
+        z.following[new] = following[old] if following[old] < begin else renamed[following[old] - begin]
+        size = np.int64(m.locations[LOCATION * places[old] + SIZE])
+        for i in range(size * size):
+            z.bounds[used + i] = bounds[begins[old] - begins[0] + i]
+        used += size * size
+    state[USED], state[COUNT] = used, begin + len(kept)
+
+
+@njit(cache=True)
+def advance_by_groups(m: Model, z: Zones, state: State, largest: int, last_group: int, s: Scratch) -> int:
+    """Follow groups up to a number, in order; say why that ended."""
+    while state[AT] < last_group:
         group = state[AT]
         begin = z.groups[GROUP * group + BEGIN]
         last = z.groups[GROUP * (group + 1) + BEGIN] if group + 1 < state[GROUPS] else state[COUNT]
-        ways = np.int64(0)
-        for zone in range(begin, last):
-            at = LOCATION * z.places[zone]
-            if m.locations[at + EDGES] < 0:
-                return MISS
-            ways += m.locations[at + EDGES_END] - m.locations[at + EDGES]
-        room = 2 * ways
-        if (
-            state[COUNT] + room > len(z.begins)
-            or state[USED] + room * largest * largest > len(z.bounds)
-            or GROUP * (state[GROUPS] + ways + 1) > len(z.groups)
-        ):
-            state[MISSED] = room
+        ways = ways_of(m, z, begin, last)
+        if is_full(z, state, ways, largest):
             return FULL
-        step = np.int64(-1)
-        while True:
-            following = np.int64(1 << 40)
-            for zone in range(begin, last):
-                at = LOCATION * z.places[zone]
-                for edge in range(EDGE * m.locations[at + EDGES], EDGE * m.locations[at + EDGES_END], EDGE):
-                    if step < m.edges[edge + STEP] < following:
-                        following = np.int64(m.edges[edge + STEP])
-                        break
-            if following == 1 << 40:
-                break
-            step, first = following, state[COUNT]
-            for zone in range(begin, last):
-                at = LOCATION * z.places[zone]
-                for edge in range(EDGE * m.locations[at + EDGES], EDGE * m.locations[at + EDGES_END], EDGE):
-                    if m.edges[edge + STEP] == step:
-                        follow(m, z, state, zone, edge, d, e, f, bounds)
+        step = next_step(m, z, begin, last, -1)
+        while step >= 0:
+            first = state[COUNT]
+            take(m, z, state, begin, last, step, s)
             if state[COUNT] > first:
                 at = GROUP * state[GROUPS]
                 z.groups[at + BEFORE], z.groups[at + BY], z.groups[at + BEGIN] = group, step, first
                 state[GROUPS] += 1
+            step = next_step(m, z, begin, last, step)
         state[AT] += 1
     return DONE

@@ -99,6 +99,7 @@ class Network(Space):
         self.answers, self.running, self.times = (Growing(np.int32) for _ in range(3))
         self.done, self.tested, self.served = (Growing(np.int32) for _ in range(3))
         self.of_locations, self.of_rows, self.before = (Growing(np.int32) for _ in range(3))
+        self.automaton.rows = self.of_locations
         self.said = Growing(np.int64)
         self.noted = 0
         self.counts_of = np.zeros(unfolding.DONE + 1, np.int64)

@@ -7,17 +7,21 @@ from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.zones import kernel
-from checker.engines.zones.automaton import EDGES, LOCATION, SIZE, UNKNOWN, Automaton
+from checker.engines.zones.automaton import EDGES, LOCATION, SIZE, UNKNOWN, Automaton, Constraint
+from checker.engines.zones.bounds import FREE
 from checker.engines.zones.kernel import (
     AT,
-    BEFORE,
-    BEGIN,
-    BY,
     COUNT,
+    COVERED,
+    DEPTH,
     FOUND,
     GROUP,
     GROUPS,
+    LAYER,
+    LONGEST,
     MISSED,
+    RANK,
+    RANKED,
     USED,
 )
 
@@ -26,53 +30,74 @@ CHUNK = 1 << 14
 
 
 class Search:
-    """What was reached from a location at given ages.
+    """What was reached from a location at given ages, layer by layer.
 
     Attributes:
         automaton: What is searched.
         state: How far it has come.
+        layers: The first zone of each layer.
     """
 
     def __init__(self, automaton: Automaton, location: int, ages: Sequence[int]) -> None:
         self.automaton = automaton
         self.begins, self.sums = Growing(np.int64), Growing(np.int64)
         self.bounds, self.places, self.following = (Growing(np.int32) for _ in range(3))
-        self.heads, self.groups = Growing(np.int32), Growing(np.int32)
+        self.heads, self.groups, self.ranks = (Growing(np.int32) for _ in range(3))
+        self.rows, self.left = Growing(np.int32), Growing(np.int32)
         self.location, self.ages = location, tuple(ages)
         self.state = np.zeros(kernel.STATE, np.int64)
         self._begin()
 
     def _begin(self) -> None:
-        self.heads.size = 0
+        self.heads.size = self.ranks.size = 0
         self.state[:] = 0
-        self.state[FOUND] = -1
+        self.state[FOUND], self.state[LONGEST] = -1, FREE
+        self.layers, self._deepest, self._met = [0], 0, 1
         self._see(1)
         size = len(self.ages) + 1
         shown = np.array((0, *self.ages), np.int32)
         first = np.zeros((self._largest, self._largest), np.int32)
         first[:size, :size] = shown[:, None] - shown[None, :]
-        scratch = np.zeros_like(first), np.zeros((4, 1 + self._largest), np.int32)
-        kernel.enter(self.model, self.zones, self.state, self.location, first, *scratch)
-        self.groups.room[:GROUP] = -1, -1, 0
-        self.state[GROUPS] = 1
+        kernel.enter(
+            self.model, self.zones, self.state, self.location, first, self._scratch.f, self._scratch.bounds
+        )
+        self._settle()
 
     # --- searching
 
     def advance(self, zones: int = CHUNK) -> bool:
-        """Follow groups until so many more zones are kept; tell whether anything is left to be followed.
+        """Follow zones until so many more are kept; tell whether anything is left to be followed.
 
-        Nothing is, where what is looked for was found.
+        Nothing is, where what is looked for was found, and all that as many steps lead to.
         """
         until = self.count + zones
-        while True:
-            why = kernel.advance(self.model, self.zones, self.state, self._largest, until)
-            if why == kernel.DONE:
-                return self.state[AT] < self.state[GROUPS] and self.found < 0
+        while self._goes_on and self.count < until:
+            why = kernel.advance(self.model, self.zones, self.state, self._largest, until, self._scratch)
             if why == kernel.FULL:
                 self._see(int(self.state[MISSED]))
-            else:
+            elif why == kernel.MISS:
                 self.learn()
                 self._see(1)
+            elif self.state[AT] == self.state[LAYER]:
+                self._settle()
+        return self._goes_on
+
+    @property
+    def _goes_on(self) -> bool:
+        return bool(self.state[AT] < self.count) and not 0 <= self.found < len(self.layers) - 1
+
+    def _settle(self) -> None:
+        """Let the layer that was made be followed, and another one be made."""
+        begin, end = int(self.state[LAYER]), self.count
+        alive = np.flatnonzero(self.following.room[begin:end] != COVERED)
+        rows = self.automaton.rows.room[self.places.room[begin + alive]]
+        order = alive[np.argsort(self.ranks.room[rows], kind="stable")] + begin
+        kernel.arrange(self.model, self.zones, self.state, order)
+        self._deepest, self._met = self.deepest, int(self.state[RANKED])
+        self.state[LAYER] = self.count
+        if self.count > begin:
+            self.state[DEPTH] += 1
+            self.layers.append(self.count)
 
     def learn(self) -> None:
         """Find out what leads from locations that were reached."""
@@ -80,8 +105,7 @@ class Search:
 
     def waiting(self) -> NDArray[np.int64]:
         """Return the locations of zones that are not followed yet of which nobody knows what leads from them."""
-        begin = int(self.groups.room[GROUP * int(self.state[AT]) + BEGIN])
-        reached = np.unique(self.places.room[begin : self.count]).astype(np.int64)
+        reached = np.unique(self.places.room[int(self.state[AT]) : self.count]).astype(np.int64)
         found: NDArray[np.int64] = reached[self.automaton.locations.used[EDGES::LOCATION][reached] == UNKNOWN]
         return found
 
@@ -99,13 +123,8 @@ class Search:
         """Let the loops see the automaton as it is, with room for so many more zones."""
         automaton = self.automaton
         self._largest = automaton.largest
-        for each, size in (
-            (self.begins, self.count),
-            (self.sums, self.count),
-            (self.places, self.count),
-            (self.following, self.count),
-        ):
-            each.size = size
+        for each in (self.begins, self.sums, self.places, self.following):
+            each.size = self.count
             each.reserve(zones + CHUNK)
         self.bounds.size = int(self.state[USED])
         self.bounds.reserve((zones + 1) * self._largest**2)
@@ -114,6 +133,11 @@ class Search:
         missing = len(automaton) - len(self.heads)
         if missing:
             self.heads.extend(missing, -1)
+            self.left.extend(len(automaton) - len(self.left))
+        rows = int(automaton.rows.used.max(initial=-1)) + 1
+        if rows > len(self.ranks):
+            self.ranks.extend(rows - len(self.ranks), -1)
+            self.rows.reserve(RANK * rows)
         parts = (
             automaton.locations,
             automaton.edges,
@@ -121,10 +145,13 @@ class Search:
             automaton.sources,
             automaton.deadlines,
         )
-        clocks = (automaton.clocks, automaton.lower, automaton.upper)
+        clocks = (automaton.clocks, automaton.lower, automaton.upper, automaton.rows, self.left)
         self.model = kernel.Model._make(each.room for each in (*parts, *clocks))
-        found = (self.bounds, self.begins, self.sums, self.places, self.following, self.heads, self.groups)
-        self.zones = kernel.Zones(*(each.room for each in found))
+        found = (self.bounds, self.begins, self.sums, self.places, self.following, self.heads)
+        self.zones = kernel.Zones(*(each.room for each in (*found, self.ranks, self.rows, self.groups)))
+        shape = (self._largest, self._largest)
+        d, e, f = (np.zeros(shape, np.int32) for _ in range(3))
+        self._scratch = kernel.Scratch(d, e, f, np.zeros((4, 1 + self._largest), np.int32))
 
     # --- what was found
 
@@ -134,35 +161,33 @@ class Search:
         return int(self.state[COUNT])
 
     @property
+    def followed(self) -> int:
+        """How many of them were followed."""
+        return int(self.state[AT])
+
+    @property
     def found(self) -> int:
-        """The first group in which what is looked for was found; -1 where it was not."""
+        """After how many steps what is looked for was found first; -1 where it was not."""
         return int(self.state[FOUND])
 
     @property
-    def progress(self) -> tuple[int, int]:
-        """How many groups were followed, and how many there are."""
-        return int(self.state[AT]), int(self.state[GROUPS])
+    def deepest(self) -> int:
+        """After how many steps a row was met last."""
+        return int(self.state[DEPTH]) if self.state[RANKED] > self._met else self._deepest
 
-    def steps_to(self, group: int) -> tuple[int, ...]:
-        """Return the steps that lead to a group."""
-        steps = []
-        while group > 0:
-            steps.append(int(self.groups.room[GROUP * group + BY]))
-            group = int(self.groups.room[GROUP * group + BEFORE])
-        return tuple(reversed(steps))
+    @property
+    def order(self) -> NDArray[np.int64]:
+        """The rows that were met: the fewest steps first, then by the row before and the step from there."""
+        return self.rows.room[: RANK * int(self.state[RANKED]) : RANK].astype(np.int64)
 
-    def group_records(self) -> NDArray[np.int32]:
-        """Return of each group the one before, its step, and its first zone."""
-        return self.groups.room[: GROUP * int(self.state[GROUPS])].reshape(-1, GROUP)
+    @property
+    def origins(self) -> NDArray[np.int64]:
+        """For each of those the place there of the row before."""
+        return self.rows.room[1 : RANK * int(self.state[RANKED]) : RANK].astype(np.int64)
 
-    def zones_of(self, group: int) -> range:
-        """Return the zones of a group."""
-        ends = (
-            int(self.groups.room[GROUP * (group + 1) + BEGIN])
-            if group + 1 < self.state[GROUPS]
-            else self.count
-        )
-        return range(int(self.groups.room[GROUP * group + BEGIN]), ends)
+    def depth(self, zone: int) -> int:
+        """Return after how many steps a zone was reached."""
+        return int(np.searchsorted(self.layers, zone, side="right")) - 1
 
     def place(self, zone: int) -> int:
         """Return the location of a zone."""
@@ -174,12 +199,85 @@ class Search:
         begin = int(self.begins.room[zone])
         return self.bounds.room[begin : begin + size * size].reshape(size, size)
 
-    def by_place(self) -> dict[int, list[int]]:
-        """Return the zones of each location."""
-        found: dict[int, list[int]] = {}
-        for zone, place in enumerate(self.places.room[: self.count].tolist()):
-            found.setdefault(place, []).append(zone)
+    def showing(self, zones: NDArray[np.int64], test: Constraint) -> NDArray[np.int64]:
+        """Return which zones of one location have ages at which a clock shows at least so much."""
+        size = int(self.automaton.locations.room[LOCATION * self.place(int(zones[0])) + SIZE])
+        found: NDArray[np.int64] = zones[
+            self.bounds.room[self.begins.room[zones] + size * test.clock] >= test.least
+        ]
         return found
+
+    def by_place(self) -> dict[int, NDArray[np.int64]]:
+        """Return the zones of each location."""
+        places = self.places.room[: self.count]
+        order = np.argsort(places, kind="stable")
+        met, begins = np.unique(places[order], return_index=True)
+        return dict(zip(met.tolist(), np.split(order, begins[1:]), strict=True))
 
     def __iter__(self) -> Iterator[tuple[int, NDArray[np.int32]]]:
         return ((self.place(zone), self.matrix(zone)) for zone in range(self.count))
+
+
+class Route(Search):
+    """The first sequence of a number of steps to what is wanted, which no shorter one leads to.
+
+    It goes by groups (see `kernel`), and only where the steps that are left suffice.
+    """
+
+    def __init__(
+        self, automaton: Automaton, location: int, ages: Sequence[int], length: int, ends: Sequence[int]
+    ) -> None:
+        self.length = length
+        self.ends = list(ends)
+        super().__init__(automaton, location, ages)
+
+    def _begin(self) -> None:
+        self.left.size = 0
+        self.left.extend(len(self.automaton))
+        self.left.used[:] = steps_left(self.automaton, self.ends)
+        super()._begin()
+        self.state[LAYER], self.state[LONGEST] = FREE, self.length
+        self.state[AT], self.state[GROUPS] = 0, 1
+        self.groups.room[:GROUP] = -1, -1, 0
+
+    def groups_at_end(self, look: Callable[[], None]) -> Iterator[int]:
+        """Yield the groups after all steps, in order."""
+        for depth in range(1, self.length + 1):
+            last = int(self.state[GROUPS])
+            self.state[DEPTH] = depth
+            while self.state[AT] < last:
+                look()
+                until = min(last, int(self.state[AT]) + CHUNK)
+                why = kernel.advance_by_groups(
+                    self.model, self.zones, self.state, self._largest, until, self._scratch
+                )
+                if why == kernel.FULL:
+                    self._see(int(self.state[MISSED]))
+        yield from range(int(self.state[AT]), int(self.state[GROUPS]))
+
+    def steps_to(self, group: int) -> tuple[int, ...]:
+        """Return the steps that lead to a group."""
+        steps = []
+        while group > 0:
+            steps.append(int(self.groups.room[GROUP * group + kernel.BY]))
+            group = int(self.groups.room[GROUP * group + kernel.BEFORE])
+        return tuple(reversed(steps))
+
+    def zones_of(self, group: int) -> range:
+        """Return the zones of a group."""
+        begins = self.groups.room[kernel.BEGIN : GROUP * int(self.state[GROUPS]) : GROUP]
+        end = int(begins[group + 1]) if group + 1 < len(begins) else self.count
+        return range(int(begins[group]), end)
+
+
+def steps_left(automaton: Automaton, ends: Sequence[int]) -> NDArray[np.int32]:
+    """Return for each location how many edges lead from there to an end at the least, `FREE` where none do."""
+    sources, targets = automaton.arrows()
+    left = np.full(len(automaton), FREE, np.int32)
+    left[ends] = 0
+    while True:
+        nearer = left.copy()
+        np.minimum.at(nearer, sources, np.minimum(left[targets] + 1, FREE))
+        if np.array_equal(nearer, left):
+            return left
+        left = nearer

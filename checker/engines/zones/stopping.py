@@ -8,12 +8,10 @@ them. That is worked out only where steps may go round with deadlines all the wa
 from __future__ import annotations
 
 import networkx as nx
-import numpy as np
 
 from checker.engines.runs import Run
 from checker.engines.times import Stop
 from checker.engines.zones.automaton import Automaton, Constraint
-from checker.engines.zones.bounds import close
 from checker.engines.zones.dates import (
     Dates,
     Moment,
@@ -26,6 +24,7 @@ from checker.engines.zones.dates import (
     whole,
     without,
 )
+from checker.engines.zones.first_run import first_run
 from checker.engines.zones.network import Network
 from checker.engines.zones.observers import Meter, Observer, Watch
 from checker.engines.zones.search import Search
@@ -43,13 +42,8 @@ def first_stop(network: Network) -> Stop | None:
     exact = Search(observer.automaton, 0, observer.first_ages())
     exact.finish(look)
     stopped = [_without(place, network, passing) for place, _ in observer.spots]
-    for group in range(len(exact.group_records())):
-        for zone in exact.zones_of(group):
-            if any(_meet(exact.matrix(zone), other) for other in stopped[exact.place(zone)]):
-                first = Moment(0, observer.first_ages())
-                dates = Dates(observer.automaton, first, exact.steps_to(group), stopped.__getitem__)
-                return _going_round(network, observer, dates)
-    return None
+    run = first_run(exact, stopped.__getitem__)
+    return None if run is None else _going_round(network, observer, run)
 
 
 def _risky(automaton: Automaton) -> set[int]:
@@ -122,11 +116,6 @@ def _without(place: int, network: Network, passing: dict[int, list[Zone]]) -> li
     for each in passing[place]:
         rest = without(rest, each)
     return rest
-
-
-def _meet(one: Zone, other: Zone) -> bool:
-    both = np.minimum(one, other)
-    return bool(close(both, len(both)))
 
 
 def _going_round(network: Network, observer: Observer, dates: Dates) -> Stop:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from functools import cached_property
 from typing import TypeVar, overload
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from checker.engines.runs import Run
 from checker.engines.tick_times import control_pairs
-from checker.engines.times import Moments, Stop, Wait
+from checker.engines.times import Moments, Span, Stop, TakenStep, Wait
 from checker.engines.zones.automaton import (
     EDGE,
     EDGES,
@@ -21,17 +21,11 @@ from checker.engines.zones.automaton import (
     LOCATION,
     RULE,
     STEP,
-    Automaton,
     Constraint,
 )
 from checker.engines.zones.bounds import MOST
-from checker.engines.zones.dates import (
-    Dates,
-    Moment,
-    Zone,
-    tested,
-    whole,
-)
+from checker.engines.zones.dates import Dates, Zone, tested, whole
+from checker.engines.zones.first_run import run_of
 from checker.engines.zones.network import Network
 from checker.engines.zones.observers import Meter, Observer, Rule, Watch
 from checker.engines.zones.search import Search
@@ -73,8 +67,7 @@ class ZoneTimes:
 
     Attributes:
         reached: The locations that were reached.
-        numbers: The row of each group.
-        order, firsts: The rows that were reached in the order of discovery, and the first group of each.
+        order: The rows that were reached, in the order of discovery.
     """
 
     def __init__(self, network: Network, search: Search) -> None:
@@ -82,12 +75,7 @@ class ZoneTimes:
         self.search = search
         self.initial = network.initial
         self.reached: NDArray[np.int64] = np.flatnonzero(search.heads.used >= 0)
-        rows = network.of_locations.used.astype(np.int64)
-        self.numbers = rows[search.places.room[search.group_records()[:, 2]]]
-        met, first = np.unique(self.numbers, return_index=True)
-        order = np.argsort(first)
-        self.order: NDArray[np.int64] = met[order]
-        self.firsts: NDArray[np.int64] = first[order]
+        self.order: NDArray[np.int64] = search.order
 
     @property
     def searched(self) -> str:
@@ -100,23 +88,23 @@ class ZoneTimes:
         return OfRows(self.network.situation, self.order)
 
     @cached_property
-    def _by_place(self) -> dict[int, list[int]]:
+    def _by_place(self) -> dict[int, NDArray[np.int64]]:
         return self.search.by_place()
 
     def _zones(self, place: int) -> Iterator[tuple[int, Zone]]:
         """Yield the zones of a configuration, each with its location."""
         for location in self.network.locations(int(self.order[place])):
             for zone in self._by_place.get(location, ()):
-                yield location, self.search.matrix(zone)
+                yield location, self.search.matrix(int(zone))
 
     # --- of configurations
 
     def firsts_of(self, place: int) -> dict[int, int]:
-        """Return each step that is taken in a configuration, with the group that it is first taken in."""
+        """Return each step that is taken in a configuration, with the number of steps before it at the least."""
         found: dict[int, int] = {}
         for location in self.network.locations(int(self.order[place])):
-            for step, group in self.network.automaton.firsts(location):
-                found[step] = min(group, found.get(step, group))
+            for step, depth in self.network.automaton.firsts(location):
+                found[step] = min(depth, found.get(step, depth))
         return found
 
     def taken(self, place: int) -> set[int]:
@@ -179,31 +167,23 @@ class ZoneTimes:
         """Return the first run to a configuration, and then a transition if that is ever taken there."""
         situation = self.situations[place]
         steps = {
-            at: group for at, group in self.firsts_of(place).items() if situation.steps[at].transition == by
+            at: depth for at, depth in self.firsts_of(place).items() if situation.steps[at].transition == by
         }
-        group = min(steps.values()) if steps else int(self.firsts[place])
+        there = set(self.network.locations(int(self.order[place])))
 
         def goal(location: int) -> list[Zone]:
+            if location not in there:
+                return []
             size = len(self.network.automaton.location(location).clocks)
             if not steps:
                 return [whole(size)]
             edges = (edge for edge in self.network.automaton.out(location) if edge.step in steps)
             return [zone for edge in edges for zone in [tested(whole(size), edge.tests)] if zone is not None]
 
-        run = self._dates(self.network.automaton, self.search.steps_to(group), goal).run()
-        return run.then(min(steps)) if steps else run
-
-    def _dates(
-        self,
-        automaton: Automaton,
-        steps: Sequence[int],
-        goal: Callable[[int], list[Zone]],
-        *,
-        watched: bool = False,
-    ) -> Dates:
-        ages = (*self.network.first_ages, 0) if watched else self.network.first_ages
-        first = 0 if automaton is not self.network.automaton else self.network.first
-        return Dates(automaton, Moment(first, ages), steps, goal)
+        if steps:
+            return run_of(self.search, goal, min(steps.values()), there).run().then(min(steps))
+        zones = (int(self._by_place[each][0]) for each in there if each in self._by_place)
+        return run_of(self.search, goal, self.search.depth(min(zones)), there).run()
 
     # --- durations
 
@@ -235,10 +215,10 @@ class ZoneTimes:
         if asked is None and rule(Watch.OFF, self.network.first) is Watch.OFF:
             return Wait(0)
         meter = Meter(most + 1, goal=(Watch.ON, most + 1))
-        observer, search = self._explored(Observer(self.network, rule, meter))
+        observer, search = self.explored(Observer(self.network, rule, meter))
         if search.found < 0:
             return Wait(max(_shown(observer, search, Watch.ON), default=0))
-        run = self._measured(observer, search).run()
+        run = self._measured(search).run()
         longest = self._longest(rule, Watch.ON, most)
         return Wait(longest, run, math.isinf(longest))
 
@@ -259,7 +239,7 @@ class ZoneTimes:
 
     def _first(self, rule: Rule) -> Run | None:
         """Return the first run of those that come first to an end."""
-        observer, search = self._explored(Observer(self.network, rule, Meter(upper=MOST)))
+        observer, search = self.explored(Observer(self.network, rule, Meter(upper=MOST)))
         ends = [
             -int(zone[0, observer.clock(place)])
             for place, zone in search
@@ -269,44 +249,49 @@ class ZoneTimes:
             return None
         earliest = min(ends)
         meter = Meter(upper=earliest, most=earliest, goal=(Watch.END, 0))
-        return self._measured(*self._explored(Observer(self.network, rule, meter))).run()
+        _, search = self.explored(Observer(self.network, rule, meter))
+        return self._measured(search).run()
 
-    def _explored(self, observer: Observer) -> tuple[Observer, Search]:
+    def explored(self, observer: Observer) -> tuple[Observer, Search]:
+        """Return an observer with a search of its automaton, to the end or to what it looks for."""
         search = Search(observer.automaton, 0, observer.first_ages())
         search.finish(look)
         return observer, search
 
-    def _measured(self, observer: Observer, search: Search) -> Dates:
+    def _measured(self, search: Search) -> Dates:
         """Return the first run to what an observer looked for, and found."""
 
         def goal(place: int) -> list[Zone]:
-            location = observer.automaton.location(place)
+            location = search.automaton.location(place)
             if location.goal is None:
                 return []
             zone = tested(whole(len(location.clocks)), [location.goal])
             return [] if zone is None else [zone]
 
-        steps = search.steps_to(search.found)
-        first = Moment(0, observer.first_ages())
-        return Dates(observer.automaton, first, steps, goal)
+        return run_of(search, goal, search.found)
 
     def _longest(self, rule: Rule, where: Watch, least: int = 0) -> float:
         """Return how long a clock may run at most somewhere; infinite where a run that goes round shows that.
 
         It is counted up to a constant that grows until either is found.
         """
-        most = max(least, 2 * max(self.network.caps.values(), default=0) + 1)
+        most = max(least, self.enough)
         while True:
-            observer, search = self._explored(
+            observer, search = self.explored(
                 Observer(self.network, rule, Meter(most + 1, goal=(where, most + 1)))
             )
             if search.found < 0:
                 return max(_shown(observer, search, where), default=NEVER)
-            if self._goes_round(observer, self._measured(observer, search)):
+            if self.goes_round(observer, self._measured(search)):
                 return math.inf
             most *= 4
 
-    def _goes_round(self, observer: Observer, dates: Dates) -> bool:
+    @property
+    def enough(self) -> int:
+        """For how many ticks a clock is counted first, where nobody knows how long it may run."""
+        return 2 * max(self.network.caps.values(), default=0) + 1
+
+    def goes_round(self, observer: Observer, dates: Dates) -> bool:
         """Tell whether a run comes to the same again, as far as what may follow is concerned, while a clock runs."""
         history = dates.history()
         seen: dict[tuple[int, tuple[int, ...]], int] = {}
@@ -330,6 +315,14 @@ class ZoneTimes:
                 return True
         return False
 
+    # --- when steps are taken
+
+    def spans(self, steps: Sequence[Set[TakenStep]]) -> list[Span]:
+        """Return for each of some sets of steps when one of them is taken."""
+        from checker.engines.zones.spans import Spans  # noqa: PLC0415 - few ask for them
+
+        return Spans(self, steps).found()
+
     # --- endurance, and whether time goes on
 
     def exhausted(self) -> tuple[dict[str, Run], int]:
@@ -337,16 +330,13 @@ class ZoneTimes:
         tests = {location: self.exhaustion(location) for location in self.reached.tolist()}
         first: dict[str, int] = {}
         where: set[int] = set()
-        for group, number in enumerate(self.numbers.tolist() if any(tests.values()) else ()):
-            for zone in self.search.zones_of(group):
-                shown = self.search.matrix(zone)
-                for vehicle, test in tests[self.search.place(zone)].items():
-                    if shown[test.clock, 0] >= test.least:
-                        first.setdefault(vehicle, group)
-                        where.add(number)
-        return {vehicle: self._exhausting(vehicle, group, tests) for vehicle, group in first.items()}, len(
-            where
-        )
+        for location, several in tests.items():
+            for vehicle, test in several.items():
+                for zone in self.search.showing(self._by_place[location], test):
+                    first[vehicle] = min(int(zone), first.get(vehicle, int(zone)))
+                    where.add(self.network.place(location).number)
+        found = {vehicle: self._exhausting(vehicle, zone, tests) for vehicle, zone in sorted(first.items())}
+        return found, len(where)
 
     def exhaustion(self, location: int) -> dict[str, Constraint]:
         """Return what the clocks show in a location where a vehicle is aloft for too long."""
@@ -357,17 +347,17 @@ class ZoneTimes:
             if vehicle in situation.c.structure.physical and not is_restored(situation.c, vehicle)
         }
 
-    def _exhausting(self, vehicle: str, group: int, tests: Mapping[int, dict[str, Constraint]]) -> Run:
+    def _exhausting(self, vehicle: str, zone: int, tests: Mapping[int, dict[str, Constraint]]) -> Run:
         def goal(location: int) -> list[Zone]:
             size = len(self.network.automaton.location(location).clocks)
-            zone = (
+            wanted = (
                 tested(whole(size), [tests[location][vehicle]])
                 if vehicle in tests.get(location, ())
                 else None
             )
-            return [] if zone is None else [zone]
+            return [] if wanted is None else [wanted]
 
-        return self._dates(self.network.automaton, self.search.steps_to(group), goal).run()
+        return run_of(self.search, goal, self.search.depth(zone), tests).run()
 
     def stop(self) -> Stop | None:
         """Return the first run after which no time can pass any more."""

@@ -65,6 +65,7 @@ def assert_alike(report, other):
         other.rules,
     )
     assert report.coverage == other.coverage
+    assert report.schedule == other.schedule
 
 
 def without_effort(note):
@@ -377,7 +378,7 @@ def agree_with_zones(c, data, most):
         Property(PropertyKind.REACHABLE, "reachable", g),
     )
     asked = (*ALL, *timed_ones, *formulas)
-    assert_alike(*(check(c, asked, engine=each) for each in (Engine.REFERENCE, Engine.FAST)))
+    assert_alike(*(check(c, asked, engine=each, times=True) for each in (Engine.REFERENCE, Engine.FAST)))
 
 
 PROGRAMS = [
@@ -440,7 +441,7 @@ FINE = "oil_spill_timed"
 @pytest.mark.parametrize("name", [name for name in TIMED if name != FINE])
 def test_zones_report_of_a_shipped_mission_what_whole_ticks_report(name):
     mission = load_mission(name)
-    assert_alike(*(check(mission, engine=each) for each in (Engine.REFERENCE, Engine.FAST)))
+    assert_alike(*(check(mission, engine=each, times=True) for each in (Engine.REFERENCE, Engine.FAST)))
 
 
 @pytest.mark.long

@@ -1,12 +1,13 @@
 """Schedules: how long flights take, when they may begin and end, and when what is asked is first true."""
 
 from dataclasses import replace
+from math import inf
 
 import pytest
 from checked_missions import load
 from timed_missions import with_timing
 
-from checker import check
+from checker import Engine, check
 from checker.properties.schedule import Moments
 from checker.reports.times import times_json, times_text
 from semantics.properties.kinds import PropertyKind
@@ -14,6 +15,7 @@ from semantics.properties.property import Property
 from semantics.properties.propositions import Inside
 from semantics.timing.intervals import Interval
 from semantics.timing.timing import Motion, Timing
+from specs.elaboration import load_mission
 
 SOUTH = Inside("uav0", "south0", actually=True)
 TEXT = """BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO south0) control(MOVE_HOST_TO north0) }
@@ -77,3 +79,22 @@ def test_what_nothing_bounds_has_no_latest_moment():
     assert data["flights"][0]["takes"] == {"at_least": 0.0, "at_most": None}
     assert data["flights"][0]["ends"] == {"earliest": 0.0, "latest": None}
     assert data["properties"] == [{"name": "there", "may_never": True, "earliest": 0.0, "latest": None}]
+
+
+def test_a_flight_ends_as_it_began_though_its_origin_drifts_away():
+    found = check(load_mission("oil_spill_timed"), engine=Engine.FAST, times=True).schedule
+    assert list(times_text(found))[1:5] == [
+        "    uav0 from airfield0 to searchArea0, by a   7:28 to 19:50    0:00 to 0:04    7:28 to 19:54",
+        "    uav0 from searchArea0 to oilSpill0, by a   at most 13:49    7:28 to 20:12   7:28 to 47:07",
+        "    uav0 from oilSpill0 to airfield0, by a     11:49 to 21:44   7:28 to 47:23   19:17 to 1:09:07",
+        "    uav0 from searchArea0 to airfield0, by a   11:49 to 21:44   7:28 to 35:36   19:17 to 1:09:07",
+    ]
+
+
+def test_zones_say_what_ticks_say_of_what_nothing_bounds():
+    c = with_timing(load(TEXT).initial, replace(MINUTES, motions=()))
+    ticks, zones = (
+        check(c, [], engine=each, times=True).schedule for each in Engine if each is not Engine.RAY
+    )
+    assert ticks == zones
+    assert [each.ends.latest for each in zones.flights] == [inf, inf]

@@ -45,9 +45,10 @@ def test_unordered_requests_make_one_configuration_in_whatever_order_they_were_a
     assert pending(Scheduler.UNORDERED, asked) == pending(Scheduler.UNORDERED, again)
 
 
+@pytest.mark.parametrize("scheduler", [Scheduler.PROGRAM_ORDER, Scheduler.FCFS])
 @given(asked=st.lists(requests, max_size=6))
-def test_in_line_are_the_first_request_and_all_messages(asked):
-    c = pending(Scheduler.PROGRAM_ORDER, asked)
+def test_in_line_are_the_first_request_and_all_messages(scheduler, asked):
+    c = pending(scheduler, asked)
     for agent in "ab":
         own = [each for each in asked if each.agent == agent]
         served = [each.request for each in c.eta.in_line(agent)]
@@ -56,6 +57,16 @@ def test_in_line_are_the_first_request_and_all_messages(asked):
         assert len([each for each in served if isinstance(each, SND)]) == len(
             [each for each in own if isinstance(each, SND)]
         )
+
+
+@pytest.mark.parametrize("scheduler", Scheduler)
+@given(asked=st.lists(requests, max_size=6))
+def test_requests_are_counted_and_found_where_they_stand(scheduler, asked):
+    c = pending(scheduler, asked)
+    for agent in "ab":
+        assert c.eta.count(agent) == len(c.eta.of(agent)) == sum(each.agent == agent for each in asked)
+        assert set(c.eta.in_line(agent)) <= set(c.eta.of(agent))
+        assert all(c.read(each.cell)[each.position] == each.request for each in c.eta.in_line(agent))
 
 
 def test_fcfs_keeps_all_that_wait_for_their_turn_in_the_order_asked():

@@ -7,19 +7,15 @@ from xml.etree import ElementTree as ET
 
 import pytest
 from checked_missions import load
-from hypothesis import HealthCheck, assume, given
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given
 from scale import examples
 from shipped import TIMED
-from timed_missions import timed_missions, timings, with_timing
+from timed_missions import with_timing
+from timed_models import ENDURANCE, EQUAL, agree, found_by_tchecker, questions, timed_verdicts, written
 
-from checker import Limits, check
-from checker.engines.choose import explore
-from checker.engines.contract import Engine
+from checker import check
 from checker.engines.zones.automaton import Automaton, Constraint, Edge, Location
-from checker.engines.zones.interchange import model_of
 from checker.engines.zones.search import Search
-from checker.engines.zones.tchecker import tchecker_text
 from checker.engines.zones.uppaal import uppaal_text
 from checker.verdicts import Outcome
 from semantics.properties.kinds import PropertyKind
@@ -28,12 +24,6 @@ from semantics.properties.propositions import Ended
 from semantics.timing.intervals import Interval
 from semantics.timing.timing import Timing
 from specs.elaboration import load_mission
-
-ENDURANCE = Property(PropertyKind.ENDURANCE, "endurance")
-
-
-def timed_verdicts(verdicts):
-    return [each for each in verdicts if each.property.kind in (PropertyKind.WITHIN, PropertyKind.ENDURANCE)]
 
 
 def verdict_of(text):
@@ -87,16 +77,6 @@ def verdict_of(text):
     return Outcome.HOLDS if search.found < 0 else Outcome.VIOLATED
 
 
-def written(c, asked):
-    found = explore(c, engine=Engine.FAST)
-    return model_of(found.times, asked, "a mission")
-
-
-def agree(c, asked, judge):
-    for verdict in timed_verdicts(check(c, asked).verdicts):
-        assert judge(written(c, verdict.property)) is verdict.outcome
-
-
 def read_back(model):
     return verdict_of(uppaal_text(model))
 
@@ -105,13 +85,6 @@ def read_back(model):
 def test_a_shipped_mission_read_back_has_its_verdicts(name):
     mission = load_mission(name)
     agree(mission.initial, mission.properties, read_back)
-
-
-EQUAL = """
-BigActor a hosted_at gcs0 with_behavior { send("on", b) send("on", b) send("on", b) }
-BigActor b hosted_at gcs0 with_behavior { react { case "on" => } react { case "on" => } react { case "on" => } }
-scheduler unordered
-"""
 
 
 @pytest.mark.parametrize("bound", range(3, 9))
@@ -123,21 +96,6 @@ def test_equal_requests_keep_the_names_of_their_clocks(bound):
     agree(c, (asked,), read_back)
 
 
-@st.composite
-def asked_of(draw, c):
-    ended = st.sampled_from([Ended(agent) for agent in c.alpha.names()])
-    then = draw(st.none() | ended)
-    return Property(PropertyKind.WITHIN, "within", draw(ended), bound=draw(st.integers(0, 5)), then=then)
-
-
-@st.composite
-def questions(draw):
-    equal = load(EQUAL).initial
-    c = draw(timed_missions() | timings(equal.setting).map(lambda timing: with_timing(equal, timing)))
-    assume(explore(c, limits=Limits(configurations=300)).complete)
-    return c, draw(asked_of(c))
-
-
 @examples(90, deadline=None, suppress_health_check=list(HealthCheck))
 @given(questions())
 def test_a_generated_mission_read_back_has_its_verdicts(question):
@@ -146,15 +104,6 @@ def test_a_generated_mission_read_back_has_its_verdicts(question):
 
 
 # --- programs that nobody here wrote
-
-
-def found_by_tchecker(text, folder):
-    """Ask TChecker whether what is labelled is reachable."""
-    model = folder / "model.tck"
-    model.write_text(text, encoding="utf-8")
-    program = [os.environ["TCHECKER"], "-a", "covreach", "-l", "wrong", str(model)]
-    said = subprocess.run(program, capture_output=True, text=True, check=True).stdout
-    return Outcome.VIOLATED if "REACHABLE true" in said else Outcome.HOLDS
 
 
 def translated(model, folder):
@@ -175,20 +124,20 @@ abroad = pytest.mark.skipif(
 
 @abroad
 @pytest.mark.parametrize("name", TIMED)
-def test_tchecker_comes_to_the_same_verdicts_by_either_format(tmp_path, name):
+def test_tchecker_comes_to_the_same_verdicts_of_what_is_translated(tmp_path, name):
     mission = load_mission(name)
-    for judge in (translated, lambda model, folder: found_by_tchecker(tchecker_text(model), folder)):
-        agree(mission.initial, mission.properties, lambda model, judge=judge: judge(model, tmp_path))
+    agree(mission.initial, mission.properties, lambda model: translated(model, tmp_path))
 
 
 @abroad
 @examples(200, deadline=None, suppress_health_check=list(HealthCheck))
 @given(questions())
-def test_tchecker_comes_to_the_same_verdicts_of_generated_missions(tmp_path_factory, question):
+def test_tchecker_comes_to_the_same_verdicts_of_generated_missions_that_are_translated(
+    tmp_path_factory, question
+):
     c, asked = question
     folder = tmp_path_factory.mktemp("abroad")
-    for judge in (translated, lambda model, folder: found_by_tchecker(tchecker_text(model), folder)):
-        agree(c, (asked, ENDURANCE), lambda model, judge=judge: judge(model, folder))
+    agree(c, (asked, ENDURANCE), lambda model: translated(model, folder))
 
 
 @pytest.mark.skipif("UTAP" not in os.environ, reason="UTAP names no program `syntaxcheck` of UPPAAL's parser")

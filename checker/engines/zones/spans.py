@@ -1,0 +1,121 @@
+"""When steps are taken, by zones: a clock that is never set shows it, first its least and then its most.
+
+The most is counted up to a constant. What may be later than that has no latest moment if a run goes round on its way
+there (`ZoneTimes.goes_round`); else the constant grows.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence, Set
+
+from checker.engines.times import NO_SPAN, Span, TakenStep
+from checker.engines.zones.automaton import Constraint, Edge
+from checker.engines.zones.bounds import FREE, MOST
+from checker.engines.zones.dates import Zone, tested, whole
+from checker.engines.zones.first_run import run_of
+from checker.engines.zones.observers import Meter, Observer, Watch
+from checker.engines.zones.search import Search
+from checker.engines.zones.zone_times import ZoneTimes
+
+Asked = list[list[tuple[Edge, int]]]
+"""For each location the edges of steps that are asked for, each with the number of its set."""
+
+
+class Spans:
+    """When one of some steps is taken, for sets of steps."""
+
+    def __init__(self, times: ZoneTimes, steps: Sequence[Set[TakenStep]]) -> None:
+        self.times = times
+        self.steps = steps
+        self.sets: dict[tuple[int, int], list[int]] = {}
+        for number, several in enumerate(steps):
+            for place, step in several:
+                self.sets.setdefault((int(times.order[place]), step), []).append(number)
+
+    def found(self) -> list[Span]:
+        """Return the earliest and the latest moment of each set."""
+        if not self.sets:
+            return [NO_SPAN] * len(self.steps)
+        return [Span(*each) for each in zip(self._earliest(), self._latest(), strict=True)]
+
+    def _watched(self, meter: Meter) -> tuple[Observer, Search, Asked]:
+        """Search with a clock that runs from the start."""
+
+        def rule(before: Watch, _: int) -> Watch:
+            return Watch.START if before is Watch.OFF else Watch.ON
+
+        observer, search = self.times.explored(Observer(self.times.network, rule, meter))
+        rows = [self.times.network.place(spot.location).number for spot in observer.spots]
+        asked = [
+            [
+                (edge, number)
+                for edge in observer.automaton.out(place)
+                for number in self.sets.get((row, edge.step), ())
+            ]
+            for place, row in enumerate(rows)
+        ]
+        return observer, search, asked
+
+    def _earliest(self) -> list[float]:
+        observer, search, asked = self._watched(Meter(upper=MOST))
+        found = [math.inf] * len(self.steps)
+        for _, place, zone, edge, number in _taken(search, asked):
+            clock = observer.clock(place)
+            if -zone[0, clock] < found[number]:
+                shown = tested(zone, edge.tests)
+                found[number] = found[number] if shown is None else min(found[number], -int(shown[0, clock]))
+        return found
+
+    def _latest(self) -> list[float]:
+        most, found = self.times.enough, [-math.inf] * len(self.steps)
+        open_ones = {number for number, each in enumerate(self.steps) if each}
+        while open_ones:
+            observer, search, asked = self._watched(Meter(most + 1))
+            late: dict[int, int] = {}
+            for at, place, zone, edge, number in _taken(search, asked):
+                clock = observer.clock(place)
+                if number not in open_ones or number in late or zone[clock, 0] <= found[number]:
+                    continue
+                shown = tested(zone, edge.tests)
+                if shown is not None and shown[clock, 0] >= FREE:
+                    late[number] = at
+                elif shown is not None:
+                    found[number] = max(found[number], int(shown[clock, 0]))
+            open_ones = {
+                number
+                for number, at in late.items()
+                if not self._has_no_end(observer, search, asked, number, at, most)
+            }
+            found = [
+                math.inf if each in late and each not in open_ones else last
+                for each, last in enumerate(found)
+            ]
+            most *= 4
+        return found
+
+    def _has_no_end(
+        self, observer: Observer, search: Search, asked: Asked, number: int, zone: int, most: int
+    ) -> bool:
+        """Tell whether the first run that takes a step later than so much goes round on its way."""
+
+        def wanted(place: int) -> list[Zone]:
+            late = Constraint(observer.clock(place), most + 1)
+            size = len(observer.automaton.location(place).clocks)
+            shown = [
+                tested(whole(size), (*edge.tests, late)) for edge, each in asked[place] if each == number
+            ]
+            return [each for each in shown if each is not None]
+
+        dates = run_of(search, wanted, search.depth(zone))
+        return self.times.goes_round(observer, dates)
+
+
+def _taken(search: Search, asked: Asked) -> Iterator[tuple[int, int, Zone, Edge, int]]:
+    """Yield each zone from which steps that are asked for may lead, with its place, and each of them with its set."""
+    for at in range(search.count):
+        place = search.place(at)
+        if asked[place]:
+            zone = search.matrix(at)
+            for edge, number in asked[place]:
+                yield at, place, zone, edge, number
