@@ -85,7 +85,7 @@ def _measure(case: Case) -> Measured:
     if not found.complete:
         raise SystemExit(f"{case}: incomplete, {found.reason}")
     grown = _peak() - before if len(found) > MANY else _traced(system)
-    return Measured(len(found), len(found.starts), seconds, grown / len(found))
+    return Measured(len(found), len(found.targets), seconds, grown / len(found))
 
 
 def _peak() -> int:

@@ -53,7 +53,7 @@ def one(path: Path, seconds: int, states: int) -> dict[str, object]:
         found = explore(load_system(path), max_states=states, max_time=seconds)
     except (BigraphError, OSError) as error:
         return {"states": None, "transitions": None, "why": f"not read: {str(error).splitlines()[0]}"}
-    return {"states": len(found), "transitions": len(found.starts), "why": found.reason}
+    return {"states": len(found), "transitions": len(found.targets), "why": found.reason}
 
 
 def bigrapher(program: str, path: Path, seconds: int, states: int) -> Run:
