@@ -26,6 +26,8 @@ class Spot:
         state: The state.
         known: The mask of the rules whose occurrences are known.
         found: The occurrences of each rule that is known to have any, by its number.
+        having: The mask of the rules in `found`.
+        lacking: Which rules a state has too few nodes for (see `RuleIndex`), once that was asked.
         lost: The slots whose nodes are not the same ones as before the last step.
     """
 
@@ -35,14 +37,14 @@ class Spot:
         "_changed",
         "_emptied",
         "_from",
-        "_having",
         "_index",
         "_known_before",
-        "_lacking",
         "_linked",
         "_possible",
         "found",
+        "having",
         "known",
+        "lacking",
         "lost",
         "state",
     )
@@ -53,9 +55,9 @@ class Spot:
         self.found: dict[int, list[Occurrence]] = {}
         self._before: dict[int, list[Occurrence]] = {}
         self._from: tuple[Spot, Draft] | None = None
-        self._having = 0  # the mask of the rules in `found`
+        self.having = 0
         self._index = index
-        self._lacking: list[int] | None = None  # see `RuleIndex`
+        self.lacking: list[int] | None = None
         self._possible = -1
         self._changed = self._emptied = self._linked = 0
         self._around: Surroundings | None = None
@@ -79,9 +81,9 @@ class Spot:
             before.state, self.state, self._changed, self._emptied, self._linked
         )
         self.known, self._known_before = before.known & ~concerned, before.known & concerned
-        self._having = before._having & ~concerned
-        if before._lacking is not None:
-            self._lacking = self._index.lacking_after(before._lacking, self.state, draft.counted)
+        self.having = before.having & ~concerned
+        if before.lacking is not None:
+            self.lacking = self._index.lacking_after(before.lacking, self.state, draft.counted)
         for number, found in before.found.items():
             (self._before if concerned >> number & 1 else self.found)[number] = found
 
@@ -104,7 +106,7 @@ class Spot:
         state, known, found, known_before, before, touched, lost = parts
         spot = Spot(self.state.remade(state), self._index)
         spot.known, spot.found, spot._known_before, spot._before = known, found, known_before, before
-        spot._having = sum(1 << number for number in found)
+        spot.having = sum(1 << number for number in found)
         spot._changed, spot._emptied, spot._linked = touched
         spot.lost = lost
         return spot
@@ -113,10 +115,10 @@ class Spot:
         """Yield those of the rules in a mask that may act, in order, and where they may."""
         if self._possible < 0:
             self.carry()
-            self._lacking = self._lacking or self._index.lacking(self.state)
-            self._possible = self._index.spared(self._lacking)
+            self.lacking = self.lacking or self._index.lacking(self.state)
+            self._possible = self._index.spared(self.lacking)
             self.known |= self._index.all & ~self._possible
-        for number in numbers_in(rules & self._possible & (~self.known | self._having)):
+        for number in numbers_in(rules & self._possible & (~self.known | self.having)):
             reaction = self._index.reactions[number]
             if live := self.live(reaction):
                 yield reaction, live
@@ -130,7 +132,7 @@ class Spot:
             self.known |= 1 << number
             if found:
                 self.found[number] = sorted(found)  # so their order does not tell how they were found
-                self._having |= 1 << number
+                self.having |= 1 << number
         return self.found.get(number, [])
 
     def _fresh(self, reaction: Reaction) -> list[Occurrence]:
