@@ -3,7 +3,8 @@
 Usage: `python benchmarks/real_bigraphs.py [FOLDER] [--seconds N] [--times N] [--states N] [--bigrapher PATH] [--output
 FILE]`. The folder may be named by the variable BIGRAPHS instead; the files are other people's, so none are in the
 project. Seconds are of processor time and memory is the peak, both of the whole command, `bigactors big full` or
-`bigrapher full`, start included. BigraphER is stopped when it has taken `--times` as long, but is given a second at least.
+`bigrapher full`, start included. BigraphER is stopped when it has taken `--times` as long, after a second at the
+earliest, and after `--seconds` where ours did not end either.
 """
 
 import argparse
@@ -119,7 +120,7 @@ def table(folder: Path, given: argparse.Namespace) -> Iterator[tuple[str, dict[s
     ):
         name, peer = str(path.relative_to(folder)), path.suffix == ".big" and given.bigrapher
         left = ours(path, given.seconds, given.states)
-        patience = max(1, ceil(given.times * left.seconds))
+        patience = given.seconds if left.why else max(1, ceil(given.times * left.seconds))
         right = bigrapher(given.bigrapher, path, patience, given.states) if peer else None
         data = {"file": name, "ours": asdict(left), "bigrapher": None if right is None else asdict(right)}
         yield row(name, left, right), {**data, "differs": differ(left, right)}
