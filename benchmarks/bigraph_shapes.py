@@ -213,12 +213,11 @@ def _model(
 
 
 SHAPES = (
-    batteries(2, 20),
-    batteries(3, 12),
-    agenda(4, 60),
+    batteries(3, 20),
+    batteries(4, 12),
+    agenda(8, 120),
     nest(2, 30),
-    nest(3, 12),
-    calls(6),
-    motes(5),
+    calls(8),
+    motes(8),
 )
-"""A few of each family, small enough for BigraphER."""
+"""A few of each family, which take BigraphER a second and more, but for the agenda."""
