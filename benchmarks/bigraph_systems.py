@@ -153,7 +153,8 @@ def row(model: Model, ours: Measured, peer: Peer | None) -> str:
     if peer is None:
         return f"| {model.title} | {figures} | | |"
     more = "" if peer.ended else "more than "
-    return f"| {model.title} | {figures} | {more}{peer.seconds:.1f} {peer.source} | {more}{peer.seconds / ours.seconds:,.0f} |"
+    seconds, ratio = f"{peer.seconds:.1f} {peer.source}", f"{peer.seconds / ours.seconds:,.1f}"
+    return f"| {model.title} | {figures} | {more}{seconds} | {more}{ratio} |"
 
 
 HEAD = """\
