@@ -23,6 +23,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from bigraph_shapes import SHAPES, Model
+from machine import describe
 from uav_family import Case, counts, text
 
 from bigraphs.exploration import explore
@@ -200,7 +201,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
         kept.append(data)
     given.output.parent.mkdir(parents=True, exist_ok=True)
-    given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+    given.output.write_text(
+        json.dumps({"machine": describe(), "rows": kept}, indent=1) + "\n", encoding="utf-8"
+    )
     return 0
 
 

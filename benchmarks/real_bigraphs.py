@@ -20,6 +20,8 @@ from dataclasses import asdict, dataclass
 from math import ceil
 from pathlib import Path
 
+from machine import describe
+
 RESULTS = Path(__file__).parent / "results" / "real_bigraphs.json"
 PRINTED = re.compile(r"(States|Transitions):\D*?(\d+)\s*$", re.MULTILINE)
 SUMMARY = re.compile(
@@ -146,13 +148,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not Path(given.folder).is_dir():
         parser.error(f"{given.folder} is no folder")
     sys.stdout.write(HEAD)
-    kept = []
+    kept: list[dict[str, object]] = []
+    found = {
+        "machine": describe(),
+        "seconds": given.seconds,
+        "times": given.times,
+        "states": given.states,
+        "rows": kept,
+    }
+    given.output.parent.mkdir(parents=True, exist_ok=True)
     for line, data in table(Path(given.folder), given):
         sys.stdout.write(f"{line}\n")
         sys.stdout.flush()
         kept.append(data)
-    given.output.parent.mkdir(parents=True, exist_ok=True)
-    given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+        given.output.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     differing = sum(bool(data["differs"]) for data in kept)
     sys.stdout.write(f"\n{len(kept)} files, {differing} with other counts than BigraphER's\n")
     return 1 if differing else 0
