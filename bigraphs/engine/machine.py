@@ -69,7 +69,7 @@ class Machine:
         )
         self.world.pause = pause
         self.labelling = Labelling(self.world)
-        self.outlines = Outlines(self.world)
+        self.outlines = Outlines(self.labelling)
         forms = Forms()
         self.reactions = [Reaction(self.world, rule, number, forms) for number, rule in enumerate(rules)]
         self.index = ReactionIndex(self.reactions)
@@ -118,7 +118,9 @@ class Machine:
             for reaction, found in enabled:
                 result = spot.after(reaction.apply(spot.state, found)[0])
                 target, count = self.settle(result)
-                yield Step(reaction, found, target, 1 + (count and self._counted(result, count, settled)))
+                if count and len(enabled) > 1:
+                    count = self._counted(result, count, settled)
+                yield Step(reaction, found, target, 1 + count)
             if enabled:
                 return
 
@@ -166,12 +168,6 @@ class Machine:
             targets = [spot.after(reaction.apply(spot.state, found)[0]) for found in live]
             for target in targets:
                 target.lost |= spot.lost
-            if len(targets) == 1:
-                return targets[0]
-            results: dict[Key, Spot] = {}
-            for target in targets:
-                results.setdefault(self.labelling.canonical(target.state), target)
-            targets = list(results.values())
             return targets[self.outlines.least([target.state for target in targets])]
         return None
 
