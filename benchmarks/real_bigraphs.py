@@ -149,13 +149,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"{given.folder} is no folder")
     sys.stdout.write(HEAD)
     kept: list[dict[str, object]] = []
-    found = {
-        "machine": describe(),
-        "seconds": given.seconds,
-        "times": given.times,
-        "states": given.states,
-        "rows": kept,
-    }
+    limits = f"{given.states:,} states, {given.seconds} s; BigraphER is stopped at {given.times:g} times our seconds"
+    found = {"machine": describe(), "limits": limits, "rows": kept}
     given.output.parent.mkdir(parents=True, exist_ok=True)
     for line, data in table(Path(given.folder), given):
         sys.stdout.write(f"{line}\n")

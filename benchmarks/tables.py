@@ -199,10 +199,7 @@ def real_bigraph_tables(kept: Kept) -> str:
     for repository, rows in groupby(kept["rows"], key=lambda row: row["file"].partition("/")[0]):
         lines = [(Path(row["file"]).name, *_real(row["ours"], row["bigrapher"])) for row in rows]
         tables.append(f"**{repository}**\n\n{_table(head, lines)}")
-    said = (
-        f"Limits: {kept['states']:,} states, {kept['seconds']} s; BigraphER is stopped at {kept['times']:g} times our"
-        " seconds.\n"
-    )
+    said = f"Limits: {kept['limits']}.\n"
     return "\n".join([*tables, said, machine(kept)])
 
 
