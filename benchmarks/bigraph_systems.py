@@ -1,4 +1,4 @@
-"""Explore the UAV family and compare with BigraphER: assert the counts, then print time and memory.
+"""Explore the UAV family and others, and compare with BigraphER: assert the counts, then print time and memory.
 
 Usage: `python benchmarks/bigraph_systems.py [--bigrapher PATH] [--growth] [--output FILE]`. Where BigraphER is not
 found, its seconds are those measured once on another machine, and marked *quoted*. Seconds are of processor time, so
@@ -22,6 +22,8 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from bigraph_shapes import SHAPES, Model
+from machine import describe
 from uav_family import Case, counts, text
 
 from bigraphs.exploration import explore
@@ -30,21 +32,28 @@ from bigraphs.system import System
 
 RESULTS = Path(__file__).parent / "results" / "bigraphs.json"
 
-QUOTED: dict[Case, tuple[float, bool]] = {
-    Case("row", 3, 4, distinct=False, open=True): (3.2, True),
-    Case("row", 4, 4, distinct=False, open=True): (27.0, True),
-    Case("row", 3, 4, distinct=True, open=True): (53.0, True),
-    Case("row", 4, 4, distinct=True, open=True): (75.0, False),
-    Case("ring", 5, 6, distinct=False, open=False): (59.0, True),
-    Case("3x3", 2, 9, distinct=False, open=True): (62.0, True),
-    Case("3x3", 3, 9, distinct=False, open=False): (28.0, True),
+
+def uavs(case: Case) -> Model:
+    """Return a member of the UAV family."""
+    return Model(str(case), text(case), *counts(case))
+
+
+QUOTED: dict[Model, tuple[float, bool]] = {
+    uavs(Case("row", 3, 4, distinct=False, open=True)): (3.2, True),
+    uavs(Case("row", 4, 4, distinct=False, open=True)): (27.0, True),
+    uavs(Case("row", 3, 4, distinct=True, open=True)): (53.0, True),
+    uavs(Case("row", 4, 4, distinct=True, open=True)): (75.0, False),
+    uavs(Case("ring", 5, 6, distinct=False, open=False)): (59.0, True),
+    uavs(Case("3x3", 2, 9, distinct=False, open=True)): (62.0, True),
+    uavs(Case("3x3", 3, 9, distinct=False, open=False)): (28.0, True),
 }
 """BigraphER 1.9.3's seconds, November 2026, and whether it had ended by then."""
 
 MANY = 10_000
 """From how many states on the memory of the whole process tells what a state takes."""
 
-GROWTH = [Case("row", 5, 4, distinct=True, open=True), Case("row", 5, 5, distinct=True, open=True)]
+GROWTH = [Case("row", *size, distinct=True, open=True) for size in ((5, 4), (5, 5), (6, 5))]
+"""Members of the UAV family up to a million states."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,26 +75,28 @@ class Peer:
     source: str
 
 
-def measure(case: Case) -> Measured:
-    """Explore a case in a process of its own; raises SystemExit if the counts are wrong."""
+def measure(model: Model) -> Measured:
+    """Explore a model in a process of its own; raises SystemExit if the counts are wrong."""
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
-        found = pool.submit(_measure, case).result()
-    expected = counts(case)
+        found = pool.submit(_measure, model).result()
+    expected = model.states, model.transitions
     if (found.states, found.transitions) != expected:
-        raise SystemExit(f"{case}: {found.states} states and {found.transitions} transitions, not {expected}")
+        raise SystemExit(
+            f"{model.title}: {found.states} states and {found.transitions} transitions, not {expected}"
+        )
     return found
 
 
-def _measure(case: Case) -> Measured:
-    system = read_system(text(case))
+def _measure(model: Model) -> Measured:
+    system = read_system(model.text)
     before = _peak()
     began = time.process_time()
     found = explore(system)
     seconds = time.process_time() - began
     if not found.complete:
-        raise SystemExit(f"{case}: incomplete, {found.reason}")
+        raise SystemExit(f"{model.title}: incomplete, {found.reason}")
     grown = _peak() - before if len(found) > MANY else _traced(system)
-    return Measured(len(found), len(found.starts), seconds, grown / len(found))
+    return Measured(len(found), len(found.targets), seconds, grown / len(found))
 
 
 def _peak() -> int:
@@ -99,15 +110,15 @@ def _traced(system: System) -> int:
     return tracemalloc.get_traced_memory()[1]
 
 
-def beside(case: Case, program: str | None, limit: int) -> Peer | None:
-    """Run BigraphER on a case, or quote what it took; None where neither is known."""
+def beside(model: Model, program: str | None, limit: int) -> Peer | None:
+    """Run BigraphER on a model, or quote what it took; None for models that are too large for it, or not quoted."""
     if program is None:
-        return Peer(*QUOTED[case], "quoted") if case in QUOTED else None
-    if case not in QUOTED:
+        return Peer(*QUOTED[model], "quoted") if model in QUOTED else None
+    if model.states > MANY:
         return None
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "case.big"
-        path.write_text(text(case), encoding="utf-8")
+        path.write_text(model.text, encoding="utf-8")
         before = os.times()
         done = subprocess.run(
             ["sh", "-c", f'ulimit -t {limit}; exec "$@"', "sh", program, "full", "-M", "1000000", str(path)],
@@ -117,9 +128,9 @@ def beside(case: Case, program: str | None, limit: int) -> Peer | None:
         )
     ended = done.returncode == 0
     if ended:
-        _check_peer(case, done.stdout)
+        _check_peer(model, done.stdout)
     elif done.returncode not in (-signal.SIGXCPU, -signal.SIGKILL):
-        raise SystemExit(f"{case}: BigraphER ended with {done.returncode}:\n{done.stderr}")
+        raise SystemExit(f"{model.title}: BigraphER ended with {done.returncode}:\n{done.stderr}")
     return Peer(_children(before), ended, "measured")
 
 
@@ -128,21 +139,23 @@ def _children(before: os.times_result) -> float:
     return after.children_user - before.children_user + after.children_system - before.children_system
 
 
-def _check_peer(case: Case, printed: str) -> None:
+def _check_peer(model: Model, printed: str) -> None:
     words = printed.replace("\x1b", " ").split()
     numbers = [int(word) for word in words if word.isdigit()]
-    if not set(counts(case)) <= set(numbers):
-        raise SystemExit(f"{case}: BigraphER does not print {counts(case)}:\n{printed}")
+    expected = model.states, model.transitions
+    if not set(expected) <= set(numbers):
+        raise SystemExit(f"{model.title}: BigraphER does not print {expected}:\n{printed}")
 
 
-def row(case: Case, ours: Measured, peer: Peer | None) -> str:
+def row(model: Model, ours: Measured, peer: Peer | None) -> str:
     """Return one line of the table."""
     rate = ours.states / ours.seconds
     figures = f"{ours.states:,} / {ours.transitions:,} | {ours.seconds:.3f} | {rate:,.0f} | {ours.bytes_per_state:,.0f}"
     if peer is None:
-        return f"| {case} | {figures} | | |"
+        return f"| {model.title} | {figures} | | |"
     more = "" if peer.ended else "more than "
-    return f"| {case} | {figures} | {more}{peer.seconds:.1f} {peer.source} | {more}{peer.seconds / ours.seconds:,.0f} |"
+    seconds, ratio = f"{peer.seconds:.1f} {peer.source}", f"{peer.seconds / ours.seconds:,.1f}"
+    return f"| {model.title} | {figures} | {more}{seconds} | {more}{ratio} |"
 
 
 HEAD = """\
@@ -151,12 +164,18 @@ HEAD = """\
 """
 
 
-def table(cases: Sequence[Case], program: str | None, limit: int) -> Iterator[tuple[str, dict[str, object]]]:
+def table(
+    models: Sequence[Model], program: str | None, limit: int
+) -> Iterator[tuple[str, dict[str, object]]]:
     """Yield for each case its line, and the same as data."""
-    for case in cases:
-        ours, peer = measure(case), beside(case, program, limit)
-        data = {"case": str(case), "ours": asdict(ours), "bigrapher": None if peer is None else asdict(peer)}
-        yield row(case, ours, peer), data
+    for model in models:
+        ours, peer = measure(model), beside(model, program, limit)
+        data = {
+            "case": model.title,
+            "ours": asdict(ours),
+            "bigrapher": None if peer is None else asdict(peer),
+        }
+        yield row(model, ours, peer), data
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -171,18 +190,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
         default=600,
         help="seconds of processor time that BigraphER is given (default 600)",
     )
-    parser.add_argument("--growth", action="store_true", help="larger cases, too, up to 100,000 states")
+    parser.add_argument("--growth", action="store_true", help="larger cases, too, up to a million states")
     parser.add_argument("--output", type=Path, default=RESULTS, help="where the figures are kept")
     given = parser.parse_args(arguments)
-    cases = [*QUOTED, *(GROWTH if given.growth else ())]
+    models = [*QUOTED, *SHAPES, *map(uavs, GROWTH if given.growth else ())]
     sys.stdout.write(HEAD)
     kept = []
-    for line, data in table(cases, given.bigrapher, given.limit):
+    for line, data in table(models, given.bigrapher, given.limit):
         sys.stdout.write(f"{line}\n")
         sys.stdout.flush()
         kept.append(data)
     given.output.parent.mkdir(parents=True, exist_ok=True)
-    given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+    given.output.write_text(
+        json.dumps({"machine": describe(), "rows": kept}, indent=1) + "\n", encoding="utf-8"
+    )
     return 0
 
 

@@ -1,8 +1,10 @@
 """Read and explore the `.big` and `.bgm` files in a folder, beside BigraphER, and say where they differ.
 
-Usage: `python benchmarks/real_bigraphs.py [FOLDER] [--seconds N] [--states N] [--bigrapher PATH] [--output FILE]`. The
-folder may be named by the variable BIGRAPHS instead; the files are other people's, so none are in the project. Seconds
-are of processor time and memory is the peak, both of the whole process, start included.
+Usage: `python benchmarks/real_bigraphs.py [FOLDER] [--seconds N] [--times N] [--states N] [--bigrapher PATH] [--output
+FILE]`. The folder may be named by the variable BIGRAPHS instead; the files are other people's, so none are in the
+project. Seconds are of processor time and memory is the peak, both of the whole command, `bigactors big full` or
+`bigrapher full`, start included. BigraphER is stopped when it has taken `--times` as long, after a second at the
+earliest, and after `--seconds` where ours did not end either.
 """
 
 import argparse
@@ -15,14 +17,16 @@ import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
+from math import ceil
 from pathlib import Path
 
-from bigraphs.errors import BigraphError
-from bigraphs.exploration import explore
-from bigraphs.notation import load_system
+from machine import describe
 
 RESULTS = Path(__file__).parent / "results" / "real_bigraphs.json"
 PRINTED = re.compile(r"(States|Transitions):\D*?(\d+)\s*$", re.MULTILINE)
+SUMMARY = re.compile(
+    r": ([\d,]+) states?, ([\d,]+) transitions?, .* (?:complete|incomplete: (.*)), [\d.]+ s$", re.MULTILINE
+)
 COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 
 
@@ -38,22 +42,18 @@ class Run:
 
 
 def ours(path: Path, seconds: int, states: int) -> Run:
-    """Run this script on one file in a process of its own."""
-    limits = ("--seconds", str(seconds), "--states", str(states))
-    printed, used, memory, code = _ended([sys.executable, __file__, "--one", str(path), *limits], 2 * seconds)
-    if code:
-        return Run(None, None, _last_line(printed), used, memory)
-    found = json.loads(printed)
-    return Run(found["states"], found["transitions"], found["why"], used, memory)
-
-
-def one(path: Path, seconds: int, states: int) -> dict[str, object]:
-    """Read and explore one file."""
-    try:
-        found = explore(load_system(path), max_states=states, max_time=seconds)
-    except (BigraphError, OSError) as error:
-        return {"states": None, "transitions": None, "why": f"not read: {str(error).splitlines()[0]}"}
-    return {"states": len(found), "transitions": len(found.starts), "why": found.reason}
+    """Run `bigactors big full` on one file."""
+    limits = ("--max-states", str(states), "--max-time", str(2 * seconds))
+    command = [sys.executable, "-m", "bigactors", "big", "full", *limits, str(path)]
+    printed, used, memory, code = _ended(command, seconds)
+    counted = SUMMARY.search(printed)
+    if counted is None:
+        why = (
+            f"ended by a signal after {used:.0f} s" if code < 0 else f"not read: {_first_line(printed, path)}"
+        )
+        return Run(None, None, why, used, memory)
+    states_found, transitions = (int(number.replace(",", "")) for number in counted.groups()[:2])
+    return Run(states_found, transitions, counted[3] or "", used, memory)
 
 
 def bigrapher(program: str, path: Path, seconds: int, states: int) -> Run:
@@ -78,6 +78,10 @@ def _ended(command: Sequence[str], seconds: int) -> tuple[str, float, float, int
         out.seek(0)
         printed = COLOURS.sub("", out.read().decode(errors="replace"))
     return printed, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, child.returncode
+
+
+def _first_line(printed: str, path: Path) -> str:
+    return printed.partition("\n")[0].removeprefix(f"{path}:")
 
 
 def _last_line(printed: str) -> str:
@@ -118,7 +122,8 @@ def table(folder: Path, given: argparse.Namespace) -> Iterator[tuple[str, dict[s
     ):
         name, peer = str(path.relative_to(folder)), path.suffix == ".big" and given.bigrapher
         left = ours(path, given.seconds, given.states)
-        right = bigrapher(given.bigrapher, path, given.seconds, given.states) if peer else None
+        patience = given.seconds if left.why else max(1, ceil(given.times * left.seconds))
+        right = bigrapher(given.bigrapher, path, patience, given.states) if peer else None
         data = {"file": name, "ours": asdict(left), "bigrapher": None if right is None else asdict(right)}
         yield row(name, left, right), {**data, "differs": differ(left, right)}
 
@@ -132,27 +137,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--seconds", type=int, default=60, help="processor seconds for each file (default 60)"
     )
+    parser.add_argument("--times", type=float, default=11, help="BigraphER's patience (default 11)")
     parser.add_argument("--states", type=int, default=100_000, help="states of each file (default 100,000)")
     parser.add_argument("--bigrapher", default=shutil.which("bigrapher"), help="the program to compare with")
     parser.add_argument("--output", type=Path, default=RESULTS, help="where the figures are kept")
-    parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
     given = parser.parse_args(arguments)
-    if given.one:
-        sys.stdout.write(json.dumps(one(given.one, given.seconds, given.states)))
-        return 0
     if given.folder is None:
         sys.stdout.write("no folder of .big and .bgm files: name one, or set BIGRAPHS to it\n")
         return 0
     if not Path(given.folder).is_dir():
         parser.error(f"{given.folder} is no folder")
     sys.stdout.write(HEAD)
-    kept = []
+    kept: list[dict[str, object]] = []
+    limits = f"{given.states:,} states, {given.seconds} s; BigraphER is stopped at {given.times:g} times our seconds"
+    found = {"machine": describe(), "limits": limits, "rows": kept}
+    given.output.parent.mkdir(parents=True, exist_ok=True)
     for line, data in table(Path(given.folder), given):
         sys.stdout.write(f"{line}\n")
         sys.stdout.flush()
         kept.append(data)
-    given.output.parent.mkdir(parents=True, exist_ok=True)
-    given.output.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+        given.output.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     differing = sum(bool(data["differs"]) for data in kept)
     sys.stdout.write(f"\n{len(kept)} files, {differing} with other counts than BigraphER's\n")
     return 1 if differing else 0

@@ -8,6 +8,7 @@ import json
 import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -177,6 +178,65 @@ def wide_table(kept: Kept) -> str:
     return f"{_table(head, rows)}\n{machine(kept)}"
 
 
+def bigraph_table(kept: Kept) -> str:
+    """Lay out generated families of bigraphical systems, beside BigraphER."""
+    head = "case|states / transitions|s|states/s|bytes/state|BigraphER, s|times its rate"
+    rows = [
+        (each["case"], *_explored(each["ours"]), *_beside_bigrapher(each["ours"], each["bigrapher"]))
+        for each in kept["rows"]
+    ]
+    return f"{_table(head, rows)}\n{machine(kept)}"
+
+
+def _explored(ours: Kept) -> tuple[str, ...]:
+    return (
+        f"{ours['states']:,} / {ours['transitions']:,}",
+        f"{ours['seconds']:.2f}",
+        f"{ours['states'] / ours['seconds']:,.0f}",
+        f"{ours['bytes_per_state']:,.0f}",
+    )
+
+
+def _beside_bigrapher(ours: Kept, peer: Kept | None) -> tuple[str, str]:
+    if peer is None:
+        return "", ""
+    more, quoted = "" if peer["ended"] else "more than ", " quoted" if peer["source"] == "quoted" else ""
+    return f"{more}{peer['seconds']:.1f}{quoted}", f"{more}{peer['seconds'] / ours['seconds']:,.1f}"
+
+
+def real_bigraph_tables(kept: Kept) -> str:
+    """Lay out the real files of each repository, beside BigraphER where it ran."""
+    head = "file|states / transitions|s|MB|BigraphER's|s|MB|its time, ours = 1"
+    tables = []
+    for repository, rows in groupby(kept["rows"], key=lambda row: row["file"].partition("/")[0]):
+        lines = [(Path(row["file"]).name, *_real(row["ours"], row["bigrapher"])) for row in rows]
+        tables.append(f"**{repository}**\n\n{_table(head, lines)}")
+    said = f"Limits: {kept['limits']}.\n"
+    return "\n".join([*tables, said, machine(kept)])
+
+
+def _real(ours: Kept, peer: Kept | None) -> tuple[str, ...]:
+    mine = (_counts(ours), f"{ours['seconds']:.2f}", f"{ours['megabytes']:.0f}")
+    if peer is None:
+        return *mine, "", "", "", ""
+    its, both = f"{peer['seconds']:.2f}", not (ours["why"] or peer["why"])
+    if "signal" in peer["why"]:
+        ratio = "" if ours["why"] else f"more than {peer['seconds'] / ours['seconds']:.1f}"
+        return *mine, "stopped", its, f"{peer['megabytes']:.0f}", ratio
+    if peer["states"] is None:
+        return *mine, "not read", "", "", ""
+    equal = both and _counts(ours) == _counts(peer)
+    ratio = f"{peer['seconds'] / ours['seconds']:.2g}" if both else ""
+    return *mine, "equal" if equal else _counts(peer), its, f"{peer['megabytes']:.0f}", ratio
+
+
+def _counts(run: Kept) -> str:
+    if run["states"] is None:
+        return "not read"
+    counts = f"{run['states']:,} / {run['transitions']:,}"
+    return f"{counts}, not all" if run["why"] else counts
+
+
 def _peer(row: Kept, peer: Kept, ratio: Kept) -> tuple[str, ...]:
     reduced, below = row["reduced"], "< " if peer["bounds"] else ""
     return (
@@ -218,6 +278,8 @@ TABLES: dict[str, Callable[[Kept], str]] = {
     "growth": growth_section,
     "largest": largest_tables,
     "wide": wide_table,
+    "bigraphs": bigraph_table,
+    "real_bigraphs": real_bigraph_tables,
 }
 
 

@@ -106,13 +106,13 @@ class Bigraph:
 
 def relabelled(bigraph: Bigraph, controls: Mapping[str, str], signature: Signature) -> Bigraph:
     """Return it with other controls, of the same arity, status and order of ports: so it needs no new check."""
-    nodes = tuple(
+    nodes = [
         Node(controls[node.control], node.name, node.ports, node.parents)
         if node.control in controls
         else node
         for node in bigraph.nodes
-    )
-    return _with(bigraph, nodes=nodes, signature=signature)
+    ]
+    return _with(bigraph, nodes=tuple(nodes) if controls else bigraph.nodes, signature=signature)
 
 
 def _with(bigraph: Bigraph, **parts: object) -> Bigraph:

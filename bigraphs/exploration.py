@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import time
 from array import array
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
+from bigraphs.columns import Column, Numbering, Texts
 from bigraphs.engine.machine import Machine
 from bigraphs.engine.occurrences import Spot
 from bigraphs.engine.state import Key
+from bigraphs.engine.waiting import Waiting
 from bigraphs.system import System, SystemKind
-from bigraphs.transitions import TransitionSystem
+from bigraphs.transitions import Kind, TransitionSystem
 
 MOST_REMEMBERED: Final = 200_000
 """How many numberings of states are cached, so that their canonical keys are not computed again."""
@@ -75,17 +76,15 @@ class _Search:
         self.end = None if max_time is None else self.begun + max_time
         self.max_states, self.max_time, self.watch = max_states, max_time, watch
         self.machine = Machine(system, self.check_time)
-        self.numbers: dict[Key, int] = {}
+        self.visited = Numbering()
         self.remembered: dict[Key, int] = {}
-        self.keys: list[Key] = []
+        self.keys = self.visited.texts if self.machine.world.plain else Texts()
         self.found_from = array("I")
-        self.labels = tuple(bytearray() for _ in system.predicates)
-        self.waiting: deque[tuple[int, Spot]] = deque()
-        self.starts, self.targets, self.rules, self.counts = array("I"), array("I"), array("I"), array("I")
-        self.weights, self.actions = array("d"), array("i")
-        self.rule_sets: dict[tuple[int, ...], int] = {}
-        self.action_numbers = {action.name: number for number, action in enumerate(system.actions)}
-        self.expanded = self.occurrences = 0
+        self.holding: Column[tuple[int, ...]] = Column()
+        self.first, self.targets = array("Q", (0,)), array("I")
+        self.kinds: Column[Kind] = Column()
+        self.rule_sets: dict[frozenset[int], tuple[str, ...]] = {}
+        self.occurrences = 0
 
     def check_time(self) -> None:
         if self.end is not None and time.monotonic() > self.end:
@@ -96,10 +95,10 @@ class _Search:
         try:
             first, count = self.machine.start()
             self.occurrences += count
+            self.waiting = Waiting(first)
             self.number(first, 0)
             while self.waiting:
-                state, spot = self.waiting.popleft()
-                if not self.expand(state, spot):
+                if not self.expand(self.waiting.popleft()):
                     return f"the limit of {self.max_states:,} states was reached"
                 if time.monotonic() >= self.next_look:
                     self.watch(self.progress())
@@ -112,60 +111,61 @@ class _Search:
 
     def progress(self) -> Progress:
         seconds = time.monotonic() - self.begun
-        return Progress(len(self.keys), len(self.starts), len(self.waiting), seconds)
+        return Progress(len(self.keys), len(self.targets), len(self.waiting), seconds)
 
     def number(self, spot: Spot, source: int) -> int:
         """Return the number of a state, a new one if it has not been seen; -1 if that is one too many."""
         raw = spot.state.key()
-        known = self.remembered.get(raw) if not self.machine.world.plain else self.numbers.get(raw)
+        if self.machine.world.plain:
+            found = self.visited.find(raw)
+            return found if found >= 0 else self.add(raw, raw, spot, source)
+        known = self.remembered.get(raw)
         if known is not None:
             return known
-        key = raw if self.machine.world.plain else self.machine.labelling.canonical(spot.state)
-        found = self.numbers.get(key)
-        if found is None:
-            if self.max_states is not None and len(self.keys) >= self.max_states:
-                return -1
+        key = self.machine.labelling.canonical(spot.state)
+        found = self.visited.find(key)
+        if found < 0:
             found = self.add(key, raw, spot, source)
-        if not self.machine.world.plain:
-            if len(self.remembered) >= MOST_REMEMBERED:
-                self.remembered.clear()
+        if len(self.remembered) >= MOST_REMEMBERED:
+            self.remembered.clear()
+        if found >= 0:
             self.remembered[raw] = found
         return found
 
     def add(self, key: Key, raw: Key, spot: Spot, source: int) -> int:
-        found = self.numbers[key] = len(self.keys)
-        self.keys.append(raw)
+        """Number a new state, unless there are as many as there may be."""
+        if self.max_states is not None and len(self.keys) >= self.max_states:
+            return -1
+        found = self.visited.add(key)
+        if self.keys is not self.visited.texts:
+            self.keys.append(raw)
         self.found_from.append(source)
-        holding = self.machine.holding(spot.state)
-        for predicate, holds in enumerate(self.labels):
-            holds.append(predicate in holding)
-        self.waiting.append((found, spot))
+        self.holding.append(tuple(sorted(self.machine.holding(spot.state))))
+        self.waiting.append(spot)
         return found
 
-    def expand(self, state: int, spot: Spot) -> bool:
-        """Add the transitions of a state; say whether there was room for all that they lead to."""
-        merged: dict[tuple[int, int], _Merged] = {}
-        occurrences = 0
+    def expand(self, spot: Spot) -> bool:
+        """Add the transitions of the next state; say whether there was room for all that they lead to."""
+        merged: dict[tuple[int, str | None], _Merged] = {}
+        state, occurrences = len(self.first) - 1, 0
         for step in self.machine.steps(spot):
             self.check_time()
             target = self.number(step.target, state)
             if target < 0:
                 return False
             rule = step.reaction.rule
-            action = -1 if rule.action is None else self.action_numbers[rule.action]
-            group = merged.setdefault((target, action), _Merged())
+            group = merged.setdefault((target, rule.action), _Merged())
             group.weight += 1.0 if rule.weight is None else rule.weight
             group.count += 1
             group.rules.add(step.reaction.number)
             occurrences += step.reactions
         self.occurrences += occurrences
-        self.expanded += 1
-        self.keep(state, merged)
+        self.keep(merged)
         return True
 
-    def keep(self, state: int, merged: dict[tuple[int, int], _Merged]) -> None:
+    def keep(self, merged: dict[tuple[int, str | None], _Merged]) -> None:
         """Add merged transitions, their weights as the kind of the system wants them."""
-        kind, totals = self.machine.system.kind, dict[int, float]()
+        kind, totals = self.machine.system.kind, dict[str | None, float]()
         for (_, action), group in merged.items():
             totals[action] = totals.get(action, 0.0) + group.weight
         for (target, action), group in merged.items():
@@ -174,32 +174,28 @@ class _Search:
                 weight = 1.0
             elif kind is not SystemKind.SBRS:
                 weight /= totals[action]
-            self.starts.append(state)
             self.targets.append(target)
-            self.weights.append(weight)
-            self.actions.append(action)
-            self.counts.append(group.count)
-            self.rules.append(self.rule_set(group.rules))
+            self.kinds.append(Kind(weight, self.labels(frozenset(group.rules)), group.count, action))
+        self.first.append(len(self.targets))
 
-    def rule_set(self, rules: set[int]) -> int:
-        return self.rule_sets.setdefault(tuple(sorted(rules)), len(self.rule_sets))
+    def labels(self, rules: frozenset[int]) -> tuple[str, ...]:
+        """Return the labels of rules, sorted."""
+        found = self.rule_sets.get(rules)
+        if found is None:
+            found = tuple(sorted(self.machine.reactions[rule].label for rule in rules))
+            self.rule_sets[rules] = found
+        return found
 
     def result(self, reason: str) -> TransitionSystem:
-        labels = [reaction.label for reaction in self.machine.reactions]
         return TransitionSystem(
             system=self.machine.system,
             world=self.machine.world,
             keys=self.keys,
-            labels=self.labels,
-            starts=self.starts,
+            holding=self.holding,
+            first=self.first,
             targets=self.targets,
-            weights=self.weights,
-            actions=self.actions,
-            rules=self.rules,
-            counts=self.counts,
-            rule_sets=tuple(tuple(sorted(labels[rule] for rule in rules)) for rules in self.rule_sets),
+            kinds=self.kinds,
             found_from=self.found_from,
-            expanded=self.expanded,
             occurrences=self.occurrences,
             seconds=time.monotonic() - self.begun,
             reason=reason,

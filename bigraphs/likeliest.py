@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import heapq
-from bisect import bisect_left, bisect_right
 from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
 from math import log
@@ -72,7 +71,7 @@ def decisions(
         if state in goals:
             continue
         chosen = [each for each, _ in _chosen(system, state, strategy)]
-        if len(chosen) < bisect_right(system.starts, state) - bisect_left(system.starts, state):
+        if len(chosen) < len(system.leaving(state)):
             told[state] = chosen[0].action or ", ".join(chosen[0].rules)
         new = {each.target for each in chosen} - met
         met |= new
@@ -84,8 +83,7 @@ def _chosen(
     system: TransitionSystem, state: int, strategy: Sequence[int] | None
 ) -> Iterator[tuple[Transition, float]]:
     """Yield the transitions that a strategy leaves, each with its probability."""
-    first, last = bisect_left(system.starts, state), bisect_right(system.starts, state)
-    leaving = [system.transition(number) for number in range(first, last)]
+    leaving = list(system.transitions_from(state))
     if strategy is not None:
         numbered = zip(choices_of(system.kind, leaving), leaving, strict=True)
         leaving = [each for number, each in numbered if number == strategy[state]]

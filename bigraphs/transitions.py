@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from array import array
-from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import repeat
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from bigraphs.bigraph import Bigraph
+from bigraphs.columns import Column, Texts
 from bigraphs.engine.decoding import from_key, to_bigraph
-from bigraphs.engine.state import Key
 from bigraphs.engine.world import World
-from bigraphs.system import System, SystemKind
+from bigraphs.system import Rule, System, SystemKind
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -33,29 +34,37 @@ class Transition(NamedTuple):
     action: str | None
 
 
-@dataclass(frozen=True, slots=True)
+class Kind(NamedTuple):
+    """All of a transition but where it starts and ends; few of those of a system are distinct."""
+
+    weight: float
+    rules: tuple[str, ...]
+    occurrences: int
+    action: str | None
+
+
+@dataclass(frozen=True)
 class TransitionSystem:
     """The states that are reachable, numbered from 0 as they were found, breadth first, and the transitions between.
 
-    `keys` tell the states, `labels` hold for each predicate a byte per state, `starts`, `targets` and so on an entry
-    per transition, sorted by where they start; `rule_sets` are what `rules` counts in. `found_from` is for each state
-    the one that it was found from. Only the first `expanded` states have their transitions; if they are not all, the
-    system is not complete, and `reason` says why.
+    Attributes:
+        keys: What tells each state.
+        holding: For each state the numbers of the predicates that occur in it.
+        first: For each state that was expanded the number of its first transition; then how many there are in all.
+        targets: For each transition the state that it leads to.
+        kinds: For each transition the rest of it.
+        found_from: For each state the one that it was found from.
+        reason: Why not all states were expanded; empty if they were.
     """
 
     system: System
     world: World
-    keys: list[Key]
-    labels: tuple[bytearray, ...]
-    starts: array[int]
+    keys: Texts
+    holding: Column[tuple[int, ...]]
+    first: array[int]
     targets: array[int]
-    weights: array[float]
-    actions: array[int]
-    rules: array[int]
-    counts: array[int]
-    rule_sets: tuple[tuple[str, ...], ...]
+    kinds: Column[Kind]
     found_from: array[int]
-    expanded: int
     occurrences: int
     seconds: float
     reason: str = ""
@@ -71,9 +80,31 @@ class TransitionSystem:
         return not self.reason
 
     @property
+    def expanded(self) -> int:
+        """Return how many states have their transitions: the first ones, all of them in a complete system."""
+        return len(self.first) - 1
+
+    @property
     def kind(self) -> SystemKind:
         """Return what the weights mean."""
         return self.system.kind
+
+    @cached_property
+    def starts(self) -> array[int]:
+        """For each transition the state that it starts from."""
+        found = array("I")
+        for state in range(self.expanded):
+            found.extend(repeat(state, len(self.leaving(state))))
+        return found
+
+    @cached_property
+    def labels(self) -> tuple[bytearray, ...]:
+        """For each predicate a byte per state, 1 where it occurs."""
+        return tuple(self._label(predicate) for predicate in range(len(self.system.predicates)))
+
+    def _label(self, predicate: int) -> bytearray:
+        holds = [predicate in numbers for numbers in self.holding.values]
+        return bytearray(holds[code] for code in self.holding.codes)
 
     def __len__(self) -> int:
         return len(self.keys)
@@ -82,30 +113,28 @@ class TransitionSystem:
         """Return the bigraph of a state."""
         return to_bigraph(from_key(self.world, self.keys[number]))
 
-    def transition(self, number: int) -> Transition:
-        """Return a transition by its number."""
-        action = self.actions[number]
-        return Transition(
-            self.starts[number],
-            self.targets[number],
-            self.weights[number],
-            self.rule_sets[self.rules[number]],
-            self.counts[number],
-            None if action < 0 else self.system.actions[action].name,
-        )
+    def leaving(self, state: int) -> range:
+        """Return the numbers of the transitions that start from a state; none if it was not expanded."""
+        return range(self.first[state], self.first[state + 1]) if state < self.expanded else range(0)
 
     def transitions(self) -> Iterator[Transition]:
         """Yield the transitions, sorted by where they start."""
-        return map(self.transition, range(len(self.starts)))
+        return (each for state in range(self.expanded) for each in self.transitions_from(state))
+
+    def transitions_from(self, state: int) -> Iterator[Transition]:
+        """Yield the transitions that start from a state."""
+        return (
+            Transition(state, self.targets[number], *self.kinds[number]) for number in self.leaving(state)
+        )
 
     def states_with(self, predicate: int) -> Iterator[int]:
         """Yield the numbers of the states in which a predicate occurs."""
-        return (number for number, holds in enumerate(self.labels[predicate]) if holds)
+        holds = [predicate in numbers for numbers in self.holding.values]
+        return (state for state, code in enumerate(self.holding.codes) if holds[code])
 
     def labels_of(self, state: int) -> tuple[str, ...]:
         """Return the labels of the predicates that occur in a state."""
-        predicates = zip(self.system.predicates, self.labels, strict=True)
-        return tuple(predicate.label for predicate, holds in predicates if holds[state])
+        return tuple(self.system.predicates[number].label for number in self.holding[state])
 
     def path_to(self, state: int) -> list[int]:
         """Return a shortest path from the initial state to a state, both included."""
@@ -116,33 +145,32 @@ class TransitionSystem:
 
     def rules_between(self, source: int, target: int) -> tuple[str, ...]:
         """Return the labels of the rules that lead from one state to another, sorted."""
-        first = bisect_left(self.starts, source)
-        found: set[str] = set()
-        for number in range(first, bisect_right(self.starts, source)):
-            if self.targets[number] == target:
-                found.update(self.rule_sets[self.rules[number]])
-        return tuple(sorted(found))
+        leading = (each.rules for each in self.transitions_from(source) if each.target == target)
+        return tuple(sorted({rule for rules in leading for rule in rules}))
 
-    def rules_never_used(self) -> tuple[str, ...]:
-        """Return the labels of the ordinary rules that make no transition, in the order written."""
-        used = {label for rules in self.rule_sets for label in rules}
+    def rules_never_used(self) -> tuple[Rule, ...]:
+        """Return the ordinary rules that make no transition, in the order written."""
+        used = {label for kind in self.kinds.values for label in kind.rules}
         ordinary = (rule for each in self.system.classes if not each.instantaneous for rule in each.rules)
-        return tuple(rule.label for rule in ordinary if rule.label not in used)
+        return tuple(rule for rule in ordinary if rule.label not in used)
 
-    def restricted(self, states: int, kept: Sequence[int]) -> TransitionSystem:
-        """Return the first states, and these transitions, which lie between them."""
+    def beginning(self, states: int) -> TransitionSystem:
+        """Return the first states, and the transitions between them."""
+        first, targets, kinds = array("Q", (0,)), array("I"), Column[Kind]()
+        for state in range(min(states, self.expanded)):
+            for number in self.leaving(state):
+                if self.targets[number] < states:
+                    targets.append(self.targets[number])
+                    kinds.append(self.kinds[number])
+            first.append(len(targets))
         return replace(
             self,
-            keys=self.keys[:states],
-            labels=tuple(holds[:states] for holds in self.labels),
-            starts=array("I", (self.starts[each] for each in kept)),
-            targets=array("I", (self.targets[each] for each in kept)),
-            weights=array("d", (self.weights[each] for each in kept)),
-            actions=array("i", (self.actions[each] for each in kept)),
-            rules=array("I", (self.rules[each] for each in kept)),
-            counts=array("I", (self.counts[each] for each in kept)),
+            keys=Texts(self.keys[:states]),
+            holding=Column(self.holding[:states]),
+            first=first,
+            targets=targets,
+            kinds=kinds,
             found_from=self.found_from[:states],
-            expanded=min(self.expanded, states),
         )
 
     def to_networkx(self) -> nx.MultiDiGraph[int]:

@@ -55,8 +55,7 @@ def predicate_verdict(system: TransitionSystem, quantifier: Quantifier, label: s
 
 def deadlock_verdict(system: TransitionSystem) -> Verdict:
     """Decide whether something can happen in every state."""
-    going = set(system.starts)
-    found = next((state for state in range(system.expanded) if state not in going), None)
+    found = next((state for state in range(system.expanded) if not system.leaving(state)), None)
     outcome = Outcome.VIOLATED if found is not None else _nothing(system, Outcome.HOLDS)
     return Verdict("no deadlock", outcome, found)
 
@@ -79,9 +78,9 @@ def _nothing(system: TransitionSystem, outcome: Outcome) -> Outcome:
 def _situations(system: TransitionSystem) -> Iterator[tuple[int, Situation]]:
     before: list[list[int]] = [[] for _ in range(len(system))]
     after: list[list[int]] = [[] for _ in range(len(system))]
-    for start, target in zip(system.starts, system.targets, strict=True):
-        after[start].append(target)
-        before[target].append(start)
+    for each in system.transitions():
+        after[each.source].append(each.target)
+        before[each.target].append(each.source)
     bigraphs = [system.state(state) for state in range(len(system))]
     for state in range(system.expanded):
         yield (

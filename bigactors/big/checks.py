@@ -157,7 +157,7 @@ def decided_json(found: TransitionSystem, decided: list[Decided]) -> dict[str, A
     """Return verdicts as data; `loop` is where in `run` the last state goes on, and by which rules."""
     return {
         "states": len(found),
-        "transitions": len(found.starts),
+        "transitions": len(found.targets),
         "complete": found.complete,
         "reason": found.reason,
         "verdicts": [

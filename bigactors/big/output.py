@@ -22,6 +22,9 @@ def check_outputs(options: Namespace) -> None:
 
 def write_outputs(options: Namespace, found: TransitionSystem) -> Iterator[str]:
     """Write what was asked for, and yield the names of the files."""
+    wanted = options.html, options.svg, options.dot, options.json, options.prism, options.storm
+    if not any(wanted):
+        return
     from bigraphs.exports import graph_svg, prism_files, storm_files, to_dot, to_html, to_json  # noqa: PLC0415 - only full
     from bigraphs.exports.html import MOST_STATES, first_states  # noqa: PLC0415 - writes them
 

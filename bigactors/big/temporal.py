@@ -47,8 +47,8 @@ def graph_of(found: TransitionSystem) -> Graph:
     """
     rules = {rule.label: rule for rule in found.system.rules()}
     number = {label: index for index, label in enumerate(rules)}
-    sets = [[number[label] for label in each] for each in found.rule_sets]
-    kinds = np.array(found.rules, dtype=np.int64)
+    sets = [[number[label] for label in kind.rules] for kind in found.kinds.values]
+    kinds = np.array(found.kinds.codes, dtype=np.int64)
     times = np.array([len(each) for each in sets], dtype=np.int64)[kinds] if sets else kinds
     sources = np.repeat(np.array(found.starts, dtype=np.int64), times)
     leaving = np.bincount(sources, minlength=len(found))

@@ -2,7 +2,7 @@
 
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,7 +11,7 @@ from bigactors.exits import Exit, worst
 from bigactors.mistakes import Mistake
 from bigactors.progress import Watch, watching
 from bigactors.terminal import is_terminal, say, tell
-from bigraphs import BigraphError, NotationError
+from bigraphs import Bigraph, BigraphError, NotationError
 from bigraphs.engine.machine import Machine
 from bigraphs.examples import example_names, example_text
 from bigraphs.exploration import Progress, explore
@@ -21,6 +21,9 @@ from bigraphs.simulation import Bounds, Stage, simulate
 from bigraphs.system import System, SystemKind
 from bigraphs.transitions import TransitionSystem
 from physical.messages import counted
+
+LONG_STATE: Final = 300
+"""From how many characters on a state is not printed where it isn't what was asked for."""
 
 
 def run(options: Namespace) -> Exit:
@@ -69,21 +72,34 @@ def full(options: Namespace) -> Exit:
     found = explored(options, read_file(options))
     if options.json != "-":
         say(summary(options.file, found))
-        for predicate, holds in zip(found.system.predicates, found.labels, strict=True):
-            say(f"  {predicate.label} occurs in {sum(holds):,}")
+        for line in _occurrence_lines(found):
+            say(line)
         if idle := found.rules_never_used():
             when = "never used" if found.complete else "not used so far"
-            say(f"  rules {when}: {', '.join(idle)}")
+            say(f"  rules {when}: {_instances(rule.name for rule in idle)}")
     for path in write_outputs(options, found):
         tell(f"  written: {path}")
     return Exit.HOLDS if found.complete else Exit.INCOMPLETE
+
+
+def _occurrence_lines(found: TransitionSystem) -> Iterator[str]:
+    """Yield in how many states each predicate occurs; the instances of one that occur nowhere are one line."""
+    counts = Counter(predicate for numbers in found.holding for predicate in numbers)
+    nowhere = Counter(each.name for number, each in enumerate(found.system.predicates) if not counts[number])
+    for number, predicate in enumerate(found.system.predicates):
+        if counts[number]:
+            yield f"  {predicate.label} occurs in {counts[number]:,}"
+        elif (instances := nowhere.pop(predicate.name, 0)) > 1:
+            yield f"  {predicate.name} ({instances:,}) occurs in 0"
+        elif instances:
+            yield f"  {predicate.label} occurs in 0"
 
 
 def summary(file: str, found: TransitionSystem) -> str:
     """Say in one line how large a system is, and whether that is all of it."""
     end = "complete" if found.complete else f"incomplete: {found.reason}"
     return (
-        f"{Path(file).name}: {counted(len(found), 'state')}, {counted(len(found.starts), 'transition')}, "
+        f"{Path(file).name}: {counted(len(found), 'state')}, {counted(len(found.targets), 'transition')}, "
         f"{counted(found.occurrences, 'occurrence')}, {end}, {found.seconds:.2f} s"
     )
 
@@ -160,14 +176,31 @@ def validate(options: Namespace) -> Exit:
     """Say what is in a file, if it makes sense."""
     system = read_file(options)
     machine = Machine(system)
-    say(f"{Path(options.file).name}: a {system.kind.value} of {counted(len(machine.reactions), 'rule')}")
-    say(f"  initial state: {write_big(system.initial)}")
+    kind = f"{'a' if system.kind in (SystemKind.BRS, SystemKind.PBRS) else 'an'} {system.kind.value}"
+    say(f"{Path(options.file).name}: {kind} of {counted(len(machine.reactions), 'rule')}")
+    say(f"  initial state: {_state_line(system.initial)}")
     for each in system.classes:
         how = "at once" if each.instantaneous else "one at a time"
         say(f"  a class, {how}: {_instances(rule.name for rule in each.rules) or 'no rule'}")
-    if system.predicates:
-        say(f"  predicates: {_instances(predicate.name for predicate in system.predicates)}")
+    for what, named in (
+        ("actions", system.actions),
+        ("predicates", system.predicates),
+        ("properties", system.properties),
+    ):
+        if named:
+            say(f"  {what}: {_instances(each.name for each in named)}")
     return Exit.HOLDS
+
+
+def _state_line(bigraph: Bigraph) -> str:
+    """Return a state as it is written if that is short, else how large it is."""
+    written = write_big(bigraph)
+    if len(written) <= LONG_STATE:
+        return written
+    kinds = len({node.control for node in bigraph.nodes})
+    nodes = f"{counted(len(bigraph.nodes), 'node')} of {counted(kinds, 'control')}"
+    links = f"{counted(bigraph.edges, 'edge')}, {counted(len(bigraph.outer_names), 'name')}"
+    return f"{nodes} in {counted(bigraph.regions, 'region')}, {links}; 'bigactors big show' prints it"
 
 
 def _instances(names: Iterable[str]) -> str:

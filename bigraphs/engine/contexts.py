@@ -74,7 +74,9 @@ class ConditionCheck:
         self.matcher = Matcher(world, compile_pattern(world, without_idle(condition.pattern)))
 
     def holds(self, state: State, occurrence: Occurrence) -> bool:
-        """Say whether the condition holds of an occurrence."""
+        """Say whether the condition holds of an occurrence; what is inside of it is asked only if it may matter."""
+        if not all(state.by_control[control] & ~occurrence.mask for control in self.matcher.pattern.controls):
+            return not self.positive
         inside = below(state, occurrence.mask) & ~occurrence.mask
         if self.where is Where.PARAM:
             return occurs(self.matcher, state, inside) is self.positive

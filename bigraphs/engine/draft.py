@@ -14,9 +14,10 @@ class Draft:
         emptied: The mask of the slots in which something else is now.
         relinked: The mask of the links on which something else is now.
         removed: The mask of the slots whose node is gone, even if there is another one in its place.
+        counted: The controls of which there is a node more or less.
     """
 
-    __slots__ = ("changed", "emptied", "relinked", "removed", "state")
+    __slots__ = ("changed", "counted", "emptied", "relinked", "removed", "state")
 
     def __init__(self, state: State) -> None:
         self.state = state.copy()
@@ -24,6 +25,7 @@ class Draft:
         self.emptied = 0
         self.relinked = 0
         self.removed = 0
+        self.counted: set[int] = set()
 
     def touched_by_links(self) -> int:
         """Return the mask of what is on the links that changed."""
@@ -88,7 +90,9 @@ class Draft:
             state.ports.append(())
             state.codes.append(-1)
         state.labels[slot] = label
-        state.by_control[state.world.control_of[label]] |= 1 << slot
+        control = state.world.control_of[label]
+        state.by_control[control] |= 1 << slot
+        self.counted.add(control)
         self.changed |= 1 << slot
         return slot
 
@@ -97,7 +101,9 @@ class Draft:
         state = self.state
         self.move(slot, ())
         self.relink(slot, ())
-        state.by_control[state.world.control_of[state.labels[slot]]] &= ~(1 << slot)
+        control = state.world.control_of[state.labels[slot]]
+        state.by_control[control] &= ~(1 << slot)
+        self.counted.add(control)
         state.labels[slot] = -1
         state.free |= 1 << slot
         self.removed |= 1 << slot

@@ -185,7 +185,10 @@ class _Graph:
             if label != _EDGE:
                 near = sorted([kind + colours[other] for kind, other in self.around[vertex]])
                 parts += [label, len(near), *near]
-        return b"~" + array("Q", parts).tobytes()
+        try:
+            return b"~" + array("I", parts).tobytes()
+        except OverflowError:
+            return b"!" + array("Q", parts).tobytes()
 
 
 def _refine(around: list[Around], colours: list[int]) -> list[int]:

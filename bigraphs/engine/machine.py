@@ -11,6 +11,7 @@ from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph
 from bigraphs.canonical import canonical
 from bigraphs.engine.contexts import occurs, without_idle
+from bigraphs.engine.forms import Forms
 from bigraphs.engine.labelling import Labelling
 from bigraphs.engine.occurrences import Spot
 from bigraphs.engine.outlines import Outlines
@@ -22,7 +23,7 @@ from bigraphs.engine.search_state import Occurrence
 from bigraphs.engine.state import Key, State, make_state
 from bigraphs.engine.world import World, has_edges, has_sharing
 from bigraphs.errors import BigraphError
-from bigraphs.system import Rule, System
+from bigraphs.system import System
 
 MOST_INSTANTANEOUS: Final = 100_000
 """How many instantaneous reactions may follow one another."""
@@ -68,10 +69,9 @@ class Machine:
         )
         self.world.pause = pause
         self.labelling = Labelling(self.world)
-        self.outlines = Outlines(self.world)
-        self.reactions = [
-            Reaction(self.world, rule, number, _canonical_rule) for number, rule in enumerate(rules)
-        ]
+        self.outlines = Outlines(self.labelling)
+        forms = Forms()
+        self.reactions = [Reaction(self.world, rule, number, forms) for number, rule in enumerate(rules)]
         self.index = ReactionIndex(self.reactions)
         self.classes = self._classes()
         self.instantaneous = any(instant for _, instant in self.classes)
@@ -118,7 +118,9 @@ class Machine:
             for reaction, found in enabled:
                 result = spot.after(reaction.apply(spot.state, found)[0])
                 target, count = self.settle(result)
-                yield Step(reaction, found, target, 1 + (count and self._counted(result, count, settled)))
+                if count and len(enabled) > 1:
+                    count = self._counted(result, count, settled)
+                yield Step(reaction, found, target, 1 + count)
             if enabled:
                 return
 
@@ -166,12 +168,6 @@ class Machine:
             targets = [spot.after(reaction.apply(spot.state, found)[0]) for found in live]
             for target in targets:
                 target.lost |= spot.lost
-            if len(targets) == 1:
-                return targets[0]
-            results: dict[Key, Spot] = {}
-            for target in targets:
-                results.setdefault(self.labelling.canonical(target.state), target)
-            targets = list(results.values())
             return targets[self.outlines.least([target.state for target in targets])]
         return None
 
@@ -195,11 +191,3 @@ class Machine:
                 "let each of them take away what it looks for",
             )
         seen.add(key)
-
-
-def _canonical_rule(rule: Rule) -> Rule:
-    return replace(rule, redex=_tidy(rule.redex), reactum=_tidy(rule.reactum))
-
-
-def _tidy(side: Bigraph) -> Bigraph:
-    return canonical(lean(side))

@@ -6,8 +6,9 @@ from hashlib import blake2b
 from typing import TypeAlias
 
 from bigraphs.engine.decoding import history_free
+from bigraphs.engine.labelling import Labelling
 from bigraphs.engine.state import State, bits
-from bigraphs.engine.world import REFERENCE, World
+from bigraphs.engine.world import REFERENCE
 
 Outline: TypeAlias = list[list[bytes]]
 
@@ -15,21 +16,28 @@ Outline: TypeAlias = list[list[bytes]]
 class Outlines:
     """The outlines of the states of one world: all but which edge a link is, and where a shared node is twice."""
 
-    def __init__(self, world: World) -> None:
-        self.world = world
+    def __init__(self, labelling: Labelling) -> None:
+        self.labelling = labelling
+        self.world = labelling.world
         self._digests: dict[int, bytes] = {}
 
     def least(self, states: list[State]) -> int:
         """Return which of several states comes first in an order that isomorphic states share.
 
-        Outlines decide it as a rule; a canonical form, which takes long, is made where they are equal only.
+        Outlines decide it as a rule, else whether all the states of the least outline are one. Canonical forms that do
+        not depend on what was seen before, which take long, are made where neither does.
         """
         if len(states) == 1:
             return 0
         outlines = [self.outline(state) for state in states]
         least = min(outlines)
         tied = [number for number, outline in enumerate(outlines) if outline == least]
-        return tied[0] if len(tied) == 1 else min(tied, key=lambda number: history_free(states[number]))
+        if len(tied) == 1 or len({states[number].key() for number in tied}) == 1:
+            return tied[0]
+        distinct = {self.labelling.canonical(states[number]): number for number in reversed(tied)}
+        if len(distinct) == 1:
+            return tied[0]
+        return min(sorted(distinct.values()), key=lambda number: history_free(states[number]))
 
     def outline(self, state: State) -> Outline:
         """Return the digests of what is in each region, sorted."""

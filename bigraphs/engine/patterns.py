@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
 from typing import Final
 
@@ -55,6 +55,13 @@ class Pattern:
     def closed(self) -> range:
         """Return the links that are edges."""
         return range(self.names, len(self.on))
+
+    def form(self, world: World) -> Hashable:
+        """Return all that decides how it is looked for, so all but which controls and names its nodes have."""
+        ordered = tuple([world.ordered[control] for control in self.controls])
+        named = tuple([label >= 0 for label in self.labels])
+        places = self.parents, self.homes, self.sited, self.sites, self.regions
+        return ordered, named, places, self.ports, self.names, self.twins
 
     def wide(self) -> bool:
         """Say whether a part of it might lie inside what another one holds."""

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
-from bigraphs.engine.automorphisms import Representatives, symmetries
+from bigraphs.engine.automorphisms import Representatives
 from bigraphs.engine.contexts import ConditionCheck
 from bigraphs.engine.draft import Draft
+from bigraphs.engine.forms import Forms
 from bigraphs.engine.patterns import Pattern, check_size, check_solid, compile_pattern
 from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import Occurrence
@@ -59,11 +60,9 @@ class Reaction:
         closed: Whether the redex has edges.
     """
 
-    def __init__(
-        self, world: World, rule: Rule, number: int, tidy: Callable[[Rule], Rule] = lambda rule: rule
-    ) -> None:
+    def __init__(self, world: World, rule: Rule, number: int, forms: Forms | None = None) -> None:
         self.world, self.number, self.label = world, number, rule.label
-        self._given, self._tidy = rule, tidy
+        self._given, self._forms = rule, forms or Forms()
         check_solid(rule.redex, f"the redex of rule '{rule.label}'")
         for pattern in (rule.redex, *(condition.pattern for condition in rule.conditions)):
             check_size(pattern)
@@ -77,8 +76,8 @@ class Reaction:
 
     @cached_property
     def rule(self) -> Rule:
-        """The rule, tidy."""
-        return self._tidy(self._given)
+        """The rule, in canonical form."""
+        return self._forms.tidy(self._given)
 
     @cached_property
     def pattern(self) -> Pattern:
@@ -103,7 +102,7 @@ class Reaction:
     @cached_property
     def representatives(self) -> Representatives:
         """What chooses among occurrences that are one; made when the rule has an occurrence."""
-        return Representatives(self.pattern, symmetries(self.rule, self.pattern))
+        return Representatives(self.pattern, self._forms.symmetries(self.rule, self.pattern))
 
     @cached_property
     def tracked(self) -> tuple[int, ...]:

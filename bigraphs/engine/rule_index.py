@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from typing import Final
 
 from bigraphs.engine.reactions import Reaction
 from bigraphs.engine.state import State, bits
+
+_GROUP: Final = 16
 
 
 class RuleIndex:
     """Patterns by the controls of their nodes; pattern `n` is bit `n` of a mask.
 
     `short[control][k]` are the patterns for which k nodes of a control are too few, so that a state is asked once
-    for each control, however many patterns there are.
+    for each control, however many patterns there are. Controls are taken in groups: a step changes the numbers of a
+    few, and leaves what the other groups say.
     """
 
     def __init__(self, needs: Sequence[Counter[int]]) -> None:
@@ -25,16 +29,40 @@ class RuleIndex:
                 few += [0] * (count - len(few))
                 for fewer in range(count):
                     few[fewer] |= 1 << number
-        self._short = sorted(short.items())
+        ordered = sorted(short.items())
+        self._groups = [ordered[start : start + _GROUP] for start in range(0, len(ordered), _GROUP)]
+        self._group_of = {control: place // _GROUP for place, (control, _) in enumerate(ordered)}
 
     def possible(self, state: State) -> int:
         """Return the patterns for all of whose nodes a state has nodes enough."""
-        nodes, lacking = state.by_control, 0
-        for control, few in self._short:
-            there = nodes[control].bit_count()
-            if there < len(few):
-                lacking |= few[there]
-        return self.all & ~lacking
+        return self.spared(self.lacking(state))
+
+    def spared(self, lacking: Sequence[int]) -> int:
+        """Return the patterns that no group of controls excludes."""
+        found = 0
+        for excluded in lacking:
+            found |= excluded
+        return self.all & ~found
+
+    def lacking(self, state: State) -> list[int]:
+        """Return for each group of controls the patterns for which a state has too few nodes of one of them."""
+        return [_lacking(group, state) for group in self._groups]
+
+    def lacking_after(self, before: Sequence[int], state: State, controls: Iterable[int]) -> list[int]:
+        """Return the same for the state after a step that changed the numbers of the nodes of these controls."""
+        found = list(before)
+        for group in {self._group_of.get(control, -1) for control in controls} - {-1}:
+            found[group] = _lacking(self._groups[group], state)
+        return found
+
+
+def _lacking(group: Sequence[tuple[int, list[int]]], state: State) -> int:
+    nodes, found = state.by_control, 0
+    for control, few in group:
+        there = nodes[control].bit_count()
+        if there < len(few):
+            found |= few[there]
+    return found
 
 
 class ReactionIndex(RuleIndex):

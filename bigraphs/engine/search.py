@@ -1,11 +1,11 @@
-"""The search for occurrences: one plan for each pattern and start node, made once, run on every state.
+"""The search for occurrences: one plan for each form of a pattern and start node, made once, run on every state.
 
 A plan places the nodes of a pattern one after the other, next to those that are placed already, so that its
 candidates are an intersection of a few masks. An occurrence maps nodes injectively and keeps controls, nesting
 and links: a node without a site has nothing else in it, an edge is matched with all of its points, a name by any
 link. Only a region all of whose nodes are in other nodes, too, may lie nowhere. Whether the regions lie where rules
 may act is asked afterwards (`bigraphs.engine.contexts`), since that can change without any node of the occurrence
-being touched.
+being touched. Patterns that differ in their controls only have one form.
 """
 
 from __future__ import annotations
@@ -25,6 +25,16 @@ _OFTEN: Final = 0x3FF
 """After how many steps, less one, a search pauses."""
 
 
+class _Plans:
+    """What places the patterns of one form, from each of their nodes on, and how often they were looked for."""
+
+    __slots__ = ("placings", "searches")
+
+    def __init__(self, size: int) -> None:
+        self.placings: list[Placing | None] = [None] * size
+        self.searches = 0
+
+
 class Matcher:
     """Finds a pattern in the states of one world."""
 
@@ -32,23 +42,22 @@ class Matcher:
         self.world = world
         self.pattern = pattern
         self.wide = pattern.wide()
-        self._plans: list[Placing | None] = [None] * pattern.size
-        self._searches = 0
+        self._plans: _Plans = world.plans.setdefault(pattern.form(world), _Plans(pattern.size))
 
     def plan(self, first: int) -> Placing:
         """Return what places the whole pattern from one node on; it is made when it is first asked for."""
-        found = self._plans[first]
+        found = self._plans.placings[first]
         if found is None:
-            found = self._plans[first] = _plan(self.world, self.pattern, first)
+            found = self._plans.placings[first] = _plan(self.world, self.pattern, first)
         return found
 
     def unplanned(self) -> bool:
         """Say whether it has searched so seldom that to look everywhere costs less than to plan from each node."""
-        return self._searches < _SELDOM
+        return self._plans.searches < _SELDOM
 
     def find(self, state: State, allowed: int = -1, *, once: bool = False) -> list[Occurrence]:
         """Return every occurrence within the allowed slots, or one of them."""
-        self._searches += 1
+        self._plans.searches += 1
         pattern, run = self.pattern, Run(state, self.pattern, allowed, once=once)
         if not pattern.size:
             return [Occurrence((), tuple(run.links), 0)]
@@ -108,7 +117,6 @@ def _nearness(pattern: Pattern, node: int, placed: int) -> int:
 
 def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing) -> Step:
     """Return the step that tries every slot for a node which the placed ones leave."""
-    control = pattern.controls[node]
     above = tuple(parent for parent in pattern.parents[node] if parent in bound)
     below = tuple(kid for kid in pattern.kids[node] if kid in bound)
     beside = next((other for other in sorted(bound) if _beside(pattern, node, other)), -1)
@@ -124,7 +132,7 @@ def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing
         if run.steps & _OFTEN == 0:
             run.state.world.pause()
         state, nodes = run.state, run.nodes
-        mask = state.by_control[control] & run.allowed & ~used
+        mask = state.by_control[run.pattern.controls[node]] & run.allowed & ~used
         for parent in above:
             mask &= state.kids[nodes[parent]]
         for kid in below:
@@ -168,7 +176,7 @@ def _placing(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
     inside, sited = len(pattern.kids[node]), pattern.sited[node]
     above, rooted = len(pattern.parents[node]), bool(pattern.homes[node])
     alone = rooted and not above
-    label = pattern.labels[node]
+    named = pattern.labels[node] >= 0
     bind = binding(world, pattern, node, then)
 
     def place(run: Run, used: int, slot: int) -> bool:
@@ -181,7 +189,7 @@ def _placing(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
             spare < 0
             or (spare > 0 and not rooted)
             or (not spare and alone)
-            or (label >= 0 and state.labels[slot] != label)
+            or (named and state.labels[slot] != run.pattern.labels[node])
         ):
             return False
         run.nodes[node] = slot

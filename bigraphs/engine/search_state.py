@@ -21,11 +21,12 @@ class Occurrence(NamedTuple):
 
 
 class Run:
-    """One search: the state, what is placed so far, and what was found."""
+    """One search: the pattern, the state, what is placed so far, and what was found."""
 
-    __slots__ = ("allowed", "found", "links", "nodes", "once", "state", "steps")
+    __slots__ = ("allowed", "found", "links", "nodes", "once", "pattern", "state", "steps")
 
     def __init__(self, state: State, pattern: Pattern, allowed: int, *, once: bool) -> None:
+        self.pattern = pattern
         self.state = state
         self.allowed = allowed
         self.once = once

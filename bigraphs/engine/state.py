@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from array import array
 from functools import lru_cache
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from bigraphs.bigraph import Bigraph
 from bigraphs.engine.world import REFERENCE, World
@@ -55,6 +55,19 @@ class State:
         found.by_control = self.by_control.copy()
         found.codes = self.codes.copy()
         found.free = self.free
+        return found
+
+    def parts(self) -> tuple[Any, ...]:
+        """Return what a state is made of, as plain values."""
+        lists = self.labels, self.parents, self.kids, self.ports, self.points, self.by_control, self.codes
+        return *lists, self.free
+
+    def remade(self, parts: tuple[Any, ...]) -> State:
+        """Return the state of such parts, which are of this one's world."""
+        found = State.__new__(State)
+        found.world = self.world
+        found.labels, found.parents, found.kids, found.ports, found.points, *rest = parts
+        found.by_control, found.codes, found.free = rest
         return found
 
     def occupied(self) -> int:

@@ -8,8 +8,8 @@ state is told by the codes of the nodes in its regions.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TypeAlias
+from collections.abc import Callable, Hashable
+from typing import Any, TypeAlias
 
 from bigraphs.bigraph import Bigraph
 from bigraphs.errors import BigraphError
@@ -32,6 +32,7 @@ class World:
         named: Whether nodes may have names.
         rows: What each code stands for.
         bare: For each code whether no edge and no shared node is in it.
+        plans: How patterns are looked for, by their forms (`bigraphs.engine.search`).
         pause: What long searches call now and then; it may raise an exception to end them.
     """
 
@@ -55,6 +56,7 @@ class World:
         self.codes: dict[Row, int] = {}
         self.rows: list[Row] = []
         self.bare: list[bool] = []
+        self.plans: dict[Hashable, Any] = {}
 
     def label(self, control: str, name: str | None) -> int:
         """Return the label of a control with a node's name, if it has one."""

@@ -83,12 +83,11 @@ def first_states(system: TransitionSystem, most: int) -> TransitionSystem:
     """Return the part of a system that its first states are, with the transitions between them."""
     if len(system) <= most:
         return system
-    kept = [n for n, start in enumerate(system.starts) if start < most and system.targets[n] < most]
-    return system.restricted(most, kept)
+    return system.beginning(most)
 
 
 def _summary(system: TransitionSystem, shown: int) -> str:
-    parts = [f"{len(system):,} states", f"{len(system.starts):,} transitions"]
+    parts = [f"{len(system):,} states", f"{len(system.targets):,} transitions"]
     parts.append("complete" if system.complete else f"incomplete: {system.reason}")
     if shown < len(system):
         parts.append(f"the first {shown:,} states are shown")

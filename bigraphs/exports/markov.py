@@ -77,8 +77,7 @@ def to_markov(system: TransitionSystem) -> Markov:
 
 
 def _stuck(system: TransitionSystem) -> list[int]:
-    going = set(system.starts)
-    return [state for state in range(len(system)) if state not in going]
+    return [state for state in range(len(system)) if not system.leaving(state)]
 
 
 def _moves(system: TransitionSystem) -> Iterator[Move]:

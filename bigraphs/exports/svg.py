@@ -150,11 +150,12 @@ def _arrow(start: tuple[float, float], end: tuple[float, float], *, loop: bool) 
 
 
 def _states(system: TransitionSystem, places: list[tuple[float, float]]) -> Iterator[str]:
-    going = set(system.starts)
     for state, (x, y) in enumerate(places):
         labels = system.labels_of(state)
         fill = "#fdf1e3" if labels else "#e8f1fd"
-        border, width = ("#cf6363", 2.0) if state not in going else ("#4f86c6", 2.5 if state == 0 else 1.2)
+        border, width = (
+            ("#cf6363", 2.0) if not system.leaving(state) else ("#4f86c6", 2.5 if state == 0 else 1.2)
+        )
         dash = ' stroke-dasharray="3 2"' if state >= system.expanded else ""
         yield (
             f'<g class="s" data-state="{state}"><title>state {state}{": " if labels else ""}'

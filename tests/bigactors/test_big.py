@@ -237,6 +237,35 @@ class TestBig:
             "  predicates: at (1,000)",
         ]
 
+    def test_a_long_state_is_told_by_its_size(self, bigactors, tmp_path):
+        balls = " | ".join(["Ball{a}"] * 80)
+        (tmp_path / "balls.big").write_text(f"""
+            ctrl Room = 0; atomic ctrl Ball = 1; big all = /a Room.({balls}) || Room.1;
+            react go = Ball{{x}} -[1]-> Ball{{x}};
+            begin sbrs init all; rules = [ {{go}} ]; end
+        """)
+        _, out, _ = bigactors("big", "validate", str(tmp_path / "balls.big"))
+        assert out.splitlines()[:2] == [
+            "balls.big: an sbrs of 1 rule",
+            "  initial state: 82 nodes of 2 controls in 2 regions, 1 edge, 0 names; 'bigactors big show' prints it",
+        ]
+
+    def test_instances_that_occur_nowhere_and_rules_never_used_are_one_line_each(self, bigactors, tmp_path):
+        (tmp_path / "count.big").write_text("""
+            atomic fun ctrl N(n) = 0; big zero = N(0); fun big at(n) = N(n); react stay = N(0) --> N(0);
+            fun react up(n) = N(n) --> N(n + 1);
+            begin brs
+              int n = [1 : 1 : 999]; init zero; rules = [ {up(n), stay} ]; preds = { at(0), at(n), zero };
+            end
+        """)
+        _, out, _ = bigactors("big", "full", str(tmp_path / "count.big"))
+        assert out.splitlines()[1:] == [
+            "  at(0) occurs in 1",
+            "  at (999) occurs in 0",
+            "  zero occurs in 1",
+            "  rules never used: up (999)",
+        ]
+
     def test_show_prints_and_draws_a_state(self, bigactors, walk):
         code, out, _ = bigactors("big", "show", "--state", "1", "--output", "one.svg", "walk.big")
         assert code == 0

@@ -22,6 +22,7 @@ class Rules:
         self.scope = evaluation.scope
         self.kind = kind
         self._known: dict[str, Rule | None] = {}
+        self._positions: dict[int, Position] = {}
 
     def named(self, name: str, given: tuple[Value, ...], span: Span, frame: Frame) -> Rule | None:
         """Return a declared rule for some arguments, or None where a mistake has been noted."""
@@ -88,8 +89,12 @@ class Rules:
 
     def position(self, span: Span) -> Position:
         """Return lines and columns of a span."""
-        text = self.scope.findings.text
-        return Position(text.count("\n", 0, span.start) + 1, span.start - text.rfind("\n", 0, span.start))
+        if span.start not in self._positions:
+            text, start = self.scope.findings.text, span.start
+            self._positions[start] = Position(
+                text.count("\n", 0, start) + 1, start - text.rfind("\n", 0, start)
+            )
+        return self._positions[span.start]
 
     def pattern(self, expression: Expression, frame: Frame) -> Bigraph | None:
         """Return a pattern, of which only is asked whether it occurs."""

@@ -167,8 +167,10 @@ class Scope:
         fitting = True
         for parameter, value in zip(parameters, given, strict=True):
             type_ = values.type_name(value)
-            line = self.findings.text.count("\n", 0, span.start) + 1
-            known, first = self._types.setdefault((name, parameter), (type_, line))
+            if (name, parameter) not in self._types:
+                line = self.findings.text.count("\n", 0, span.start) + 1
+                self._types[name, parameter] = type_, line
+            known, first = self._types[name, parameter]
             if known != type_:
                 written = f'"{value}"' if isinstance(value, str) else value
                 message = f"'{parameter}' of '{name}' is of type {known}, this is the {type_} {written}"

@@ -47,6 +47,9 @@ def pattern_of(bigraph: Bigraph) -> Bigraph:
     """Return what of a pattern decides whether it occurs: no idle names, no sites in regions, no empty regions."""
     inhabited = {parent for node in bigraph.nodes for parent in node.parents}
     kept = [region for region in range(bigraph.regions) if ~region in inhabited]
+    names = _used_names(bigraph)
+    if len(kept) == bigraph.regions and len(names) == len(bigraph.outer_names) and _sites_ask(bigraph):
+        return lean(bigraph)
     rank = {~region: ~place for place, region in enumerate(kept)}
     nodes = [
         replace(node, parents=tuple(rank.get(parent, parent) for parent in node.parents))
@@ -61,9 +64,15 @@ def pattern_of(bigraph: Bigraph) -> Bigraph:
         ),
         edges=bigraph.edges,
         inner_links=dict(bigraph.inner_links),
-        outer_names=_used_names(bigraph),
+        outer_names=names,
     )
     return lean(found)
+
+
+def _sites_ask(bigraph: Bigraph) -> bool:
+    """Say whether each site says something: that there may be more in these nodes."""
+    distinct = len(set(bigraph.sites)) == len(bigraph.sites) and list(bigraph.sites) == sorted(bigraph.sites)
+    return distinct and all(parents and all(parent >= 0 for parent in parents) for parents in bigraph.sites)
 
 
 def _used_names(bigraph: Bigraph) -> list[str]:

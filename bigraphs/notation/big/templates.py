@@ -40,11 +40,15 @@ class Symbol(str):
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """Bigraphs with symbols in their controls; `steps` compute the symbols that are no parameters."""
+    """Bigraphs with symbols in their controls; `steps` compute the symbols that are no parameters.
+
+    `controls` are those with symbols, `fixed` the others.
+    """
 
     bigraphs: tuple[Bigraph, ...]
     steps: tuple[tuple[ValueExpression, Frame], ...]
     controls: Mapping[str, tuple[ControlDeclaration, tuple[Value, ...]]]
+    fixed: tuple[Control, ...]
     scope: Scope
 
     def instance(self, given: Sequence[Value]) -> tuple[list[Bigraph], list[Control]] | None:
@@ -59,7 +63,7 @@ class Template:
             mark: control_of(declaration, tuple(_resolved(each, known) for each in arguments))
             for mark, (declaration, arguments) in self.controls.items()
         }
-        distinct = list({control.name: control for control in made.values()}.values())
+        distinct = list({control.name: control for control in (*self.fixed, *made.values())}.values())
         signature = Signature(tuple(distinct))
         names = {mark: control.name for mark, control in made.items()}
         return [relabelled(each, names, signature) for each in self.bigraphs], distinct
@@ -81,6 +85,7 @@ class SymbolicScope(Scope):
         self.frame = Frame(values={name: Symbol(f"#{number}") for number, name in enumerate(parameters)})
         self.steps: list[tuple[ValueExpression, Frame]] = []
         self.controls: dict[str, tuple[ControlDeclaration, tuple[Value, ...]]] = {}
+        self.fixed: dict[str, Control] = {}
 
     def value(self, expression: ValueExpression, frame: Frame) -> Value | None:
         """Return a symbol for what depends on symbols."""
@@ -99,14 +104,17 @@ class SymbolicScope(Scope):
         return True
 
     def filled(self, declaration: ControlDeclaration, given: tuple[Value, ...]) -> Control:
-        """Return a control with symbols in its name."""
+        """Return a control, with symbols in its name where they are among the arguments."""
         mark = super().filled(declaration, given)
-        self.controls[mark.name] = declaration, given
+        if any(isinstance(value, Symbol) for value in given):
+            self.controls[mark.name] = declaration, given
+        else:
+            self.fixed[mark.name] = mark
         return mark
 
     def template(self, bigraphs: Iterable[Bigraph], scope: Scope) -> Template:
         """Return the template of bigraphs that were evaluated here."""
-        return Template(tuple(bigraphs), tuple(self.steps), self.controls, scope)
+        return Template(tuple(bigraphs), tuple(self.steps), self.controls, tuple(self.fixed.values()), scope)
 
 
 def _resolved(value: Value, known: Sequence[Value]) -> Value:

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from bigraphs.canonical import canonical
 from bigraphs.engine import outlines
 from bigraphs.engine.decoding import to_bigraph
+from bigraphs.engine.labelling import Labelling
 from bigraphs.engine.outlines import Outlines
 from bigraphs.engine.state import make_state
 from bigraphs.engine.world import World
@@ -17,7 +18,7 @@ def first_of(bigraphs, names=("x", "y")):
     """Return the state that comes first in a world that sees these in order, canonical."""
     world = World(bigraphs[0].signature, names, bigraphs[0].regions, sharing=True)
     states = [make_state(world, each) for each in bigraphs]
-    return canonical(to_bigraph(states[Outlines(world).least(states)]))
+    return canonical(to_bigraph(states[Outlines(Labelling(world)).least(states)]))
 
 
 @given(

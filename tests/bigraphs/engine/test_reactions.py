@@ -56,7 +56,7 @@ def or_orphan(code, made):
 def test_rules_on_shared_places_make_something_that_the_algebra_makes_too(rule, target):
     world = World(SIGNATURE, target.outer_names, target.regions, sharing=True)
     reaction, state = Reaction(world, rule, 0), make_state(world, target)
-    algebra = {}
+    rule, algebra = reaction.rule, {}  # in canonical form, as the numbers of its nodes in occurrences
     for match in find_matches(rule.redex, target):
         links = dict(match.links)
         found = (match.nodes, tuple(links[name] for name in rule.redex.outer_names))

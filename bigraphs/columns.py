@@ -1,0 +1,137 @@
+"""Long lists kept small: texts one after the other, and values of which few are distinct."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Hashable, Iterable, Sequence
+from typing import Any, Final, TypeVar, overload
+
+Value = TypeVar("Value", bound=Hashable)
+
+_WIDER: Final = {"B": "H", "H": "I"}
+
+
+class Column(Sequence[Value]):
+    """A list of values of which few are distinct: each of these is kept once, and the list has their numbers.
+
+    Attributes:
+        values: The distinct values, in the order in which they first came.
+        codes: For each place in the list which of them is there.
+    """
+
+    __slots__ = ("_numbers", "codes", "values")
+
+    def __init__(self, given: Iterable[Value] = ()) -> None:
+        self.values: list[Value] = []
+        self.codes: array[int] = array("B")
+        self._numbers: dict[Value, int] = {}
+        for value in given:
+            self.append(value)
+
+    def append(self, value: Value) -> None:
+        """Add a value."""
+        code = self._numbers.get(value)
+        if code is None:
+            code = self._numbers[value] = len(self.values)
+            self.values.append(value)
+        try:
+            self.codes.append(code)
+        except OverflowError:
+            self.codes = array(_WIDER[self.codes.typecode], self.codes)
+            self.codes.append(code)
+
+    def __len__(self) -> int:
+        return len(self.codes)
+
+    @overload
+    def __getitem__(self, place: int) -> Value: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[Value]: ...
+    def __getitem__(self, place: int | slice) -> Value | list[Value]:
+        if isinstance(place, slice):
+            return [self.values[code] for code in self.codes[place]]
+        return self.values[self.codes[place]]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Column) and list(self) == list(other)
+
+    __hash__ = None  # type: ignore[assignment]  # it grows
+
+
+class Texts(Sequence[bytes]):
+    """A list of texts, which are kept one after the other."""
+
+    __slots__ = ("ends", "whole")
+
+    def __init__(self, given: Iterable[bytes] = ()) -> None:
+        self.whole = bytearray()
+        self.ends = array("Q", (0,))
+        for text in given:
+            self.append(text)
+
+    def append(self, text: bytes) -> None:
+        """Add a text."""
+        self.whole += text
+        self.ends.append(len(self.whole))
+
+    def __len__(self) -> int:
+        return len(self.ends) - 1
+
+    @overload
+    def __getitem__(self, place: int) -> bytes: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[bytes]: ...
+    def __getitem__(self, place: int | slice) -> Any:
+        if isinstance(place, slice):
+            return [self[each] for each in range(*place.indices(len(self)))]
+        start, end = self.ends[place], self.ends[place + 1]
+        return bytes(self.whole[start:end])
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Texts) and (self.whole, self.ends) == (other.whole, other.ends)
+
+    __hash__ = None  # type: ignore[assignment]  # it grows
+
+
+class Numbering:
+    """Texts numbered from 0 as they first came: an exact hash table of their numbers alone, open, at most half full."""
+
+    __slots__ = ("_places", "texts")
+
+    def __init__(self) -> None:
+        self.texts = Texts()
+        self._places = array("I", bytes(4 * 64))  # a number and 1; 0 where none is
+
+    def __len__(self) -> int:
+        return len(self.texts)
+
+    def find(self, text: bytes) -> int:
+        """Return the number of a text, -1 if it has none."""
+        places, whole, ends = self._places, self.texts.whole, self.texts.ends
+        last = len(places) - 1
+        place = hash(text) & last
+        while number := places[place]:
+            if whole[ends[number - 1] : ends[number]] == text:
+                return number - 1
+            place = (place + 1) & last
+        return -1
+
+    def add(self, text: bytes) -> int:
+        """Give a text that has none the next number."""
+        if 2 * len(self.texts) >= len(self._places):
+            self._grow()
+        self.texts.append(text)
+        self._put(text, len(self.texts))
+        return len(self.texts) - 1
+
+    def _put(self, text: bytes, number: int) -> None:
+        places, last = self._places, len(self._places) - 1
+        place = hash(text) & last
+        while places[place]:
+            place = (place + 1) & last
+        places[place] = number
+
+    def _grow(self) -> None:
+        self._places = array("I", bytes(8 * len(self._places)))
+        for number, text in enumerate(self.texts, 1):
+            self._put(text, number)

@@ -1,0 +1,65 @@
+"""What rules have in common that differ in their controls only, such as the thousands of instances of one rule.
+
+A canonical form depends on controls only by their order, symmetries only by which of them are equal. So both are
+worked out for the first rule of a form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from dataclasses import replace
+from typing import TypeAlias
+
+from bigraphs.algebra import lean
+from bigraphs.bigraph import Bigraph, Node, relabelled
+from bigraphs.canonical import canonical
+from bigraphs.engine.automorphisms import Symmetry, symmetries
+from bigraphs.engine.patterns import Pattern
+from bigraphs.system import Rule
+
+_Rank: TypeAlias = Callable[[str], Hashable]
+
+
+class Forms:
+    """The forms of one system's rules, as they are met."""
+
+    def __init__(self) -> None:
+        self._tidy: dict[Hashable, tuple[Bigraph, list[str]]] = {}
+        self._symmetries: dict[Hashable, tuple[Symmetry, ...]] = {}
+
+    def tidy(self, rule: Rule) -> Rule:
+        """Return a rule with both sides in canonical form, without idle edges."""
+        return replace(rule, redex=self._side(rule.redex), reactum=self._side(rule.reactum))
+
+    def _side(self, side: Bigraph) -> Bigraph:
+        controls = sorted({node.control for node in side.nodes})
+        form = _form(side, {control: rank for rank, control in enumerate(controls)}.__getitem__)
+        found = self._tidy.get(form)
+        if found is None:
+            found = self._tidy[form] = canonical(lean(side)), controls
+        first, others = found
+        return relabelled(first, dict(zip(others, controls, strict=True)), side.signature)
+
+    def symmetries(self, rule: Rule, pattern: Pattern) -> tuple[Symmetry, ...]:
+        """Return the symmetries of a rule, whose redex is this pattern."""
+        ranks: dict[str, int] = {}
+
+        def rank(control: str) -> int:
+            return ranks.setdefault(control, len(ranks))
+
+        form = _form(rule.redex, rank), _form(rule.reactum, rank), rule.instantiation
+        found = self._symmetries.get(form)
+        if found is None:
+            found = self._symmetries[form] = symmetries(rule, pattern)
+        return found
+
+
+def _form(side: Bigraph, rank: _Rank) -> Hashable:
+    """Return all of a side but its controls, which are told by their ranks and whether their ports are ordered."""
+
+    def row(node: Node) -> Hashable:
+        ordered = len(node.ports) > 1 and side.signature[node.control].ordered
+        return rank(node.control), ordered, node.name, node.ports, node.parents
+
+    links = side.edges, side.inner_links, side.outer_names
+    return tuple(map(row, side.nodes)), side.regions, side.sites, links
