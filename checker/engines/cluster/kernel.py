@@ -6,7 +6,6 @@
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from checker.engines.fast.columns import WORD
 from checker.engines.fast.kernel import (
@@ -18,6 +17,7 @@ from checker.engines.fast.kernel import (
     Batch,
     State,
 )
+from checker.engines.fast.loops import njit
 from checker.engines.fast.prefetch import prefetch
 from checker.engines.fast.table import AHEAD, Words, bits_for, entry_of, fetch, find, hashed
 

@@ -11,8 +11,9 @@
 from typing import Final
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from checker.engines.fast.loops import njit
 
 Matrix = NDArray[np.int32]
 

@@ -15,9 +15,9 @@ sequence of steps leads to, the first of a layer's sequences first, and nothing 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from checker.engines.fast.loops import njit
 from checker.engines.zones.automaton import (
     CLOCKS,
     DEADLINE,
@@ -312,7 +312,7 @@ def advance(m: Model, z: Zones, state: State, largest: int, until: int, s: Scrat
     return DONE
 
 
-@njit(cache=True)
+@njit(cache=True, _nrt=True)
 def arrange(m: Model, z: Zones, state: State, kept: State) -> None:
     """Leave some zones of the layer that was made, in an order; the others are covered."""
     begin = state[LAYER]

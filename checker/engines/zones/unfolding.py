@@ -10,7 +10,6 @@ what the clocks of windows say: base 3, one digit for each.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from checker.engines.fast import kernel
@@ -29,6 +28,7 @@ from checker.engines.fast.leaves import (
     STEP,
     TURN,
 )
+from checker.engines.fast.loops import njit
 from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
 from checker.engines.zones import automaton as automata
 from checker.engines.zones.automaton import DEADLINE, EDGE, LOCATION, TEST
