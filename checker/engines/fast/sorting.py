@@ -377,6 +377,13 @@ def note_places(d: Desk) -> bool:
     return moved
 
 
+@njit(cache=True, inline="always")
+def copy(source: Ints, target: Ints) -> None:
+    """Copy numbers one by one: an assignment to a slice would make an array."""
+    for k in range(len(source)):
+        target[k] = source[k]
+
+
 @njit(cache=True)
 def choose_order(x: Exchanges, d: Desk, count: int) -> bool:
     """Find the best of all orders that remain; False where something is not known."""
@@ -393,10 +400,10 @@ def choose_order(x: Exchanges, d: Desk, count: int) -> bool:
                 spelling += x.numbers[to]
         if not found or spelling < best:
             best, found = spelling, True
-            d.best[:] = d.place
+            copy(d.place, d.best)
         if not next_order(x, d):
             break
-    d.place[:] = d.best
+    copy(d.best, d.place)
     return True
 
 

@@ -8,24 +8,45 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence, Set
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
 
 from checker.engines.times import NO_SPAN, Span, TakenStep
 from checker.engines.zones.automaton import Constraint, Edge
 from checker.engines.zones.bounds import FREE, MOST
-from checker.engines.zones.dates import Zone, tested, whole
+from checker.engines.zones.dates import Dates, Zone, tested, whole
 from checker.engines.zones.first_run import run_of
+from checker.engines.zones.network import Network
 from checker.engines.zones.observers import Meter, Observer, Watch
 from checker.engines.zones.search import Search
-from checker.engines.zones.zone_times import ZoneTimes
 
 Asked = list[list[tuple[Edge, int]]]
 """For each location the edges of steps that are asked for, each with the number of its set."""
 
 
+class Searched(Protocol):
+    """What is asked of the search that was done (`ZoneTimes`): of what, in which order, and what a clock more shows."""
+
+    network: Network
+    order: NDArray[np.int64]
+
+    @property
+    def enough(self) -> int:
+        """Return how far a clock more is counted at first."""
+
+    def explored(self, observer: Observer) -> tuple[Observer, Search]:
+        """Search with an observer."""
+
+    def goes_round(self, observer: Observer, dates: Dates) -> bool:
+        """Tell whether a run comes to the same again."""
+
+
 class Spans:
     """When one of some steps is taken, for sets of steps."""
 
-    def __init__(self, times: ZoneTimes, steps: Sequence[Set[TakenStep]]) -> None:
+    def __init__(self, times: Searched, steps: Sequence[Set[TakenStep]]) -> None:
         self.times = times
         self.steps = steps
         self.sets: dict[tuple[int, int], list[int]] = {}
