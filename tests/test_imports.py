@@ -47,6 +47,7 @@ LIBRARIES = {
     "llvmlite": ("checker/engines/fast/prefetch.py",),  # what numba has no name for
     "ray": ("checker/engines/cluster/ray_crew.py",),
     "scipy": ("checker/properties/temporal/components.py", "bigraphs/sampling.py"),
+    "stormpy": ("bigactors/big/storm_worker.py",),
     "pytest": ("bigactors/pytest_plugin.py",),
     "jsonschema": ("bigactors/testing.py",),
     "pyais": ("physical/ais_decode.py",),
@@ -65,12 +66,9 @@ LIBRARIES = {
     "hypothesis": ("semantics/strategies.py",),
     "wcwidth": ("bigactors/terminal.py", "checker/reports/lanes.py"),
     "argcomplete": ("bigactors/completion.py",),
-    "lazy_loader": (
-        "bigactors/big/storm_worker.py",
-        *(
-            f"{room}/__init__.py"
-            for room in (*MAY_IMPORT, "bigraphs/exports", "bigraphs/notation", "checker/reduction")
-        ),
+    "lazy_loader": tuple(
+        f"{room}/__init__.py"
+        for room in (*MAY_IMPORT, "bigraphs/exports", "bigraphs/notation", "checker/reduction")
     ),
     "matplotlib": ("bigraphs/drawing.py", "physical/drawing.py", "physical/map_", "bigactors/pictures/"),
 }

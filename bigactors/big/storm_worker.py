@@ -8,10 +8,6 @@ import sys
 from pathlib import Path
 from typing import Any, Final
 
-import lazy_loader
-
-stormpy: Final[Any] = lazy_loader.load("stormpy")  # an extra: without it this module can still be imported
-
 FILES: Final = {
     "transitions": ".tra",
     "labeling": ".lab",
@@ -20,12 +16,19 @@ FILES: Final = {
 }
 
 
+def storm() -> Any:
+    """Return Storm's module, which is an extra: without it this module can still be imported."""
+    import stormpy  # noqa: PLC0415
+
+    return stormpy
+
+
 def main(folder: Path) -> None:
     """Answer the request in a folder: what Storm makes of each formula, and of a model what they come to."""
     formulas = json.loads((folder / "request.json").read_text(encoding="utf-8"))
     files = {name: folder / f"model{suffix}" for name, suffix in FILES.items()}
     given = {name: str(file) for name, file in files.items() if file.exists()}
-    model = stormpy.build_model_from_explicit(**given) if given else None
+    model = storm().build_model_from_explicit(**given) if given else None
     replies = [reply(text, model) for text in formulas]
     (folder / "reply.json").write_text(json.dumps(replies), encoding="utf-8")
 
@@ -33,7 +36,7 @@ def main(folder: Path) -> None:
 def reply(text: str, model: Any) -> dict[str, Any]:
     """Return what there is to say of one formula; `error` is Storm's own message."""
     try:
-        formulas = [each.get_raw_formula() for each in stormpy.parse_properties(text)]
+        formulas = [each.get_raw_formula() for each in storm().parse_properties(text)]
         if len(formulas) != 1:
             return {"error": f"there are {len(formulas)} formulas in it, instead of one"}
         if not isinstance(formulas[0], operators()):
@@ -47,7 +50,7 @@ def reply(text: str, model: Any) -> dict[str, Any]:
 
 def operators() -> tuple[Any, ...]:
     """Return the sorts of formulas that have a value in a state."""
-    logic = stormpy.logic
+    logic = storm().logic
     return (
         logic.ProbabilityOperatorFormula,
         logic.RewardOperatorFormula,
@@ -59,11 +62,11 @@ def operators() -> tuple[Any, ...]:
 def answer(model: Any, formula: Any) -> dict[str, Any]:
     """Return the value of a formula in the initial state, and what a run that shows it has to do."""
     start = model.initial_states[0]
-    found = stormpy.model_checking(model, formula, extract_scheduler=model.is_nondeterministic_model)
+    found = storm().model_checking(model, formula, extract_scheduler=model.is_nondeterministic_model)
     said: dict[str, Any] = {}
     if formula.has_bound:
         said["true"] = bool(found[start])
-        found = stormpy.model_checking(
+        found = storm().model_checking(
             model, unbounded(formula, model), extract_scheduler=model.is_nondeterministic_model
         )
     value = found[start]
@@ -72,7 +75,7 @@ def answer(model: Any, formula: Any) -> dict[str, Any]:
         said["bounds"] = [value.lower, value.upper]
     if model.is_nondeterministic_model:
         said["choices"] = choices(model, found)
-    if isinstance(formula, stormpy.logic.ProbabilityOperatorFormula):
+    if isinstance(formula, storm().logic.ProbabilityOperatorFormula):
         said["shown"] = shown(model, formula.subformula)
     return said
 
@@ -83,10 +86,10 @@ def unbounded(formula: Any, model: Any) -> Any:
     asked.remove_bound()
     if model.is_nondeterministic_model and not asked.has_optimality_type:
         least = formula.comparison_type in (
-            stormpy.logic.ComparisonType.GEQ,
-            stormpy.logic.ComparisonType.GREATER,
+            storm().logic.ComparisonType.GEQ,
+            storm().logic.ComparisonType.GREATER,
         )
-        ways = stormpy.logic.OptimizationDirection
+        ways = storm().logic.OptimizationDirection
         asked.set_optimality_type(ways.MINIMIZE if least else ways.MAXIMIZE)
     return asked
 
@@ -104,7 +107,7 @@ def choices(model: Any, found: Any) -> list[int] | None:
 
 def shown(model: Any, path: Any) -> dict[str, Any] | None:
     """Return where a run leads that shows a path formula, or the opposite of one; None if no finite run does."""
-    logic = stormpy.logic
+    logic = storm().logic
     try:
         if isinstance(path, logic.UntilFormula):
             left, right = states(model, path.left_subformula), states(model, path.right_subformula)
@@ -120,7 +123,7 @@ def shown(model: Any, path: Any) -> dict[str, Any] | None:
 
 def states(model: Any, formula: Any) -> list[bool]:
     """Return for each state whether a formula of states is true there; raises RuntimeError for another formula."""
-    found = stormpy.model_checking(model, formula)
+    found = storm().model_checking(model, formula)
     return [bool(found[state]) for state in range(model.nr_states)]
 
 
