@@ -101,7 +101,7 @@ off, and below which number rows may be looked up."""
 
 WIDE, UNSORTED, FULL = -2, -3, -4
 """What stands in the place of a node where one row has more successors than a batch holds, where it is not known what
-represents one of them, and where there is no room for the nodes into which one is folded."""
+represents one of them, and where there is no room for what one is folded into."""
 
 PLACE, MOVE, LATER = 3, 5, 3
 _QUARTER = np.uint64(40)
