@@ -34,7 +34,7 @@ test test-long fuzz: export PYTHONDONTWRITEBYTECODE =
 test: lint types $(STAMP) $(PARTS)  ## what must hold at each change; of generated tests a part (tests/scale.py)
 	$(BIN)/python -m pytest -n 3 --dist worksteal -q -m "not long"
 
-test-long: $(STAMP) $(PARTS)  ## whole flights, killed processes, workers, compilations (some 5 minutes)
+test-long: $(STAMP) $(PARTS)  ## whole flights, killed processes, workers, compilations (some 10 minutes)
 	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m long
 
 lint: $(STAMP)

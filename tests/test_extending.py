@@ -146,6 +146,7 @@ def swapping(tmp_path_factory):
     return json.loads(run.stdout)
 
 
+@pytest.mark.long
 def test_a_command_more_is_run_by_both_engines_reduced_or_not(swapping):
     holding = ["holds"] * 4
     assert swapping["atomic"] == [[3, 2, *holding]] * 2
@@ -153,6 +154,7 @@ def test_a_command_more_is_run_by_both_engines_reduced_or_not(swapping):
     assert swapping["reduced"] == [[3, 2, *holding]] * 2
 
 
+@pytest.mark.long
 def test_a_command_more_is_written_and_shown(swapping):
     assert "\n  control(SWAP u0 WITH u1)\n" in swapping["formatted"]
     assert "\n- `SWAP entity WITH other`: let two entities change places." in swapping["reference"]
@@ -160,15 +162,18 @@ def test_a_command_more_is_written_and_shown(swapping):
     assert "`SWAP`" in swapping["reference"].partition("## Words")[2]
 
 
+@pytest.mark.long
 def test_nothing_has_the_name_of_a_command_more(swapping):
     message = "LS111: 'SWAP' is a word of the language and cannot be a name; choose another name"
     assert swapping["named"][0] == message
 
 
+@pytest.mark.long
 def test_a_command_more_that_can_never_be_done_is_found_before_a_run(swapping):
     assert swapping["place"] == ["LS506: nothing can drive 'west' (a Place); what is driven moves: u0, u1"]
 
 
+@pytest.mark.long
 def test_a_command_more_is_hinted_at(swapping):
     assert swapping["half"] == [
         "LS109: expected 'WITH', found ')'; control actions are SWAP entity WITH other"

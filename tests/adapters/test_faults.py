@@ -303,6 +303,7 @@ def fleet(count):
     return vehicles, [Craft(f"uav{number}", system=number + 1) for number in range(count)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("count", "disturbance"), [(4, BAD), (10, Disturbance())])
 def test_many_planes_on_one_link_all_arrive(count, disturbance):
     async def main():

@@ -71,6 +71,7 @@ def test_spin_counts_as_many_for_several_uavs_and_spills(uavs, spills, counts, t
     assert (found.configurations, found.transitions) == counts
 
 
+@pytest.mark.long
 @needs_spin
 def test_the_patrol_is_kept_with_its_ratios_to_spin(tmp_path):
     data, printed = kept("run", tmp_path, "--turns", "1", "1x3+handover")
@@ -92,6 +93,7 @@ def test_the_patrol_is_kept_with_its_ratios_to_spin(tmp_path):
     assert "| 1, 3×3, hand-over | SPIN, no reduction | 1,434 | 4,788 |" in printed
 
 
+@pytest.mark.long
 def test_growth_is_kept_mark_by_mark_and_plotted(tmp_path):
     plot = tmp_path / "growth.svg"
     sizes = ("--first", "2000", "--most", "10000", "2x3")
@@ -104,6 +106,7 @@ def test_growth_is_kept_mark_by_mark_and_plotted(tmp_path):
     assert plot.read_text().startswith("<?xml")
 
 
+@pytest.mark.long
 @needs_spin
 def test_spin_grows_until_its_bound_and_tells_what_it_had_on_its_way(tmp_path):
     found = spin.bounded(patrol.promela_text(3, 3), tmp_path, spin.Bounds(minutes=0), breadth_first=True)
@@ -125,6 +128,7 @@ def test_spins_marks_stand_beside_ours_where_they_are_near():
     assert second["bytes_per_configuration"] == 1
 
 
+@pytest.mark.long
 @needs_spin
 def test_the_largest_are_kept_with_spins_figures_beside_them(tmp_path):
     data, printed = kept("largest", tmp_path, "--uavs", "2", "--spills", "0", "--robots", "3")
@@ -149,6 +153,7 @@ def test_a_family_that_there_is_not_is_refused(capsys):
     assert "no such family: oil_spill; there are oil_spill, spills: 1," in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_what_meets_a_limit_is_cut_and_goes_on_reduced(tmp_path):
     sizes = ("--uavs", "2", "--spills", "1", "--robots", "2")
     data, _ = kept("largest", tmp_path, "--no-peer", "--minutes", "0", *sizes)

@@ -54,6 +54,7 @@ def decided(size, fair):
     return {each.property.name: each.outcome.value for each in report.verdicts if each.property.kind == "ltl"}
 
 
+@pytest.mark.long
 @pytest.mark.skipif(bool(spin.missing()), reason=f"not installed: {', '.join(spin.missing())}")
 def test_spin_decides_the_same(tmp_path):
     theirs = spin.verdicts(patrol.promela_text(*SIZE), {name: c for name, (_, c) in CLAIMS.items()}, tmp_path)

@@ -29,6 +29,7 @@ def test_each_vehicle_more_costs_as_many_runs_of_rules_as_the_one_before():
     assert many < 5 * few
 
 
+@pytest.mark.long
 def test_more_than_sixty_four_actors_are_reduced_as_the_reference_reduces_them():
     initial, limits = start(35, 5, 7), Limits(configurations=80)
     reduced = Reduced(initial, [Reduction.POR])

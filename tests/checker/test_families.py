@@ -186,6 +186,7 @@ def test_what_is_said_of_each_bigactor_is_one_part_for_vacuity():
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("route", ["[a0, b0]", "[b0, a0]"])
 def test_members_on_one_route_are_interchangeable(route):
     family = f"""

@@ -30,6 +30,7 @@ def view(c):
     ), asked
 
 
+@pytest.mark.long
 @examples(40)
 @given(missions())
 def test_what_is_reachable_in_one_line_is_in_several_and_what_is_in_several_is_in_none(text):

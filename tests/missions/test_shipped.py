@@ -181,7 +181,7 @@ def test_who_looks_before_entering_races_under_every_scheduler_and_control(sched
         assert verdicts["race_freedom"] == outcome
 
 
-@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+@pytest.mark.parametrize("engine", [pytest.param(Engine.REFERENCE, marks=pytest.mark.long), Engine.FAST])
 @pytest.mark.parametrize(("control", "whole", "part"), [("timed", 3_730, 600), ("atomic", 2_754, 425)])
 def test_a_family_keeps_apart_on_its_route_whatever_explores_it(engine, control, whole, part):
     mission = load_mission(MISSIONS / "convoy.mission", Variation(control=Control(control)))

@@ -68,6 +68,7 @@ BATTERY = "'Battery 1 is low 12.60V used 0 mAh'"
 RTL = "it is in RTL, by itself or told by someone else"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("foe", "legs", "reason"),
     [
@@ -87,6 +88,7 @@ def test_a_vehicle_that_flies_home_unasked_arrives_nowhere_and_is_not_called_bac
     assert flown.witness.kinds() == {"taken over"}
 
 
+@pytest.mark.long
 def test_a_vehicle_that_boots_anew_on_the_ground_where_it_was_to_go_has_not_arrived(flying):
     flown = flying(plane(), foe=killed_on_the_way_home, seconds=600)
     assert flown.inside("home0")
@@ -97,6 +99,7 @@ def test_a_vehicle_that_boots_anew_on_the_ground_where_it_was_to_go_has_not_arri
     assert reason.startswith("it has booted anew and is disarmed")
 
 
+@pytest.mark.long
 def test_a_vehicle_that_an_operator_gives_back_flies_its_mission_to_the_end(flying):
     answers = []
 

@@ -133,6 +133,7 @@ def test_every_name_that_the_elaborator_knows_is_found(path):
 REFUSED = {"harbour_watch": ["Vessel"]}  # the recording says Vessel too
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", RENAMED, ids=lambda path: path.stem)
 def test_a_mission_with_everything_renamed_is_the_same_mission(path):
     reading = load(path)

@@ -88,6 +88,7 @@ def flight():
 # At least 2.2 km at 25 m/s, 88 s; at most 5.9 km at 18 m/s, 326 s: 1 to 6 whole minutes, after two reactions.
 
 
+@pytest.mark.long
 def test_a_flight_has_an_earliest_and_a_latest_arrival(flight):
     report = decided(flight, when())
     assert (report.configurations, report.transitions, report.complete) == (4, 3, True)

@@ -892,6 +892,7 @@ def remembering_everything(c):
         return first_races(c)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)
 def test_what_a_mission_lets_the_monitor_forget_would_have_made_no_race(path):
     c = load_mission(path).initial

@@ -107,6 +107,7 @@ def patrol(agents):
     return load(mission_text(agents, 2, together=True), "").initial
 
 
+@pytest.mark.long
 def test_the_patrol_is_counted_by_burnsides_lemma():
     one, two, three = (size(patrol(agents)) for agents in (1, 2, 3))
     assert one == COUNTS[1, 2, False][0]  # as SPIN counts it

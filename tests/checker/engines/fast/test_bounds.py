@@ -194,6 +194,7 @@ def test_workers_go_on_from_every_round(tmp_path, monkeypatch, name):
         assert again.transitions == whole.transitions
 
 
+@pytest.mark.long
 def test_a_small_mission_goes_on_from_every_size_within_bounds():
     """The small part of `make bounds` that every run of the tests has."""
     environment = {**os.environ, "NUMBA_BOUNDSCHECK": "1", "NUMBA_CACHE_DIR": ".numba-bounds"}

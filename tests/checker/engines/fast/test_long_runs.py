@@ -52,6 +52,7 @@ def bigactors(*words):
     return [sys.executable, "-m", "bigactors", *words], environment
 
 
+@pytest.mark.long
 def test_what_was_killed_goes_on_and_comes_to_the_same_report(tmp_path):
     kept, whole, again = tmp_path / "kept", tmp_path / "whole.json", tmp_path / "again.json"
     line, environment = bigactors("check", "takeover", "--no-traces", "--engine", "fast")
@@ -70,6 +71,7 @@ def test_what_was_killed_goes_on_and_comes_to_the_same_report(tmp_path):
     assert reports[0] == reports[1]
 
 
+@pytest.mark.long
 def test_an_exploration_goes_on_in_the_middle_of_a_layer(tmp_path):
     initial = start("rendezvous")
     keeping = Keeping(str(tmp_path), digest="d")
@@ -165,6 +167,7 @@ print(*report_text("m", checked(Limits(configurations=None, seconds=100.0)), tra
 """
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is told of by /proc")
 def test_where_the_system_gives_no_more_memory_the_search_is_incomplete_and_says_so():
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}

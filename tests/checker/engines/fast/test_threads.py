@@ -129,6 +129,7 @@ def test_rows_go_over_to_files_under_several_threads(tmp_path, monkeypatch, thre
     assert 100 < spilled[0] < 18_000
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("threads", SEVERAL)
 def test_without_memory_several_threads_stop_and_say_so(monkeypatch, threads):
     asked = []
