@@ -92,7 +92,7 @@ class Actors:
         self._known_agent = lru_cache(maxsize=1 << 16)(self._agent)
         self._of_request = lru_cache(maxsize=1 << 16)(self._request)
         self._of_statement = cache(self._statement)  # as many as agents times statements
-        self._of_code = lru_cache(maxsize=1 << 14)(self._code)
+        self._reached_by = lru_cache(maxsize=1 << 14)(self._reached)
         self._of_reaction = lru_cache(maxsize=1 << 14)(self._reaction)
         self.clause = cache(self.footprints.clause)
 
@@ -176,7 +176,7 @@ class Actors:
         if code:
             now = self._next(agent, code[0], told)
             passed = NOTHING if blank else rested_on | self._telling(agent, code[0])
-            ever, aside = (each | rested_on for each in self._of_code(agent, code))
+            ever, aside = (each | rested_on for each in self._reached_by(agent, reachable(self.program, code)))
             found[Actor("program", agent)] = Acting(now | passed, ever, aside)
         return found
 
@@ -198,9 +198,8 @@ class Actors:
             case _:
                 return NOTHING
 
-    def _code(self, agent: Name, code: Code) -> tuple[Footprint, Footprint]:
-        """Return the footprint of code, and of its part before the agent's line moves."""
-        reach = reachable(self.program, code)
+    def _reached(self, agent: Name, reach: frozenset[int]) -> tuple[Footprint, Footprint]:
+        """Return the footprint of all statements that code may come to, and of those before the agent's line moves."""
         born = self.roles.descendants(reach)
         theirs = joined(map(self._life, born))
         here = self.footprints.slots.footprint([("host", agent)])  # any step may ask for HOST

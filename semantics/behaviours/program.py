@@ -191,8 +191,14 @@ def _reads(  # noqa: PLR0912  # one case for each kind of statement
 @lru_cache(maxsize=1 << 12)
 def reachable(program: Program, code: Block) -> frozenset[int]:
     """Return the statements that code may come to; those of whom it spawns not included."""
+    return frozenset[int]().union(*(_within(program, number) for number in code))
+
+
+@lru_cache(maxsize=1 << 12)
+def _within(program: Program, first: int) -> frozenset[int]:
+    """Return the statements that one may come to, itself among them."""
     seen: set[int] = set()
-    waiting = list(code)
+    waiting = [first]
     while waiting:
         number = waiting.pop()
         if number not in seen:
