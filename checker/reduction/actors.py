@@ -176,7 +176,9 @@ class Actors:
         if code:
             now = self._next(agent, code[0], told)
             passed = NOTHING if blank else rested_on | self._telling(agent, code[0])
-            ever, aside = (each | rested_on for each in self._reached_by(agent, reachable(self.program, code)))
+            ever, aside = (
+                each | rested_on for each in self._reached_by(agent, reachable(self.program, code))
+            )
             found[Actor("program", agent)] = Acting(now | passed, ever, aside)
         return found
 

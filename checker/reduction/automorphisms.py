@@ -34,6 +34,18 @@ class Automorphisms:
 
     def transposition(self, pairing: Pairing) -> Renaming:
         """Return the renaming that exchanges both sides of a pairing; raises Unlike if it changes the mission."""
+        renaming = self.of_setting(pairing)
+        self._check_world(renaming)
+        for each in self.properties:
+            if not each.kept(renaming):
+                raise Unlike(f"a property tells them apart: {each.formula}")
+        return renaming
+
+    def of_setting(self, pairing: Pairing) -> Renaming:
+        """Return the renaming that exchanges both sides; raises Unlike if it changes what holds in every configuration.
+
+        Where it does not, the rules allow the image of a configuration the images of its transitions.
+        """
 
         def both(pairs: dict[Any, Any]) -> dict[Any, Any]:
             return {**pairs, **{other: one for one, other in pairs.items()}}
@@ -43,10 +55,8 @@ class Automorphisms:
         counters = _sayings(self.c, renaming, pairing.names)
         renaming = Renaming(renaming.names, renaming.numbers, renaming.variables, counters)
         self._check_program(renaming)
-        self._check_world(renaming)
-        for each in self.properties:
-            if not each.kept(renaming):
-                raise Unlike(f"a property tells them apart: {each.formula}")
+        if frozenset(map(renaming.name, self.c.setting.arriving)) != self.c.setting.arriving:
+            raise Unlike("of one flights arrive, of the other not")
         return renaming
 
     # --- kinds and names --------------------------------------------------------------------------------------
@@ -134,15 +144,13 @@ class Automorphisms:
         return renaming.cell(cell), renaming.content(cell, value, unordered=unordered)
 
     def _check_world(self, renaming: Renaming) -> None:
-        state, arriving = self.c.state, self.c.setting.arriving
+        state = self.c.state
         for cell in self._cells.of(renaming):
             partner, image = self._held_at(cell, state.read(cell), renaming)
             if state.read(partner) != image:
                 raise Unlike(
                     DIFFERENCES.get(cell[0], f"what is said of '{cell[-1]}' at first ({cell[0]}) differs")
                 )
-        if frozenset(map(renaming.name, arriving)) != arriving:
-            raise Unlike("of one flights arrive, of the other not")
 
 
 DIFFERENCES = {"placement": "they are not in the same place", "channels": "they are on different channels"}

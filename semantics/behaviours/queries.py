@@ -187,7 +187,10 @@ class _Learning:
         return any(self.logical.is_in(name, place) for place in self.seen.swept.places)
 
     def is_on_cycle(self, name: Name) -> bool:
-        """Tell whether the new parents lead from a node back to it."""
+        """Tell whether the new parents lead from a node back to it; never where its kind holds nothing."""
+        sorting = self.logical.sorting
+        if not sorting.signature[sorting.kind(name)].holds:
+            return False
         passed: set[Name] = set()
         at = self.logical.parent(name)
         while at is not None and at != REGION and at not in passed:

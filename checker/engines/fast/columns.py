@@ -58,6 +58,10 @@ class Column:
         value = self.values[code]
         return None if value is ABSENT else value
 
+    def code_of(self, value: Any) -> int | None:
+        """Return the code of what a rule reads, None where it was never met."""
+        return self.codes.get(ABSENT if value is None else value)
+
     def code(self, value: Any) -> int:
         """Return the code of a value, a new one where it was never met."""
         known = self.codes.get(value)
@@ -313,14 +317,11 @@ def shifts(old: Packing, new: Packing) -> NDArray[np.uint64]:
     These are the old word, the new word, the mask of the bits in the old word, and how far they are shifted left, then
     right.
     """
-    masks: dict[tuple[int, int, int], int] = {}
-    stood, stand = (where.columns.reshape(-1, 3).tolist() for where in (old, new))
-    for before, after in zip(stood, stand, strict=False):  # columns that were made since have no bits to move
-        (word, shift, mask), (target, there, _) = before, after
-        if mask:
-            way = (word, target, there - shift)
-            masks[way] = masks.get(way, 0) | mask << shift
-    found = [
-        (source, target, mask, max(far, 0), max(-far, 0)) for (source, target, far), mask in masks.items()
-    ]
-    return np.array(found, np.uint64).ravel()
+    moved = np.flatnonzero(old.mask)  # columns that were made since have no bits to move
+    far = new.shift[moved].astype(np.int64) - old.shift[moved].astype(np.int64)
+    ways = np.stack([old.word[moved], new.word[moved], far], axis=1)
+    each, way = np.unique(ways, axis=0, return_inverse=True)
+    masks = np.zeros(len(each), np.uint64)
+    np.bitwise_or.at(masks, way.ravel(), old.mask[moved] << old.shift[moved])
+    found = [each[:, 0], each[:, 1], masks, np.maximum(each[:, 2], 0), np.maximum(-each[:, 2], 0)]
+    return np.stack([part.astype(np.uint64) for part in found], axis=1).ravel()

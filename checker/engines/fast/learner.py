@@ -6,15 +6,16 @@ tree for each mobile name, walked by itself: the answers of one observation do n
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from checker.engines.fast.columns import Columns, Packing, Writes
 from checker.engines.fast.leaves import ALIKE, CROWDED, NO_TURN, STEP, UNLIKE, Effect, Leaves, Step
+from checker.engines.fast.likeness import Likeness, Mentioned, Swap
 from checker.engines.fast.recording import Ask, Edited, Recorder, Scope, Source
 from checker.engines.fast.skeletons import agents_of, mobile_names, settled
-from checker.engines.fast.trees import Trees
+from checker.engines.fast.trees import UNKNOWN, Trees
 from checker.engines.fast.writing import Concluded, Relearn, Varies, Writing
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Fact
@@ -53,11 +54,17 @@ class PartOf:
         recorder: What the rules of the leaf were recorded with; it may look at any configuration that comes there.
         concluded: The transition of the leaf.
         name: About whom the part is.
+        model: The part about the first name that is like that; None where it is itself the first, or like nobody.
+        tree: The number of its tree.
+        taken: The cells that were taken to be never written wherever it was learned.
     """
 
     recorder: Recorder
     concluded: Concluded
     name: Name
+    model: "PartOf | None"
+    tree: int
+    taken: set[Cell] = field(default_factory=set)
 
 
 @dataclass(slots=True)
@@ -119,6 +126,7 @@ class Learner:
     pending: int
     columns: Columns = field(init=False)
     writing: Writing = field(init=False)
+    likeness: Likeness = field(init=False)
     trees: Trees = field(default_factory=Trees)
     leaves: Leaves = field(default_factory=Leaves)
     owners: list[Actor | PartOf | Edited | Question] = field(default_factory=list)
@@ -139,6 +147,7 @@ class Learner:
         mobile = mobile_names(self.setting, self.still)
         self.columns = Columns(mobile, agents_of(self.setting, self.still))
         self.writing = Writing(self.columns, self.still, self.varying)
+        self.likeness = Likeness(self.setting, self.still, self.columns.apart)
         for cell, value in self.still.items():
             self.columns.start(cell, value)
             if cell[0] in PREDICTED or (cell[0] in ("placement", "parent") and cell[-1] in mobile):
@@ -166,12 +175,11 @@ class Learner:
     def _learned(self, tree: int, source: CodedSource) -> bool:
         """Learn a tree's way for a configuration; False where something was not what it was taken for till now."""
         owner = self.owners[tree]
-        self.runs += 1
         try:
             if isinstance(owner, PartOf):
-                owner.recorder.source = source  # it agrees on all that the rules themselves asked
-                self._learn_part(tree, owner, source)
+                self._learn_part(owner, source)
                 return True
+            self.runs += 1
             if isinstance(owner, Edited):
                 self._learn_edit(tree, owner, source)
                 return True
@@ -203,7 +211,7 @@ class Learner:
         ]
         concluded = [self.writing.conclude(step) for step in found if isinstance(step, Transition)]
         is_full = actor.rules is served and is_crowded(c, str(actor.about), self.pending)
-        parts = [[self._plant(PartOf(recorder, each, name)) for name in each.apart] for each in concluded]
+        parts = [self._plant_parts(recorder, each) for each in concluded]
         for each, trees in zip(concluded, parts, strict=True):
             each.effect.parts = [*trees, *map(self.tree, each.edits)]
         for each in concluded:
@@ -213,29 +221,109 @@ class Learner:
         self.reads[leaf] = tuple(
             (self._column(ask), ask, said) for ask, said in recorder.scopes[0].asked.items()
         )
-        self._grow(tree, recorder.scopes[0], leaf, source)
+        self._grow(tree, recorder.scopes[0], leaf, self._codes(recorder.scopes[0], source))
         for part in (part for trees in parts for part in trees):
             self.learn(part, source)
+
+    def _plant_parts(self, recorder: Recorder, concluded: Concluded) -> list[int]:
+        models = self.likeness.models(concluded.apart, recorder.scopes[0])
+        parts: dict[Name, PartOf] = {}
+        for name in concluded.apart:
+            model = parts[models[name]] if name in models else None
+            parts[name] = PartOf(recorder, concluded, name, model, len(self.owners))
+            self._plant(parts[name])
+        return [part.tree for part in parts.values()]
 
     def _learn_answer(self, tree: int, question: Question, recorder: Recorder, source: CodedSource) -> None:
         answer = settled(question(Configuration(self.setting, recorder)))
         leaf = self.leaves.add(())
         self.answers[leaf] = answer
-        self._grow(tree, recorder.scopes[0], leaf, source)
+        self._grow(tree, recorder.scopes[0], leaf, self._codes(recorder.scopes[0], source))
 
     def _column(self, ask: Ask) -> int:
         return self.columns.number((ask.cell,) if ask.hole is None else (ask.cell, *ask.hole))
 
-    def _learn_part(self, tree: int, part: PartOf, source: CodedSource) -> None:
+    def _learn_part(self, part: PartOf, source: CodedSource) -> None:
+        """Let a part know what is known of its model under the same answers, else run it, and tell the model."""
+        model = part.model
+        try:
+            known = None if model is None else self._image_of(model, Swap(model.name, part.name), source)
+        except Mentioned:
+            model = known = None
+        if known is not None:
+            self._know(part, *known)
+            return
+        self.runs += 1
+        part.recorder.source = source  # it agrees on all that the rules themselves asked
         writes, scope = part.recorder.apart(lambda: self.writing.part(part.concluded, part.name))
-        self._note_writer(tree, writes)
-        self._grow(tree, scope, self.leaves.add([Step(Effect(writes))]), source)
+        self._know(part, scope, writes, self._codes(scope, source))
+        if model is not None:
+            self._tell(part, model, scope, writes)
+
+    def _know(self, part: PartOf, scope: Scope, writes: Writes, codes: dict[Ask, int]) -> None:
+        part.taken.update(scope.taken)
+        self._note_writer(part.tree, writes)
+        leaf = self.leaves.add([Step(Effect(writes))])
+        self._grow(part.tree, scope, leaf, codes)
+
+    def _image_of(
+        self, model: PartOf, swap: Swap, source: CodedSource
+    ) -> tuple[Scope, Writes, dict[Ask, int]] | None:
+        trees, scope, codes = self.trees, Scope(), dict[Ask, int]()
+        reference = int(trees.root.room[model.tree])
+        while reference > UNKNOWN:
+            node = reference - 1
+            ask = swap.ask(trees.asks[node])
+            number = self._column(ask)
+            code = source.code(number)
+            value = swap.constant(self.columns.all[number].value(code))
+            column = self.columns.all[trees.column_of(node)]
+            if ask.question is None:
+                scope.asked[ask], codes[ask] = value, code
+                reference = trees.after(node, column.code_of(value))
+            else:
+                scope.asked[ask] = answer = ask.question(value, *ask.constants)
+                reference = trees.after_answer(node, answer)
+        if reference == UNKNOWN:
+            return None
+        scope.taken = {swap.still(cell, self.still, self.varying) for cell in model.taken}
+        (step,) = self.leaves.steps_of(-reference - 1)
+        return scope, self._images(swap, self.leaves.codes_of(step).items()), codes
+
+    def _images(self, swap: Swap, writes: Iterable[tuple[int, int]]) -> Writes:
+        columns = self.columns
+        found = []
+        for number, code in writes:
+            place = swap.place(columns.all[number].place)
+            if place[0] not in self.varying:
+                raise Mentioned  # that is learned by running it
+            image = columns.number(place)
+            found.append((image, columns.all[image].code(swap.constant(columns.all[number].values[code]))))
+        return found
+
+    def _tell(self, part: PartOf, model: PartOf, scope: Scope, writes: Writes) -> None:
+        """Let a model know what was learned of a part and is not known of it, where it met the same values."""
+        swap, image, codes = Swap(part.name, model.name), Scope(), dict[Ask, int]()
+        try:
+            for ask, answer in scope.asked.items():
+                there = swap.ask(ask)
+                image.asked[there] = swap.constant(answer)
+                if ask.question is None:
+                    code = self.columns.all[self._column(there)].code_of(answer)
+                    if code is None:
+                        return
+                    codes[there] = code
+            image.taken = {swap.still(cell, self.still, self.varying) for cell in scope.taken}
+            self._know(model, image, self._images(swap, writes), codes)
+        except Mentioned:
+            return
 
     def _learn_edit(self, tree: int, edited: Edited, source: CodedSource) -> None:
         scope = Scope({Ask(edited.cell): source.skeleton(edited.cell)})
         writes = self.writing.edit(edited, source.skeleton(edited.cell))
         self._note_writer(tree, writes)
-        self._grow(tree, scope, self.leaves.add([Step(Effect(writes))]), source)
+        leaf = self.leaves.add([Step(Effect(writes))])
+        self._grow(tree, scope, leaf, self._codes(scope, source))
 
     def _note_writer(self, tree: int, writes: Writes) -> None:
         cells = dict.fromkeys(self.columns.all[number].place[0] for number, _ in writes)
@@ -264,7 +352,8 @@ class Learner:
 
         return sorted(range(len(self.columns)), key=home)
 
-    def _grow(self, tree: int, scope: Scope, leaf: int, source: CodedSource) -> None:
+    def _grow(self, tree: int, scope: Scope, leaf: int, codes: Mapping[Ask, int]) -> None:
+        """Let a tree know that what was asked leads to a leaf, given the codes of the values that were read."""
         for cell in scope.taken:
             self.taken[cell].add(tree)
         path: list[tuple[Ask, Any]] = []
@@ -272,8 +361,11 @@ class Learner:
         for ask, answer in scope.asked.items():
             number = self._column(ask)
             columns.append((self.columns.all[number], number))
-            path.append((ask, source.code(number) if ask.question is None else answer))
+            path.append((ask, codes[ask] if ask.question is None else answer))
         self.trees.grow(tree, path, leaf, columns)
+
+    def _codes(self, scope: Scope, source: CodedSource) -> dict[Ask, int]:
+        return {ask: source.code(self._column(ask)) for ask in scope.asked if ask.question is None}
 
     def _steps(self, actor: Actor, concluded: list[Concluded]) -> list[Step]:
         keys = [_key(each.step) for each in concluded]

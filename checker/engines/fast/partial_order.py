@@ -77,6 +77,8 @@ class Choosing:
         self.leads, self.taken = Pages(np.int32, 1), Pages(np.uint64, self.wide)
         self.leads.room[0] = NO_AGENT
         self.stride = self.width = 0
+        self.roomy: tuple[int, int] | None = None
+        self.room: tuple[Any, ...] = ()
         self.looked: tuple[object, ...] = ()
 
     @property
@@ -131,9 +133,13 @@ class Choosing:
         self.members = Members._make((*learned, *self._room(successors)))
 
     def _room(self, successors: int) -> tuple[Any, ...]:
-        """Return the room for one row."""
+        """Return the room for one row; what it held means nothing."""
+        size = (len(self.part.room), successors)
+        if size == self.roomy:
+            return self.room
+        self.roomy = size
         sets, words = MOST_HERE * MOST_HERE // WORD, MOST_HERE // WORD
-        return (
+        self.room = (
             np.zeros(MOST_HERE, np.int32),
             np.zeros(MOST_HERE, np.int32),
             np.zeros(len(self.part.room), np.int32),
@@ -149,6 +155,7 @@ class Choosing:
             np.zeros(self.wide, np.uint64),
             np.zeros(self.wide, np.uint64),
         )
+        return self.room
 
     # --- actors -----------------------------------------------------------------------------------------------------
 

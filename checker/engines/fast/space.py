@@ -373,22 +373,23 @@ class Space:
         """Learn what was not known of a row, as it was noted where a walk ended."""
         unknown = (row, int(self.state[TREE]), int(self.state[NODE]), int(self.state[CODE]))
         self.learned.append(unknown)
-        if self._learn_from(self.packing, self.rows.row(row), *unknown[1:]):
-            self._see()
+        if self._settles(*unknown[2:]):
+            self.shown = None
+            return
+        self._learn_from(self.packing, self.rows.row(row), unknown[1])
+        self._see()
 
-    def _learn_from(self, where: Packing, words: NDArray[np.uint64], tree: int, node: int, code: int) -> bool:
-        """Learn what was not known at a node of a tree, from a row that came there; False where no rule had to be run.
+    def _settles(self, node: int, code: int) -> bool:
+        """Answer what is asked at a node for a code that was not met there; False where a rule must be run.
 
         Then a node leads further than before, and nothing else is new: the loops see that as it is.
         """
-        learner = self.learner
-        if node >= 0:
-            column = learner.columns.all[learner.trees.column_of(node)]
-            if learner.trees.settle(node, code, column):
-                self.shown = None
-                return False
-        learner.learn(tree, CodedSource(learner.columns, where, words.tolist()))
-        return True
+        trees = self.learner.trees
+        return node >= 0 and trees.settle(node, code, self.learner.columns.all[trees.column_of(node)])
+
+    def _learn_from(self, where: Packing, words: NDArray[np.uint64], tree: int) -> None:
+        """Learn what a tree does not know, from a row that came to its end."""
+        self.learner.learn(tree, CodedSource(self.learner.columns, where, words.tolist()))
 
     def restore(
         self,
@@ -435,7 +436,8 @@ class Space:
         if not (0 <= tree < len(trees.root) and UNPLANTED <= node < len(trees.asks)):
             raise ValueError("it learned of what no rule asks")
         try:
-            self._learn_from(where, words, tree, node, code)
+            if not self._settles(node, code):
+                self._learn_from(where, words, tree)
         except Exception as error:  # rules may do anything where a row is no configuration
             raise ValueError(f"a rule does not run on its rows: {type(error).__name__}: {error}") from error
 

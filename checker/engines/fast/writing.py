@@ -113,6 +113,9 @@ class Writing:
         skeleton, families = taken_apart(value, self.columns.mobile)
         if cell not in self.varying:
             if cell in self.still.layout.index and self.still.read(cell) == value:
+                conclusion = found.step.target.state
+                assert isinstance(conclusion, Conclusion)
+                conclusion.recorder.scopes[-1].taken.add(cell)  # what is written is what is there
                 return
             self.varying.add(cell)
             raise Varies(cell)

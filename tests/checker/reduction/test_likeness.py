@@ -1,0 +1,125 @@
+"""What is learned about one name holds for those that the mission does not tell from it."""
+
+from pathlib import Path
+
+import pytest
+from checked_missions import load
+from hypothesis import given
+from scale import examples
+from shipped import UNTIMED
+from test_symmetry import swarm, swarms
+
+from checker import Engine, Limits, explore
+from checker.engines.fast.likeness import Likeness, Mentioned, Swap
+from checker.engines.fast.recording import Ask
+from semantics.behaviours.observations import agent_key
+from semantics.state.cells import is_
+from specs.elaboration import load_mission
+
+MISSIONS = Path(__file__).parents[3] / "specs" / "missions"
+
+FLEET = """mission fleet
+signature {{ kind Room contains Robot kind Robot driven }}
+world {{
+  room0: Room = box (0.001, 0.001) (-0.001, -0.001)
+  room1: Room = box (0.001, 0.004) (-0.001, 0.002)
+{robots}
+}}
+def look() = {{ loop {{ observe(CHILDREN(room1)) react {{ case seen => control(MOVE_HOST_TO room1) }} }} }}
+{agents}
+{rest}
+"""
+
+
+def fleet(robots, rest=""):
+    there = "\n".join(f"  robot{n}: Robot = point (0.0, {0.0001 * n:.4f})" for n in range(robots))
+    agents = "\n".join(f"BigActor r{n} hosted_at robot{n} with_behavior {{ look() }}" for n in range(robots))
+    return load(FLEET.format(robots=there, agents=agents, rest=rest), "").initial
+
+
+def both(initial, monkeypatch, **options):
+    """Explore as ever, and with nothing shared; return both."""
+    shared = explore(initial, engine=Engine.FAST, **options)
+    with monkeypatch.context() as patched:
+        patched.setattr(Likeness, "models", lambda *_: {})
+        return shared, explore(initial, engine=Engine.FAST, **options)
+
+
+def assert_alike(shared, apart):
+    assert list(shared.configurations) == list(apart.configurations)
+    assert list(shared.origins) == list(apart.origins)
+    assert (shared.rules, shared.complete, shared.bounds) == (apart.rules, apart.complete, apart.bounds)
+
+
+@pytest.mark.parametrize("name", UNTIMED)
+def test_a_mission_that_ships_is_explored_as_if_nothing_were_shared(name, monkeypatch):
+    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    assert_alike(*both(initial, monkeypatch, limits=Limits(configurations=3_000)))
+
+
+HOSTS = """
+control atomic
+scheduler unordered
+BigActor base hosted_at gcs0 with_behavior { observe(HOSTED_AT(ALL)) react { case o => skip } }
+environment { robot0 vanishes robot1 vanishes }
+"""
+
+
+def test_who_is_hosted_where_is_learned_agent_by_agent(monkeypatch):
+    assert_alike(*both(load(swarm("migrate(gcs0)", 2, HOSTS), "").initial, monkeypatch))
+
+
+@given(text=swarms())
+@examples(40)
+def test_generated_swarms_are_explored_as_if_nothing_were_shared(text):
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        assert_alike(*both(load(text, "").initial, monkeypatch, limits=Limits(configurations=700)))
+
+
+def test_a_robot_more_costs_as_many_runs_of_rules_as_the_one_before(monkeypatch):
+    limits = Limits(configurations=500)
+    runs = []
+    for robots in (6, 12, 18):
+        shared, apart = both(fleet(robots), monkeypatch, limits=limits)
+        assert_alike(shared, apart)
+        assert shared.rule_runs < apart.rule_runs
+        runs.append(shared.rule_runs)
+    assert runs[2] - runs[1] <= 1.1 * (runs[1] - runs[0])
+
+
+def test_whom_the_text_names_is_like_nobody():
+    named = 'BigActor base hosted_at robot0 with_behavior { observe(CHILDREN(PARENT("robot1"))) }'
+    likeness = Likeness(fleet(4, named.replace('"', "")).setting, fleet(4).state, frozenset())
+    assert [likeness._first(f"robot{n}") for n in range(4)] == ["robot0", "robot1", "robot0", "robot0"]
+
+
+def test_what_may_appear_is_not_like_what_is_there():
+    initial = fleet(3, "environment { robot2 vanishes }")
+    likeness = Likeness(initial.setting, initial.state, frozenset())
+    assert [likeness._first(f"robot{n}") for n in range(3)] == ["robot0", "robot0", "robot2"]
+
+
+SWAP = Swap("b", "d")
+
+
+def test_a_question_is_renamed_in_what_it_is_about():
+    assert SWAP.ask(Ask(("parent", "b"), None, is_, ("room0",))) == Ask(
+        ("parent", "d"), None, is_, ("room0",)
+    )
+    assert SWAP.ask(Ask(("mailbox", "a"), (0, "b"))) == Ask(("mailbox", "a"), (0, "d"))
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        Ask(("parent", "d")),
+        Ask(("mailbox", "a"), (0, "d")),
+        Ask(("mailbox", "a"), (0, agent_key("b"))),  # who is hosted somewhere, as an observation says of an agent
+        Ask(("parent", "b"), None, is_, ("d",)),
+        Ask(("parent", "b"), None, is_, ("b",)),
+        Ask(("parent", "c")),  # it stands between both: rules go through names in their order
+    ],
+)
+def test_a_question_that_tells_names_apart_has_no_image(ask):
+    with pytest.raises(Mentioned):
+        SWAP.ask(ask)
