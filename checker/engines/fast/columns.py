@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from checker.engines.fast.recording import Ask
 from checker.engines.fast.skeletons import Family, Hole, holes, put_together, taken_apart
 from semantics.behaviours.observations import NOTHING_SEEN
 from semantics.state.cells import NAMES, Cell, Row
@@ -105,6 +106,10 @@ class Columns:
         if found is None:
             found = self._add(place, ABSENT)
         return found
+
+    def asked(self, ask: Ask) -> int:
+        """Return the number of the column that a question is put to."""
+        return self.number((ask.cell,) if ask.hole is None else (ask.cell, *ask.hole))
 
     def _add(self, place: Place, first: Any) -> int:
         self.numbers[place] = len(self.all)

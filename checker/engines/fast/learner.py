@@ -7,15 +7,16 @@ tree for each mobile name, walked by itself: the answers of one observation do n
 
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from checker.engines.fast.columns import Columns, Packing, Writes
 from checker.engines.fast.leaves import ALIKE, CROWDED, NO_TURN, STEP, UNLIKE, Effect, Leaves, Step
-from checker.engines.fast.likeness import Likeness, Mentioned, Swap
+from checker.engines.fast.likeness import Images, Learned, Likeness, Mentioned, Swap
 from checker.engines.fast.recording import Ask, Edited, Recorder, Scope, Source
 from checker.engines.fast.skeletons import agents_of, mobile_names, settled
-from checker.engines.fast.trees import UNKNOWN, Trees
+from checker.engines.fast.trees import Trees
 from checker.engines.fast.writing import Concluded, Relearn, Varies, Writing
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Fact
@@ -127,6 +128,7 @@ class Learner:
     columns: Columns = field(init=False)
     writing: Writing = field(init=False)
     likeness: Likeness = field(init=False)
+    images: Images = field(init=False)
     trees: Trees = field(default_factory=Trees)
     leaves: Leaves = field(default_factory=Leaves)
     owners: list[Actor | PartOf | Edited | Question] = field(default_factory=list)
@@ -148,6 +150,7 @@ class Learner:
         self.columns = Columns(mobile, agents_of(self.setting, self.still))
         self.writing = Writing(self.columns, self.still, self.varying)
         self.likeness = Likeness(self.setting, self.still, self.columns.apart)
+        self.images = Images(self.columns, self.trees, self.leaves, self.still, self.varying)
         for cell, value in self.still.items():
             self.columns.start(cell, value)
             if cell[0] in PREDICTED or (cell[0] in ("placement", "parent") and cell[-1] in mobile):
@@ -219,7 +222,7 @@ class Learner:
         leaf = self.leaves.add(self._steps(actor, concluded), CROWDED if is_full else 0)
         self.whose |= dict.fromkeys(self.leaves.steps_of(leaf), actor)
         self.reads[leaf] = tuple(
-            (self._column(ask), ask, said) for ask, said in recorder.scopes[0].asked.items()
+            (self.columns.asked(ask), ask, said) for ask, said in recorder.scopes[0].asked.items()
         )
         self._grow(tree, recorder.scopes[0], leaf, self._codes(recorder.scopes[0], source))
         for part in (part for trees in parts for part in trees):
@@ -240,83 +243,31 @@ class Learner:
         self.answers[leaf] = answer
         self._grow(tree, recorder.scopes[0], leaf, self._codes(recorder.scopes[0], source))
 
-    def _column(self, ask: Ask) -> int:
-        return self.columns.number((ask.cell,) if ask.hole is None else (ask.cell, *ask.hole))
-
     def _learn_part(self, part: PartOf, source: CodedSource) -> None:
         """Let a part know what is known of its model under the same answers, else run it, and tell the model."""
-        model = part.model
+        model, known = part.model, None
         try:
-            known = None if model is None else self._image_of(model, Swap(model.name, part.name), source)
+            if model is not None:
+                known = self.images.known(model.tree, model.taken, Swap(model.name, part.name), source)
         except Mentioned:
-            model = known = None
+            model = None
         if known is not None:
-            self._know(part, *known)
+            self._know(part, known)
             return
         self.runs += 1
         part.recorder.source = source  # it agrees on all that the rules themselves asked
         writes, scope = part.recorder.apart(lambda: self.writing.part(part.concluded, part.name))
-        self._know(part, scope, writes, self._codes(scope, source))
+        learned = Learned(scope, writes, self._codes(scope, source))
+        self._know(part, learned)
         if model is not None:
-            self._tell(part, model, scope, writes)
+            with suppress(Mentioned):
+                self._know(model, self.images.of(learned, Swap(part.name, model.name)))
 
-    def _know(self, part: PartOf, scope: Scope, writes: Writes, codes: dict[Ask, int]) -> None:
-        part.taken.update(scope.taken)
-        self._note_writer(part.tree, writes)
-        leaf = self.leaves.add([Step(Effect(writes))])
-        self._grow(part.tree, scope, leaf, codes)
-
-    def _image_of(
-        self, model: PartOf, swap: Swap, source: CodedSource
-    ) -> tuple[Scope, Writes, dict[Ask, int]] | None:
-        trees, scope, codes = self.trees, Scope(), dict[Ask, int]()
-        reference = int(trees.root.room[model.tree])
-        while reference > UNKNOWN:
-            node = reference - 1
-            ask = swap.ask(trees.asks[node])
-            number = self._column(ask)
-            code = source.code(number)
-            value = swap.constant(self.columns.all[number].value(code))
-            column = self.columns.all[trees.column_of(node)]
-            if ask.question is None:
-                scope.asked[ask], codes[ask] = value, code
-                reference = trees.after(node, column.code_of(value))
-            else:
-                scope.asked[ask] = answer = ask.question(value, *ask.constants)
-                reference = trees.after_answer(node, answer)
-        if reference == UNKNOWN:
-            return None
-        scope.taken = {swap.still(cell, self.still, self.varying) for cell in model.taken}
-        (step,) = self.leaves.steps_of(-reference - 1)
-        return scope, self._images(swap, self.leaves.codes_of(step).items()), codes
-
-    def _images(self, swap: Swap, writes: Iterable[tuple[int, int]]) -> Writes:
-        columns = self.columns
-        found = []
-        for number, code in writes:
-            place = swap.place(columns.all[number].place)
-            if place[0] not in self.varying:
-                raise Mentioned  # that is learned by running it
-            image = columns.number(place)
-            found.append((image, columns.all[image].code(swap.constant(columns.all[number].values[code]))))
-        return found
-
-    def _tell(self, part: PartOf, model: PartOf, scope: Scope, writes: Writes) -> None:
-        """Let a model know what was learned of a part and is not known of it, where it met the same values."""
-        swap, image, codes = Swap(part.name, model.name), Scope(), dict[Ask, int]()
-        try:
-            for ask, answer in scope.asked.items():
-                there = swap.ask(ask)
-                image.asked[there] = swap.constant(answer)
-                if ask.question is None:
-                    code = self.columns.all[self._column(there)].code_of(answer)
-                    if code is None:
-                        return
-                    codes[there] = code
-            image.taken = {swap.still(cell, self.still, self.varying) for cell in scope.taken}
-            self._know(model, image, self._images(swap, writes), codes)
-        except Mentioned:
-            return
+    def _know(self, part: PartOf, learned: Learned) -> None:
+        part.taken.update(learned.scope.taken)
+        self._note_writer(part.tree, learned.writes)
+        leaf = self.leaves.add([Step(Effect(learned.writes))])
+        self._grow(part.tree, learned.scope, leaf, learned.codes)
 
     def _learn_edit(self, tree: int, edited: Edited, source: CodedSource) -> None:
         scope = Scope({Ask(edited.cell): source.skeleton(edited.cell)})
@@ -359,13 +310,13 @@ class Learner:
         path: list[tuple[Ask, Any]] = []
         columns = []
         for ask, answer in scope.asked.items():
-            number = self._column(ask)
+            number = self.columns.asked(ask)
             columns.append((self.columns.all[number], number))
             path.append((ask, codes[ask] if ask.question is None else answer))
         self.trees.grow(tree, path, leaf, columns)
 
     def _codes(self, scope: Scope, source: CodedSource) -> dict[Ask, int]:
-        return {ask: source.code(self._column(ask)) for ask in scope.asked if ask.question is None}
+        return {ask: source.code(self.columns.asked(ask)) for ask in scope.asked if ask.question is None}
 
     def _steps(self, actor: Actor, concluded: list[Concluded]) -> list[Step]:
         keys = [_key(each.step) for each in concluded]

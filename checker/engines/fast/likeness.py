@@ -5,13 +5,15 @@ distinguish. So a part of a conclusion that was recorded about one of fifty vehi
 answer its questions alike: as long as neither what the transition itself rests on nor any answer mentions them.
 """
 
-from collections.abc import Hashable, Sequence, Set
+from collections.abc import Hashable, Iterable, Sequence, Set
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, NamedTuple, Protocol
 
-from checker.engines.fast.columns import Place
+from checker.engines.fast.columns import Columns, Place, Writes
+from checker.engines.fast.leaves import Leaves
 from checker.engines.fast.recording import Ask, Scope
+from checker.engines.fast.trees import UNKNOWN, Trees
 from checker.reduction.automorphisms import Automorphisms
 from checker.reduction.pairing import Pairing, Unlike
 from checker.reduction.renaming import asked
@@ -23,7 +25,7 @@ from semantics.state.signature import Name
 
 
 class Mentioned(Exception):
-    """Something mentions one of two names, or may: nothing is known of its image."""
+    """Something mentions one of two names, or may: it has no image."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +99,101 @@ def names_in(value: Any) -> frozenset[Any]:
     except TypeError:
         raise Mentioned from None
     return frozenset(each.removeprefix(AGENT) if isinstance(each, str) else each for each in found)
+
+
+class Learned(NamedTuple):
+    """What is known of one part.
+
+    Attributes:
+        scope: What it asked.
+        writes: What it writes.
+        codes: For each question to a value the code of that.
+    """
+
+    scope: Scope
+    writes: Writes
+    codes: dict[Ask, int]
+
+
+class Source(Protocol):
+    """One configuration."""
+
+    def code(self, number: int) -> int:
+        """Return the code of a column."""
+
+
+@dataclass(frozen=True)
+class Images:
+    """What is learned of a part, as it is known of another.
+
+    Attributes:
+        columns, trees, leaves: All that there are.
+        still: The first configuration.
+        varying: The cells that were written so far.
+    """
+
+    columns: Columns
+    trees: Trees
+    leaves: Leaves
+    still: Row
+    varying: Set[Cell]
+
+    def known(self, tree: int, taken: Iterable[Cell], swap: Swap, source: Source) -> Learned | None:
+        """Return the image of what a tree knows where a configuration answers the images of its questions, if anything.
+
+        Raises:
+            Mentioned: It has no image.
+        """
+        found = Learned(Scope(), [], {})
+        reference = int(self.trees.root.room[tree])
+        while reference > UNKNOWN:
+            reference = self._after(reference - 1, swap, source, found)
+        if reference == UNKNOWN:
+            return None
+        found.scope.taken.update(swap.still(cell, self.still, self.varying) for cell in taken)
+        (step,) = self.leaves.steps_of(-reference - 1)
+        found.writes.extend(self._writes(self.leaves.codes_of(step).items(), swap))
+        return found
+
+    def _after(self, node: int, swap: Swap, source: Source, found: Learned) -> int:
+        """Put the image of a node's question to a configuration, note it, and return where the answer leads."""
+        ask = swap.ask(self.trees.asks[node])
+        number = self.columns.asked(ask)
+        code = source.code(number)
+        value = swap.constant(self.columns.all[number].value(code))
+        if ask.question is not None:
+            answer = found.scope.asked[ask] = ask.question(value, *ask.constants)
+            return self.trees.after_answer(node, answer)
+        found.scope.asked[ask], found.codes[ask] = value, code
+        return self.trees.after(node, self.columns.all[self.trees.column_of(node)].code_of(value))
+
+    def of(self, learned: Learned, swap: Swap) -> Learned:
+        """Return the image of what was learned.
+
+        Raises:
+            Mentioned: It has none, or a value never stood where its image would.
+        """
+        scope, codes = Scope(), dict[Ask, int]()
+        for ask, answer in learned.scope.asked.items():
+            image = swap.ask(ask)
+            scope.asked[image] = swap.constant(answer)
+            if ask.question is None:
+                code = self.columns.all[self.columns.asked(image)].code_of(answer)
+                if code is None:
+                    raise Mentioned
+                codes[image] = code
+        scope.taken = {swap.still(cell, self.still, self.varying) for cell in learned.scope.taken}
+        return Learned(scope, self._writes(learned.writes, swap), codes)
+
+    def _writes(self, writes: Iterable[tuple[int, int]], swap: Swap) -> Writes:
+        columns, found = self.columns, []
+        for number, code in writes:
+            place = swap.place(columns.all[number].place)
+            if place[0] not in self.varying:
+                raise Mentioned  # that it varies is learned where it is written
+            image, value = columns.number(place), swap.constant(columns.all[number].values[code])
+            found.append((image, columns.all[image].code(value)))
+        return found
 
 
 @dataclass
