@@ -7,7 +7,7 @@ import math
 import os
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from checker.engines.fast import kernel
 from checker.engines.fast.arrays import Growing
-from checker.engines.fast.columns import Packing, packing, packing_in_order, shifts
+from checker.engines.fast.columns import WORD, Packing, bits_of, packing, packing_in_order, shifts
 from checker.engines.fast.kernel import (
     ALPHA,
     AT,
@@ -518,14 +518,22 @@ class Space:
         self.packing = self.packing.extended(sizes)
         if self.packing.holds(sizes):
             return
-        old, room = self.packing, columns.room(self.learner.varying)
-        new = packing(room, old.words)
-        if new.words > self.PLAIN:  # then a transition changes few pieces of a row
-            new = packing_in_order(room, self.learner.by_home(), old.words)
+        old = self.packing
+        new = self._packed(columns.room(self.learner.varying), old.words)
         self.pipeline.drop()
         self.rows.repack(self.size, shifts(old, new), new.words, fold=new.words > self.PLAIN)
         self._pack_as(new, len(self.batch.hashes))
         self._rebuild(len(self.table.room))
+
+    def _packed(self, room: Sequence[int], words: int) -> Packing:
+        """Return the packing for so many values a column, in at least so many words."""
+        if -(-sum(bits_of(room)) // WORD) <= self.PLAIN:
+            new = packing(room, words)
+            if new.words <= self.PLAIN:
+                return new
+        return packing_in_order(
+            room, self.learner.by_home(), words
+        )  # so a transition changes few pieces of a row
 
     def _pack_as(self, where: Packing, successors: int) -> None:
         """Let all that looks at rows, and batches for so many successors, be of the packing that rows have."""
