@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from checker.engines.fast.compacting import find_tag, places_behind, tag_of
 from checker.engines.fast.folding import MEMORY, Folded, fold, intern, put_piece, seek_piece, unfold
 from checker.engines.fast.leaves import (
     ALIKE,
@@ -31,7 +32,7 @@ from checker.engines.fast.leaves import (
     WRITES_END,
 )
 from checker.engines.fast.loops import njit
-from checker.engines.fast.table import Words, bits_for, entry_of, fetch, find, hashed, most_in
+from checker.engines.fast.table import Words, bits_for, entry_of, fetch, fetch_slot, find, hashed, most_in
 from checker.engines.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
 
 Ints = NDArray[np.int32]
@@ -270,34 +271,69 @@ def room_for(words: Words, origins: Any, table: Any, width: int) -> int:
     return min(len(words) // width, len(origins), most_in(len(table)))
 
 
+@njit(cache=True, inline="always")
+def add_row(
+    words: Words,
+    origins: Any,
+    table: Any,
+    slot: int,
+    entry: Any,
+    target: Words,
+    k: int,
+    origin: Any,
+    state: State,
+) -> None:
+    """Let a successor be a row from now on, for which there is room; beyond the limit, note that it was left out."""
+    size, width = state[SIZE], state[KEPT]
+    if size >= state[LIMIT]:
+        state[CUT] = 1
+    else:
+        for j in range(width):
+            words[size * width + j] = target[k * width + j]
+        origins[size] = origin
+        table[slot] = entry
+        state[SIZE] = size + 1
+
+
 @njit(cache=True, nogil=True)
-def store(words: Words, origins: Any, table: Any, batch: Batch, begin: int, end: int, state: State) -> int:
+def store(
+    words: Words,
+    origins: Any,
+    table: Any,
+    compact: int | None,
+    batch: Batch,
+    begin: int,
+    end: int,
+    state: State,
+) -> int:
     """Look up some of what was gathered: what is new becomes a row, with where it was reached from.
 
     Return the first for which there is no room, the end where there is room for all. Others may look up rows that were
-    there before.
+    there before. Where the table has tags of so many bits (`compact`), they alone are compared: that is compiled apart.
     """
     target, hashes, reached_from = batch.kept, batch.hashes, batch.origins
-    width, size, limit = state[KEPT], state[SIZE], state[LIMIT]
+    width, limit = state[KEPT], state[LIMIT]
     bits = np.uint32(bits_for(len(table)))
     room = room_for(words, origins, table, width)
     for k in range(begin, end):
-        fetch(words, table, hashes, k, end, width, bits)
-        found = find(words, table, target, k, hashes[k], width, bits)
+        if compact is None:
+            fetch(words, table, hashes, k, end, width, bits)
+            found = find(words, table, target, k, hashes[k], width, bits)
+        else:
+            fetch_slot(table, hashes, k, end)
+            found = find_tag(table, hashes[k], compact)
         if found >= 0:
             continue
-        if size >= limit:
-            state[CUT] = 1
-            continue
-        if size >= room:
+        if room <= state[SIZE] < limit:
             end = k
             break
-        for j in range(width):
-            words[size * width + j] = target[k * width + j]
-        origins[size] = reached_from[k]
-        table[-found - 1] = entry_of(hashes[k], size, bits)
-        size += 1
-    state[SIZE] = size
+        slot = -found - 1
+        if compact is None:
+            entry = entry_of(hashes[k], state[SIZE], bits)
+        else:
+            entry = table.dtype.type(tag_of(hashes[k], compact))
+            state[PROBED] += places_behind(table, hashes[k], slot) if state[SIZE] < limit else 0
+        add_row(words, origins, table, slot, entry, target, k, reached_from[k], state)
     return end
 
 

@@ -322,14 +322,8 @@ class Space:
 
     def _store_some(self, batch: kernel.Batch, begin: int, end: int) -> int:
         """Store some of the successors of a batch, as far as there is room, and return how far."""
-        arrays = (self.rows.words, self.rows.origins, self.table.room, batch, begin, end, self.state)
-        loop: Callable[..., int] = kernel.store
-        if self.compact is None:
-            return loop(*arrays)
-        from checker.engines.fast.compacting import store_tags  # noqa: PLC0415  # compiled where it is wanted
-
-        loop = store_tags
-        return loop(*arrays, self.compact)
+        arrays = (self.rows.words, self.rows.origins, self.table.room)
+        return int(kernel.store(*arrays, self.compact, batch, begin, end, self.state))
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the leaf that each row leads to in a tree, learning what is not known on the way."""
