@@ -287,7 +287,7 @@ class Shard(Space):
         for peer, parcel in enumerate(parcels):
             for count in self.translated(peer, parcel):
                 arrays = (self.rows.words, self.rows.origins, self.table.room)
-                loops.store(*arrays, None, self.batch, 0, count, self.state)
+                loops.store(*arrays, None, None, None, self.batch, 0, count, self.state)
         return self.standing()
 
     def hear(self, parcels: Sequence[Parcel]) -> None:

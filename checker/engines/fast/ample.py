@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from checker.engines.fast.folding import Folded, fold, take, unfold
+from checker.engines.fast.folding import NO_ROOM, Folded, fold, take, unfold
 from checker.engines.fast.kernel import (
     ALPHA,
     AT,
@@ -368,7 +368,8 @@ def keep(f: Folded | None, batch: Batch, k: int, state: State) -> bool:
     width, kept = state[WORDS], state[KEPT]
     if f is not None:
         adding = state[SIZE] < state[LIMIT]  # of what can't become a row, nothing is added
-        if not fold(f, take(f, batch.words, k * width, width, adding), adding, batch.kept, k * kept):
+        touched = take(f, batch.words, k * width, width, adding)
+        if fold(f, touched, adding, batch.kept, k * kept) == NO_ROOM:
             state[NODE] = FULL
             return False
     batch.hashes[k] = hashed(batch.kept, k * kept, kept)

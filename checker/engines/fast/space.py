@@ -203,7 +203,7 @@ class Space:
             self._advance_by(self.choosing, until)
             return
         while self.expanded < until:
-            if self.exchanging is None and self.rows.folded is None:
+            if self.exchanging is None:
                 self._commit(self._next(until if end is None else end))
             else:
                 self._expand_here(until)
@@ -232,7 +232,7 @@ class Space:
             trees = self.learner.trees
             copies = [each.used.copy() for each in (trees.root, trees.nodes, trees.next)]
             self.shown = self.model._replace(root=copies[0], nodes=copies[1], next=copies[2])
-        self.stored = self.size
+        self._show()
         state = self.state.copy()
         state[[AT, GATHERED, PUT_OFF]] = begin, 0, 0
         batch = self.spare.pop() if self.spare else self._batch(BATCH, LATER_ROWS)
@@ -245,7 +245,7 @@ class Space:
 
     def _expand_slice(self, part: Slice) -> None:
         """Expand a slice, in any thread."""
-        kernel.gather(part.model, self.rows.words, None, part.batch, part.state, part.end)  # rows are plain
+        kernel.gather(part.model, self.rows.words, self.rows.shown, part.batch, part.state, part.end)
         kernel.drop_repeated(part.batch, part.state)
 
     def _sift(self, part: Slice) -> None:
@@ -318,12 +318,19 @@ class Space:
             self._make_room(1)
             begin = self._store_some(batch, begin, end)
         self.state[EXPANDED] = at
+        self._show()
+
+    def _show(self) -> None:
+        """Let other threads look up what is stored by now."""
+        self.rows.show()
         self.stored = self.size
 
     def _store_some(self, batch: kernel.Batch, begin: int, end: int) -> int:
         """Store some of the successors of a batch, as far as there is room, and return how far."""
         arrays = (self.rows.words, self.rows.origins, self.table.room)
-        return int(kernel.store(*arrays, self.compact, batch, begin, end, self.state))
+        folded = self.rows.folded
+        model = None if folded is None else self.model
+        return int(kernel.store(*arrays, self.compact, model, folded, batch, begin, end, self.state))
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the leaf that each row leads to in a tree, learning what is not known on the way."""
@@ -356,7 +363,7 @@ class Space:
             self._make_batches(2 * len(self.batch.hashes))
             self._see()
         elif self.state[NODE] == FULL:
-            self.rows.reserve_folding()
+            self._make_room(1)
         elif self.exchanging is not None and self.state[NODE] == kernel.UNSORTED:
             self.exchanging.learn()
             self._see()
@@ -569,7 +576,7 @@ class Space:
     def _make_room(self, rows: int) -> None:
         """Make room for so many new rows."""
         wanted = min(self.size + rows, int(self.state[LIMIT]))
-        if wanted > self.rows.room:
+        if not self.rows.has_room(wanted):
             self.pipeline.rest()
             self.rows.reserve(wanted)
         if most_in(len(self.table.room)) < wanted:
