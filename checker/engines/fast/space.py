@@ -33,6 +33,7 @@ from checker.engines.fast.kernel import (
     PROBED,
     PUT_OFF,
     SEEN,
+    SIFTED,
     SIZE,
     TREE,
     TURNS,
@@ -245,8 +246,12 @@ class Space:
 
     def _expand_slice(self, part: Slice) -> None:
         """Expand a slice, in any thread."""
-        kernel.gather(part.model, self.rows.words, self.rows.shown, part.batch, part.state, part.end)
-        kernel.drop_repeated(part.batch, part.state)
+        folded = self.rows.shown
+        kernel.gather(part.model, self.rows.words, folded, part.batch, part.state, part.end)
+        if folded is None:
+            kernel.drop_repeated(part.batch, part.state)
+        else:  # looking them up takes no longer
+            part.state[SIFTED] = part.state[GATHERED]
 
     def _sift(self, part: Slice) -> None:
         """Leave of a slice only what is none of the rows that are stored; tags are compared where they are stored."""
