@@ -17,7 +17,7 @@ from bigactors.cli import main
 from checker import Engine, Keeping, Limits, check, explore, report_text
 from checker.engines.archive import read_archive
 from checker.engines.contract import Options
-from checker.engines.fast import explorer, folding, pipeline, space
+from checker.engines.fast import explorer, folding, pipeline, slices, space
 from checker.engines.fast.checkpoint import KINDS, SCHEMA
 from checker.engines.fast.explorer import explore_fast
 from checker.engines.fast.rows import Rows
@@ -35,8 +35,8 @@ def small_slices(monkeypatch):
     """Let small missions have many slices, some of which are too large for their batch, and rooms that grow."""
     monkeypatch.setattr(space, "FIRST_ROWS", 64)
     monkeypatch.setattr(space, "BATCH", 64)
-    monkeypatch.setattr(space, "FEW", 4)
-    monkeypatch.setattr(space, "LATER_ROWS", 3)
+    monkeypatch.setattr(slices, "FEW", 4)
+    monkeypatch.setattr(slices, "LATER_ROWS", 3)
     monkeypatch.setattr(pipeline, "WORTH", 1)
 
 
@@ -126,20 +126,20 @@ def test_other_threads_expand_slices_and_sift_them(monkeypatch):
     done = set()
 
     def noted(name):
-        do = getattr(space.Space, name)
+        do = getattr(slices.Slices, name)
 
         def note(self, part):
             done.add((name, threading.current_thread() is threading.main_thread()))
             do(self, part)
 
-        monkeypatch.setattr(space.Space, name, note)
+        monkeypatch.setattr(slices.Slices, name, note)
 
-    noted("_expand_slice")
+    noted("_expand")
     noted("_sift")
     alone = seen(start("rendezvous"), 1, limits=Limits())
-    assert done == {("_expand_slice", True)}
+    assert done == {("_expand", True)}
     assert seen(start("rendezvous"), 4, limits=Limits()) == alone
-    assert {("_expand_slice", False), ("_sift", False)} <= done
+    assert {("_expand", False), ("_sift", False)} <= done
     assert ("_sift", True) not in done
 
 
