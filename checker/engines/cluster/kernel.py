@@ -8,15 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from checker.engines.fast.columns import WORD
-from checker.engines.fast.kernel import (
-    CUT,
-    LIMIT,
-    PLACE,
-    SIZE,
-    WORDS,
-    Batch,
-    State,
-)
+from checker.engines.fast.kernel import PLACE, SIZE, WORDS, Batch, State, add_row
 from checker.engines.fast.loops import njit
 from checker.engines.fast.prefetch import prefetch
 from checker.engines.fast.table import AHEAD, Words, bits_for, entry_of, fetch, find, hashed
@@ -116,12 +108,8 @@ def deal(
     1, for each hash modulo its size: comparing whole rows, it may forget, but never errs.
     """
     rows, hashes, reached_from = batch.words, batch.hashes, batch.origins
-    width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
-    wide, bits, last_place = (
-        np.uint64(width),
-        np.uint32(bits_for(len(table))),
-        np.uint64(len(sent) // (width + 1) - 1),
-    )
+    width, bits = state[WORDS], np.uint32(bits_for(len(table)))
+    wide, last_place = np.uint64(width), np.uint64(len(sent) // (width + 1) - 1)
     found, last, base = np.int64(0), np.int64(-1), np.uint64(0)
     for k in range(gathered):
         fetch(words, table, hashes, k, gathered, width, bits)
@@ -147,40 +135,11 @@ def deal(
                 sent[lately + _ONE + j] = rows[to + j]
             chosen[found], owners[found] = k, owner
             found += 1
-        elif size < limit:
-            for j in range(wide):
-                words[np.uint64(size) * wide + j] = rows[to + j]
-            origins[size] = np.uint64(reached_from[k] * own.workers + me)
-            table[-where - 1] = entry_of(hashes[k], size, bits)
-            size += 1
         else:
-            state[CUT] += 1
-    state[SIZE] = size
+            entry = entry_of(hashes[k], state[SIZE], bits)
+            origin = np.uint64(reached_from[k] * own.workers + me)
+            add_row(words, origins, table, -where - 1, entry, rows, k, origin, state)
     return found
-
-
-@njit(cache=True)
-def settle(
-    words: Words, origins: Words, table: Any, batch: Batch, count: int, reached_from: Words, state: State
-) -> None:
-    """Look up rows that belong to this worker, from the beginning of the batch: what is new becomes one of its rows."""
-    rows, hashes = batch.words, batch.hashes
-    width, size, limit = state[WORDS], state[SIZE], state[LIMIT]
-    bits = np.uint32(bits_for(len(table)))
-    for k in range(count):
-        fetch(words, table, hashes, k, count, width, bits)
-        found = find(words, table, rows, k, hashes[k], width, bits)
-        if found >= 0:
-            continue
-        if size >= limit:
-            state[CUT] += 1
-            continue
-        for j in range(width):
-            words[size * width + j] = rows[k * width + j]
-        origins[size] = reached_from[k]
-        table[-found - 1] = entry_of(hashes[k], size, bits)
-        size += 1
-    state[SIZE] = size
 
 
 class Spelling(NamedTuple):

@@ -285,17 +285,9 @@ class Shard(Space):
         """Take in what the others have sent, in their order."""
         self.hear(parcels)
         for peer, parcel in enumerate(parcels):
-            for origins in self.translated(peer, parcel):
-                reached_from = (origins * self.workers + peer).astype(np.uint64)
-                kernel.settle(
-                    self.rows.words,
-                    self.rows.origins,
-                    self.table.room,
-                    self.batch,
-                    len(origins),
-                    reached_from,
-                    self.state,
-                )
+            for count in self.translated(peer, parcel):
+                arrays = (self.rows.words, self.rows.origins, self.table.room)
+                loops.store(*arrays, None, None, None, self.batch, 0, count, self.state)
         return self.standing()
 
     def hear(self, parcels: Sequence[Parcel]) -> None:
@@ -318,15 +310,16 @@ class Shard(Space):
             learner.varying.add(cell)
             learner.forget_those(learner.taken, cell)
 
-    def translated(self, peer: int, parcel: Parcel) -> Iterator[NDArray[np.int64]]:
-        """Put the rows of a parcel into the batch, some at a time; yield the sender's rows they were reached from."""
+    def translated(self, peer: int, parcel: Parcel) -> Iterator[int]:
+        """Put the rows of a parcel into the batch, some at a time; yield how many there are."""
         if not len(parcel):
             return
         room, rows = len(self.batch.hashes), writable(parcel.rows)
         read = spelling(parcel.packing, *self.dictionaries[peer].arrays())
         for first in range(0, len(parcel), room):
             self._make_room(room)
-            origins = parcel.origins[first : first + room].astype(np.int64)
+            origins = parcel.origins[first : first + room].astype(np.int64) * self.workers + peer
+            self.batch.origins[: len(origins)] = origins
             kernel.translate(
                 rows,
                 first,
@@ -338,7 +331,7 @@ class Shard(Space):
                 self.batch.words,
                 self.batch.hashes,
             )
-            yield origins
+            yield len(origins)
 
     # --- learning ---------------------------------------------------------------------------------------------------
 

@@ -198,7 +198,7 @@ class Worker:
         self.shard.hear(parcels)
         found = []
         for peer, parcel in enumerate(parcels):
-            parts = [self._found(len(rows)) for rows in self.shard.translated(peer, parcel)]
+            parts = [self._found(count) for count in self.shard.translated(peer, parcel)]
             found.append(np.concatenate([np.zeros(0, np.int64), *parts]))
         return found
 

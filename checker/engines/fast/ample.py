@@ -11,12 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from checker.engines.fast.folding import Folded, fold, take, unfold
+from checker.engines.fast.folding import NO_ROOM, Folded, fold, take, unfold
 from checker.engines.fast.kernel import (
     ALPHA,
     AT,
     CROWDS,
-    CUT,
     EXPANDED,
     FULL,
     KEPT,
@@ -31,6 +30,7 @@ from checker.engines.fast.kernel import (
     Ints,
     Model,
     State,
+    add_row,
     code_at,
     conclude,
     copy_columns,
@@ -368,7 +368,8 @@ def keep(f: Folded | None, batch: Batch, k: int, state: State) -> bool:
     width, kept = state[WORDS], state[KEPT]
     if f is not None:
         adding = state[SIZE] < state[LIMIT]  # of what can't become a row, nothing is added
-        if not fold(f, take(f, batch.words, k * width, width, adding), adding, batch.kept, k * kept):
+        touched = take(f, batch.words, k * width, width, adding)
+        if fold(f, touched, adding, batch.kept, k * kept) == NO_ROOM:
             state[NODE] = FULL
             return False
     batch.hashes[k] = hashed(batch.kept, k * kept, kept)
@@ -661,9 +662,8 @@ def expand_reduced(
     It is counted how often each transition was met, and how often it was followed. False where something is not known
     of the row that comes next: of that, nothing was stored.
     """
-    kept, limit = state[KEPT], state[LIMIT]
+    kept, wide = state[KEPT], len(r.taken)
     bits = np.uint32(bits_for(len(table)))
-    wide = len(r.taken)
     while state[AT] < until and state[SIZE] + len(batch.steps) <= room:
         row = state[AT]
         here = words[row * kept : (row + 1) * kept]
@@ -694,18 +694,14 @@ def expand_reduced(
                 continue
             counts[step] += 1
             number = find(words, table, batch.kept, k, batch.hashes[k], kept, bits)
-            if number < 0 and state[SIZE] >= limit:
-                state[CUT] += 1
-                continue
             if number < 0:
                 slot, number = -number - 1, np.int64(state[SIZE])
-                for j in range(kept):
-                    words[number * kept + j] = batch.kept[k * kept + j]
-                origins[number] = row
-                table[slot] = entry_of(batch.hashes[k], number, bits)
+                entry = entry_of(batch.hashes[k], number, bits)
+                add_row(words, origins, table, slot, entry, batch.kept, k, row, state)
+                if number == state[SIZE]:  # it was left out
+                    continue
                 agent = np.int64(r.part[r.step_actor[step]]) // KINDS
                 trails.leads[number] = NO_AGENT - (agent + 1 if agent < r.agents else 0)
-                state[SIZE] += 1
             if k == onward:
                 trails.leads[row] = number
                 for word in range(wide):

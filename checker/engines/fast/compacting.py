@@ -12,19 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from checker.engines.fast.kernel import (
-    CUT,
-    KEPT,
-    LIMIT,
-    PROBED,
-    SIZE,
-    Batch,
-    State,
-    room_for,
-)
 from checker.engines.fast.loops import njit
-from checker.engines.fast.prefetch import prefetch
-from checker.engines.fast.table import AHEAD, Words, slot_of
+from checker.engines.fast.table import Words, slot_of
 
 _ONE, _WORD, _FOLD, _MULTIPLIER = map(np.uint64, (1, 64, 29, 0xBF58476D1CE4E5B9))
 
@@ -52,48 +41,23 @@ def tag_of(mixed: np.uint64, bits: int) -> np.uint64:
     return max(tag, _ONE)
 
 
-@njit(cache=True, nogil=True)
-def store_tags(
-    words: Words,
-    origins: Any,
-    table: Any,
-    batch: Batch,
-    begin: int,
-    end: int,
-    state: State,
-    bits: int,
-) -> int:
-    """Look up some of what was gathered, as `kernel.store` does, by tags alone."""
-    width, size, limit = state[KEPT], state[SIZE], state[LIMIT]
-    slots = np.uint64(len(table))
-    room = room_for(words, origins, table, width)
-    for k in range(begin, end):
-        if k + AHEAD < end:
-            prefetch(table, slot_of(batch.hashes[k + AHEAD], len(table)))
-        tag = table.dtype.type(tag_of(batch.hashes[k], bits))
-        slot = slot_of(batch.hashes[k], len(table))
-        probed = np.int64(0)
-        while table[slot] != 0 and table[slot] != tag:
-            probed += 1
-            slot += _ONE
-            if slot == slots:
-                slot = np.uint64(0)
-        if table[slot] != 0:
-            continue
-        if size >= limit:
-            state[CUT] = 1
-            continue
-        if size >= room:
-            end = k
-            break
-        for j in range(width):
-            words[size * width + j] = batch.kept[k * width + j]
-        origins[size] = batch.origins[k]
-        table[slot] = tag
-        size += 1
-        state[PROBED] += probed
-    state[SIZE] = size
-    return end
+@njit(cache=True, inline="always")
+def find_tag(table: Any, mixed: np.uint64, bits: int) -> int:
+    """Return a slot that has the tag of a hash, as `table.find` returns a row; -slot - 1 where the tag belongs."""
+    tag, slots = table.dtype.type(tag_of(mixed, bits)), np.uint64(len(table))
+    slot = slot_of(mixed, len(table))
+    while table[slot] != 0 and table[slot] != tag:
+        slot += _ONE
+        if slot == slots:
+            slot = np.uint64(0)
+    return np.int64(slot) if table[slot] != 0 else -np.int64(slot) - 1
+
+
+@njit(cache=True, inline="always")
+def places_behind(table: Any, mixed: np.uint64, slot: int) -> int:
+    """Return how many tags a hash was compared with before a slot."""
+    far = slot - np.int64(slot_of(mixed, len(table)))
+    return far if far >= 0 else far + len(table)
 
 
 @njit(cache=True)

@@ -11,6 +11,7 @@ of one for each level of a binary tree.
 # mypy: disable-error-code="return-value, assignment, arg-type"
 # (what numba compiles is typed by numba: mypy takes its integers for Python's)
 
+from threading import local
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -73,12 +74,13 @@ class Interned(NamedTuple):
 
 
 class Folded(NamedTuple):
-    """Pieces and nodes, and the row that was unfolded last, as the loops see them.
+    """Pieces and nodes, and the row that one thread unfolded last, as the loops see them.
 
     While a successor is made of it, the numbers of its own pieces stand in the place of the row's.
 
     Attributes:
-        pieces, nodes: What is interned.
+        pieces, nodes: What is interned. A thread that only looks up has counts of its own: what was added since, and
+            may not be written to its end, it has never met.
         deep: Whether there are nodes between pieces and rows: a number for a flag.
         shift: Pieces have 2 to the power of this many words.
         whole: The words of the row.
@@ -108,7 +110,7 @@ def intern(i: Interned, words: Words, adding: bool) -> np.int64:
     width = i.counts[WIDE]
     mixed, bits = hashed(words, 0, width), np.uint32(i.counts[BITS])
     found = find(i.words, i.index, words, 0, mixed, width, bits)
-    if found < 0 and not adding:
+    if found >= i.counts[COUNT] or (found < 0 and not adding):  # another thread adds it just now
         found = np.int64(UNMET)
     elif found < 0 and i.counts[COUNT] == i.counts[MOST]:
         found = np.int64(NO_ROOM)
@@ -169,8 +171,8 @@ def put_piece(f: Folded, piece: int, number: int, touched: int) -> int:
 
 
 @njit(cache=True, inline="always")
-def fold(f: Folded, touched: int, adding: bool, kept: Words, at: int) -> bool:
-    """Write what is kept of the successor; False if there was no room for a node, or for a piece before that."""
+def fold(f: Folded, touched: int, adding: bool, kept: Words, at: int) -> int:
+    """Write what is kept of the successor; return less than 0 where some piece or node of it is not there."""
     least = np.int64(0)
     for k in range(FOUR):
         group = (touched >> (FOUR * k)) & 15 if f.deep else np.int64(0)
@@ -187,7 +189,21 @@ def fold(f: Folded, touched: int, adding: bool, kept: Words, at: int) -> bool:
     for piece in range(len(f.below)):
         if (touched >> piece) & 1:
             f.below[piece] = f.before[piece]
-    return bool(least != NO_ROOM)
+    return least
+
+
+@njit(cache=True, inline="always")
+def leave_open(kept: Words, at: int, row: int, step: int) -> None:
+    """Note in the place of a successor of which something was never met how it is made: by which step of which row."""
+    kept[at], kept[at + 1] = NOWHERE, (np.uint64(step) << _HALF) | np.uint64(row)
+
+
+@njit(cache=True, inline="always")
+def step_left_open(kept: Words, at: int) -> int:
+    """Return the step by which a successor is yet to be made; less than 0 where it is made."""
+    if kept[at] != NOWHERE or kept[at + 1] == NOWHERE:
+        return np.int64(-1)
+    return np.int64(kept[at + 1] >> _HALF)
 
 
 @njit(cache=True)
@@ -217,7 +233,7 @@ def fold_rows(f: Folded, words: Words, width: int, kept: Words, begin: int) -> i
     """Fold rows, from one on, and write what is kept of them; return up to which there was room."""
     count = len(kept) // PAIR
     for k in range(begin, count):
-        if not fold(f, take(f, words, k * width, width, True), True, kept, PAIR * k):
+        if fold(f, take(f, words, k * width, width, True), True, kept, PAIR * k) == NO_ROOM:
             return k
         unfold(f, kept, k)
     return count
@@ -285,15 +301,19 @@ class Pool:
         """How many bytes they take."""
         return self._words.held(len(self) * self.width) + self._index.room.nbytes
 
+    def has_room(self, count: int) -> bool:
+        """Tell whether there is room for so many more."""
+        return bool(len(self) + count <= self.interned.counts[MOST])
+
     def reserve(self, count: int) -> None:
         """Make room for so many more.
 
         Raises:
             OSError: There is none.
         """
-        if len(self) + count > self.interned.counts[MOST]:
+        if not self.has_room(count):
             room = more(len(self._words.room) // self.width)
-            self.interned = self.interned._replace(words=np.zeros(0, np.uint64))
+            self.interned = self.interned._replace(words=_NONE)
             self._words.grow(room * self.width)
             self._rebuild(room)
 
@@ -309,53 +329,84 @@ class Pool:
         self.interned = self.interned._replace(words=self._words.room, index=self._index.room)
 
 
+class Desk(local):
+    """The room in which one thread folds and unfolds rows (see `Folded`); each has its own, in which no row is yet."""
+
+    def __init__(self, count: int, width: int) -> None:
+        super().__init__()
+        self.rooms = (
+            np.zeros(count * width, np.uint64),
+            np.full(count, UNMET, np.int64),
+            np.full(FOUR, UNMET, np.int64),
+            np.zeros(count, np.int64),
+            np.zeros(FOUR, np.int64),
+            np.zeros(max(width, PAIR), np.uint64),
+            np.zeros(MEMORY, np.uint64),
+            np.zeros(MEMORY, np.int64),
+        )
+
+
 class Folding:
     """The pieces and nodes of all rows of so many words.
 
     Attributes:
         width: How many words a row has.
-        folded: As the loops see them; making room makes another one: don't keep it.
     """
 
-    __slots__ = ("folded", "nodes", "pieces", "width")
+    __slots__ = ("_deep", "_desk", "_shift", "_shown", "nodes", "pieces", "width")
 
     def __init__(self, width: int, pieces: Words = _NONE, nodes: Words = _NONE) -> None:
-        deep = width > SHALLOW
-        count = FOUR * FOUR if deep else FOUR
+        self._deep = width > SHALLOW
+        count = FOUR * FOUR if self._deep else FOUR
         self.width = width
-        shift = (-(-width // count) - 1).bit_length()
-        self.pieces = Pool(1 << shift, pieces)
+        self._shift = (-(-width // count) - 1).bit_length()
+        self.pieces = Pool(1 << self._shift, pieces)
         self.nodes = Pool(PAIR, nodes)
-        self.folded = Folded(
-            self.pieces.interned,
-            self.nodes.interned,
-            int(deep),
-            shift,
-            np.zeros(count * self.pieces.width, np.uint64),
-            np.zeros(count, np.int64),
-            np.zeros(FOUR, np.int64),
-            np.zeros(count, np.int64),
-            np.zeros(FOUR, np.int64),
-            np.zeros(max(self.pieces.width, PAIR), np.uint64),
-            np.zeros(MEMORY, np.uint64),
-            np.zeros(MEMORY, np.int64),
-        )
+        self._desk = Desk(count, self.pieces.width)
         begin_with_zeros(self.folded)
+        self.show()
+
+    @property
+    def folded(self) -> Folded:
+        """Both as the loops see them in the thread that adds; making room makes others: don't keep it."""
+        return self._at_desk(self.pieces.interned, self.nodes.interned)
+
+    @property
+    def shown(self) -> Folded:
+        """Both as they were shown last to the threads that only look up; making room makes others: don't keep it."""
+        return self._at_desk(*self._shown)
+
+    def _at_desk(self, pieces: Interned, nodes: Interned) -> Folded:
+        return Folded(pieces, nodes, int(self._deep), self._shift, *self._desk.rooms)
+
+    def show(self) -> None:
+        """Let all threads look up what is there now."""
+        self._shown = tuple(
+            each._replace(counts=each.counts.copy()) for each in (self.pieces.interned, self.nodes.interned)
+        )
 
     @property
     def held(self) -> int:
         """How many bytes they take."""
         return self.pieces.held + self.nodes.held
 
+    @property
+    def has_room(self) -> bool:
+        """Whether there is room for what a row is folded into."""
+        return self.pieces.has_room(FOUR * FOUR) and self.nodes.has_room(FOUR)
+
     def reserve(self) -> None:
-        """Make room for one more row, and for more.
+        """Make room for one more row, and for more; meanwhile nobody looks up anything.
 
         Raises:
             OSError: There is none.
         """
-        self.pieces.reserve(len(self.folded.below))
-        self.nodes.reserve(FOUR)
-        self.folded = self.folded._replace(pieces=self.pieces.interned, nodes=self.nodes.interned)
+        self._shown = ()  # arrays hold their pages where they are
+        try:
+            self.pieces.reserve(FOUR * FOUR)
+            self.nodes.reserve(FOUR)
+        finally:
+            self.show()
 
     def are_rows(self, kept: Words) -> bool:
         """Tell whether every piece and node of some rows is there, and each but once."""
@@ -363,7 +414,7 @@ class Folding:
             len(np.unique(pool.words.reshape(-1, pool.width), axis=0)) == len(pool)
             for pool in (self.pieces, self.nodes)
         )
-        if not self.folded.deep:
+        if not self._deep:
             return once and bool(are_there(kept, len(self.pieces)))
         nodes = bool(are_there(self.nodes.words, len(self.pieces)))
         return once and nodes and bool(are_there(kept, len(self.nodes)))

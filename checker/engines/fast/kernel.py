@@ -12,7 +12,20 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.folding import MEMORY, Folded, fold, intern, put_piece, seek_piece, unfold
+from checker.engines.fast.compacting import find_tag, places_behind, tag_of
+from checker.engines.fast.folding import (
+    MEMORY,
+    NO_ROOM,
+    UNMET,
+    Folded,
+    fold,
+    intern,
+    leave_open,
+    put_piece,
+    seek_piece,
+    step_left_open,
+    unfold,
+)
 from checker.engines.fast.leaves import (
     ALIKE,
     COPIES,
@@ -31,7 +44,7 @@ from checker.engines.fast.leaves import (
     WRITES_END,
 )
 from checker.engines.fast.loops import njit
-from checker.engines.fast.table import Words, bits_for, entry_of, fetch, find, hashed, most_in
+from checker.engines.fast.table import Words, bits_for, entry_of, fetch, fetch_slot, find, hashed, most_in
 from checker.engines.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
 
 Ints = NDArray[np.int32]
@@ -104,6 +117,9 @@ WIDE, UNSORTED, FULL = -2, -3, -4
 represents one of them, and where there is no room for what one is folded into."""
 
 PLACE, MOVE, LATER = 3, 5, 3
+UNKNOWN = -3
+"""What stands for what is not known."""
+
 _QUARTER = np.uint64(40)
 
 _ONE, _PIECE, _STEP, _MEMORY = map(np.uint64, (1, 32, 36, 65 - MEMORY.bit_length()))
@@ -265,39 +281,229 @@ def is_repeated(target: Words, taken: Ints, steps: Ints, began: int, end: int, s
 
 
 @njit(cache=True, inline="always")
+def find_leaves(m: Model, source: Words, at: int, first: int, last: int, leaves: Ints, state: State) -> int:
+    """Note the leaf of each actor of a row, its agents' first; return their flags, less than 0 if one is unknown."""
+    flags = np.int64(0)
+    for k in range(last - first + len(m.clauses)):
+        tree = m.agents[first + k] if first + k < last else m.clauses[first + k - last]
+        reference = walk(source, at, m.root[tree], m.nodes, m.next, state)
+        if reference == 0:
+            state[TREE] = tree
+            flags = np.int64(UNKNOWN)
+            break
+        leaves[k] = -reference - 1
+        flags |= m.leaves[LEAF * (-reference - 1) + FLAGS]
+    return flags
+
+
+@njit(cache=True, inline="always")
+def part_step(m: Model, source: Words, at: int, part: int, state: State) -> int:
+    """Return what a part of a transition writes, as a transition of its own; less than 0 where that is not known."""
+    tree = m.part[part]
+    reference = walk(source, at, m.root[tree], m.nodes, m.next, state)
+    if reference == 0:
+        state[TREE] = tree
+        return np.int64(UNKNOWN)
+    return np.int64(m.leaves[LEAF * (-reference - 1) + FIRST])
+
+
+@njit(cache=True, inline="always")
+def make_plain(
+    m: Model, source: Words, at: int, step: int, target: Words, to: int, width: int, state: State
+) -> int:
+    """Write what a transition of a row leads to; return less than 0 where something is not known."""
+    record, own = STEP * step, np.int64(0)
+    conclude(source, at, m.masks, step, target, to, width)
+    begin, stop = m.steps[record + COPIES], m.steps[record + COPIES_END]
+    if begin < stop:
+        copy_columns(source, at, m.columns, m.copies, begin, stop, target, to)
+    for part in range(m.steps[record + PARTS], m.steps[record + PARTS_END]):
+        own = part_step(m, source, at, part, state)
+        if own < 0:
+            break
+        write_part(m.columns, m.writes, m.steps, own, target, to)
+    return own
+
+
+@njit(cache=True, inline="always")
+def make_folded(m: Model, f: Folded, step: int, adding: bool, kept: Words, to: int, state: State) -> int:
+    """Fold what a transition of the row that was unfolded leads to; return less than 0 where something is not there."""
+    record, own = STEP * step, np.int64(0)
+    touched = change_pieces(m.columns, m.writes, m.steps, m.masks, step, f, np.int64(0), adding)
+    begin, stop = m.steps[record + COPIES], m.steps[record + COPIES_END]
+    if begin < stop:
+        touched = copy_pieces(m.columns, m.copies, begin, stop, f, touched, adding)
+    for part in range(m.steps[record + PARTS], m.steps[record + PARTS_END]):
+        own = part_step(m, f.whole, 0, part, state)
+        if own < 0:
+            break
+        touched = change_pieces(m.columns, m.writes, m.steps, m.masks, own, f, touched, adding)
+    least = fold(f, touched, adding, kept, to)
+    return least if own >= 0 else own
+
+
+@njit(cache=True, nogil=True)
+def gather(m: Model, words: Words, f: Folded | None, batch: Batch, state: State, until: int) -> bool:
+    """Gather the successors of rows up to a number, or until half of the batch is full; False at what is not known.
+
+    A row's successors are gathered each once: first what its agents are served, then what they do themselves, then what
+    the environment does. As long as there is room to note it, a row of which something is not known, or too much is
+    pending, is put off.
+
+    Successors are folded at once where rows are (`f`): that is compiled apart. One of which some piece or node was
+    never met is left open, and made where it is stored: so pieces are numbered in the order of successors, whoever
+    gathers them. One that is to be compared with others is made at once, so its row is put off where rows can be.
+    """
+    made, hashes, origins, taken, leaves, later = (
+        batch.kept, batch.hashes, batch.origins, batch.steps, batch.leaves, batch.later,
+    )  # fmt: skip
+    width, kept, known = state[WORDS], state[KEPT], True
+    is_full = state[SIZE] >= state[LIMIT]  # then what was never met is of no row
+    while known and state[AT] < until and state[GATHERED] <= len(hashes) // 2:
+        row = state[AT]
+        source, at = words, row * width
+        if f is not None:
+            unfold(f, words, row)
+            source, at = f.whole, np.int64(0)
+        first, last = np.int64(0), np.int64(len(m.agents))
+        if state[ALPHA] >= 0:
+            group = code_at(source, at, m.columns, state[ALPHA])
+            first, last = np.int64(m.agents_from[group]), np.int64(m.agents_from[group + 1])
+        flags = find_leaves(m, source, at, first, last, leaves, state)
+        began, end = state[GATHERED], state[GATHERED]
+        known = flags >= 0
+        if known and flags & CROWDED:
+            if len(later):
+                known = False  # it is counted where it is expanded at last
+            else:
+                state[CROWDS] += 1
+        elif known:
+            turn = first_turn(m.leaves, m.steps, leaves, last - first) if state[TURNS] else np.int64(-1)
+            for k in range(last - first + len(m.clauses)):
+                for step in range(m.leaves[LEAF * leaves[k] + FIRST], m.leaves[LEAF * leaves[k] + END]):
+                    record = STEP * step
+                    if m.steps[record + TURN] >= 0 and m.steps[record + TURN] != turn:
+                        continue
+                    if end == len(hashes):
+                        state[NODE] = WIDE
+                        known = False
+                        break
+                    is_compared = m.steps[record + ALIKE] >= 0
+                    if f is None:
+                        there = make_plain(m, source, at, step, made, end * width, width, state)
+                    else:
+                        there = make_folded(
+                            m, f, step, is_compared and not len(later), made, kept * end, state
+                        )
+                        if there == UNMET and not is_compared:
+                            if not is_full:
+                                leave_open(made, kept * end, row, step)
+                            there = np.int64(0)
+                        elif there == NO_ROOM:
+                            state[NODE] = FULL
+                    known = there >= 0
+                    if not known:
+                        break
+                    if is_compared and is_repeated(made, taken, m.steps, began, end, step, kept):
+                        continue
+                    hashes[end] = hashed(made, kept * end, kept)
+                    origins[end], taken[end] = row, step
+                    end += 1
+                if not known:
+                    break
+        if known:
+            state[GATHERED] = end
+            state[AT] += 1
+        elif LATER * state[PUT_OFF] < len(later):
+            at = LATER * state[PUT_OFF]
+            later[at], later[at + 1], later[at + 2] = row, state[GATHERED], state[GATHERED]
+            state[PUT_OFF] += 1
+            state[AT] += 1
+            known = True
+    return known
+
+
+@njit(cache=True, inline="always")
 def room_for(words: Words, origins: Any, table: Any, width: int) -> int:
     """Return how many rows there may be before something must grow."""
     return min(len(words) // width, len(origins), most_in(len(table)))
 
 
+@njit(cache=True, inline="always")
+def add_row(
+    words: Words,
+    origins: Any,
+    table: Any,
+    slot: int,
+    entry: Any,
+    target: Words,
+    k: int,
+    origin: Any,
+    state: State,
+) -> None:
+    """Let a successor be a row from now on, for which there is room; beyond the limit, note that it was left out."""
+    size, width = state[SIZE], state[KEPT]
+    if size >= state[LIMIT]:
+        state[CUT] = 1
+    else:
+        for j in range(width):
+            words[size * width + j] = target[k * width + j]
+        origins[size] = origin
+        table[slot] = entry
+        state[SIZE] = size + 1
+
+
 @njit(cache=True, nogil=True)
-def store(words: Words, origins: Any, table: Any, batch: Batch, begin: int, end: int, state: State) -> int:
+def store(
+    words: Words,
+    origins: Any,
+    table: Any,
+    compact: int | None,
+    m: Model | None,
+    f: Folded | None,
+    batch: Batch,
+    begin: int,
+    end: int,
+    state: State,
+) -> int:
     """Look up some of what was gathered: what is new becomes a row, with where it was reached from.
 
     Return the first for which there is no room, the end where there is room for all. Others may look up rows that were
-    there before.
+    there before. Where the table has tags of so many bits (`compact`), they alone are compared; where rows are folded
+    (`f`, by the model `m`), successors that were left open are made first: both is compiled apart.
     """
     target, hashes, reached_from = batch.kept, batch.hashes, batch.origins
-    width, size, limit = state[KEPT], state[SIZE], state[LIMIT]
+    width, limit = state[KEPT], state[LIMIT]
     bits = np.uint32(bits_for(len(table)))
     room = room_for(words, origins, table, width)
     for k in range(begin, end):
-        fetch(words, table, hashes, k, end, width, bits)
-        found = find(words, table, target, k, hashes[k], width, bits)
+        if f is not None:
+            step = step_left_open(target, width * k)
+            if step >= 0:
+                unfold(f, words, reached_from[k])
+                if make_folded(m, f, step, state[SIZE] < limit, target, width * k, state) == NO_ROOM:
+                    leave_open(target, width * k, reached_from[k], step)
+                    end = k
+                    break
+                hashes[k] = hashed(target, width * k, width)
+        if compact is None:
+            fetch(words, table, hashes, k, end, width, bits)
+            found = find(words, table, target, k, hashes[k], width, bits)
+        else:
+            fetch_slot(table, hashes, k, end)
+            found = find_tag(table, hashes[k], compact)
         if found >= 0:
             continue
-        if size >= limit:
-            state[CUT] = 1
-            continue
-        if size >= room:
+        if room <= state[SIZE] < limit:
             end = k
             break
-        for j in range(width):
-            words[size * width + j] = target[k * width + j]
-        origins[size] = reached_from[k]
-        table[-found - 1] = entry_of(hashes[k], size, bits)
-        size += 1
-    state[SIZE] = size
+        slot = -found - 1
+        if compact is None:
+            entry = entry_of(hashes[k], state[SIZE], bits)
+        else:
+            entry = table.dtype.type(tag_of(hashes[k], compact))
+            state[PROBED] += places_behind(table, hashes[k], slot) if state[SIZE] < limit else 0
+        add_row(words, origins, table, slot, entry, target, k, reached_from[k], state)
     return end
 
 
@@ -370,112 +576,6 @@ def sift(words: Words, table: Any, batch: Batch, state: State) -> None:
             left += 1
     note_later(later, noted, several, left)
     state[SIFTED] = left
-
-
-@njit(cache=True, nogil=True)
-def gather(  # one loop, so that its arrays are taken out of their tuples only once
-    m: Model, words: Words, f: Folded | None, batch: Batch, state: State, until: int
-) -> bool:
-    """Gather the successors of rows up to a number, or until half of the batch is full; False at what is not known.
-
-    A row's successors are gathered each once: first what its agents are served, then what they do themselves, then what
-    the environment does. As long as there is room to note it, a row of which something is not known, or too much is
-    pending, is put off. Successors are folded at once where rows are (`f`): that is compiled apart.
-    """
-    root, nodes, leads, columns = m.root, m.nodes, m.next, m.columns
-    copies, writes, parts = m.copies, m.writes, m.part
-    agents_from, agents, clauses = m.agents_from, m.agents, m.clauses
-    all_leaves, steps, masks = m.leaves, m.steps, m.masks
-    target, made, hashes, origins = batch.words, batch.kept, batch.hashes, batch.origins
-    taken, leaves, later = batch.steps, batch.leaves, batch.later
-    width, kept, known = state[WORDS], state[KEPT], True
-    adding = state[SIZE] < state[LIMIT]  # of what can't become a row, nothing is added
-    while known and state[AT] < until and state[GATHERED] <= len(hashes) // 2:
-        row = state[AT]
-        source, at = words, row * width
-        if f is not None:
-            unfold(f, words, row)
-            source, at = f.whole, np.int64(0)
-        first, last = np.int64(0), np.int64(len(agents))
-        if state[ALPHA] >= 0:
-            group = code_at(source, at, columns, state[ALPHA])
-            first, last = np.int64(agents_from[group]), np.int64(agents_from[group + 1])
-        count = last - first + len(clauses)
-        flags = np.int64(0)
-        for k in range(count):
-            tree = agents[first + k] if first + k < last else clauses[first + k - last]
-            reference = walk(source, at, root[tree], nodes, leads, state)
-            if reference == 0:
-                state[TREE] = tree
-                known = False
-                break
-            leaves[k] = -reference - 1
-            flags |= all_leaves[LEAF * (-reference - 1) + FLAGS]
-        end, may_wait = state[GATHERED], LATER * state[PUT_OFF] < len(later)
-        if known and flags & CROWDED:
-            if len(later):
-                known = False  # it is counted where it is expanded at last
-            else:
-                state[CROWDS] += 1
-        elif known:
-            turn = first_turn(all_leaves, steps, leaves, last - first) if state[TURNS] else np.int64(-1)
-            began = end
-            for k in range(count):
-                leaf = LEAF * leaves[k]
-                for step in range(all_leaves[leaf + FIRST], all_leaves[leaf + END]):
-                    record = STEP * step
-                    if steps[record + TURN] >= 0 and steps[record + TURN] != turn:
-                        continue
-                    if end == len(hashes):
-                        state[NODE] = WIDE
-                        known = False
-                        break
-                    to, touched = end * width, np.int64(0)
-                    add = adding or steps[record + ALIKE] >= 0  # which will be compared
-                    begin, stop = steps[record + COPIES], steps[record + COPIES_END]
-                    if f is not None:
-                        touched = change_pieces(columns, writes, steps, masks, step, f, touched, add)
-                        if begin < stop:
-                            touched = copy_pieces(columns, copies, begin, stop, f, touched, add)
-                    else:
-                        conclude(source, at, masks, step, target, to, width)
-                        if begin < stop:
-                            copy_columns(source, at, columns, copies, begin, stop, target, to)
-                    for part in range(steps[record + PARTS], steps[record + PARTS_END]):
-                        tree = parts[part]
-                        reference = walk(source, at, root[tree], nodes, leads, state)
-                        if reference == 0:
-                            state[TREE] = tree
-                            known = False
-                            break
-                        own = all_leaves[LEAF * (-reference - 1) + FIRST]
-                        if f is not None:
-                            touched = change_pieces(columns, writes, steps, masks, own, f, touched, add)
-                        else:
-                            write_part(columns, writes, steps, own, target, to)
-                    if f is not None and not fold(f, touched, add, made, kept * end) and known:
-                        state[NODE] = FULL
-                        known = False
-                    if not known:
-                        break
-                    if steps[record + ALIKE] >= 0 and is_repeated(made, taken, steps, began, end, step, kept):
-                        continue
-                    hashes[end] = hashed(made, kept * end, kept)
-                    origins[end] = row
-                    taken[end] = step
-                    end += 1
-                if not known:
-                    break
-        if known:
-            state[GATHERED] = end
-            state[AT] += 1
-        elif may_wait:
-            at = LATER * state[PUT_OFF]
-            later[at], later[at + 1], later[at + 2] = row, state[GATHERED], state[GATHERED]
-            state[PUT_OFF] += 1
-            state[AT] += 1
-            known = True
-    return known
 
 
 @njit(cache=True)

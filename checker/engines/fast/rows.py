@@ -47,6 +47,16 @@ class Rows:
         return None if self._folding is None else self._folding.folded
 
     @property
+    def shown(self) -> folding.Folded | None:
+        """The same for threads that only look up, as it was shown last."""
+        return None if self._folding is None else self._folding.shown
+
+    def show(self) -> None:
+        """Let all threads look up what rows are folded into by now."""
+        if self._folding is not None:
+            self._folding.show()
+
+    @property
     def interned(self) -> tuple[NDArray[np.uint64], NDArray[np.uint64]]:
         """The pieces and nodes of rows that are folded, none of others."""
         none = np.zeros(0, np.uint64)
@@ -88,23 +98,20 @@ class Rows:
 
     # --- room -----------------------------------------------------------------------------------------------------
 
+    def has_room(self, rows: int) -> bool:
+        """Tell whether there is room for so many rows in all, and for what one more is folded into."""
+        return rows <= self.room and (self._folding is None or self._folding.has_room)
+
     def reserve(self, rows: int) -> None:
-        """Make room for so many rows in all, and for more than that where some must be made.
+        """Make that room, and more than that where some must be made; meanwhile no other thread looks at rows.
 
         Raises:
             OSError: There is no room for them.
         """
         if rows > self.room:
             self._grow(max(rows, more(self.room)), self.kept)
-
-    def reserve_folding(self) -> None:
-        """Make room for what one more row is folded into.
-
-        Raises:
-            OSError: There is none.
-        """
-        assert self._folding is not None
-        self._folding.reserve()
+        if self._folding is not None:
+            self._folding.reserve()
 
     def widen(self, width: int) -> None:
         """Give each row so many words, no fewer than it has; the caller moves what stands in them.
@@ -150,7 +157,8 @@ class Rows:
             words[: len(block)] = block
             repack(words, count, moves, self.width, width)
             _fold(into, words, kept.room[folding.PAIR * begin : folding.PAIR * (begin + count)])
-        if self.spilled:  # files have the room
+        if self.spilled:
+            self._words.grow(len(kept.room))  # rows may have had one word
             self.words[: folding.PAIR * size] = kept.room[: folding.PAIR * size]
         else:
             self._words = kept

@@ -31,8 +31,6 @@ from checker.engines.fast.kernel import (
     LIMIT,
     NODE,
     PROBED,
-    PUT_OFF,
-    SEEN,
     SIZE,
     TREE,
     TURNS,
@@ -40,8 +38,8 @@ from checker.engines.fast.kernel import (
 )
 from checker.engines.fast.learner import Actor, CodedSource, Learner
 from checker.engines.fast.pages import Pages
-from checker.engines.fast.pipeline import Pipeline, Slice
 from checker.engines.fast.rows import Rows
+from checker.engines.fast.slices import Slices
 from checker.engines.fast.table import bits_for, most_in, rebuild, slots_for, slots_within, write_numbers
 from checker.engines.fast.trees import RECORD
 from checker.limits import look
@@ -53,12 +51,6 @@ from semantics.successors import by_clause, moves, served
 
 BATCH = 1 << 15
 """Successors that a batch has room for; rows are expanded until half of that is gathered."""
-
-FEW = 1 << 6
-"""Rows of the first slice, and of the next one where what was found ahead turned out to be worth nothing."""
-
-LATER_ROWS = 1 << 10
-"""How many rows of a slice may be put off."""
 
 FIRST_ROWS = 1 << 15
 MOST_ROWS = (1 << 31) - 1
@@ -83,13 +75,11 @@ class Space:
         compact: How many bits a tag has, where the table has tags instead of numbers (see `compacting`).
         actors: How many actors a configuration may have, as far as is known: agents' two each, and the environment's.
         left: Says how many bytes of memory may be taken besides: the table grows by less where they end.
-        pipeline: Expands rows ahead of what is stored.
+        slices: Rows that are expanded ahead of what is stored.
+        pipeline: The threads that do so.
         stored: How many rows other threads may look up.
-        pace: How many rows the next slice has, if one has not too many successors.
-        breadth: How many successors a row of the last slice had.
         changes: How many times rows were packed anew.
         shown: What is known, as other threads may read it while more is learned; None where it is out of date.
-        spare: Batches of slices that were stored.
     """
 
     ORIGIN: type[np.generic] = np.uint32
@@ -114,11 +104,10 @@ class Space:
         self.compact = compact
         self.state = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
-        self.pipeline = Pipeline(threads, self._expand_slice, self._sift)
+        self.slices = Slices(self, threads)
+        self.pipeline = self.slices.pipeline
         self.stored = self.changes = 0
-        self.pace, self.breadth = FEW, 1.0
         self.shown: kernel.Model | None = None
-        self.spare: list[kernel.Batch] = []
         self.packing: Packing
         self.batch: kernel.Batch
         self.state[TURNS] = learner.setting.scheduler is Scheduler.FCFS
@@ -203,81 +192,17 @@ class Space:
             self._advance_by(self.choosing, until)
             return
         while self.expanded < until:
-            if self.exchanging is None and self.rows.folded is None:
-                self._commit(self._next(until if end is None else end))
+            if self.exchanging is None:
+                self.slices.advance(until if end is None else end)
             else:
-                self._expand_here(until)
+                self.expand_here(until)
 
-    def _next(self, end: int) -> Slice:
-        """Return the slice that comes next, expanded; let others go ahead, as far as rows are stored.
-
-        No slice lies on both sides of some end.
-        """
-        pipeline = self.pipeline
-        if pipeline.begin is not None and pipeline.begin > self.expanded:  # a batch was full before its end
-            pipeline.ahead.appendleft(self._slice(self.expanded, pipeline.begin))
-        elif pipeline.ahead and pipeline.ahead[0].epoch != self._epoch:
-            pipeline.drop()
-        begin = self.expanded if pipeline.end is None else pipeline.end
-        while not pipeline.is_full and begin < (stop := end if begin < end else self.size):
-            rows = min(self.pace, int(BATCH / 2 / self.breadth), pipeline.fair(stop - begin))
-            part = self._slice(begin, min(begin + max(rows, 1), stop))
-            pipeline.add(part)
-            begin = part.end
-        return pipeline.take()
-
-    def _slice(self, begin: int, end: int) -> Slice:
-        """Return rows as a slice, to be expanded by what is known now."""
-        if self.shown is None:
-            trees = self.learner.trees
-            copies = [each.used.copy() for each in (trees.root, trees.nodes, trees.next)]
-            self.shown = self.model._replace(root=copies[0], nodes=copies[1], next=copies[2])
-        self.stored = self.size
-        state = self.state.copy()
-        state[[AT, GATHERED, PUT_OFF]] = begin, 0, 0
-        batch = self.spare.pop() if self.spare else self._batch(BATCH, LATER_ROWS)
-        return Slice(begin, end, self._epoch, self.shown, batch, state)
-
-    @property
-    def _epoch(self) -> int:
-        """A number that changes whenever what was found ahead may be worth nothing."""
-        return self.changes + self.learner.trees.forgotten
-
-    def _expand_slice(self, part: Slice) -> None:
-        """Expand a slice, in any thread."""
-        kernel.gather(part.model, self.rows.words, None, part.batch, part.state, part.end)  # rows are plain
-        kernel.drop_repeated(part.batch, part.state)
-
-    def _sift(self, part: Slice) -> None:
-        """Leave of a slice only what is none of the rows that are stored; tags are compared where they are stored."""
-        if self.compact is None:
-            part.state[SEEN] = self.stored
-            kernel.sift(self.rows.words, self.table.room, part.batch, part.state)
-
-    def _commit(self, part: Slice) -> None:
-        """Store what was found in a slice; rows that were put off are expanded when their turn comes."""
-        steps = found = 0
-        for row, steps_before, found_before in part.put_off():
-            self._store(part.batch, (steps, steps_before), (found, found_before), row)
-            steps, found = steps_before, found_before
-            while self.expanded == row:
-                self._expand_here(row + 1)
-            if self._epoch != part.epoch:
-                self.pipeline.drop()
-                self.pace = FEW
-                return
-        self._store(part.batch, (steps, part.gathered), (found, part.sifted), part.at)
-        self.breadth = max(part.gathered / (part.at - part.begin), 0.5)
-        self.pace = min(2 * self.pace, BATCH)
-        if len(part.batch.leaves) == self.actors:
-            self.spare.append(part.batch)
-
-    def _expand_here(self, until: int) -> None:
+    def expand_here(self, until: int) -> None:
         """Expand rows up to a number, or until a batch is full, learning what is not known on the way."""
         self.state[AT], self.state[GATHERED] = self.expanded, 0
         known = self._gather(until)
         gathered = int(self.state[GATHERED])
-        self._store(self.batch, (0, gathered), (0, gathered), int(self.state[AT]))
+        self.store(self.batch, (0, gathered), (0, gathered), int(self.state[AT]))
         self.state[GATHERED] = 0
         if not known:
             self._miss()
@@ -310,7 +235,7 @@ class Space:
             known if self.exchanging is None else self.exchanging.represent(self.batch, self.state) and known
         )
 
-    def _store(self, batch: kernel.Batch, steps: tuple[int, int], found: tuple[int, int], at: int) -> None:
+    def store(self, batch: kernel.Batch, steps: tuple[int, int], found: tuple[int, int], at: int) -> None:
         """Store what was gathered of the rows before one: some transitions, and successors that may be new."""
         kernel.count(batch.steps, *steps, self.counts.room)
         begin, end = found
@@ -318,18 +243,19 @@ class Space:
             self._make_room(1)
             begin = self._store_some(batch, begin, end)
         self.state[EXPANDED] = at
+        self.show()
+
+    def show(self) -> None:
+        """Let other threads look up what is stored by now."""
+        self.rows.show()
         self.stored = self.size
 
     def _store_some(self, batch: kernel.Batch, begin: int, end: int) -> int:
         """Store some of the successors of a batch, as far as there is room, and return how far."""
-        arrays = (self.rows.words, self.rows.origins, self.table.room, batch, begin, end, self.state)
-        loop: Callable[..., int] = kernel.store
-        if self.compact is None:
-            return loop(*arrays)
-        from checker.engines.fast.compacting import store_tags  # noqa: PLC0415  # compiled where it is wanted
-
-        loop = store_tags
-        return loop(*arrays, self.compact)
+        arrays = (self.rows.words, self.rows.origins, self.table.room)
+        folded = self.rows.folded
+        model = None if folded is None else self.model
+        return int(kernel.store(*arrays, self.compact, model, folded, batch, begin, end, self.state))
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the leaf that each row leads to in a tree, learning what is not known on the way."""
@@ -362,7 +288,7 @@ class Space:
             self._make_batches(2 * len(self.batch.hashes))
             self._see()
         elif self.state[NODE] == FULL:
-            self.rows.reserve_folding()
+            self._make_room(1)
         elif self.exchanging is not None and self.state[NODE] == kernel.UNSORTED:
             self.exchanging.learn()
             self._see()
@@ -557,8 +483,8 @@ class Space:
 
     def _make_batches(self, successors: int) -> None:
         """Make an empty batch; what it held must have been stored."""
-        self.batch = self._batch(successors)
-        self.spare.clear()
+        self.batch = self.new_batch(successors)
+        self.slices.spare.clear()
         self.state[GATHERED] = 0
 
     def _take_turns(self, actors: int) -> None:
@@ -567,7 +493,9 @@ class Space:
             self.actors = actors
             self._make_batches(len(self.batch.hashes))
 
-    def _batch(self, successors: int, later: int = 0) -> kernel.Batch:
+    def new_batch(self, successors: int = 0, later: int = 0) -> kernel.Batch:
+        """Return an empty batch for so many successors, or as many as usual, that may put off so many rows."""
+        successors = successors or BATCH
         folded = self.rows.folded is not None
         whole = 0 if folded and self.choosing is None else successors
         words = np.zeros(whole * self.packing.words, np.uint64)
@@ -585,7 +513,7 @@ class Space:
     def _make_room(self, rows: int) -> None:
         """Make room for so many new rows."""
         wanted = min(self.size + rows, int(self.state[LIMIT]))
-        if wanted > self.rows.room:
+        if not self.rows.has_room(wanted):
             self.pipeline.rest()
             self.rows.reserve(wanted)
         if most_in(len(self.table.room)) < wanted:

@@ -126,6 +126,13 @@ def find(
 
 
 @njit(cache=True, inline="always")
+def fetch_slot(table: Any, hashes: Words, k: int, end: int) -> None:
+    """Ask for the slot in which the search for a successor some places behind one, up to an end, will begin."""
+    if k + AHEAD < end:
+        prefetch(table, slot_of(hashes[k + AHEAD], len(table)))
+
+
+@njit(cache=True, inline="always")
 def fetch(words: Words, table: Any, hashes: Words, k: int, end: int, width: int, bits: np.uint32) -> None:
     """Ask for what successors some places behind one, up to an end, will be compared with: a slot, then its row."""
     far, near = k + 2 * AHEAD, k + AHEAD

@@ -13,7 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast import kernel
-from checker.engines.fast.kernel import AT, SIZE, TREE, TURNS, WORDS, conclude, copy_columns, walk, write_part
+from checker.engines.fast.kernel import (
+    AT,
+    SIZE,
+    TREE,
+    TURNS,
+    WORDS,
+    add_row,
+    conclude,
+    copy_columns,
+    walk,
+    write_part,
+)
 from checker.engines.fast.leaves import (
     ALIKE,
     COPIES,
@@ -302,11 +313,7 @@ def target_row(
     new = state[SIZE]
     if new >= most:
         return -2
-    for k in range(width):
-        words[new * width + k] = scratch[k]
-    origins[new] = row
-    table[-found - 1] = entry_of(digest, new, bits)
-    state[SIZE] = new + 1
+    add_row(words, origins, table, -found - 1, entry_of(digest, new, bits), scratch, 0, row, state)
     return new
 
 
