@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from bigraphs.notation.big.syntax import NOWHERE, Arguments, Expression, Span, ValueExpression
+from bigraphs.notation.big.syntax import NOWHERE, Arguments, Expression, ValueExpression
+from bigraphs.notation.lalr import Span
 from bigraphs.signature import Status
 
 

@@ -3,17 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Final, NamedTuple, TypeAlias
+from typing import Final, TypeAlias
 
+from bigraphs.notation.lalr import Span
 from bigraphs.system import Value
-
-
-class Span(NamedTuple):
-    """Where something was written: the first character and the one after the last."""
-
-    start: int = 0
-    end: int = 0
-
 
 NOWHERE = Span()
 MAX_SIZE: Final = 20_000
