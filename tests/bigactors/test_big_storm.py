@@ -183,6 +183,7 @@ def test_what_is_no_predicate_is_refused_with_its_place(text, column, said):
     assert found.value.column == column
 
 
+@needs_storm
 @pytest.mark.parametrize(
     ("text", "said"),
     [
