@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +43,8 @@ def json_text(value: Any) -> str:
 
 def write_text(path: str, text: str) -> None:
     """Put a text in the place of a file at once: there is the old one or the new one, never a part."""
+    import tempfile  # noqa: PLC0415 - it loads much, and many commands write no file
+
     target = Path(os.path.realpath(path))
     try:
         if target.exists() and not target.is_file():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import signal
 import sys
 import threading
@@ -46,6 +45,8 @@ class Watch:
 
     def rewrite(self, text: str) -> None:
         """Replace the last text."""
+        import shutil  # noqa: PLC0415 - it loads compressors, for who looks at a terminal
+
         width = shutil.get_terminal_size().columns - 1
         text = broken(text, width).split("\n")[0][:width]
         write(self.stream, "\r" + paint(text.ljust(min(self.shown, width)), "faint", self.stream), flush=True)

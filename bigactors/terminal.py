@@ -4,7 +4,6 @@ import codecs
 import errno
 import os
 import re
-import shutil
 import stat
 import sys
 from collections.abc import Iterator
@@ -78,6 +77,8 @@ def fitted(text: str, stream: TextIO) -> str:
     """Return a text whose lines are broken between words, if it goes to a terminal that is narrower."""
     if not is_terminal(stream):
         return text
+    import shutil  # noqa: PLC0415 - it loads compressors, and output mostly goes elsewhere
+
     columns = shutil.get_terminal_size().columns
     return "\n".join(broken(line, columns) for line in text.split("\n"))
 

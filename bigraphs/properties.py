@@ -4,60 +4,53 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from enum import Enum
 from typing import Final, TypeAlias
 
 from bigraphs.bigraph import Bigraph
 from bigraphs.canonical import equal
 from bigraphs.matching import find_matches
+from bigraphs.records import Record
 
 
-@dataclass(frozen=True, slots=True)
-class Matches:
+class Matches(Record):
     """The pattern occurs; its names stand for any link, but `link_constants` for themselves."""
 
     pattern: Bigraph
     link_constants: frozenset[str] = frozenset()
 
 
-@dataclass(frozen=True, slots=True)
-class Equal:
+class Equal(Record):
     """The state is this one."""
 
     state: Bigraph
 
 
-@dataclass(frozen=True, slots=True)
-class Terminal:
+class Terminal(Record):
     """No rule applies."""
 
 
-@dataclass(frozen=True, slots=True)
-class Not:
+class Not(Record):
     """The other does not hold."""
 
     operand: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class Both:
+class Both(Record):
     """The two hold."""
 
     left: Formula
     right: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class Either:
+class Either(Record):
     """One of the two holds."""
 
     left: Formula
     right: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class IfElse:
+class IfElse(Record):
     """What is to hold depends on whether the condition does."""
 
     condition: Formula
@@ -77,23 +70,20 @@ class Scope(Enum):
     """This one, if no rule applies; nothing is asked of others."""
 
 
-@dataclass(frozen=True, slots=True)
-class Scoped:
+class Scoped(Record):
     """The operand holds of the states in the scope; of those before and after, only patterns and sizes are known."""
 
     scope: Scope
     operand: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class Size:
+class Size(Record):
     """The number of nodes of the states in a scope."""
 
     scope: Scope = Scope.THIS
 
 
-@dataclass(frozen=True, slots=True)
-class Compare:
+class Compare(Record):
     """`==`, `!=`, `<`, `<=`, `>` or `>=` between numbers of nodes, for all states that they may be of."""
 
     symbol: str
@@ -104,16 +94,14 @@ class Compare:
 Formula: TypeAlias = Matches | Equal | Terminal | Not | Both | Either | IfElse | Scoped | Compare
 
 
-@dataclass(frozen=True, slots=True)
-class Property:
+class Property(Record):
     """A formula that is to hold in every state that can be reached."""
 
     name: str
     formula: Formula
 
 
-@dataclass(frozen=True, slots=True)
-class Situation:
+class Situation(Record):
     """A state with those one step before and after it."""
 
     state: Bigraph

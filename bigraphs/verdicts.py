@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 
 from bigraphs.errors import BigraphError
+from bigraphs.notation.spelling import did_you_mean
 from bigraphs.properties import Property, Situation, holds
 from bigraphs.transitions import TransitionSystem
 
@@ -36,12 +37,23 @@ class Verdict:
     state: int | None
 
 
+def predicate_hint(name: str, labels: Sequence[str]) -> str:
+    """Return what may help where a system has no predicate of a name.
+
+    >>> predicate_hint("overr", ["over", "done"]), predicate_hint("x", ["over", "done"])
+    ("did you mean 'over'?", 'the predicates are over, done')
+    """
+    if not labels:
+        return "the system has none: write 'preds = { ... };' before its end"
+    more = f" and {len(labels) - 8:,} more" if len(labels) > 8 else ""
+    return did_you_mean(name, labels) or f"the predicates are {', '.join(labels[:8])}{more}"
+
+
 def predicate_verdict(system: TransitionSystem, quantifier: Quantifier, label: str) -> Verdict:
     """Decide whether a predicate occurs always, never or ever; raises BigraphError if there is none of that label."""
     labels = [predicate.label for predicate in system.system.predicates]
     if label not in labels:
-        known = ", ".join(labels) or "none"
-        raise BigraphError("predicate", f"unknown predicate '{label}'", f"the predicates are {known}")
+        raise BigraphError("predicate", f"unknown predicate '{label}'", predicate_hint(label, labels))
     column = system.labels[labels.index(label)]
     found = column.find(0 if quantifier is Quantifier.ALWAYS else 1)
     state = None if found < 0 else found

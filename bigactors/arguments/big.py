@@ -26,7 +26,12 @@ _VERBS: Final = {"convert": "Write"}
 def fill(parser: Parser) -> None:
     """Add the arguments of `bigactors big`."""
     tasks = parser.add_subparsers(
-        dest="task", metavar="TASK", title="tasks", parser_class=type(parser), required=True
+        dest="task",
+        metavar="TASK",
+        title="tasks",
+        prog=parser.prog,  # otherwise a formatter of help is made for it
+        parser_class=type(parser),
+        required=True,
     )
     fillers: dict[str, Callable[[Parser], None]] = {
         "full": _full,

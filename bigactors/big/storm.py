@@ -19,10 +19,9 @@ from bigraphs.errors import NotationError
 from bigraphs.exports.markov import KINDS, OWN_LABELS, MarkovKind, label_names
 from bigraphs.exports.storm import storm_files
 from bigraphs.likeliest import Likeliest, decisions, likeliest_run
-from bigraphs.notation.spelling import did_you_mean
 from bigraphs.system import System
 from bigraphs.transitions import TransitionSystem
-from bigraphs.verdicts import Decided, Outcome, Run, Step, Value
+from bigraphs.verdicts import Decided, Outcome, Run, Step, Value, predicate_hint
 from physical.messages import counted, install_extra
 
 EXAMPLES: Final = "write P=? [F goal], Pmax=? [a U b], P>=0.9 [G !bad], T=? [F goal] or R=? [C<=10]"
@@ -74,7 +73,7 @@ def _label(text: str, found: re.Match[str], known: dict[str, str]) -> tuple[int,
         return end, name
     if name not in known:
         labels = [each for each in known if each not in OWN_LABELS]
-        hint = did_you_mean(name, labels) or f"the predicates are {', '.join(labels[:8]) or 'none'}"
+        hint = predicate_hint(name, labels)
         raise NotationError(
             "predicate", f"unknown predicate '{name}'", text, found.start(), length=len(name), hint=hint
         )

@@ -1,10 +1,12 @@
 """`bigactors big`: systems of bigraphs, without missions."""
 
+from __future__ import annotations
+
 from argparse import Namespace
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from bigactors.big.output import check_outputs, write_data, write_outputs
 from bigactors.exits import Exit, worst
@@ -17,10 +19,12 @@ from bigraphs.examples import example_names, example_text
 from bigraphs.exploration import Progress, explore
 from bigraphs.exports.json import bigraph_json
 from bigraphs.notation import load_system, read_system, write_big
-from bigraphs.simulation import Bounds, Stage, simulate
 from bigraphs.system import System, SystemKind
 from bigraphs.transitions import TransitionSystem
 from physical.messages import counted
+
+if TYPE_CHECKING:
+    from bigraphs.simulation import Stage
 
 LONG_STATE: Final = 300
 """From how many characters on a state is not printed where it isn't what was asked for."""
@@ -115,6 +119,8 @@ def sim(options: Namespace) -> Exit:
         return Exit.HOLDS if many_runs(options, system) else Exit.INCOMPLETE
     if options.plot:
         raise Mistake("--plot shows what many runs say", "give --runs, such as --runs 1000", options.file)
+    from bigraphs.simulation import Bounds, simulate  # noqa: PLC0415 - only this task takes chances
+
     stages = []
     for number, stage in enumerate(simulate(system, options.seed, Bounds(options.steps, options.until))):
         stages.append(stage)

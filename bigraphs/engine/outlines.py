@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from hashlib import blake2b
 from typing import TypeAlias
 
 from bigraphs.engine.decoding import history_free
@@ -60,6 +59,8 @@ class Outlines:
         return digests[code]
 
     def _of(self, label: int, ports: tuple[int, ...], inside: list[bytes]) -> bytes:
+        from hashlib import blake2b  # noqa: PLC0415 - few systems compare outlines, and it takes time to load
+
         if label == REFERENCE:
             return b""
         world = self.world

@@ -6,10 +6,8 @@ them takes some 40 bytes each, and packing and unpacking a tenth of the time in 
 
 from __future__ import annotations
 
-import pickle
-import zlib
 from collections import deque
-from typing import Final
+from typing import Any, Final
 
 from bigraphs.engine.occurrences import Spot
 
@@ -34,17 +32,30 @@ class Waiting:
         spot.carry()
         self._tail.append(spot)
         if len(self._tail) == BLOCK:
-            parts = [each.parts() for each in self._tail]
-            self._blocks.append(zlib.compress(pickle.dumps(parts, pickle.HIGHEST_PROTOCOL), 1))
+            self._blocks.append(_packed([each.parts() for each in self._tail]))
             self._tail = []
 
     def popleft(self) -> Spot:
         """Take the spot that has waited longest."""
         if not self._head:
             if self._blocks:
-                parts = pickle.loads(zlib.decompress(self._blocks.popleft()))
-                self._head.extend(map(self._one.remade, parts))
+                self._head.extend(map(self._one.remade, _unpacked(self._blocks.popleft())))
             else:
                 self._head.extend(self._tail)
                 self._tail = []
         return self._head.popleft()
+
+
+def _packed(parts: list[tuple[object, ...]]) -> bytes:
+    import pickle  # noqa: PLC0415 - a small system packs nothing
+    import zlib  # noqa: PLC0415
+
+    return zlib.compress(pickle.dumps(parts, pickle.HIGHEST_PROTOCOL), 1)
+
+
+def _unpacked(block: bytes) -> list[tuple[Any, ...]]:
+    import pickle  # noqa: PLC0415 - as above
+    import zlib  # noqa: PLC0415
+
+    parts: list[tuple[Any, ...]] = pickle.loads(zlib.decompress(block))
+    return parts

@@ -17,7 +17,7 @@ def load_system(path: Path | str, *, constants: Mapping[str, Value] | None = Non
     Raises NotationError for what its text has wrong, BigraphError for a file that cannot be read or has another suffix.
     """
     file = Path(path)
-    if file.suffix not in (".big", ".bgm"):
+    if file.suffix not in (".big", ".bgm") and file.exists():
         raise BigraphError("file", f"'{file.name}' is neither a .big nor a .bgm file", "name it so")
     text = read_text(file)
     if file.suffix == ".big":

@@ -45,7 +45,7 @@ def parser_with_tables(
     data["options"] = {
         name: value for name, value in options if name not in callbacks and not callable(value)
     }
-    _write(file, {"identity": identity, "data": data, "memo": memo})
+    write_tables(file, {"identity": identity, "data": data, "memo": memo})
     return made
 
 
@@ -62,7 +62,7 @@ def _numbered(members: dict[str, Any]) -> dict[int, Any]:
     return {int(key): value for key, value in members.items()}
 
 
-def _write(file: Path, tables: dict[str, Any]) -> None:
+def write_tables(file: Path, tables: dict[str, Any]) -> None:
     """Put tables into a file at once, if that is possible."""
     new = file.with_name(f".{file.name}.{os.getpid()}")
     try:

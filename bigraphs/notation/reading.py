@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any, Final
-
-from lark import Lark
-from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
+from typing import TYPE_CHECKING, Any, Final
 
 from bigraphs.errors import NotationError
+
+if TYPE_CHECKING:
+    from lark import Lark
+    from lark.exceptions import UnexpectedInput
 
 MAX_BYTES: Final = 1_000_000
 MAX_NESTING: Final = 200
@@ -26,6 +27,8 @@ def read(parser: Lark, text: str, words: Mapping[str, str], start: str) -> Any:
 
     The parser must build its values while it parses, so that depth costs no recursion.
     """
+    from lark.exceptions import UnexpectedInput  # noqa: PLC0415 - it takes time to load, and tables may do without
+
     check_bounds(text)
     try:
         return parser.parse(text, start=start)
@@ -66,6 +69,8 @@ def _check_nesting(text: str) -> None:
 
 
 def _explain(found: UnexpectedInput, text: str, words: Mapping[str, str]) -> NotationError:
+    from lark.exceptions import UnexpectedCharacters, UnexpectedToken  # noqa: PLC0415 - as above
+
     if isinstance(found, UnexpectedToken):
         names = found.accepts or found.expected
         at_end = found.token.type == "$END"

@@ -85,6 +85,22 @@ def test_fmt_loads_the_parser_and_no_meaning(start):
     assert not loaded & {"semantics.behaviours.statements", "specs.common_mistakes", "specs.syntax_errors"}
 
 
+def test_a_small_big_file_is_explored_without_lark_or_anything_that_it_does_not_ask_for(start, tmp_path):
+    (tmp_path / "one.big").write_text("ctrl A = 0; big a = A.1; begin brs init a; rules = []; end")
+    start("big", "validate", "one.big")  # the tables are kept from now on, if they were not
+    loaded = start("big", "full", "one.big")
+    assert libraries(loaded) == {"lazy_loader"}
+    assert not loaded & {
+        "hashlib",
+        "pickle",
+        "random",
+        "tempfile",
+        "bigraphs.notation.bgm",
+        "checker.engines",
+        "semantics",
+    }
+
+
 def test_a_check_of_a_small_mission_loads_no_compiler(start):
     loaded = start("check", "m.mission")
     assert libraries(loaded) == {"lazy_loader", "lark", "numpy", "pyproj", "shapely"}

@@ -9,6 +9,7 @@ from bigraphs.verdicts import (
     Outcome,
     Quantifier,
     deadlock_verdict,
+    predicate_hint,
     predicate_verdict,
     property_verdict,
 )
@@ -54,8 +55,15 @@ def test_a_state_in_which_nothing_can_happen_is_a_deadlock():
 
 
 def test_an_unknown_predicate_is_a_mistake():
-    with pytest.raises(BigraphError, match="unknown predicate 'overr'"):
+    with pytest.raises(BigraphError, match="unknown predicate 'overr'") as found:
         predicate_verdict(counted(), Quantifier.NEVER, "overr")
+    assert found.value.hint == "did you mean 'over'?"
+
+
+def test_the_hint_at_predicates_says_that_there_are_none_and_does_not_list_hundreds():
+    assert predicate_hint("p", []) == "the system has none: write 'preds = { ... };' before its end"
+    labels = [f"at({place})" for place in range(1200)]
+    assert predicate_hint("x", labels).endswith("at(6), at(7) and 1,192 more")
 
 
 def test_properties_see_the_states_before_and_after():

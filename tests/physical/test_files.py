@@ -65,6 +65,7 @@ OWN = {
     "checker/engines/cluster/ray_crew.py",
     "physical/land.py",
     "specs/grammar.py",
+    "bigraphs/notation/lalr.py",
     "bigraphs/notation/parse_tables.py",
 }
 """Which read files of ours, or what a process of ours says."""

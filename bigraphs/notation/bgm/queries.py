@@ -10,7 +10,7 @@ from bigraphs.bigraph import Bigraph
 from bigraphs.notation.bgm.syntax import Ask, Count, Operation, Query, Scoped, Wide
 from bigraphs.notation.bgm.terms import Terms, holes
 from bigraphs.notation.big.solidity import pattern_of
-from bigraphs.notation.big.syntax import Span
+from bigraphs.notation.lalr import Span
 from bigraphs.properties import (
     Both,
     Compare,

@@ -25,7 +25,8 @@ from bigraphs.notation.bgm.syntax import (
 from bigraphs.notation.bgm.terms import Terms, holes, name_and_kind, names_in, walk
 from bigraphs.notation.big.findings import Findings
 from bigraphs.notation.big.solidity import faults
-from bigraphs.notation.big.syntax import MAX_SIZE, Span
+from bigraphs.notation.big.syntax import MAX_SIZE
+from bigraphs.notation.lalr import Span
 from bigraphs.properties import Property
 from bigraphs.signature import Control, Signature
 from bigraphs.system import Position, PriorityClass, Rule, System, SystemKind

@@ -1,18 +1,15 @@
-"""Build values from lark's trees; find numbers out of bounds and reserved names."""
+"""Build values of what was read; find numbers out of bounds and reserved names."""
 
 from __future__ import annotations
 
 import math
 from typing import Any, Final
 
-from lark import Token, v_args
-from lark.tree import Meta
-from lark.visitors import Transformer_NonRecursive
-
 from bigraphs.errors import NotationError
 from bigraphs.notation.big import syntax
 from bigraphs.notation.big.grammar import RESERVED
-from bigraphs.notation.big.syntax import Span, ValueExpression
+from bigraphs.notation.big.syntax import ValueExpression
+from bigraphs.notation.lalr import Span, Token
 from bigraphs.system import Value
 
 LARGEST: Final = 2**62
@@ -21,22 +18,10 @@ MAX_DEPTH: Final = 50
 """How deep signs and powers of numbers nest."""
 
 
-def span_of(meta: Meta) -> Span:
-    """Return where a tree was written."""
-    return Span() if meta.empty else Span(meta.start_pos, meta.end_pos)
-
-
-def token_span(token: Token) -> Span:
-    """Return where a word was written."""
-    return Span(token.start_pos or 0, token.end_pos or 0)
-
-
-@v_args(inline=True, meta=True)
-class Values(Transformer_NonRecursive[Token, Any]):
+class Values:
     """Numbers, strings and names; the base of the rest."""
 
     def __init__(self, text: str) -> None:
-        super().__init__()
         self.text = text
         self.mistakes: list[NotationError] = []
 
@@ -48,7 +33,7 @@ class Values(Transformer_NonRecursive[Token, Any]):
         """Return the number of an INT token."""
         digits = token.replace("_", "")
         if len(digits) > 19 or int(digits) >= LARGEST:
-            at = token_span(token)
+            at = token.span
             self.wrong("number", f"a number of {len(digits)} digits is too large", at)
             return 0
         return int(digits)
@@ -56,24 +41,24 @@ class Values(Transformer_NonRecursive[Token, Any]):
     def named(self, token: Token) -> str:
         """Return a name that is declared, if it is none of the language's words."""
         if token in RESERVED:
-            at = token_span(token)
+            at = token.span
             self.wrong("name", f"'{token}' is a word of the language", at, "take another name")
         return str(token)
 
-    def names(self, _meta: Meta, *names: Token) -> tuple[str, ...]:
+    def names(self, _at: Span, *names: Token) -> tuple[str, ...]:
         return tuple(map(str, names))
 
-    def numbers(self, _meta: Meta, *numbers: Token | None) -> tuple[int, ...]:
+    def numbers(self, _at: Span, *numbers: Token | None) -> tuple[int, ...]:
         return tuple(self.whole(number) for number in numbers if number is not None)
 
-    def values(self, _meta: Meta, *values: ValueExpression) -> syntax.Arguments:
+    def values(self, _at: Span, *values: ValueExpression) -> syntax.Arguments:
         return values
 
-    def arguments(self, _meta: Meta, values: syntax.Arguments) -> syntax.Arguments:
+    def arguments(self, _at: Span, values: syntax.Arguments) -> syntax.Arguments:
         return values
 
-    def number_value(self, meta: Meta, token: Token) -> syntax.Literal:
-        return syntax.Literal(self.number_of(token), span_of(meta))
+    def number_value(self, at: Span, token: Token) -> syntax.Literal:
+        return syntax.Literal(self.number_of(token), at)
 
     def number_of(self, token: Token) -> Value:
         digits = token.replace("_", "")
@@ -81,29 +66,29 @@ class Values(Transformer_NonRecursive[Token, Any]):
             return self.whole(token)
         found = float(digits)
         if math.isinf(found) and digits != "inf":
-            self.wrong("number", f"{digits[:20]} is too large", token_span(token))
+            self.wrong("number", f"{digits[:20]} is too large", token.span)
         return found
 
-    def string_value(self, meta: Meta, token: Token) -> syntax.Literal:
-        return syntax.Literal(str(token[1:-1]), span_of(meta))
+    def string_value(self, at: Span, token: Token) -> syntax.Literal:
+        return syntax.Literal(str(token[1:-1]), at)
 
-    def variable(self, meta: Meta, name: Token) -> syntax.Variable:
-        return syntax.Variable(str(name), span_of(meta))
+    def variable(self, at: Span, name: Token) -> syntax.Variable:
+        return syntax.Variable(str(name), at)
 
-    def negated(self, meta: Meta, _minus: Token, operand: ValueExpression) -> ValueExpression:
-        return self.checked(syntax.Negated(operand, span_of(meta)))
+    def negated(self, at: Span, _minus: Token, operand: ValueExpression) -> ValueExpression:
+        return self.checked(syntax.Negated(operand, at))
 
-    def absolute(self, meta: Meta, operand: ValueExpression) -> syntax.Absolute:
-        return syntax.Absolute(operand, span_of(meta))
+    def absolute(self, at: Span, operand: ValueExpression) -> syntax.Absolute:
+        return syntax.Absolute(operand, at)
 
     def raised(
-        self, meta: Meta, base: ValueExpression, caret: Token, exponent: ValueExpression
+        self, at: Span, base: ValueExpression, caret: Token, exponent: ValueExpression
     ) -> ValueExpression:
-        return self.checked(syntax.Arithmetic(base, ((str(caret), exponent),), span_of(meta)))
+        return self.checked(syntax.Arithmetic(base, ((str(caret), exponent),), at))
 
-    def arithmetic(self, meta: Meta, first: ValueExpression, *rest: Any) -> ValueExpression:
+    def arithmetic(self, at: Span, first: ValueExpression, *rest: Any) -> ValueExpression:
         pairs = tuple(zip(map(str, rest[::2]), rest[1::2], strict=True))
-        return syntax.Arithmetic(first, pairs, span_of(meta)) if pairs else first
+        return syntax.Arithmetic(first, pairs, at) if pairs else first
 
     def checked(self, found: ValueExpression) -> ValueExpression:
         """Refuse signs and powers that nest too deeply to be evaluated."""

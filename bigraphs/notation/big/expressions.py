@@ -25,12 +25,12 @@ from bigraphs.notation.big.syntax import (
     Ref,
     Repeat,
     Share,
-    Span,
     Substitute,
     Wire,
     Wired,
 )
 from bigraphs.notation.big.templates import Part, SymbolicScope, Template
+from bigraphs.notation.lalr import Span
 from bigraphs.signature import Control, Signature
 from bigraphs.system import Value
 

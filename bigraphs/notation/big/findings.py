@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Final
 
 from bigraphs.errors import NotationError
-from bigraphs.notation.big.syntax import Span
+from bigraphs.notation.lalr import Span
 from bigraphs.notation.spelling import did_you_mean
 
 MOST: Final = 100

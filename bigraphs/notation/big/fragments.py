@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from bigraphs.bigraph import Bigraph
-from bigraphs.notation.big.declarations import BigDeclaration, ControlDeclaration
+from bigraphs.notation.big.declarations import BigDeclaration, ControlDeclaration, Model
 from bigraphs.notation.big.expressions import Evaluation
 from bigraphs.notation.big.findings import Findings
 from bigraphs.notation.big.names import Names, index
@@ -33,7 +33,7 @@ class Theory:
 def read_theory(text: str) -> Theory:
     """Read the declarations of a `.big` file, whose system is passed over; raises NotationError with all mistakes."""
     findings = Findings(text)
-    model = replace(parse_model(text), system=None)
+    model = Model(parse_model(text).declarations)
     names = index(model, findings)
     survey(model, names, findings)
     scope = Scope(names, findings, {})

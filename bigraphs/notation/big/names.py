@@ -15,7 +15,7 @@ from bigraphs.notation.big.declarations import (
     ReactDeclaration,
 )
 from bigraphs.notation.big.findings import Findings
-from bigraphs.notation.big.syntax import Span
+from bigraphs.notation.lalr import Span
 
 
 @dataclass(slots=True)

@@ -5,17 +5,18 @@ from __future__ import annotations
 import re
 from functools import cache
 from pathlib import Path
-from typing import Any, Final
-
-from lark import Lark, Token, Tree
+from typing import TYPE_CHECKING, Any, Final
 
 from bigraphs.errors import NotationError
 from bigraphs.notation.big.build import Build
 from bigraphs.notation.big.declarations import Model
 from bigraphs.notation.big.grammar import GRAMMAR, WORDS
 from bigraphs.notation.big.syntax import Expression
-from bigraphs.notation.parse_tables import parser_with_tables
-from bigraphs.notation.reading import read
+from bigraphs.notation.lalr import Tables, Unread, kept_tables
+from bigraphs.notation.reading import check_bounds, read
+
+if TYPE_CHECKING:
+    from lark import Lark
 
 TABLES: Final = Path(__file__).with_name("big.tables.json")
 _GUARD: Final = re.compile(r"\[(?P<name>[a-z_][A-Za-z0-9_']*), *(?P<guard>[^\]\n]*\$[^\]\n]*)\]")
@@ -30,10 +31,9 @@ OPTIONS: Final[dict[str, Any]] = {
 def parse_model(text: str) -> Model:
     """Parse a `.big` file; raises NotationError at the first thing that does not fit."""
     try:
-        tree = read(parser(), text, WORDS, "model")
+        model: Model = _read(text, "model")
     except NotationError as error:
         raise _guarded(error, text) or error from None
-    model: Model = _build(tree, text)
     return model
 
 
@@ -54,24 +54,33 @@ def parse_expression(text: str) -> Expression:
     >>> parse_expression("K{x}.id(2)").inside
     Identity(width=2, names=(), span=Span(start=5, end=10))
     """
-    expression: Expression = _build(read(parser(), text, WORDS, "expression"), text)
+    expression: Expression = _read(text, "expression")
     return expression
 
 
-@cache
-def parser() -> Lark:
-    """Return the parser."""
-    return parser_with_tables(TABLES, f"{GRAMMAR}{OPTIONS}", make_parser, {})
-
-
-def make_parser() -> Lark:
-    """Return the parser, its tables made anew."""
-    return Lark(GRAMMAR, **OPTIONS)
-
-
-def _build(tree: Tree[Token], text: str) -> Any:
+def _read(text: str, start: str) -> Any:
+    """Return what a text is built into; where it does not fit the grammar, lark says what was expected."""
+    check_bounds(text)
     build = Build(text)
-    found = build.transform(tree)
+    try:
+        found = tables().read(text, start, build)
+    except Unread:
+        read(make_parser(), text, WORDS, start)
+        raise
     if build.mistakes:
         raise NotationError.of(build.mistakes)
     return found
+
+
+@cache
+def tables() -> Tables:
+    """Return the tables of the grammar."""
+    return kept_tables(TABLES, f"{GRAMMAR}{OPTIONS}", make_parser)
+
+
+@cache
+def make_parser() -> Lark:
+    """Return lark's parser, which is slow to make: it explains mistakes, and has the tables."""
+    from lark import Lark  # noqa: PLC0415 - lark takes time to load
+
+    return Lark(GRAMMAR, **OPTIONS)

@@ -10,7 +10,8 @@ from bigraphs.notation.big.declarations import ConditionTerm, ReactDeclaration
 from bigraphs.notation.big.expressions import Evaluation
 from bigraphs.notation.big.scope import Frame
 from bigraphs.notation.big.solidity import faults, pattern_of
-from bigraphs.notation.big.syntax import Expression, Span, ValueExpression
+from bigraphs.notation.big.syntax import Expression, ValueExpression
+from bigraphs.notation.lalr import Span
 from bigraphs.system import Condition, Position, Rule, SystemKind, Value, Where
 
 

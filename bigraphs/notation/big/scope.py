@@ -10,7 +10,8 @@ from bigraphs.notation.big import values
 from bigraphs.notation.big.declarations import BigDeclaration, ControlDeclaration, ReactDeclaration
 from bigraphs.notation.big.findings import Findings
 from bigraphs.notation.big.names import Names
-from bigraphs.notation.big.syntax import Ion, Span, ValueExpression, Variable
+from bigraphs.notation.big.syntax import Ion, ValueExpression, Variable
+from bigraphs.notation.lalr import Span
 from bigraphs.signature import Control
 from bigraphs.system import Value, call
 

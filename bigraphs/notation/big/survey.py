@@ -28,11 +28,11 @@ from bigraphs.notation.big.syntax import (
     Ref,
     Repeat,
     Share,
-    Span,
     ValueExpression,
     Variable,
     Wired,
 )
+from bigraphs.notation.lalr import Span
 
 _Used: TypeAlias = tuple[type, str]
 """What is called, a bigraph or a rule, and its name."""

@@ -2,18 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Final, NamedTuple, TypeAlias
+from typing import Final, TypeAlias
 
+from bigraphs.notation.lalr import Span
+from bigraphs.records import Record
 from bigraphs.system import Value
-
-
-class Span(NamedTuple):
-    """Where something was written: the first character and the one after the last."""
-
-    start: int = 0
-    end: int = 0
-
 
 NOWHERE = Span()
 MAX_SIZE: Final = 20_000
@@ -23,45 +16,40 @@ MAX_SIZE: Final = 20_000
 # --- values: numbers and strings
 
 
-@dataclass(frozen=True, slots=True)
-class Literal:
+class Literal(Record):
     """A number or a string as written."""
 
     value: Value
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Variable:
+class Variable(Record):
     """A constant, a parameter of the system, or one of the declaration that it stands in."""
 
     name: str
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Negated:
+class Negated(Record):
     """`-e`."""
 
     operand: ValueExpression
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Absolute:
+class Absolute(Record):
     """`abs(e)`."""
 
     operand: ValueExpression
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Arithmetic:
+class Arithmetic(Record):
     """Operands with `+ -` or `* /` between them, from the left, or `^`, from the right."""
 
     first: ValueExpression
     rest: tuple[tuple[str, ValueExpression], ...]
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
 ValueExpression: TypeAlias = Literal | Variable | Negated | Absolute | Arithmetic
@@ -71,53 +59,47 @@ Arguments: TypeAlias = tuple[ValueExpression, ...]
 # --- bigraphs
 
 
-@dataclass(frozen=True, slots=True)
-class Ref:
+class Ref(Record):
     """The bigraph of that name, `b` or `b(1, n + 1)`."""
 
     name: str
     arguments: Arguments = ()
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Number:
+class Number(Record):
     """`1`, the empty region, or `0`, a site without a region."""
 
     value: int
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Ion:
+class Ion(Record):
     """A node with a site in it, or none if its control is atomic: `K`, `K{x, y}`, `K(1, "a"){x}`."""
 
     control: str
     links: tuple[str, ...] = ()
     arguments: Arguments = ()
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Nest:
+class Nest(Record):
     """An ion with something in it."""
 
     ion: Ion
     inside: Expression
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Identity:
+class Identity(Record):
     """`id`, `id(n)`, `id{x}`, `id(n, {x})`."""
 
     width: int = 1
     names: tuple[str, ...] = ()
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Placed:
+class Placed(Record):
     """`([{0, 1}, {0}], 2)`: for each site the regions it is in, and the number of regions.
 
     `merge(n)` and `split(n)` are read as such.
@@ -125,70 +107,63 @@ class Placed:
 
     parents: tuple[tuple[int, ...], ...]
     regions: int
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Close:
+class Close(Record):
     """`/x`, or `/{x, y}`: names joined into one edge."""
 
     names: tuple[str, ...]
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Substitute:
+class Substitute(Record):
     """`y/{x, ...}`: names joined into one."""
 
     outer: str
     inner: tuple[str, ...]
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class NewNames:
+class NewNames(Record):
     """`{x}`: idle names."""
 
     names: tuple[str, ...]
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Wired:
+class Wired(Record):
     """Closures and substitutions before what they apply to, the last one first."""
 
     wires: tuple[Wire, ...]
     body: Expression
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Chain:
+class Chain(Record):
     """Operands with the operators between them, from the left; all bind alike."""
 
     first: Expression
     rest: tuple[tuple[str, Expression], ...]
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Share:
+class Share(Record):
     """`share what by placing in where`: each region of what is in several sites of where."""
 
     what: Expression
     by: Expression
     where: Expression
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
-@dataclass(frozen=True, slots=True)
-class Repeat:
+class Repeat(Record):
     """`par(n, b)`, b n times in one region, or `ppar(n, b)`, side by side; `operator` is `|` or `||`."""
 
     operator: str
     times: ValueExpression
     body: Expression
-    span: Span = field(default=NOWHERE, compare=False)
+    span: Span = NOWHERE
 
 
 Wire: TypeAlias = Close | Substitute

@@ -20,7 +20,7 @@ from bigraphs.notation.big.rules import Rules
 from bigraphs.notation.big.scope import Frame, Scope, control_of
 from bigraphs.notation.big.sorts import check_sorted, sorting_of
 from bigraphs.notation.big.survey import survey
-from bigraphs.notation.big.syntax import Span
+from bigraphs.notation.lalr import Span
 from bigraphs.signature import Signature
 from bigraphs.system import Action, Predicate, PriorityClass, Rule, System, SystemKind, Value
 

@@ -15,10 +15,10 @@ from bigraphs.notation.big.syntax import (
     Arithmetic,
     Literal,
     Negated,
-    Span,
     ValueExpression,
     Variable,
 )
+from bigraphs.notation.lalr import Span
 from bigraphs.system import Value
 
 Lookup: TypeAlias = Callable[[Variable], Value | None]

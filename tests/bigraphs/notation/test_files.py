@@ -24,7 +24,13 @@ def test_a_file_that_cannot_be_read_is_told(tmp_path):
         load_system(tmp_path / "latin.big")
     with pytest.raises(NotationError, match="longer than 1 MB"):
         load_system(tmp_path / "large.big")
+    (tmp_path / "one.txt").write_text("")
     with pytest.raises(BigraphError, match=r"neither a \.big nor a \.bgm file"):
         load_system(tmp_path / "one.txt")
     with pytest.raises(BigraphError, match="has no constants"):
         load_system(tmp_path / "two.bgm", constants={"n": 1})
+
+
+def test_a_file_that_is_not_there_is_not_said_to_have_the_wrong_name(tmp_path):
+    with pytest.raises(BigraphError, match="cannot be read: No such file"):
+        load_system(tmp_path / "prob.bgi")

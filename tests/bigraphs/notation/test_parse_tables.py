@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from bigraphs.errors import NotationError
-from bigraphs.examples import example_names, example_text
 from bigraphs.notation.big import parser as big
 from bigraphs.notation.parse_tables import parser_with_tables
 from specs.diagnostics import MissionError, Source
@@ -47,18 +46,6 @@ def test_kept_tables_make_the_same_of_every_mission_and_every_mistake(tables, mo
     expected = [said(file) for file in files]
     monkeypatch.setattr("specs.grammar.grammar", lambda: kept)
     assert [said(file) for file in files] == expected
-
-
-def test_kept_tables_make_the_same_of_every_example_and_of_what_ends_early(tmp_path, monkeypatch):
-    from_files = [parser_with_tables(tmp_path / "big", "1", make, {}) for make in (big.make_parser, never)]
-    texts = [example_text(name) for name in example_names()]
-    texts += [text[: len(text) // part] for text in texts for part in (2, 3)]
-    made, kept = [], []
-    for parser, said_of in zip(from_files, (made, kept), strict=True):
-        monkeypatch.setattr(big, "parser", lambda parser=parser: parser)
-        said_of += [outcome(text) for text in texts]
-    assert kept == made
-    assert sum(isinstance(each, str) for each in kept) == 5
 
 
 def outcome(text):

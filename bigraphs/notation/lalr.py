@@ -1,0 +1,181 @@
+"""Read texts by the tables that lark makes of a grammar, without lark: importing it takes longer than most files.
+
+The tables are plain data. What a text is read into is up to a *builder*: it has a method for each rule of the grammar,
+which takes where the text of the rule stands and what its parts were read into.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
+
+if TYPE_CHECKING:
+    from lark import Lark
+
+END: Final = "$END"
+Lexer: TypeAlias = "tuple[Sequence[str], dict[str, dict[str, str]]]"
+"""The terminals to try, in their order; and which words that fit one of them are another."""
+Reduction: TypeAlias = "tuple[str, int, str | None, bool, Sequence[int | None]]"
+"""A rule's symbol, its length, its method (None: its parts go to the rule around it), whether a single part stands for
+it, and which parts count: a part's number, None for an optional one that is left out, ~number for many at once.
+"""
+
+
+class Span(NamedTuple):
+    """Where something was written: the first character and the one after the last."""
+
+    start: int = 0
+    end: int = 0
+
+
+class Token(str):
+    """A word of a text, and where it begins."""
+
+    __slots__ = ("start",)
+    start: int
+
+    @property
+    def span(self) -> Span:
+        """Where it stands."""
+        return Span(self.start, self.start + len(self))
+
+
+class Unread(Exception):
+    """Ends the reading of a text that the grammar does not have."""
+
+
+class Tables:
+    """The tables of a grammar, and what is compiled of them as texts need it.
+
+    Attributes:
+        terminals: For each terminal its text, or its pattern.
+        ignored: The terminals that say nothing.
+        lexers: Different states of the parser expect different terminals.
+        states: The lexer of each state, and what it does at each symbol: shift to a state, or ~reduction.
+        reductions: The rules.
+        starts: For each start symbol its first state and its last one.
+    """
+
+    def __init__(self, data: dict[str, Any]) -> None:
+        self.terminals: dict[str, tuple[bool, str]] = data["terminals"]
+        self.ignored = frozenset[str](data["ignored"])
+        self.lexers: list[Lexer] = data["lexers"]
+        self.states: list[tuple[int, dict[str, int]]] = data["states"]
+        self.reductions: list[Reduction] = data["reductions"]
+        self.starts: dict[str, tuple[int, int]] = data["starts"]
+        self._patterns: dict[str, Callable[[str, int], re.Match[str] | None]] = {}
+        self._tried: dict[tuple[int, str], list[tuple[str, int, Any]]] = {}
+
+    def next_token(self, text: str, place: int, lexer: int) -> tuple[str, int, int]:
+        """Return the terminal that follows, and where it begins and ends; raises Unread if none does."""
+        while place < len(text):
+            name, end = self._scan(text, place, lexer)
+            if name not in self.ignored:
+                return name, place, end
+            place = end
+        return END, place, place
+
+    def _scan(self, text: str, place: int, lexer: int) -> tuple[str, int]:
+        first = text[place]
+        tried = self._tried.get((lexer, first))
+        if tried is None:
+            tried = self._tried[lexer, first] = self._candidates(lexer, first)
+        for name, length, fits in tried:
+            if length:
+                if text.startswith(fits, place):
+                    return name, place + length
+            elif found := fits(text, place):
+                end = found.end()
+                words = self.lexers[lexer][1].get(name)
+                return (words.get(text[place:end], name) if words else name), end
+        raise Unread
+
+    def _candidates(self, lexer: int, first: str) -> list[tuple[str, int, Any]]:
+        """Return which terminals may begin with a character: texts with their lengths, and patterns."""
+        found: list[tuple[str, int, Any]] = []
+        for name in self.lexers[lexer][0]:
+            literal, text = self.terminals[name]
+            if not literal:
+                if name not in self._patterns:
+                    self._patterns[name] = re.compile(text).match
+                found.append((name, 0, self._patterns[name]))
+            elif text.startswith(first):
+                found.append((name, len(text), text))
+        return found
+
+    def read(self, text: str, start: str, builder: object) -> Any:
+        """Return what a builder makes of a text; raises Unread at the first word that does not fit."""
+        first, last = self.starts[start]
+        path, values, spans = [first], list[Any](), list[Span | None]()
+        place, name = 0, ""
+        while name != END:
+            name, begin, place = self.next_token(text, place, self.states[path[-1]][0])
+            while (action := self.states[path[-1]][1].get(name)) is not None and action < 0:
+                self._reduce(self.reductions[~action], path, values, spans, builder)
+                if name == END and path[-1] == last:
+                    return values[-1]
+            if action is None:
+                raise Unread
+            token = Token(text[begin:place])
+            token.start = begin
+            path.append(action)
+            values.append(token)
+            spans.append(Span(begin, place))
+        raise Unread
+
+    def _reduce(
+        self,
+        reduction: Reduction,
+        path: list[int],
+        values: list[Any],
+        spans: list[Span | None],
+        builder: object,
+    ) -> None:
+        """Put a rule in the place of its parts."""
+        symbol, length, method, single, parts = reduction
+        after = len(values) - length
+        span = _around(spans[after:])
+        found = _Many()
+        for part in parts:
+            if part is None:
+                found.append(None)
+            elif part < 0:
+                found += values[after + ~part]
+            else:
+                found.append(values[after + part])
+        value: Any = found
+        if single and len(found) == 1:
+            value = found[0]
+        elif method is not None:
+            value = getattr(builder, method)(span or Span(), *found)
+        del path[after + 1 :], values[after:], spans[after:]
+        path.append(self.states[path[-1]][1][symbol])
+        values.append(value)
+        spans.append(span)
+
+
+class _Many(list[Any]):
+    """The parts of a rule that has no value of its own."""
+
+
+def _around(spans: Sequence[Span | None]) -> Span | None:
+    """Return from where to where the parts of a rule go; None if nothing is written of it."""
+    written = [span for span in spans if span is not None]
+    return Span(written[0].start, written[-1].end) if written else None
+
+
+def kept_tables(file: Path, grammar: str, make: Callable[[], Lark]) -> Tables:
+    """Return a grammar's tables, from a file if it has them; otherwise they are made, and written to it if possible."""
+    with suppress(OSError, ValueError):
+        kept = json.loads(file.read_bytes())
+        if isinstance(kept, dict) and kept.get("grammar") == grammar:
+            return Tables(kept)
+    from bigraphs.notation.lalr_tables import tables_of, write_tables  # noqa: PLC0415 - lark takes time to load
+
+    made = tables_of(make())
+    write_tables(file, {"grammar": grammar, **made})
+    return Tables(made)
