@@ -114,7 +114,9 @@ def test_a_question_is_renamed_in_what_it_is_about():
     [
         Ask(("parent", "d")),
         Ask(("mailbox", "a"), (0, "d")),
-        Ask(("mailbox", "a"), (0, agent_key("b"))),  # who is hosted somewhere, as an observation says of an agent
+        Ask(
+            ("mailbox", "a"), (0, agent_key("b"))
+        ),  # who is hosted somewhere, as an observation says of an agent
         Ask(("parent", "b"), None, is_, ("d",)),
         Ask(("parent", "b"), None, is_, ("b",)),
         Ask(("parent", "c")),  # it stands between both: rules go through names in their order
