@@ -79,7 +79,11 @@ def write_package(folder: Path) -> None:
 
 def write_tables(package: Path) -> None:
     """Let the package write the tables of its parsers, which are made at each start where they are missing."""
-    for module, parser in (("specs.grammar", "grammar"), ("bigraphs.notation.big.parser", "tables")):
+    for module, parser in (
+        ("specs.grammar", "grammar"),
+        ("bigraphs.notation.big.parser", "tables"),
+        ("bigraphs.notation.bgm.parser", "tables"),
+    ):
         program = f"from {PACKAGE}.{module} import TABLES, {parser}; {parser}(); TABLES.stat()"
         subprocess.run([sys.executable, "-B", "-c", program], cwd=package.parent, check=True)
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from bigraphs.errors import NotationError
+from bigraphs.notation.lalr import Tables, Unread
 
 if TYPE_CHECKING:
     from lark import Lark
@@ -34,6 +35,21 @@ def read(parser: Lark, text: str, words: Mapping[str, str], start: str) -> Any:
         return parser.parse(text, start=start)
     except UnexpectedInput as found:
         raise _explain(found, text, words) from None
+
+
+def read_into(
+    builder: object, tables: Tables, make: Callable[[], Lark], text: str, words: Mapping[str, str], start: str
+) -> Any:
+    """Return what a builder makes of a text, by the tables of the parser that `make` makes.
+
+    Raises NotationError, in `words`, at the first thing that does not fit; lark says what was expected.
+    """
+    check_bounds(text)
+    try:
+        return tables.read(text, start, builder)
+    except Unread:
+        read(make(), text, words, start)
+        raise
 
 
 def check_bounds(text: str) -> None:

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from typing import Any, Final
-
-from lark import Lark, Token, v_args
-from lark.exceptions import VisitError
-from lark.tree import Meta
-from lark.visitors import Transformer_NonRecursive
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
 
 from bigraphs.errors import NotationError
 from bigraphs.notation.bgm import syntax
 from bigraphs.notation.bgm.syntax import Line, Query, Term, Wide
-from bigraphs.notation.reading import read
+from bigraphs.notation.lalr import Span, Tables, Token, kept_tables
+from bigraphs.notation.reading import read_into
+
+if TYPE_CHECKING:
+    from lark import Lark
+
+TABLES: Final = Path(__file__).with_name("bgm.tables.json")
 
 GRAMMAR: Final = r"""
 file: [line] (";" [line])*
@@ -78,6 +80,12 @@ _WORDS: Final = {
 _CHECK: Final = re.compile(r"^(?P<code>[^#\n]*)%check\b.*", re.DOTALL | re.MULTILINE)
 _NAMED: Final = re.compile(r"(?P<name>\b[A-Za-z]\w*)\s*(?P<colon>:)\s*(?P<meant>[A-Za-z]\w*)")
 MAX_QUERY: Final = 50
+OPTIONS: Final[dict[str, Any]] = {
+    "parser": "lalr",
+    "start": ["file"],
+    "propagate_positions": True,
+    "maybe_placeholders": True,
+}
 
 
 def parse_bgm(text: str) -> tuple[Line, ...]:
@@ -85,13 +93,9 @@ def parse_bgm(text: str) -> tuple[Line, ...]:
     ends = _CHECK.search(text)
     kept = text if ends is None else text[: ends.end("code")]
     try:
-        tree = read(_parser(), kept, _WORDS, "file")
+        lines: tuple[Line, ...] = read_into(_Build(text), tables(), make_parser, kept, _WORDS, "file")
     except NotationError as error:
         raise _named_apart(error, kept) or error from None
-    try:
-        lines: tuple[Line, ...] = _Build(text).transform(tree)
-    except VisitError as error:
-        raise error.orig_exc from None
     return lines
 
 
@@ -110,81 +114,82 @@ def _named_apart(error: NotationError, text: str) -> NotationError | None:
 
 
 @cache
-def _parser() -> Lark:
-    return Lark(GRAMMAR, parser="lalr", start=["file"], propagate_positions=True, maybe_placeholders=True)
+def tables() -> Tables:
+    """Return the tables of the grammar."""
+    return kept_tables(TABLES, f"{GRAMMAR}{OPTIONS}", make_parser)
 
 
-def _at(meta: Meta) -> int:
-    return 0 if meta.empty else meta.start_pos
+@cache
+def make_parser() -> Lark:
+    """Return lark's parser, which is slow to make: it explains mistakes, and has the tables."""
+    from lark import Lark  # noqa: PLC0415 - lark takes time to load
+
+    return Lark(GRAMMAR, **OPTIONS)
 
 
-@v_args(inline=True, meta=True)
-class _Build(Transformer_NonRecursive[Token, Any]):
-    """From lark's trees to syntax, without recursion."""
+class _Build:
+    """Makes syntax of what was read."""
 
     def __init__(self, text: str) -> None:
-        super().__init__()
         self.text = text
 
-    def file(self, _meta: Meta, *lines: Line | None) -> tuple[Line, ...]:
+    def file(self, _at: Span, *lines: Line | None) -> tuple[Line, ...]:
         return tuple(line for line in lines if line is not None)
 
-    def control(self, _meta: Meta, status: Token, name: Token, arity: Token) -> syntax.ControlLine:
+    def control(self, _at: Span, status: Token, name: Token, arity: Token) -> syntax.ControlLine:
         active = status == "%active"
-        return syntax.ControlLine(
-            str(name), int(arity), "active" if active else "passive", name.start_pos or 0
-        )
+        return syntax.ControlLine(str(name), int(arity), "active" if active else "passive", name.start)
 
-    def name(self, _meta: Meta, word: Token, name: Token) -> syntax.NameLine:
-        return syntax.NameLine(str(name), word == "%inner", name.start_pos or 0)
+    def name(self, _at: Span, word: Token, name: Token) -> syntax.NameLine:
+        return syntax.NameLine(str(name), word == "%inner", name.start)
 
-    def rule(self, meta: Meta, name: Token | None, redex: Wide, reactum: Wide) -> syntax.RuleLine:
-        return syntax.RuleLine(redex, reactum, None if name is None else str(name), _at(meta))
+    def rule(self, at: Span, name: Token | None, redex: Wide, reactum: Wide) -> syntax.RuleLine:
+        return syntax.RuleLine(redex, reactum, None if name is None else str(name), at.start)
 
-    def property(self, _meta: Meta, name: Token, query: Query) -> syntax.PropertyLine:
-        return syntax.PropertyLine(str(name), query, name.start_pos or 0)
+    def property(self, _at: Span, name: Token, query: Query) -> syntax.PropertyLine:
+        return syntax.PropertyLine(str(name), query, name.start)
 
-    def term(self, meta: Meta, wide: Wide) -> syntax.ModelLine:
-        return syntax.ModelLine(wide, _at(meta))
+    def term(self, at: Span, wide: Wide) -> syntax.ModelLine:
+        return syntax.ModelLine(wide, at.start)
 
-    def wide(self, _meta: Meta, *terms: Term) -> Wide:
+    def wide(self, _at: Span, *terms: Term) -> Wide:
         return terms
 
-    def parallel(self, _meta: Meta, *elements: Any) -> Term:
+    def parallel(self, _at: Span, *elements: Any) -> Term:
         return tuple(term for element in elements for term in _several(element))
 
-    def nil(self, _meta: Meta, _word: Token) -> Term:
+    def nil(self, _at: Span, _word: Token) -> Term:
         return ()
 
-    def prefix(self, _meta: Meta, control: Token, *rest: Any) -> syntax.Prefix:
+    def prefix(self, _at: Span, control: Token, *rest: Any) -> syntax.Prefix:
         *ports, inside = rest
         names = tuple(port.name for port in ports if port is not None)
         within = () if inside is None else _several(inside)
-        return syntax.Prefix(str(control), names, within, control.start_pos or 0)
+        return syntax.Prefix(str(control), names, within, control.start)
 
-    def port(self, _meta: Meta, name: Token) -> _Port:
+    def port(self, _at: Span, name: Token) -> _Port:
         return _Port(None if name == "-" else str(name))
 
-    def hole(self, meta: Meta, index: Token) -> syntax.Hole:
-        return syntax.Hole(int(index), _at(meta))
+    def hole(self, at: Span, index: Token) -> syntax.Hole:
+        return syntax.Hole(int(index), at.start)
 
-    def either(self, meta: Meta, *operands: Query) -> Query:
-        return self.operation("||", operands, meta)
+    def either(self, at: Span, *operands: Query) -> Query:
+        return self.operation("||", operands, at)
 
-    def both(self, meta: Meta, *operands: Query) -> Query:
-        return self.operation("&&", operands, meta)
+    def both(self, at: Span, *operands: Query) -> Query:
+        return self.operation("&&", operands, at)
 
-    def operation(self, symbol: str, operands: tuple[Query, ...], meta: Meta) -> Query:
-        return operands[0] if len(operands) == 1 else syntax.Operation(symbol, operands, _at(meta))
+    def operation(self, symbol: str, operands: tuple[Query, ...], at: Span) -> Query:
+        return operands[0] if len(operands) == 1 else syntax.Operation(symbol, operands, at.start)
 
-    def compared(self, meta: Meta, left: Query, symbol: Token, right: Query) -> Query:
-        return syntax.Operation(str(symbol), (left, right), _at(meta))
+    def compared(self, at: Span, left: Query, symbol: Token, right: Query) -> Query:
+        return syntax.Operation(str(symbol), (left, right), at.start)
 
-    def negated(self, meta: Meta, operand: Query) -> Query:
-        return self.nested(syntax.Operation("!", (operand,), _at(meta)))
+    def negated(self, at: Span, operand: Query) -> Query:
+        return self.nested(syntax.Operation("!", (operand,), at.start))
 
-    def choice(self, meta: Meta, condition: Query, then: Query, otherwise: Query) -> Query:
-        return self.nested(syntax.Operation("if", (condition, then, otherwise), _at(meta)))
+    def choice(self, at: Span, condition: Query, then: Query, otherwise: Query) -> Query:
+        return self.nested(syntax.Operation("if", (condition, then, otherwise), at.start))
 
     def nested(self, query: Query) -> Query:
         """Refuse what would nest too deeply to be walked."""
@@ -197,17 +202,17 @@ class _Build(Transformer_NonRecursive[Token, Any]):
             inner = [each for outer in inner for each in _parts(outer)]
         return query
 
-    def ask(self, meta: Meta, predicate: Token, term: Wide | None) -> syntax.Ask:
-        return syntax.Ask(str(predicate), term, None, _at(meta))
+    def ask(self, at: Span, predicate: Token, term: Wide | None) -> syntax.Ask:
+        return syntax.Ask(str(predicate), term, None, at.start)
 
-    def scoped(self, meta: Meta, scope: Token, operand: Query) -> Query:
+    def scoped(self, at: Span, scope: Token, operand: Query) -> Query:
         named = str(scope[1:])
         if isinstance(operand, syntax.Ask) and operand.scope is None:
-            return syntax.Ask(operand.predicate, operand.term, named, _at(meta))
-        return self.nested(syntax.Scoped(named, operand, _at(meta)))
+            return syntax.Ask(operand.predicate, operand.term, named, at.start)
+        return self.nested(syntax.Scoped(named, operand, at.start))
 
-    def count(self, meta: Meta, number: Token) -> syntax.Count:
-        return syntax.Count(int(number), _at(meta))
+    def count(self, at: Span, number: Token) -> syntax.Count:
+        return syntax.Count(int(number), at.start)
 
 
 def _parts(query: Query) -> tuple[Query, ...]:

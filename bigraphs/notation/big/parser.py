@@ -12,8 +12,8 @@ from bigraphs.notation.big.build import Build
 from bigraphs.notation.big.declarations import Model
 from bigraphs.notation.big.grammar import GRAMMAR, WORDS
 from bigraphs.notation.big.syntax import Expression
-from bigraphs.notation.lalr import Tables, Unread, kept_tables
-from bigraphs.notation.reading import check_bounds, read
+from bigraphs.notation.lalr import Tables, kept_tables
+from bigraphs.notation.reading import read_into
 
 if TYPE_CHECKING:
     from lark import Lark
@@ -59,14 +59,8 @@ def parse_expression(text: str) -> Expression:
 
 
 def _read(text: str, start: str) -> Any:
-    """Return what a text is built into; where it does not fit the grammar, lark says what was expected."""
-    check_bounds(text)
     build = Build(text)
-    try:
-        found = tables().read(text, start, build)
-    except Unread:
-        read(make_parser(), text, WORDS, start)
-        raise
+    found = read_into(build, tables(), make_parser, text, WORDS, start)
     if build.mistakes:
         raise NotationError.of(build.mistakes)
     return found

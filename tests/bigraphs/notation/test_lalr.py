@@ -11,6 +11,7 @@ from scale import examples
 
 from bigraphs.examples import example_names, example_text
 from bigraphs.notation import lalr
+from bigraphs.notation.bgm import parser as bgm
 from bigraphs.notation.big.build import Build
 from bigraphs.notation.big.parser import GRAMMAR, OPTIONS, make_parser, tables
 from bigraphs.notation.lalr import Span, Unread, kept_tables
@@ -120,3 +121,63 @@ def test_a_file_without_mistakes_is_read_without_lark():
     assert (
         run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout == "False\n"
     )
+
+
+BGM_WORDS = st.sampled_from(
+    [
+        "a",
+        "B",
+        "%active",
+        "%passive",
+        "%outer",
+        "%inner",
+        "%name",
+        "x",
+        ":",
+        "2",
+        ";",
+        "%rule",
+        "r",
+        "%property",
+        "p",
+        "->",
+        "|",
+        "||",
+        ".",
+        "[",
+        "]",
+        ",",
+        "-",
+        "nil",
+        "nile",
+        "$0",
+        "$this",
+        "$terminal",
+        "(",
+        ")",
+        "!",
+        "==",
+        ">=",
+        "&&",
+        "if",
+        "then",
+        "else",
+        "matches()",
+        "size()",
+        "equal(A)",
+        "#",
+    ]
+)
+
+
+@examples(500)
+@given(st.lists(BGM_WORDS, max_size=14), st.sampled_from(["", " "]))
+def test_words_of_bigmc_in_any_order_are_read_or_refused_as_by_lark(words, between):
+    text = between.join(words)
+    try:
+        expected = built(bgm._Build(text), bgm.make_parser().parse(text, start="file"))
+    except UnexpectedInput:
+        with pytest.raises(Unread):
+            bgm.tables().read(text, "file", bgm._Build(text))
+        return
+    assert repr(bgm.tables().read(text, "file", bgm._Build(text))) == repr(expected)
