@@ -7,286 +7,36 @@ Which actors there are is told by trees of their own; what may disturb what is w
 # mypy: disable-error-code="return-value, assignment, arg-type"
 # (what numba compiles is typed by numba: mypy takes its integers for Python's)
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from checker.engines.fast.folding import NO_ROOM, Folded, fold, take, unfold
-from checker.engines.fast.kernel import (
-    ALPHA,
-    AT,
-    CROWDS,
-    EXPANDED,
-    FULL,
-    KEPT,
-    LIMIT,
-    NODE,
-    SIZE,
-    TREE,
-    UNSORTED,
-    WIDE,
-    WORDS,
-    Batch,
-    Ints,
-    Model,
-    State,
-    add_row,
-    code_at,
-    conclude,
-    copy_columns,
-    is_repeated,
-    walk,
-    write_part,
-)
-from checker.engines.fast.leaves import (
-    ALIKE,
-    COPIES,
-    COPIES_END,
-    CROWDED,
-    END,
-    FIRST,
-    FLAGS,
-    LEAF,
-    PARTS_END,
-    STEP,
-)
-from checker.engines.fast.leaves import PARTS as TREES_OF_PARTS
+from checker.engines.fast.folding import Folded, unfold
+from checker.engines.fast.kernel import AT, EXPANDED, KEPT, SIZE, WORDS, Batch, Model, State, add_row, code_at
 from checker.engines.fast.loops import njit
-from checker.engines.fast.sorting import represent
-from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
-
-WORD = 64
-"""Actors of a row in one word of a set."""
-
-MOST_HERE = 8 * WORD
-"""A configuration with more actors than these is expanded in full."""
-
-EVERYBODY, UNKNOWN, NOBODY_LEFT, GOING_ON = -1, -2, -3, -4
-"""What is said in the place of the transition that leads on: that all are followed, that not all is known, that none
-need lead on, or that another set joins."""
-
-MADE, REPRESENTED = 1, 2
-"""What is so of a transition: its target is made, and its representative stands in its place."""
-
-TRIED = -1
-"""The size of a set that was found not to be ample, or that joined."""
-
-FAIR, AGENTS_OWN = 1, 2
-"""Flags of a transition: an agent's, and one that must be taken some time; an agent's."""
-
-MEMBER, NOW, EVER, ASIDE, FOLLOWER = range(5)
-RECORD = 5
-"""Numbers of an actor in a configuration: which it is, its footprints, and which comes behind it (-1: none)."""
-
-PARTS = 3
-"""A footprint has reads, writes and merges, each as words of bits."""
-
-KINDS = 3
-"""Parts of an agent (see `checker.reduction.paths.Part`): program, line, requests. Clauses come after all of these."""
-
-NO_AGENT = -1
-"""What a path has where it ends at a row that no agent's step led to; less by as much as an agent's number for its."""
-
-
-class Members(NamedTuple):
-    """Who may move, and what that may disturb, as the loop sees it.
-
-    Attributes:
-        trees_from, trees: Trees that tell the actors, in groups: one for each value of the cell that names agents.
-        begins: For each leaf of these where its actors begin in `actors`, and where they end.
-        actors: `RECORD` numbers an actor.
-        part: For each actor the part that it belongs to.
-        footprints: For each footprint the words of its parts.
-        disturbed: For each two footprints whether one disturbs the other: 0 where it was not asked, 1 no, 2 yes.
-        step_actor, step_flags: For each transition whose it is, and its flags.
-        seen_masks: For each word of a row the bits that properties look at.
-        seen_whole: For each word of a row the bits that properties look at as they are.
-        seen: Columns that properties look at through a question, each with where its answers begin.
-        answers: What that question makes of each code.
-        agents: How many agents there may ever be.
-        count: For how many footprints `disturbed` has room.
-        here, ever, place: Room for one row: its actors, the footprints of what they may ever do, and where each
-            actor is among them.
-        whose, made, visible: Whose each of its transitions is, what of that was made (see `MADE`), and whether
-            properties see it: 0 where that was not asked, 1 no, 2 yes.
-        disturbers, sets: Sets of its actors, each in as many words as they need: who may disturb each (where that was
-            asked it is one itself), and those that were found.
-        sizes: How many transitions each set that was found has.
-        inside, owners, whole: Who has joined, who may take a step, and around whom the least set omits nobody's.
-        waiting, tried: Room for the actors whose disturbers are asked next; whose sets were found.
-        taken, more: Parts that are taken on the way.
-    """
-
-    trees_from: Ints
-    trees: Ints
-    begins: Ints
-    actors: Ints
-    part: Ints
-    footprints: Words
-    disturbed: Any
-    step_actor: Ints
-    step_flags: Ints
-    seen_masks: Words
-    seen_whole: Words
-    seen: Ints
-    answers: Any
-    agents: int
-    count: int
-    here: Ints
-    ever: Ints
-    place: Ints
-    whose: Ints
-    made: Any
-    visible: Any
-    disturbers: Words
-    sets: Words
-    sizes: State
-    inside: Words
-    owners: Words
-    whole: Words
-    waiting: Ints
-    tried: Ints
-    taken: Words
-    more: Words
-
-
-class Trails(NamedTuple):
-    """The paths of `checker.reduction.paths`, for each row.
-
-    Attributes:
-        leads: Where the path leads on; less than 0 where it ends, with whose step led there (see `NO_AGENT`).
-        taken: The parts that are taken on the way there, as words of bits.
-    """
-
-    leads: Ints
-    taken: Words
-
-
-@njit(cache=True)
-def compare(footprints: Words, disturbed: Any, count: int, one: int, other: int) -> int:
-    """Note whether one footprint disturbs another (see `checker.reduction.slots.Footprint`): 1 no, 2 yes."""
-    words = len(footprints) // (PARTS * count)
-    a, b = one * PARTS * words, other * PARTS * words
-    found = 1
-    for k in range(words):
-        reads, writes, merges = footprints[a + k], footprints[a + words + k], footprints[a + 2 * words + k]
-        its_reads, its_writes = footprints[b + k], footprints[b + words + k]
-        its_merges = footprints[b + 2 * words + k]
-        met = writes & (its_reads | its_writes | its_merges)
-        met |= its_writes & (reads | merges)
-        met |= (merges & its_reads) | (its_merges & reads)
-        if met != np.uint64(0):
-            found = 2
-    disturbed[one * count + other] = found
-    return found
-
-
-@njit(cache=True)
-def meet(m: Model, r: Members, here: Words, state: State) -> int:
-    """Note the actors of a row; return how many there are, -1 where something is not known."""
-    group = np.int64(0)
-    if state[ALPHA] >= 0:
-        group = code_at(here, 0, m.columns, state[ALPHA])
-    count, actors_here = np.int64(0), r.here
-    for k in range(r.trees_from[group], r.trees_from[group + 1]):
-        reference = walk(here, 0, m.root[r.trees[k]], m.nodes, m.next, state)
-        if reference == 0:
-            state[TREE] = r.trees[k]
-            return -1
-        leaf = -reference - 1
-        for actor in range(r.begins[2 * leaf], r.begins[2 * leaf + 1]):
-            if count < len(actors_here):
-                actors_here[count] = actor
-                r.ever[count] = r.actors[RECORD * actor + EVER]
-                r.place[r.actors[RECORD * actor + MEMBER]] = count
-            count += 1
-    return count
-
-
-@njit(cache=True, inline="always")
-def has(sets: Words, begin: int, actor: int) -> bool:
-    """Tell whether the set that begins there has an actor."""
-    return bool((sets[begin + (actor >> 6)] >> np.uint64(actor & 63)) & np.uint64(1))
-
-
-@njit(cache=True, inline="always")
-def add(sets: Words, begin: int, actor: int) -> None:
-    """Add an actor to the set that begins there."""
-    sets[begin + (actor >> 6)] |= np.uint64(1) << np.uint64(actor & 63)
-
-
-@njit(cache=True, inline="always")
-def remove(sets: Words, begin: int, actor: int) -> None:
-    """Take an actor out of the set that begins there."""
-    sets[begin + (actor >> 6)] &= ~(np.uint64(1) << np.uint64(actor & 63))
-
-
-@njit(cache=True, inline="always")
-def note_disturbers(r: Members, actors: int, wide: int, k: int) -> None:
-    """Note who may ever disturb what an actor of a row may do now, and that it was asked: it is in its own set."""
-    disturbed, ever = r.disturbed, r.ever
-    actor = RECORD * r.here[k]
-    now, follower = np.int64(r.actors[actor + NOW]), r.actors[actor + FOLLOWER]
-    begin = now * r.count
-    for word in range(wide):
-        first, last = WORD * word, min(WORD * word + WORD, actors)
-        found, asked = np.uint64(0), True
-        for j in range(first, last):
-            known = np.uint64(disturbed[begin + ever[j]])
-            asked = asked and known != np.uint64(0)
-            found |= (known >> np.uint64(1)) << np.uint64(j - first)
-        if not asked:
-            for j in range(first, last):
-                if disturbed[begin + ever[j]] == 0:
-                    known = np.uint64(compare(r.footprints, disturbed, r.count, now, np.int64(ever[j])))
-                    found |= (known >> np.uint64(1)) << np.uint64(j - first)
-        r.disturbers[k * wide + word] = found
-    if follower >= 0:
-        j = np.int64(r.place[follower])  # where it was last, in whichever row
-        if j < actors and r.actors[RECORD * r.here[j] + MEMBER] == follower:
-            aside = np.int64(r.actors[RECORD * r.here[j] + ASIDE])
-            known = np.uint64(disturbed[begin + aside])
-            if known == np.uint64(0):
-                known = np.uint64(compare(r.footprints, disturbed, r.count, now, aside))
-            remove(r.disturbers, k * wide, j)
-            if known == np.uint64(2):
-                add(r.disturbers, k * wide, j)
-    add(r.disturbers, k * wide, k)
-
-
-@njit(cache=True, inline="always")
-def persistent(r: Members, actors: int, wide: int, seed: int, at: int) -> bool:
-    """Write the least set around an actor such that nothing outside ever disturbs what those inside may do now.
-
-    False where everyone who may take a step is inside, as around somebody inside: it is not written to its end then.
-    """
-    inside, waiting = r.sets, r.waiting
-    for word in range(wide):
-        inside[at + word] = np.uint64(0)
-    add(inside, at, seed)
-    waiting[0] = seed
-    left = np.int64(1)
-    while left:
-        left -= 1
-        k = np.int64(waiting[left])
-        if not has(r.disturbers, k * wide, k):
-            note_disturbers(r, actors, wide, k)
-        omitted, whole = np.uint64(0), np.uint64(0)
-        for word in range(wide):
-            reached = r.disturbers[k * wide + word] | inside[at + word]
-            omitted |= r.owners[word] & ~reached
-            whole |= r.whole[word] & reached
-        if omitted == np.uint64(0) or whole != np.uint64(0):
-            add(r.whole, 0, seed)
-            return False
-        for word in range(wide):
-            joining = r.disturbers[k * wide + word] & ~inside[at + word]
-            inside[at + word] |= joining
-            for bit in range(WORD if joining else 0):
-                if (joining >> np.uint64(bit)) & np.uint64(1):
-                    waiting[left] = WORD * word + bit
-                    left += 1
-    return True
+from checker.engines.fast.members import (
+    AGENTS_OWN,
+    EVERYBODY,
+    FAIR,
+    GOING_ON,
+    KINDS,
+    MEMBER,
+    MOST_HERE,
+    NO_AGENT,
+    NOBODY_LEFT,
+    RECORD,
+    TRIED,
+    UNKNOWN,
+    WORD,
+    Members,
+    Trails,
+    add,
+    has,
+    meet,
+)
+from checker.engines.fast.persistent import find_set
+from checker.engines.fast.successors import list_steps, make, make_representative, without_repetitions
+from checker.engines.fast.table import Words, bits_for, entry_of, find
 
 
 @njit(cache=True)
@@ -308,121 +58,6 @@ def is_seen(m: Model, r: Members, here: Words, target: Words, to: int, width: in
 
 
 @njit(cache=True)
-def list_steps(m: Model, here: Words, batch: Batch, state: State) -> int:
-    """Note the transitions that a row allows, not made yet; return how many, UNKNOWN where something is not known."""
-    first, last = np.int64(0), np.int64(len(m.agents))
-    if state[ALPHA] >= 0:
-        group = code_at(here, 0, m.columns, state[ALPHA])
-        first, last = np.int64(m.agents_from[group]), np.int64(m.agents_from[group + 1])
-    count, flags = np.int64(0), np.int64(0)
-    for k in range(last - first + len(m.clauses)):
-        tree = m.agents[first + k] if first + k < last else m.clauses[first + k - last]
-        reference = walk(here, 0, m.root[tree], m.nodes, m.next, state)
-        if reference == 0:
-            state[TREE] = tree
-            return UNKNOWN
-        leaf = LEAF * (-reference - 1)
-        flags |= m.leaves[leaf + FLAGS]
-        for step in range(m.leaves[leaf + FIRST], m.leaves[leaf + END]):
-            if count == len(batch.steps):
-                state[NODE] = WIDE
-                return UNKNOWN
-            batch.steps[count] = step
-            count += 1
-    if flags & CROWDED:
-        state[CROWDS] += 1
-        return 0
-    return count
-
-
-@njit(cache=True)
-def make(m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, k: int, state: State) -> bool:
-    """Make what a transition of a row leads to, if it was not made yet; False where something is not known."""
-    if r.made[k]:
-        return True
-    width = state[WORDS]
-    to, record = k * width, STEP * batch.steps[k]
-    if f is None:
-        conclude(here, 0, m.masks, batch.steps[k], batch.words, to, width)
-    else:
-        for word in range(width):
-            batch.words[to + word] = here[word]
-        write_part(m.columns, m.writes, m.steps, batch.steps[k], batch.words, to)
-    begin, end = m.steps[record + COPIES], m.steps[record + COPIES_END]
-    copy_columns(here, 0, m.columns, m.copies, begin, end, batch.words, to)
-    for part in range(m.steps[record + TREES_OF_PARTS], m.steps[record + PARTS_END]):
-        tree = m.part[part]
-        reference = walk(here, 0, m.root[tree], m.nodes, m.next, state)
-        if reference == 0:
-            state[TREE] = tree
-            return False
-        own = m.leaves[LEAF * (-reference - 1) + FIRST]
-        write_part(m.columns, m.writes, m.steps, own, batch.words, to)
-    r.made[k] = MADE
-    return keep(f, batch, k, state)
-
-
-@njit(cache=True)
-def keep(f: Folded | None, batch: Batch, k: int, state: State) -> bool:
-    """Fold what a transition leads to, where rows are folded, and hash what is kept; False where there is no room."""
-    width, kept = state[WORDS], state[KEPT]
-    if f is not None:
-        adding = state[SIZE] < state[LIMIT]  # of what can't become a row, nothing is added
-        touched = take(f, batch.words, k * width, width, adding)
-        if fold(f, touched, adding, batch.kept, k * kept) == NO_ROOM:
-            state[NODE] = FULL
-            return False
-    batch.hashes[k] = hashed(batch.kept, k * kept, kept)
-    return True
-
-
-@njit(cache=True)
-def make_representative(
-    m: Model, r: Members, x: Any, d: Any, f: Folded | None, here: Words, batch: Batch, k: int, state: State
-) -> bool:
-    """Make what a transition of a row leads to, and put what represents that in its place, as far as it was not done.
-
-    False where something is not known.
-    """
-    if not make(m, r, f, here, batch, k, state):
-        return False
-    if r.made[k] == REPRESENTED:
-        return True
-    width = state[WORDS]
-    d.whole[:] = 0
-    if not represent(x, d, batch.words, k * width, width, m.columns, 1):
-        state[NODE] = UNSORTED
-        return False
-    r.made[k] = REPRESENTED
-    return keep(f, batch, k, state)
-
-
-@njit(cache=True)
-def without_repetitions(
-    m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, count: int, state: State
-) -> int:
-    """Leave out what leads under the same label to the same; return how many are left, UNKNOWN as elsewhere."""
-    width, alike = state[WORDS], False
-    for k in range(count):
-        r.made[k] = r.visible[k] = 0
-        alike = alike or m.steps[STEP * batch.steps[k] + ALIKE] >= 0
-    if not alike:
-        return count
-    left = np.int64(0)
-    for k in range(count):
-        step = batch.steps[k]
-        batch.steps[left] = step
-        r.made[left] = r.visible[left] = 0
-        if not make(m, r, f, here, batch, left, state):
-            return UNKNOWN
-        if m.steps[STEP * step + ALIKE] < 0 or not is_repeated(
-            batch.words, batch.steps, m.steps, 0, left, step, width
-        ):
-            left += 1
-    return left
-
-
-@njit(cache=True)
 def attribute(r: Members, batch: Batch, count: int, wide: int) -> None:
     """Note whose each transition of a row is, as a number among its actors."""
     for word in range(wide):
@@ -430,27 +65,6 @@ def attribute(r: Members, batch: Batch, count: int, wide: int) -> None:
     for k in range(count):
         r.whose[k] = r.place[r.step_actor[batch.steps[k]]]
         add(r.owners, 0, r.whose[k])
-
-
-@njit(cache=True, inline="always")
-def find_set(r: Members, count: int, actors: int, wide: int, seed: int, found: int) -> int:
-    """Note the persistent set around an actor after those found; return how many transitions it has.
-
-    A set that was found already, or that omits nothing, counts as tried.
-    """
-    at = found * wide
-    if not persistent(r, actors, wide, seed, at):
-        return TRIED
-    for other in range(found):
-        same = True
-        for word in range(wide):
-            same = same and r.sets[other * wide + word] == r.sets[at + word]
-        if same:
-            return TRIED
-    size = np.int64(0)
-    for j in range(count):
-        size += has(r.sets, at, r.whose[j])
-    return size
 
 
 @njit(cache=True)

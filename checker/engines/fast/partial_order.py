@@ -10,7 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.ample import (
+from checker.engines.fast.arrays import Growing
+from checker.engines.fast.columns import Packing
+from checker.engines.fast.learner import Learner
+from checker.engines.fast.leaves import LEAF
+from checker.engines.fast.members import (
     AGENTS_OWN,
     FAIR,
     KINDS,
@@ -22,10 +26,6 @@ from checker.engines.fast.ample import (
     Members,
     Trails,
 )
-from checker.engines.fast.arrays import Growing
-from checker.engines.fast.columns import Packing
-from checker.engines.fast.learner import Learner
-from checker.engines.fast.leaves import LEAF
 from checker.engines.fast.pages import Pages
 from checker.engines.fast.skeletons import agents_of
 from checker.properties.inspections import never_ends

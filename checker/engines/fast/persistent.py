@@ -1,0 +1,133 @@
+"""The compiled loops over persistent sets: who disturbs what somebody may do now, and the least set around an actor."""
+
+# mypy: disable-error-code="return-value, assignment, arg-type"
+# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+
+from typing import Any
+
+import numpy as np
+
+from checker.engines.fast.loops import njit
+from checker.engines.fast.members import (
+    ASIDE,
+    FOLLOWER,
+    MEMBER,
+    NOW,
+    PARTS,
+    RECORD,
+    TRIED,
+    WORD,
+    Members,
+    add,
+    has,
+    remove,
+)
+from checker.engines.fast.table import Words
+
+
+@njit(cache=True)
+def compare(footprints: Words, disturbed: Any, count: int, one: int, other: int) -> int:
+    """Note whether one footprint disturbs another (see `checker.reduction.slots.Footprint`): 1 no, 2 yes."""
+    words = len(footprints) // (PARTS * count)
+    a, b = one * PARTS * words, other * PARTS * words
+    found = 1
+    for k in range(words):
+        reads, writes, merges = footprints[a + k], footprints[a + words + k], footprints[a + 2 * words + k]
+        its_reads, its_writes = footprints[b + k], footprints[b + words + k]
+        its_merges = footprints[b + 2 * words + k]
+        met = writes & (its_reads | its_writes | its_merges)
+        met |= its_writes & (reads | merges)
+        met |= (merges & its_reads) | (its_merges & reads)
+        if met != np.uint64(0):
+            found = 2
+    disturbed[one * count + other] = found
+    return found
+
+
+@njit(cache=True, inline="always")
+def note_disturbers(r: Members, actors: int, wide: int, k: int) -> None:
+    """Note who may ever disturb what an actor of a row may do now, and that it was asked: it is in its own set."""
+    disturbed, ever = r.disturbed, r.ever
+    actor = RECORD * r.here[k]
+    now, follower = np.int64(r.actors[actor + NOW]), r.actors[actor + FOLLOWER]
+    begin = now * r.count
+    for word in range(wide):
+        first, last = WORD * word, min(WORD * word + WORD, actors)
+        found, asked = np.uint64(0), True
+        for j in range(first, last):
+            known = np.uint64(disturbed[begin + ever[j]])
+            asked = asked and known != np.uint64(0)
+            found |= (known >> np.uint64(1)) << np.uint64(j - first)
+        if not asked:
+            for j in range(first, last):
+                if disturbed[begin + ever[j]] == 0:
+                    known = np.uint64(compare(r.footprints, disturbed, r.count, now, np.int64(ever[j])))
+                    found |= (known >> np.uint64(1)) << np.uint64(j - first)
+        r.disturbers[k * wide + word] = found
+    if follower >= 0:
+        j = np.int64(r.place[follower])  # where it was last, in whichever row
+        if j < actors and r.actors[RECORD * r.here[j] + MEMBER] == follower:
+            aside = np.int64(r.actors[RECORD * r.here[j] + ASIDE])
+            known = np.uint64(disturbed[begin + aside])
+            if known == np.uint64(0):
+                known = np.uint64(compare(r.footprints, disturbed, r.count, now, aside))
+            remove(r.disturbers, k * wide, j)
+            if known == np.uint64(2):
+                add(r.disturbers, k * wide, j)
+    add(r.disturbers, k * wide, k)
+
+
+@njit(cache=True, inline="always")
+def persistent(r: Members, actors: int, wide: int, seed: int, at: int) -> bool:
+    """Write the least set around an actor such that nothing outside ever disturbs what those inside may do now.
+
+    False where everyone who may take a step is inside, as around somebody inside: it is not written to its end then.
+    """
+    inside, waiting = r.sets, r.waiting
+    for word in range(wide):
+        inside[at + word] = np.uint64(0)
+    add(inside, at, seed)
+    waiting[0] = seed
+    left = np.int64(1)
+    while left:
+        left -= 1
+        k = np.int64(waiting[left])
+        if not has(r.disturbers, k * wide, k):
+            note_disturbers(r, actors, wide, k)
+        omitted, whole = np.uint64(0), np.uint64(0)
+        for word in range(wide):
+            reached = r.disturbers[k * wide + word] | inside[at + word]
+            omitted |= r.owners[word] & ~reached
+            whole |= r.whole[word] & reached
+        if omitted == np.uint64(0) or whole != np.uint64(0):
+            add(r.whole, 0, seed)
+            return False
+        for word in range(wide):
+            joining = r.disturbers[k * wide + word] & ~inside[at + word]
+            inside[at + word] |= joining
+            for bit in range(WORD if joining else 0):
+                if (joining >> np.uint64(bit)) & np.uint64(1):
+                    waiting[left] = WORD * word + bit
+                    left += 1
+    return True
+
+
+@njit(cache=True, inline="always")
+def find_set(r: Members, count: int, actors: int, wide: int, seed: int, found: int) -> int:
+    """Note the persistent set around an actor after those found; return how many transitions it has.
+
+    A set that was found already, or that omits nothing, counts as tried.
+    """
+    at = found * wide
+    if not persistent(r, actors, wide, seed, at):
+        return TRIED
+    for other in range(found):
+        same = True
+        for word in range(wide):
+            same = same and r.sets[other * wide + word] == r.sets[at + word]
+        if same:
+            return TRIED
+    size = np.int64(0)
+    for j in range(count):
+        size += has(r.sets, at, r.whose[j])
+    return size
