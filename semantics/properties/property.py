@@ -1,7 +1,7 @@
 """The properties that a mission asks to check, and the variables that they need."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Final
 
 from semantics.behaviours.program import VariableOf
@@ -88,6 +88,6 @@ def watching(c: Configuration, properties: Iterable[Property]) -> Configuration:
         and timing.endurances
         and all(each.kind is not PropertyKind.ENDURANCE for each in asked)
     ):
-        timing = replace(timing, endurances=())
+        timing = timing.without_endurances()
     unchanged = program is setting.program and timing is setting.timing
     return c if unchanged else Configuration(setting.with_(program=program, timing=timing), c.state)

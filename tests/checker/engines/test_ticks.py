@@ -302,7 +302,9 @@ def test_more_ticks_than_zones_count_are_refused():
 def test_how_long_vehicles_are_aloft_is_timed_only_where_endurance_is_asked(flight):
     endurance = Property(PropertyKind.ENDURANCE, "endurance")
     assert watching(flight, (when(), endurance)) is flight
-    assert watching(flight, (when(),)).setting.timing == replaced(endurances=())
+    said = replaced(lines=(("uav0 lasts 6 min", 3), ("agents react within 1 min", 4)))
+    kept = watching(with_timing(flight, said), (when(),)).setting.timing
+    assert kept == replaced(endurances=(), lines=said.lines[1:])
     alone, both = (decided(flight, *asked) for asked in ((when(),), (when(), endurance)))
     assert alone.verdicts["time"].note == both.verdicts["time"].note
     assert (alone.configurations, alone.transitions) == (both.configurations, both.transitions)
