@@ -38,6 +38,7 @@ KNOWN = {
     ("program_order", 2, 3): (365, 893),
     ("program_order", 3, 1): (1_044, 5_527),
     ("program_order", 3, 3): (6_017, 41_399),
+    ("program_order", 3, 7): (40_465, 316_391),
     ("program_order", 4, 1): (10_122, 164_287),
 }
 """How many configurations and zones some of the family have."""

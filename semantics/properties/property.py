@@ -77,6 +77,17 @@ def watched(properties: Iterable[Property]) -> frozenset[VariableOf]:
 
 
 def watching(c: Configuration, properties: Iterable[Property]) -> Configuration:
-    """Return a configuration from which on what properties name is kept to the end of the run."""
-    program = c.setting.program.watching(watched(properties))
-    return c if program is c.setting.program else Configuration(c.setting.with_(program=program), c.state)
+    """Return a configuration from which on what properties name is kept to the end of the run, and timed.
+
+    How long vehicles are aloft is timed for `endurance` alone: the clocks of several multiply what is told apart.
+    """
+    asked, setting = tuple(properties), c.setting
+    program, timing = setting.program.watching(watched(asked)), setting.timing
+    if (
+        timing is not None
+        and timing.endurances
+        and all(each.kind is not PropertyKind.ENDURANCE for each in asked)
+    ):
+        timing = timing.without_endurances()
+    unchanged = program is setting.program and timing is setting.timing
+    return c if unchanged else Configuration(setting.with_(program=program, timing=timing), c.state)

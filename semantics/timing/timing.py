@@ -1,6 +1,6 @@
 """What a mission's `timing` section comes to: every bound that its verdicts rest on. Durations are whole ticks."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from semantics.state.signature import Name
@@ -101,6 +101,11 @@ class Timing:
     commands: tuple[tuple[str, Interval], ...] = ()
     clauses: tuple[ClauseTimes, ...] = ()
     lines: tuple[tuple[str, int], ...] = ()
+
+    def without_endurances(self) -> "Timing":
+        """Return the assumptions but those about how long vehicles last."""
+        lines = tuple(said for said in self.lines if said[0].split()[1:2] != ["lasts"])
+        return replace(self, endurances=(), lines=lines)
 
     def motion(self, vehicle: Name) -> Motion | None:
         """Return how a vehicle moves, None where nothing is said."""

@@ -95,7 +95,7 @@ class Pending(Node):
 
 @node
 class Ended(Node):
-    """`ended a`: agent a has nothing left to run."""
+    """`ended a`: agent a has nothing left to run; what it has asked for may still be pending, like its last flight."""
 
     agent: Agent
 

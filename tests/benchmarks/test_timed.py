@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 from scripts import script
 
-from checker import Engine, check
+from checker import Engine, check, explore
+from semantics.properties.property import watching
 from specs import parse_bytes
 from specs.elaboration import elaborate
 
@@ -33,6 +34,13 @@ def test_others_learn_nothing_anew_of_a_queue_that_all_share(tmp_path):
     found = timed.explored(timed_family.text(2, 3), tmp_path)
     assert (found.size, found.times.search.count) == (2490, 7103)
     assert found.times.network.learner.runs == 1890  # it was 7,857 when rules read the queue whole
+
+
+def test_half_of_the_zones_are_there_for_the_sake_of_batteries(tmp_path):
+    start = timed.explored(timed_family.text(3, 1, scheduler="program_order"), tmp_path)
+    other = explore(watching(start.times.initial, ()), engine=Engine.FAST)
+    assert (start.size, start.times.search.count) == (1044, 5527)
+    assert (other.size, other.times.search.count) == (1044, 3111)
 
 
 def test_processes_of_a_network_share_no_names(tmp_path):

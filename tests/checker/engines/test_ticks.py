@@ -23,7 +23,7 @@ from checker.reports.lanes import lanes_of_trace, lanes_text
 from checker.traces import ReplayError, print_trace, to_json
 from checker.verdicts import Outcome
 from semantics.properties.kinds import PropertyKind
-from semantics.properties.property import Property
+from semantics.properties.property import Property, watching
 from semantics.properties.propositions import Ended, HasPending, Inside, Not
 from semantics.timing.intervals import Interval
 from semantics.timing.timing import ClauseTimes, Endurance, Every, Motion, Sayable, Timing, Window
@@ -93,10 +93,10 @@ def test_a_flight_has_an_earliest_and_a_latest_arrival(flight):
     report = decided(flight, when())
     assert (report.configurations, report.transitions, report.complete) == (4, 3, True)
     assert report.verdicts["time"].note == "at 1:00 at the earliest, at 8:00 at the latest"
-    (note,) = report.notes  # 2 while it is asked for, 4 while it is pending, 7 in flight, 7 at the end
+    (note,) = report.notes  # 2 while it is asked for, 2 while it is pending, 7 in flight, 1 at the end
     assert (
         note
-        == "searched over 20 timed configurations, in ticks of 1 min; times are those under 'scheduler fcfs'"
+        == "searched over 12 timed configurations, in ticks of 1 min; times are those under 'scheduler fcfs'"
     )
 
 
@@ -293,7 +293,23 @@ def test_a_limit_of_zones_is_said_and_nothing_holds(flight):
 def test_more_ticks_than_zones_count_are_refused():
     endless = replaced(endurances=(("uav0", Endurance(1 << 28)),))
     with pytest.raises(EngineError, match="268,435,457 ticks are more than the engine 'fast' counts"):
-        check(with_timing(load(FLIGHT).initial, endless), (when(),), engine=Engine.FAST)
+        check(
+            with_timing(load(FLIGHT).initial, endless),
+            (Property(PropertyKind.ENDURANCE, "endurance"),),
+            engine=Engine.FAST,
+        )
+
+
+def test_how_long_vehicles_are_aloft_is_timed_only_where_endurance_is_asked(flight):
+    endurance = Property(PropertyKind.ENDURANCE, "endurance")
+    assert watching(flight, (when(), endurance)) is flight
+    said = replaced(lines=(("uav0 lasts 6 min", 3), ("agents react within 1 min", 4)))
+    kept = watching(with_timing(flight, said), (when(),)).setting.timing
+    assert kept == replaced(endurances=(), lines=said.lines[1:])
+    alone, both = (decided(flight, *asked) for asked in ((when(),), (when(), endurance)))
+    assert alone.verdicts["time"].note == both.verdicts["time"].note
+    assert (alone.configurations, alone.transitions) == (both.configurations, both.transitions)
+    assert "20 timed configurations" in both.notes[0]
 
 
 def test_properties_of_runs_are_not_decided_with_times(flight):
