@@ -53,7 +53,10 @@ def test_more_ticks_than_zones_count_are_a_mistake_with_its_remedy(capsys, tmp_p
     text = shipped_missions()["endurance"].read_text(encoding="utf-8")
     fine = tmp_path / "fine.mission"
     fine.write_text(text.replace("tick 10 s", "tick 1 ms").replace("1630 s", "168 h"), encoding="utf-8")
-    for command in (["check", str(fine)], ["export", str(fine), "--format", "tchecker"]):
+    for command in (
+        ["check", str(fine)],
+        ["export", str(fine), "--format", "tchecker", "--property", "endurance"],
+    ):
         assert main(command) == 2
         said = capsys.readouterr().err
         assert "604,800,001 ticks are more than the engine 'fast' counts (134,217,728)" in said

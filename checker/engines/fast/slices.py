@@ -1,13 +1,10 @@
 """Slices of a space's rows that are expanded ahead of what is stored, by what was known when each was begun."""
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 from checker.engines.fast import kernel
 from checker.engines.fast.kernel import AT, GATHERED, PUT_OFF, SEEN, SIFTED
 from checker.engines.fast.pipeline import Pipeline, Slice
-
-if TYPE_CHECKING:
-    from checker.engines.fast.space import Space
 
 FEW = 1 << 6
 """Rows of the first slice, and of the next one where what was found ahead turned out to be worth nothing."""
@@ -20,14 +17,14 @@ class Slices:
     """The slices of a space that are ahead: they are begun, expanded and sifted in any thread, and stored in this one.
 
     Attributes:
-        space: Stores what they find, and learns what is not known.
+        space: The `Space` that stores what they find, and learns what is not known; it makes these.
         pipeline: Runs them.
         pace: How many rows the next slice has, if one has not too many successors.
         breadth: How many successors a row of the last slice had.
         spare: Batches of slices that were stored.
     """
 
-    def __init__(self, space: "Space", threads: int) -> None:
+    def __init__(self, space: Any, threads: int) -> None:
         self.space = space
         self.pipeline = Pipeline(threads, self._expand, self._sift)
         self.pace, self.breadth = FEW, 1.0
