@@ -67,7 +67,7 @@ class Slices:
     @property
     def _epoch(self) -> int:
         """A number that changes whenever what was found ahead may be worth nothing."""
-        return self.space.changes + self.space.learner.trees.forgotten
+        return int(self.space.changes + self.space.learner.trees.forgotten)
 
     def _expand(self, part: Slice) -> None:
         """Expand a slice, in any thread."""
