@@ -158,15 +158,17 @@ class Compiling:
 
 
 def _timed_learning() -> list[float]:
-    """Collect the seconds of each time that rules are run in Python."""
+    """Collect the seconds of each time that rules are run in Python, parts that are learned on the way among them."""
     from checker.engines.fast.learner import CodedSource, Learner  # noqa: PLC0415
 
-    seconds, learn = [], Learner.learn
+    seconds, learn, begun = [], Learner.learn, list[float]()
 
     def timed(learner: Learner, tree: int, source: CodedSource) -> None:
-        began = time.perf_counter()
+        begun.append(time.perf_counter())
         learn(learner, tree, source)
-        seconds.append(time.perf_counter() - began)
+        began = begun.pop()
+        if not begun:  # a part's time is its transition's, too
+            seconds.append(time.perf_counter() - began)
 
     Learner.learn = timed  # type: ignore[method-assign]  # in this process only, which does nothing else
     return seconds
