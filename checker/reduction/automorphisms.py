@@ -1,6 +1,6 @@
 """The automorphisms of a mission: transpositions of names that preserve it, and why others don't."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Set
 from dataclasses import fields, is_dataclass
 from functools import cached_property, partial
 from itertools import product
@@ -123,6 +123,11 @@ class Automorphisms:
 
     def _check_rule(self, renaming: Renaming, rule: str, arguments: int) -> None:
         make, names = self.program.reactions[rule], sorted(self.c.setting.kinds)
+        mentions: Set[str] | None = getattr(make, "mentions", None)
+        if mentions is not None:  # a rule of a mission's text; any other function is tried
+            if not mentions.isdisjoint(renaming.names):
+                raise Unlike(f"the rule '{rule}' tells them apart")
+            return
         if len(names) ** (arguments + 1) > MOST_ARGUMENTS:
             raise Unlike(f"the rule '{rule}' has too many arguments to be tried with all of them")
         for chosen in product(names, repeat=arguments + 1):

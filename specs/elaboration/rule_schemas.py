@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Final
 
 from semantics.behaviours.commands import HOST, Command
@@ -66,6 +67,17 @@ class Schema:
     words: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     kinds: Mapping[NodeTerm, str | None] = field(default_factory=dict)
 
+    @cached_property
+    def mentions(self) -> frozenset[str]:
+        """The words of its text and patterns that no argument stands for: names among them, and parts of channels'."""
+        open_terms = {HOST, *(each.name for each in self.parameters)}
+        said = [self.text if not self.name else ""]
+        for pattern in (self.redex, self.reactum):
+            said += [node for node in (*pattern.nodes, *pattern.closed) if isinstance(node, str)]
+            said += [term for pair in pattern.parents for term in pair if isinstance(term, str)]
+            said += [term for pair in pattern.links for term in pair if isinstance(term, str)]
+        return frozenset(word for each in said if each not in open_terms for word in _WORD.findall(each))
+
     def involves(self, host: Name, kind: str, arguments: Mapping[str, Name]) -> bool:
         """Tell whether the redex can involve a host of a kind, given the arguments that are known."""
         for term in self.redex.nodes:
@@ -110,6 +122,11 @@ class Maker:
 
     schema: Schema
     kinds: Mapping[Name, str]
+
+    @property
+    def mentions(self) -> frozenset[str]:
+        """The names that it may mention, whatever its host and arguments; it treats all others of a kind alike."""
+        return self.schema.mentions
 
     def __call__(self, host: Name, *arguments: Value) -> Reaction:
         """Return R ⇒ R'.

@@ -228,10 +228,9 @@ class Likeness:
         except Mentioned:
             return {}
         there: dict[Hashable, Name] = {}
-        alike = ((self._first(name), frozenset(taken.get(name, ()))) for name in names)
         models = {
-            name: there.setdefault(like, name)
-            for name, like in zip(names, alike, strict=True)
+            name: there.setdefault((self._first(name), frozenset(taken.get(name, ()))), name)
+            for name in names
             if name not in mentioned and not name.startswith(AGENT)
         }
         return {name: model for name, model in models.items() if name != model}

@@ -245,6 +245,19 @@ class Space:
         self.state[EXPANDED] = at
         self.show()
 
+    @property
+    def epoch(self) -> int:
+        """A number that changes whenever what was found ahead may be worth nothing."""
+        return self.changes + self.learner.trees.forgotten
+
+    def known(self) -> kernel.Model:
+        """Return what is known, as other threads may read it while more is learned."""
+        if self.shown is None:
+            trees = self.learner.trees
+            copies = [each.used.copy() for each in (trees.root, trees.nodes, trees.next)]
+            self.shown = self.model._replace(root=copies[0], nodes=copies[1], next=copies[2])
+        return self.shown
+
     def show(self) -> None:
         """Let other threads look up what is stored by now."""
         self.rows.show()

@@ -1,5 +1,7 @@
 """What is learned about one name holds for those that the mission does not tell from it."""
 
+from contextlib import suppress
+from itertools import combinations, product
 from pathlib import Path
 
 import pytest
@@ -12,8 +14,11 @@ from test_symmetry import swarm, swarms
 from checker import Engine, Limits, explore
 from checker.engines.fast.likeness import Likeness, Mentioned, Swap
 from checker.engines.fast.recording import Ask
+from checker.reduction.renaming import Renaming
+from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import agent_key
 from semantics.state.cells import is_
+from semantics.state.signature import REGION
 from specs.elaboration import load_mission
 
 MISSIONS = Path(__file__).parents[3] / "specs" / "missions"
@@ -125,3 +130,48 @@ def test_a_question_is_renamed_in_what_it_is_about():
 def test_a_question_that_tells_names_apart_has_no_image(ask):
     with pytest.raises(Mentioned):
         SWAP.ask(ask)
+
+
+# --- what likeness rests on -----------------------------------------------------------------------------------
+
+OWN = """
+rule drop(x: Robot) { x[mesh] || HOST[mesh] -> x[] || HOST[mesh] }
+rule drop_first(x: Robot) { x[mesh] || robot0[mesh] -> x[] || robot0[mesh] }
+"""
+
+
+def tried(make, one, other, names):
+    """Tell whether a rule treats two names alike, by trying it with all hosts and arguments."""
+    renaming = Renaming({one: other, other: one})
+
+    def made(*chosen):
+        with suppress(Fault):
+            return make(*chosen)
+
+    return all(
+        (None if (found := made(*chosen)) is None else renaming.value(found))
+        == made(*map(renaming.name, chosen))
+        for chosen in product(names, repeat=2)
+    )
+
+
+@pytest.mark.parametrize(("rule", "apart"), [("drop", set()), ("drop_first", {"robot0"})])
+def test_a_rule_says_whom_it_tells_apart(rule, apart):
+    uses = " ".join(f"control({each}(HOST))" for each in ("drop", "drop_first"))
+    agent = f"BigActor base hosted_at robot0 with_behavior {{ {uses} }}"
+    setting = fleet(3, f"{OWN}{agent}").setting
+    make, names = setting.program.reactions[rule], sorted(setting.kinds)
+    assert {name for name in names if name in make.mentions} == apart
+    for one, other in combinations([name for name in names if setting.kind(name) == "Robot"], 2):
+        assert tried(make, one, other, names) is apart.isdisjoint({one, other})
+
+
+@pytest.mark.parametrize("name", UNTIMED)
+def test_beliefs_are_sorted_so_nothing_is_below_a_node_whose_kind_holds_nothing(name):
+    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    signature, kind = initial.setting.signature, initial.setting.kind
+    for c in explore(initial, engine=Engine.FAST, limits=Limits(configurations=2_000)).configurations:
+        logical = c.structure.logical
+        places = {node: logical.parent(node) for node in logical.nodes()}
+        for node, place in places.items():
+            assert place == REGION or signature[kind(place)].may_contain(kind(node))

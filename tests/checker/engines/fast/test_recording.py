@@ -1,10 +1,17 @@
 """What is noted of a rule's reads, and what is not."""
 
+from checker.engines.fast.columns import packing
+from checker.engines.fast.learner import Actor, CodedSource, Learner
 from checker.engines.fast.recording import Ask, Edited, Recorder
+from checker.engines.fast.trees import UNKNOWN
 from semantics.behaviours.observations import All, Observation
-from semantics.state.cells import QUEUE, Row
+from semantics.behaviours.program import Program
+from semantics.state.cells import AGENTS, QUEUE, Row
+from semantics.state.configuration import Label, Transition
 from semantics.state.eta import appended, first_of, without
 from semantics.state.requests import OBS, SND
+from semantics.state.setting import Setting
+from semantics.state.signature import Signature
 
 A, B = OBS("a", All()), OBS("b", All())
 SAID = SND("b", "a", (Observation.of(),))
@@ -59,3 +66,31 @@ def test_where_observations_stand_an_edit_reads():
     found = recorder(B)
     assert found.edited(QUEUE, appended, SAID) == (B, SAID)
     assert values(found) == [Ask(QUEUE)]
+
+
+def test_what_is_written_unread_over_what_was_always_there_is_learned_again_when_that_varies():
+    """Two agents write a cell that nobody reads: one what it holds at first, then the other something else."""
+    still = Row.of({("shown",): "first", AGENTS: ("a", "b")})
+    learner = Learner(Setting(Signature(), {}, Program()), still, 10)
+
+    def writes(value):
+        return lambda c, a: [Transition(Label("fun", a, value), c.with_({("shown",): value}))]
+
+    def source():
+        codes = learner.columns.codes(still)
+        where = packing(learner.columns.sizes)
+        words = [0] * where.words
+        for word, shift, code in zip(where.word.tolist(), where.shift.tolist(), codes, strict=True):
+            words[word] |= code << shift
+        return CodedSource(learner.columns, where, words)
+
+    keeps, changes = (
+        learner.tree(Actor(writes(value), agent)) for value, agent in (("first", "a"), ("other", "b"))
+    )
+    learner.learn(keeps, source())
+    assert int(learner.trees.root.room[keeps]) < 0
+    learner.learn(changes, source())
+    assert int(learner.trees.root.room[keeps]) == UNKNOWN  # else it would go on to write nothing
+    learner.learn(keeps, source())
+    (step,) = learner.leaves.steps_of(-int(learner.trees.root.room[keeps]) - 1)
+    assert learner.leaves.codes_of(step) == {learner.columns.numbers[("shown",),]: 0}
