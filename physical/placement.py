@@ -18,7 +18,7 @@ from shapely.affinity import translate
 from physical.errors import GeometryError
 from physical.frame import Frame, local_frame
 from physical.measure import centroid
-from physical.shape import Geometry, beside, canonical, contains, intern, planar
+from physical.shape import Geometry, canonical, contains, covers, intern, planar
 
 MARGINS: Final = (0.05, 0.5, 5.0)
 """Metres that a placement keeps from borders: the first with which it stands as it should after rounding."""
@@ -112,10 +112,7 @@ def _stands(mover: Geometry | None, target: Geometry, holes: Iterable[Geometry])
 
 def swallows(hole: Geometry, mover: Geometry) -> bool:
     """Whether a mover is in a hole: a point in or on the border of it, a polygon contained in it."""
-    if hole.is_point or not mover.is_point:
-        return contains(hole, mover)
-    fixed = planar(hole)
-    return bool(shapely.intersects(fixed, beside(fixed, planar(mover))))
+    return contains(hole, mover) if hole.is_point or not mover.is_point else covers(hole, mover)
 
 
 def _free(mover: Geometry, frame: Frame, target: Geometry, holes: Iterable[Geometry]) -> shapely.Geometry:

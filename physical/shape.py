@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import accumulate, islice, pairwise
 from threading import Lock
-from typing import Final
+from typing import Any, Final
 from weakref import WeakValueDictionary
 
 import shapely
@@ -342,19 +342,26 @@ def contains(outer: Geometry, inner: Geometry) -> bool:
     """Whether all of `inner`, its border too, lies in the interior of `outer`. A point contains nothing."""
     if outer.is_point or outer is inner:
         return False
-    return _contains_point(outer, *inner.ring[0]) if inner.is_point else _contains_polygon(outer, inner)
+    if inner.is_point:
+        return _relates(shapely.contains_xy, outer, inner)
+    return _contains_polygon(outer, inner)
 
 
-def _contains_point(outer: Geometry, north: int, east: int) -> bool:
+def covers(outer: Geometry, inner: Geometry) -> bool:
+    """Whether a polygon has a point in it or on its border."""
+    return _relates(shapely.intersects_xy, outer, inner)
+
+
+def _relates(relation: Callable[[shapely.Geometry, int, int], Any], outer: Geometry, inner: Geometry) -> bool:
     """Not remembered: what moves is at each place once."""
-    left, bottom, right, top = _bounds(outer)
-    if not bottom < north < top:  # most pairs are decided here, a hundred times faster
+    (north, east), (left, bottom, right, top) = inner.ring[0], _bounds(outer)
+    if not bottom <= north <= top:  # most pairs are decided here, a hundred times faster
         return False
     if east > right:
         east -= TURN
     elif east < left:
         east += TURN
-    return left < east < right and bool(shapely.contains_xy(planar(outer), east, north))
+    return left <= east <= right and bool(relation(planar(outer), east, north))
 
 
 @lru_cache(maxsize=MEMO)

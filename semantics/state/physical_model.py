@@ -1,6 +1,6 @@
 """The physical model P as a view over cells: placements, and σ_P = {contains, carries, connected}."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
@@ -178,14 +178,22 @@ class PhysicalModel:
         """
         if place == entity or self.carrier(place) is not None:
             return False
-        outer, inner = self.position(place), self.position(entity)
-        if outer is None or inner is None or not encloses(outer, inner):
-            return False
-        flight = self.transit(entity)
-        if flight is None:
-            return True
-        destination = None if flight.to == REGION else self.position(flight.to)
-        return place != flight.to and destination is not None and encloses(outer, destination)
+        at = self.position(place)
+        return at is not None and self._is_within(entity)(place, at)
+
+    def _is_within(self, entity: Name) -> Callable[[Name, Placed], bool]:
+        """Return whether an entity is contained by a place that stands somewhere."""
+        inner, flight = self.position(entity), self.transit(entity)
+        destination = None if flight is None or flight.to == REGION else self.position(flight.to)
+
+        def is_within(place: Name, at: Placed) -> bool:
+            if inner is None or not encloses(at, inner):
+                return False
+            return flight is None or (
+                place != flight.to and destination is not None and encloses(at, destination)
+            )
+
+        return is_within
 
     def carries(self, carrier: Name, entity: Name) -> bool:
         """Tell σ_P's `carries`."""
@@ -204,8 +212,11 @@ class PhysicalModel:
         by = self.carrier(entity)
         if by is not None:
             return by
-        holders = (holder.place for holder in self.holders(entity) if self.contains(holder.place, entity))
-        return next(holders, REGION)
+        holders = self.holders(entity)
+        if not holders:
+            return REGION
+        is_within = self._is_within(entity)
+        return next((place for _, place, at in holders if is_within(place, at)), REGION)
 
     def is_in(self, entity: Name, place: Name) -> bool:
         """Tell whether an entity's parent in A(P) is a place; only that is asked of where it stands."""

@@ -249,12 +249,12 @@ def _check_use(site: ControlSite, rule: Schema, hosts: tuple[str, ...], ground: 
         ground.names.findings.add(Code.KIND_MISMATCH, site.where, message, "write HOST without a kind")
     else:
         for move in rule.moves:
-            problems = [
+            problems = (
                 ground.obstacle(
                     _term(move.node, rule, given, host, ground), _term(move.place, rule, given, host, ground)
                 )
                 for host in able
-            ]
+            )
             _report(site.where, problems, ground)
 
 
@@ -265,8 +265,12 @@ def _report(
     code: Code = Code.UNREALISABLE,
 ) -> None:
     """Report the first problem if there is one whoever the host is."""
-    found = list(problems)
-    if found and (first := found[0]) is not None and all(found):
+    first = None
+    for problem in problems:  # where one host can do it, the others need not be tried
+        if problem is None:
+            return
+        first = first or problem
+    if first is not None:
         ground.names.findings.add(code, where, *first)
 
 

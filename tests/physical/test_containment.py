@@ -17,6 +17,7 @@ from physical import (
     overlaps,
     point,
 )
+from physical.shape import covers
 
 OCEAN = box((38, -10), (36, -7))
 SEARCH = box((37.04, -8.59), (36.94, -8.79))
@@ -59,6 +60,16 @@ def test_the_index_answers_like_brute_force(world):
     assert index.minimal(query) == tuple(
         sorted(n for n in held if not any(contains(places[n], places[m]) for m in held))
     )
+
+
+@settings(deadline=None)
+@given(st.sampled_from([0, 180]), corners, st.integers(1, 8), st.integers(1, 8), corners)
+def test_a_box_covers_what_lies_in_it_or_on_its_border(at, corner, high, wide, where):
+    (south, west), (north, east) = corner, where
+    place = box((south, wrapped(at + west)), (south + high, wrapped(at + west + wide)))
+    inner = point(north, wrapped(at + east))
+    assert covers(place, inner) == (0 <= north - south <= high and 0 <= east - west <= wide)
+    assert contains(place, inner) == (0 < north - south < high and 0 < east - west < wide)
 
 
 @settings(deadline=None)
