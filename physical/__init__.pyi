@@ -41,6 +41,7 @@ from .shape import equal as equal
 from .shape import overlaps as overlaps
 from .shape import point as point
 from .shape import polygon as polygon
+from .shape import share_interior as share_interior
 from .untrusted_text import is_text as is_text
 from .untrusted_text import is_word as is_word
 from .untrusted_text import legible as legible

@@ -380,10 +380,21 @@ def overlaps(a: Geometry, b: Geometry) -> bool:
     Sharing no more than a border is not overlapping. A polygon that touches the border of another from inside
     is not contained in it, hence overlaps it.
     """
-    if a.is_point or b.is_point or equal(a, b) or contains(a, b) or contains(b, a):
+    return share_interior(a, b) and not (equal(a, b) or contains(a, b) or contains(b, a))
+
+
+@lru_cache(maxsize=MEMO)
+def share_interior(a: Geometry, b: Geometry) -> bool:
+    """Whether two polygons share interior, more than a border; a point has none."""
+    if a.is_point or b.is_point:
         return False
-    fixed = planar(a)
-    return bool(shapely.relate_pattern(fixed, beside(fixed, planar(b)), "T********"))
+    (left, bottom, right, top), (west, south, east, north) = _bounds(a), _bounds(b)
+    turn = -TURN if west > right else TURN if east < left else 0
+    if north <= bottom or south >= top or east + turn <= left or west + turn >= right:
+        return False  # most pairs
+    return bool(
+        shapely.relate_pattern(planar(a), _shifted(planar(b), turn) if turn else planar(b), "T********")
+    )
 
 
 def equal(a: Geometry, b: Geometry) -> bool:

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from physical import Geometry, band_contains, centroid, nearest_placement, translate_to
@@ -103,7 +102,8 @@ def _reach(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carried
         return Carried(place, shape)
     if not setting.signature[setting.kind(place)].may_contain(setting.kind(node)):
         return None
-    spot = nearest_placement(shape.geometry, target.geometry, _holes(physical, node, place, shape))
+    holes = _holes(physical.before(node, place, target), shape)
+    spot = nearest_placement(shape.geometry, target.geometry, holes)
     return None if spot is None else Placed(spot, shape.altitude)
 
 
@@ -112,8 +112,6 @@ def _shape(physical: PhysicalModel, node: Name, origin: Placed) -> Placed:
     return placement.shape if isinstance(placement, Carried) else origin
 
 
-def _holes(physical: PhysicalModel, node: Name, place: Name, shape: Placed) -> tuple[Geometry, ...]:
+def _holes(before: tuple[Placed, ...], shape: Placed) -> tuple[Geometry, ...]:
     """Return what would swallow a node inside a place: the places that A(P) takes before it, at its altitude."""
-    before = takewhile(lambda holder: holder.place != place, physical.holders(node))
-    standing = (at for _, _, at in before if not at.geometry.is_point)
-    return tuple(sorted({at.geometry for at in standing if band_contains(at.altitude, shape.altitude)}))
+    return tuple(sorted({at.geometry for at in before if band_contains(at.altitude, shape.altitude)}))

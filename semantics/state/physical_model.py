@@ -3,9 +3,10 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import takewhile
 from typing import NamedTuple
 
-from physical import Band, Geometry, area, band_contains, contains, point
+from physical import Band, Geometry, area, band_contains, contains, point, share_interior
 from semantics.state.cells import NAMES, Cell, Cells, Changes, is_something
 from semantics.state.signature import REGION, Name, Sorting
 
@@ -95,11 +96,9 @@ def stands_within(placement: Placement | None, at: Placed) -> bool:
     return isinstance(placement, Placed) and encloses(at, placement)
 
 
-def stands_in(placement: Placement | None, place: Name, holders: tuple[Holder, ...]) -> bool:
-    """Ask whether a place is the smallest of the holders that contain what stands there; the region, if none does."""
-    if not isinstance(placement, Placed):
-        return False
-    return next((holder.place for holder in holders if encloses(holder.at, placement)), REGION) == place
+def stands_outside(placement: Placement | None, places: tuple[Placed, ...]) -> bool:
+    """Ask whether something stands by itself within none of some places."""
+    return isinstance(placement, Placed) and not any(encloses(at, placement) for at in places)
 
 
 class PhysicalModel:
@@ -176,9 +175,7 @@ class PhysicalModel:
         An entity in transit is contained only by what contains both ends of its flight, the destination itself
         excepted, so no agent sees it arrive early. A carried entity contains nothing: it has no area of its own.
         """
-        if place == entity or self.carrier(place) is not None:
-            return False
-        at = self.position(place)
+        at = None if place == entity else self._standing(place)
         return at is not None and self._is_within(entity)(place, at)
 
     def _is_within(self, entity: Name) -> Callable[[Name, Placed], bool]:
@@ -225,13 +222,21 @@ class PhysicalModel:
             return self.carries(place, entity)
         if not self.cells.test(where, is_placed):
             return entity in self and self.abstract_parent(entity) == place
-        if place != REGION and not self._encloses(place, entity):
+        at = None if place in (REGION, entity) else self._standing(place)
+        if place != REGION and (at is None or not self.cells.test(where, stands_within, at)):
             return False  # most places: the others that may contain it need not be looked at
-        return self.cells.test(where, stands_in, place, self.holders(entity))
+        return self.cells.test(where, stands_outside, self.before(entity, place, at))
 
-    def _encloses(self, place: Name, entity: Name) -> bool:
-        at = None if place == entity or self.carrier(place) is not None else self.position(place)
-        return at is not None and self.cells.test(placement_cell(entity), stands_within, at)
+    def _standing(self, place: Name) -> Placed | None:
+        """Return where a place stands that has room of its own: what is carried has none."""
+        return None if self.carrier(place) is not None else self.position(place)
+
+    def before(self, entity: Name, place: Name, at: Placed | None) -> tuple[Placed, ...]:
+        """Return where those stand that A(P) takes before a place that an entity is in, which stands there itself."""
+        smaller = (
+            each for _, _, each in takewhile(lambda holder: holder.place != place, self.holders(entity))
+        )
+        return tuple(each for each in smaller if at is None or share_interior(each.geometry, at.geometry))
 
     def holders(self, entity: Name) -> tuple[Holder, ...]:
         """Return what may contain an entity, in the order of A(P): the smallest first, of equal ones by name.
@@ -239,9 +244,8 @@ class PhysicalModel:
         What is carried has no room of its own.
         """
         places = self.sorting.containers(self.sorting.kind(entity))
-        standing = [place for place in places if place != entity and self.carrier(place) is None]
-        positions = [(place, self.position(place)) for place in standing]
-        found = (Holder(measure(at.geometry), place, at) for place, at in positions if at is not None)
+        standing = [(place, self._standing(place)) for place in places if place != entity]
+        found = (Holder(measure(at.geometry), place, at) for place, at in standing if at is not None)
         return tuple(sorted(found, key=lambda holder: holder[:2]))
 
     def children(self, place: Name) -> tuple[Name, ...]:

@@ -12,7 +12,7 @@ from checker.engines.cluster.shard import Shard, Standing
 from checker.engines.cluster.transfer import Parcel
 from checker.engines.contract import Inspect
 from checker.engines.fast import kernel as loops
-from checker.engines.fast.graph import general, pending_in_space
+from checker.engines.fast.graph import pending_in_space
 from checker.engines.fast.inspecting import inspect_fast, is_still, truths
 from checker.engines.fast.kernel import AT, GATHERED
 from checker.engines.fast.survey import Survey
@@ -188,7 +188,7 @@ class Worker:
         learner = self.shard.learner
         action_of = np.zeros(len(learner.leaves.rule), np.int32)
         for step, label in learner.steps.items():
-            action_of[step] = numbers.setdefault(general(label), len(numbers))
+            action_of[step] = numbers.setdefault(label, len(numbers))
         nothing = (np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int32), np.zeros(0, np.int64))
         rows, steps, owners, targets = (np.concatenate(each) for each in zip(nothing, *found, strict=True))
         return rows, action_of[steps], owners, targets, tuple(numbers)

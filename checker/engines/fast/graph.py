@@ -8,10 +8,9 @@ import numpy as np
 from checker.engines.fast.inspecting import is_still, truths
 from checker.engines.fast.survey import Survey
 from checker.engines.graph import Graph
-from semantics.behaviours.observations import Observation
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Label
-from semantics.state.requests import Received, Request
+from semantics.state.requests import Request
 from semantics.state.signature import Name
 
 
@@ -47,7 +46,7 @@ def graph_of_space(survey: Survey) -> Graph:
     numbers: dict[Label, int] = {}
     action_of = np.zeros(len(space.learner.leaves.rule), np.int32)
     for step, label in space.learner.steps.items():
-        action_of[step] = numbers.setdefault(general(label), len(numbers))
+        action_of[step] = numbers.setdefault(label, len(numbers))
     there = targets >= 0
     partial_rows = np.arange(size) >= survey.size
     partial_rows[origins[~there]] = True
@@ -66,12 +65,6 @@ def graph_of_space(survey: Survey) -> Graph:
 def _without_steps(origins: np.ndarray, size: int) -> np.ndarray:
     """Return the configurations without a transition: what is crowded isn't told apart from what is at its end."""
     return np.asarray(np.bincount(origins, minlength=size) == 0)
-
-
-def general(label: Label) -> Label:
-    """Return a label without what is received."""
-    about = Received(Observation.of()) if isinstance(label.about, Received) else label.about
-    return Label(label.rule, label.agent, about)
 
 
 def pending_in_space(survey: Survey) -> dict[Request, np.ndarray]:

@@ -6,20 +6,20 @@ tree for each mobile name, walked by itself: the answers of one observation do n
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Hashable, Iterable, Mapping
-from contextlib import suppress
-from dataclasses import dataclass, field
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
-from checker.engines.fast.columns import Columns, Packing, Writes
+from checker.engines.fast.columns import Columns, Packing, Place, Writes
 from checker.engines.fast.leaves import ALIKE, CROWDED, NO_TURN, STEP, UNLIKE, Effect, Leaves, Step
-from checker.engines.fast.likeness import Images, Learned, Likeness, Mentioned, Swap
-from checker.engines.fast.recording import Ask, Edited, Recorder, Scope, Source
+from checker.engines.fast.lessons import Exchange, Kin, Lesson, Lessons, NoImage, Outcome, Parts, mentioned
+from checker.engines.fast.likeness import Likeness
+from checker.engines.fast.recording import Ask, Asked, Edited, Recorder, Scope, Source
 from checker.engines.fast.skeletons import agents_of, mobile_names, settled
 from checker.engines.fast.trees import Trees
 from checker.engines.fast.writing import Concluded, Relearn, Varies, Writing
 from semantics.behaviours.expressions import Fault
-from semantics.behaviours.observations import Fact
+from semantics.behaviours.observations import Fact, Observation
 from semantics.environment import Clause
 from semantics.races.monitor import marked
 from semantics.state.agents import mailbox_cell
@@ -29,8 +29,6 @@ from semantics.state.requests import Received
 from semantics.state.setting import Setting
 from semantics.state.signature import Name
 from semantics.successors import remembered, served, turn_of
-
-Found = list[Transition | Fault]
 
 
 class Actor(NamedTuple):
@@ -43,8 +41,25 @@ class Actor(NamedTuple):
 Question = Callable[[Configuration], Hashable]
 """A pure function of a configuration: its tree tells rows apart by the answer."""
 
+NOTHING_RECEIVED = Received(Observation.of())
+
 PREDICTED = ("code", "store", "line")
 """What varies in every mission; that other cells do is found out when something is written there."""
+
+
+@dataclass(slots=True, eq=False)
+class Run:
+    """One run of an actor's rules; what was learned without it is run where a part of it is not known.
+
+    Attributes:
+        actor: Whose rules.
+        recorder: What they were recorded with; it may look at any configuration that comes to the same leaf.
+        concluded: Their transitions.
+    """
+
+    actor: Actor
+    recorder: Recorder | None = None
+    concluded: list[Concluded] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,20 +67,34 @@ class PartOf:
     """What the tree of a part is about.
 
     Attributes:
-        recorder: What the rules of the leaf were recorded with; it may look at any configuration that comes there.
-        concluded: The transition of the leaf.
+        run: The run of the rules.
+        step: Which of its transitions.
         name: About whom the part is.
-        model: The part about the first name that is like that; None where it is itself the first, or like nobody.
-        tree: The number of its tree.
-        taken: The cells that were taken to be never written wherever it was learned.
+        kin: What is known of those that are like it; None where nobody is.
     """
 
-    recorder: Recorder
-    concluded: Concluded
+    run: Run
+    step: int
     name: Name
-    model: "PartOf | None"
-    tree: int
-    taken: set[Cell] = field(default_factory=set)
+    kin: Kin | None
+
+
+class Learned(NamedTuple):
+    """What a run of rules says, or what is known of it without one.
+
+    Attributes:
+        asked: What was asked, with the answers.
+        codes: For each value that was read its code.
+        taken: The cells that were taken to be never written.
+        flags: Of the leaf.
+        outcomes: The transitions.
+    """
+
+    asked: Asked
+    codes: dict[Ask, int]
+    taken: Iterable[Cell]
+    flags: int
+    outcomes: Sequence[Outcome]
 
 
 @dataclass(slots=True)
@@ -112,6 +141,8 @@ class Learner:
         still: The initial configuration's cells: what never varies has its value there.
         pending: How many requests or messages an agent may have before it is not followed further.
         runs: How many times an actor's rules were run in Python.
+        relearned: How many times something was not what it had been taken for.
+        kin: What is known of those that are like an actor.
         owners: What each tree is about.
         taken: For each cell that was taken to be never written, the trees that did so.
         writers: For each cell the trees that write it.
@@ -128,7 +159,6 @@ class Learner:
     columns: Columns = field(init=False)
     writing: Writing = field(init=False)
     likeness: Likeness = field(init=False)
-    images: Images = field(init=False)
     trees: Trees = field(default_factory=Trees)
     leaves: Leaves = field(default_factory=Leaves)
     owners: list[Actor | PartOf | Edited | Question] = field(default_factory=list)
@@ -143,14 +173,15 @@ class Learner:
     whose: dict[int, Actor] = field(default_factory=dict)
     answers: dict[int, Hashable] = field(default_factory=dict)
     reads: dict[int, tuple[tuple[int, Ask, Any], ...]] = field(default_factory=dict)
+    kin: dict[Actor, Kin] = field(default_factory=dict)
     runs: int = 0
+    relearned: int = 0
 
     def __post_init__(self) -> None:
         mobile = mobile_names(self.setting, self.still)
         self.columns = Columns(mobile, agents_of(self.setting, self.still))
         self.writing = Writing(self.columns, self.still, self.varying)
-        self.likeness = Likeness(self.setting, self.still, self.columns.apart)
-        self.images = Images(self.columns, self.trees, self.leaves, self.still, self.varying)
+        self.likeness = Likeness(self.setting, self.still, mobile, self.columns.apart)
         for cell, value in self.still.items():
             self.columns.start(cell, value)
             if cell[0] in PREDICTED or (cell[0] in ("placement", "parent") and cell[-1] in mobile):
@@ -180,21 +211,29 @@ class Learner:
         owner = self.owners[tree]
         try:
             if isinstance(owner, PartOf):
-                self._learn_part(owner, source)
+                self._learn_part(tree, owner, source)
                 return True
-            self.runs += 1
-            if isinstance(owner, Edited):
-                self._learn_edit(tree, owner, source)
-                return True
-            recorder = Recorder(source, self.still, self.varying.__contains__, self.columns.mobile)
             if isinstance(owner, Actor):
-                self._learn_root(tree, owner, recorder, source)
+                self._learn_root(tree, owner, source)
+            elif isinstance(owner, Edited):
+                self._learn_edit(tree, owner, source)
             else:
-                self._learn_answer(tree, owner, recorder, source)
+                self._learn_answer(tree, owner, source)
         except Relearn as news:
-            self.forget_those(self.taken if isinstance(news, Varies) else self.writers, news.cell)
+            self._relearn(news)
             return False
         return True
+
+    def _relearn(self, news: Relearn) -> None:
+        """Forget what rests on what a cell was taken for, of all whose cells are alike."""
+        self.relearned += 1
+        for cell in dict.fromkeys((news.cell, *self.likeness.alike(news.cell))):
+            if isinstance(news, Varies):
+                self.varying.add(cell)
+                self.forget_those(self.taken, cell)
+            elif cell in self.varying:
+                self.columns.dig(cell, self.columns.holes[news.cell])
+                self.forget_those(self.writers, cell)
 
     def forget(self) -> None:
         """Forget everything."""
@@ -206,75 +245,181 @@ class Learner:
         for tree in trees.pop(cell, ()):
             self.trees.forget(tree)
 
-    def _learn_root(self, tree: int, actor: Actor, recorder: Recorder, source: CodedSource) -> None:
+    def _learn_root(self, tree: int, actor: Actor, source: CodedSource) -> None:
+        kin, run = self._kin(actor), Run(actor)
+        exchange = self.likeness.nobody if kin is None else kin.exchange
+        found = self._known(kin, source)
+        if found is None:
+            found = self._run(run, source, exchange)
+            self._teach(kin, found)
+        steps, parts = [], []
+        for number, outcome in enumerate(found.outcomes):
+            effect = self._effect(outcome)
+            trees = [self._plant(self._part(run, number, name, outcome, kin)) for name in outcome.apart]
+            effect.parts = [*trees, *map(self.tree, outcome.edits)]
+            self._note_writer(tree, effect.writes)
+            parts += trees
+            steps.append(effect)
+        leaf = self.leaves.add(self._steps(actor, found.outcomes, steps), found.flags)
+        self.whose |= dict.fromkeys(self.leaves.steps_of(leaf), actor)
+        self.reads[leaf] = tuple((self.columns.asked(ask), ask, said) for ask, said in found.asked.items())
+        self._grow(tree, found, leaf)
+        for part in parts:
+            self.learn(part, source)
+
+    def _run(self, run: Run, source: CodedSource, exchange: Exchange) -> Learned:
+        """Run an actor's rules on a configuration; which parts are alike is said under an exchange."""
+        self.runs += 1
+        actor, recorder = run.actor, self._recorder(source)
         c = Configuration(self.setting, recorder)
         found = [
             step if isinstance(step, Fault) else remembered(c, marked(c, step))
             for step in actor.rules(c, actor.about)
         ]
-        concluded = [self.writing.conclude(step) for step in found if isinstance(step, Transition)]
+        run.concluded = [self.writing.conclude(step) for step in found if isinstance(step, Transition)]
+        run.recorder, scope = recorder, recorder.scopes[0]
         is_full = actor.rules is served and is_crowded(c, str(actor.about), self.pending)
-        parts = [self._plant_parts(recorder, each) for each in concluded]
-        for each, trees in zip(concluded, parts, strict=True):
-            each.effect.parts = [*trees, *map(self.tree, each.edits)]
-        for each in concluded:
-            self._note_writer(tree, each.effect.writes)
-        leaf = self.leaves.add(self._steps(actor, concluded), CROWDED if is_full else 0)
-        self.whose |= dict.fromkeys(self.leaves.steps_of(leaf), actor)
-        self.reads[leaf] = tuple(
-            (self.columns.asked(ask), ask, said) for ask, said in recorder.scopes[0].asked.items()
+        outcomes = [self._outcome(each, scope, exchange) for each in run.concluded]
+        return self._found(scope, source, outcomes, CROWDED if is_full else 0)
+
+    def _recorder(self, source: CodedSource) -> Recorder:
+        return Recorder(source, self.still, self.varying.__contains__, self.columns.mobile)
+
+    def _outcome(self, each: Concluded, scope: Scope, exchange: Exchange) -> Outcome:
+        columns, models = self.columns.all, self.likeness.models(each.apart, scope)
+        return Outcome(
+            general(each.step.label),
+            each.step.shown,
+            _turn(each.step),
+            self._written(each.effect.writes),
+            tuple((columns[to].place, columns[of].place) for to, of in each.effect.copies),
+            tuple(each.edits),
+            each.apart,
+            Parts({exchange.name(name): exchange.name(model) for name, model in models.items()}),
         )
-        self._grow(tree, recorder.scopes[0], leaf, self._codes(recorder.scopes[0], source))
-        for part in (part for trees in parts for part in trees):
-            self.learn(part, source)
 
-    def _plant_parts(self, recorder: Recorder, concluded: Concluded) -> list[int]:
-        models = self.likeness.models(concluded.apart, recorder.scopes[0])
-        parts: dict[Name, PartOf] = {}
-        for name in concluded.apart:
-            model = parts[models[name]] if name in models else None
-            parts[name] = PartOf(recorder, concluded, name, model, len(self.owners))
-            self._plant(parts[name])
-        return [part.tree for part in parts.values()]
+    def _written(self, writes: Writes) -> tuple[tuple[Place, Any], ...]:
+        columns = self.columns.all
+        return tuple((columns[number].place, columns[number].values[code]) for number, code in writes)
 
-    def _learn_answer(self, tree: int, question: Question, recorder: Recorder, source: CodedSource) -> None:
+    def _effect(self, outcome: Outcome) -> Effect:
+        number = self.columns.number
+        writes = [
+            (number(place), self.columns.all[number(place)].code(held)) for place, held in outcome.writes
+        ]
+        return Effect(writes, [(number(to), number(of)) for to, of in outcome.copies])
+
+    def _part(self, run: Run, step: int, name: Name, outcome: Outcome, kin: Kin | None) -> PartOf:
+        assert outcome.parts is not None
+        if kin is None and not outcome.parts.has_like(name):
+            return PartOf(run, step, name, None)
+        exchange = self.likeness.nobody if kin is None else kin.exchange
+        return PartOf(run, step, name, outcome.parts.of(name, exchange))
+
+    def _learn_answer(self, tree: int, question: Question, source: CodedSource) -> None:
+        self.runs += 1
+        recorder = self._recorder(source)
         answer = settled(question(Configuration(self.setting, recorder)))
         leaf = self.leaves.add(())
         self.answers[leaf] = answer
-        self._grow(tree, recorder.scopes[0], leaf, self._codes(recorder.scopes[0], source))
+        self._grow(tree, self._found(recorder.scopes[0], source), leaf)
 
-    def _learn_part(self, part: PartOf, source: CodedSource) -> None:
-        """Let a part know what is known of its model under the same answers, else run it, and tell the model."""
-        model, known = part.model, None
-        try:
-            if model is not None:
-                known = self.images.known(model.tree, model.taken, Swap(model.name, part.name), source)
-        except Mentioned:
-            model = None
-        if known is not None:
-            self._know(part, known)
-            return
-        self.runs += 1
-        part.recorder.source = source  # it agrees on all that the rules themselves asked
-        writes, scope = part.recorder.apart(lambda: self.writing.part(part.concluded, part.name))
-        learned = Learned(scope, writes, self._codes(scope, source))
-        self._know(part, learned)
-        if model is not None:
-            with suppress(Mentioned):
-                self._know(model, self.images.of(learned, Swap(part.name, model.name)))
-
-    def _know(self, part: PartOf, learned: Learned) -> None:
-        part.taken.update(learned.scope.taken)
-        self._note_writer(part.tree, learned.writes)
-        leaf = self.leaves.add([Step(Effect(learned.writes))])
-        self._grow(part.tree, learned.scope, leaf, learned.codes)
+    def _learn_part(self, tree: int, part: PartOf, source: CodedSource) -> None:
+        found = self._known(part.kin, source)
+        if found is None:
+            run = part.run
+            if run.recorder is None:
+                self._run(run, source, self.likeness.nobody)
+            self.runs += 1
+            recorder, concluded = run.recorder, run.concluded[part.step]
+            assert recorder is not None
+            recorder.source = source  # it agrees on all that the rules themselves asked
+            writes, scope = recorder.apart(lambda: self.writing.part(concluded, part.name))
+            found = self._found(scope, source, [Outcome(writes=self._written(writes))])
+            self._teach(part.kin, found)
+        self._grow_one(tree, found, self._effect(found.outcomes[0]).writes)
 
     def _learn_edit(self, tree: int, edited: Edited, source: CodedSource) -> None:
+        self.runs += 1
         scope = Scope({Ask(edited.cell): source.skeleton(edited.cell)})
         writes = self.writing.edit(edited, source.skeleton(edited.cell))
-        self._note_writer(tree, writes)
-        leaf = self.leaves.add([Step(Effect(writes))])
-        self._grow(tree, scope, leaf, self._codes(scope, source))
+        self._grow_one(tree, self._found(scope, source), writes)
+
+    def _found(
+        self, scope: Scope, source: CodedSource, outcomes: Sequence[Outcome] = (), flags: int = 0
+    ) -> Learned:
+        codes = {ask: source.code(self.columns.asked(ask)) for ask in scope.asked if ask.question is None}
+        return Learned(scope.asked, codes, scope.taken, flags, outcomes)
+
+    # --- what is known of those that are alike ----------------------------------------------------------------------
+
+    def _kin(self, actor: Actor) -> Kin | None:
+        """Return what is known of the agents that are like an actor's; None where there are none."""
+        if actor not in self.kin and isinstance(actor.about, str) and actor.about in self.likeness.agents:
+            first, exchange = self.likeness.agents[actor.about]
+            of_first = self.kin.setdefault(Actor(actor.rules, first), Kin(Lessons(), self.likeness.nobody))
+            self.kin[actor] = Kin(of_first.lessons, exchange)
+        return self.kin.get(actor)
+
+    def _known(self, kin: Kin | None, source: CodedSource) -> Learned | None:
+        """Return what those that are alike found where their cells gave the same answers, under one's own names."""
+        if kin is None:
+            return None
+        exchange, back = kin.exchange, kin.exchange.inverse
+        asked, codes = dict[Ask, Any](), dict[Ask, int]()
+
+        def answer(ask: Ask) -> Any:
+            image = back.ask(ask)
+            if image.cell not in self.varying:
+                raise NoImage
+            number = self.columns.asked(image)
+            code = source.code(number)
+            said = self.columns.all[number].value(code)
+            if image.question is None:
+                codes[image] = code
+            else:
+                said = image.question(said, *image.constants)
+            asked[image] = said
+            return exchange.answer(image, said)
+
+        try:
+            kin.lessons.begin(self.relearned)
+            lesson = kin.lessons.find(answer)
+            own = None if lesson is None else lesson.image(back)
+            return None if own is None else Learned(asked, codes, self._still(own), own.flags, own.outcomes)
+        except NoImage:
+            return None
+
+    def _still(self, lesson: Lesson) -> Iterable[Cell]:
+        """Return what a lesson takes to be never written; raises NoImage where anything is not as it takes it to be."""
+        for cell, value in lesson.taken.items():
+            if cell in self.varying or self.still.read(cell) != value:
+                raise NoImage
+        for cell, depth in lesson.depths.items():
+            if cell not in self.varying or self.columns.holes.get(cell, 0) != depth:
+                raise NoImage
+        return lesson.taken
+
+    def _teach(self, kin: Kin | None, found: Learned) -> None:
+        """Let those that are alike know what one of them found, where it has an image."""
+        if kin is None:
+            return
+        try:
+            written = {place[0] for each in found.outcomes for place, _ in each.writes}
+            lesson = Lesson(
+                found.flags,
+                tuple(found.outcomes),
+                {cell: self.still.read(cell) for cell in found.taken},
+                {cell: self.columns.holes.get(cell, 0) for cell in written},
+                mentioned(found.asked, found.outcomes),
+            ).image(kin.exchange)
+            asked = {
+                kin.exchange.ask(ask): kin.exchange.answer(ask, said) for ask, said in found.asked.items()
+            }
+        except NoImage:
+            return
+        kin.lessons.begin(self.relearned)
+        kin.lessons.learn(asked, lesson)
 
     def _note_writer(self, tree: int, writes: Writes) -> None:
         cells = dict.fromkeys(self.columns.all[number].place[0] for number, _ in writes)
@@ -303,38 +448,34 @@ class Learner:
 
         return sorted(range(len(self.columns)), key=home)
 
-    def _grow(self, tree: int, scope: Scope, leaf: int, codes: Mapping[Ask, int]) -> None:
-        """Let a tree know that what was asked leads to a leaf, given the codes of the values that were read."""
-        for cell in scope.taken:
+    def _grow_one(self, tree: int, found: Learned, writes: Writes) -> None:
+        """Let a tree know that what was asked leads to some writes."""
+        self._note_writer(tree, writes)
+        self._grow(tree, found, self.leaves.add([Step(Effect(writes))]))
+
+    def _grow(self, tree: int, found: Learned, leaf: int) -> None:
+        """Let a tree know that what was asked leads to a leaf."""
+        for cell in found.taken:
             self.taken[cell].add(tree)
         path: list[tuple[Ask, Any]] = []
         columns = []
-        for ask, answer in scope.asked.items():
+        for ask, answer in found.asked.items():
             number = self.columns.asked(ask)
             columns.append((self.columns.all[number], number))
-            path.append((ask, codes[ask] if ask.question is None else answer))
+            path.append((ask, found.codes[ask] if ask.question is None else answer))
         self.trees.grow(tree, path, leaf, columns)
 
-    def _codes(self, scope: Scope, source: CodedSource) -> dict[Ask, int]:
-        return {ask: source.code(self.columns.asked(ask)) for ask in scope.asked if ask.question is None}
+    def _steps(self, actor: Actor, outcomes: Sequence[Outcome], effects: Sequence[Effect]) -> list[Step]:
+        keys = [(each.label, each.shown) for each in outcomes]
+        first, steps = len(self.leaves.rule), []
+        for number, (key, outcome, effect) in enumerate(zip(keys, outcomes, effects, strict=True), first):
+            assert outcome.label is not None
+            self.steps[number] = outcome.label
+            rule = self.rules.setdefault(outcome.label.rule, len(self.rules))
+            steps.append(Step(effect, rule, outcome.turn, self._alike(actor, key, keys, number)))
+        return steps
 
-    def _steps(self, actor: Actor, concluded: list[Concluded]) -> list[Step]:
-        keys = [_key(each.step) for each in concluded]
-        return [
-            Step(
-                each.effect,
-                self._rule(each.step),
-                _turn(each.step),
-                self._alike(actor, key, keys, number),
-            )
-            for number, (key, each) in enumerate(zip(keys, concluded, strict=True), len(self.leaves.rule))
-            if self.steps.setdefault(number, each.step.label)
-        ]
-
-    def _rule(self, step: Transition) -> int:
-        return self.rules.setdefault(step.label.rule, len(self.rules))
-
-    def _alike(self, actor: Actor, key: Hashable, beside: list[Hashable], number: int) -> int:
+    def _alike(self, actor: Actor, key: Hashable, beside: Sequence[Hashable], number: int) -> int:
         """Number a label that two transitions of one configuration may have: of one leaf, or of two clauses."""
         known = self.labels.setdefault(key, Known(len(self.labels), actor))
         if known.first != actor:  # whatever has it already must be compared, too
@@ -349,10 +490,9 @@ def _turn(step: Transition) -> int:
     return NO_TURN if turn is None else turn
 
 
-def _key(step: Transition) -> Hashable:
-    """Return what tells two labels of a configuration apart; receiving equal observations ends alike."""
-    label = step.label
-    return (label.rule, label.agent, None if isinstance(label.about, Received) else label.about, step.shown)
+def general(label: Label) -> Label:
+    """Return a label without what is received: receiving equal observations ends alike."""
+    return replace(label, about=NOTHING_RECEIVED) if isinstance(label.about, Received) else label
 
 
 def is_crowded(c: Configuration, a: Name, most: int) -> bool:
