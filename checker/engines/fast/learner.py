@@ -398,7 +398,7 @@ class Learner:
         for cell, depth in lesson.depths.items():
             if cell not in self.varying or self.columns.holes.get(cell, 0) != depth:
                 raise NoImage
-        return lesson.taken
+        return (*lesson.still, *lesson.taken)
 
     def _teach(self, kin: Kin | None, found: Learned) -> None:
         """Let those that are alike know what one of them found, where it has an image."""
@@ -406,10 +406,12 @@ class Learner:
             return
         try:
             written = {place[0] for each in found.outcomes for place, _ in each.writes}
+            about = {cell for cell in found.taken if self.likeness.mentions_any(cell)}
             lesson = Lesson(
                 found.flags,
                 tuple(found.outcomes),
-                {cell: self.still.read(cell) for cell in found.taken},
+                frozenset(found.taken).difference(about),
+                {cell: self.still.read(cell) for cell in about},
                 {cell: self.columns.holes.get(cell, 0) for cell in written},
                 mentioned(found.asked, found.outcomes),
             ).image(kin.exchange)

@@ -64,17 +64,18 @@ class Exchange:
         return Exchange(self.mobile, self.unordered, renaming)
 
     @cached_property
-    def _moved(self) -> frozenset[Any]:
+    def moved(self) -> frozenset[Any]:
+        """The names, statements, variables and cells that are exchanged."""
         return frozenset(each for part in self.renaming.parts for each in part)
 
     def cell(self, cell: Cell) -> Cell:
         """Return the image of a cell."""
-        return self.renaming.cell(cell)
+        return cell if self.moved.isdisjoint((cell, *cell)) else self.renaming.cell(cell)
 
     def name(self, name: Name) -> Name:
         """Return the image of whom a hole is about; an agent stands under another name there."""
         bare = name.removeprefix(AGENT)
-        return self.renaming.name(name) if bare == name else AGENT + self.renaming.name(bare)
+        return name if bare not in self.moved else name.removesuffix(bare) + self.renaming.name(bare)
 
     def place(self, place: Place) -> Place:
         """Return the image of what a column is of."""
@@ -93,16 +94,16 @@ class Exchange:
 
     def constant(self, value: Any) -> Any:
         """Return the image of a value that no cell holds."""
-        if isinstance(value, bool) or names_in(value).isdisjoint(self._moved):
+        if isinstance(value, bool) or names_in(value).isdisjoint(self.moved):
             return value
         return self._renamed(lambda: self.renaming.value(value))
 
     def value(self, cell: Cell, skeleton: Any) -> Any:
         """Return the image of a cell's value, or of its skeleton."""
-        is_plain = cell[0] not in ("code", "store")  # those have statements and variables in them
-        if skeleton is None or skeleton is ABSENT or not self._moved:
+        if skeleton is None or skeleton is ABSENT or not self.moved:
             return skeleton
-        if is_plain and names_in(skeleton).isdisjoint(self._moved):
+        has_names_only = cell[0] not in ("code", "store")  # no statements or variables
+        if has_names_only and names_in(skeleton).isdisjoint(self.moved):
             return skeleton
         is_sorted = not {"sends", "mailbox", *(["line"] if self.unordered else ())}.isdisjoint(cell)
         if is_sorted and len(skeleton) > 1:
@@ -211,13 +212,15 @@ class Lesson:
     Attributes:
         flags: Of the leaf.
         outcomes: The transitions.
-        taken: The cells that were taken to be never written, with what they hold.
+        still: The cells that were taken to be never written and mention nobody who may be exchanged.
+        taken: The others, with what they hold.
         depths: How many observations each cell that is written has columns for.
         names: The names that questions and values mention.
     """
 
     flags: int
     outcomes: tuple[Outcome, ...]
+    still: frozenset[Cell]
     taken: Mapping[Cell, Any]
     depths: Mapping[Cell, int]
     names: frozenset[Name]
@@ -229,6 +232,7 @@ class Lesson:
         return Lesson(
             self.flags,
             tuple(each.image(under) for each in self.outcomes),
+            self.still,
             {under.cell(cell): under.value(cell, value) for cell, value in self.taken.items()},
             {under.cell(cell): depth for cell, depth in self.depths.items()},
             frozenset(map(under.name, self.names)),

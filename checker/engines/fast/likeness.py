@@ -33,6 +33,7 @@ class Likeness:
     mobile: frozenset[Name]
     apart: frozenset[Name]
     firsts: dict[Name, Name] = field(default_factory=dict)
+    mentioning: dict[Cell, bool] = field(default_factory=dict)
     held: dict[Cell, tuple[tuple[Name, Hashable], ...]] = field(default_factory=dict)
 
     @cached_property
@@ -63,6 +64,18 @@ class Likeness:
             return {}
         many = Counter(first for first, _ in self._firsts.values())
         return {agent: found for agent, found in self._firsts.items() if many[found[0]] > 1}
+
+    @cached_property
+    def _movable(self) -> frozenset[Any]:
+        """Who may be exchanged."""
+        return self.apart.union(*(exchange.moved for _, exchange in self.agents.values()))
+
+    def mentions_any(self, cell: Cell) -> bool:
+        """Tell whether a cell that is never written, or what it holds, mentions who may be exchanged."""
+        if cell not in self.mentioning:
+            names = names_in(self.still.read(cell)).union(cell[1:])
+            self.mentioning[cell] = cell in self._movable or not names.isdisjoint(self._movable)
+        return self.mentioning[cell]
 
     def alike(self, cell: Cell) -> Iterator[Cell]:
         """Yield the cells that are to agents, or to their hosts, what a cell is to one that is like them."""
