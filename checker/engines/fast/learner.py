@@ -12,9 +12,10 @@ from typing import Any, NamedTuple
 
 from checker.engines.fast.columns import Columns, Packing, Place, Writes
 from checker.engines.fast.leaves import ALIKE, CROWDED, NO_TURN, STEP, UNLIKE, Effect, Leaves, Step
-from checker.engines.fast.lessons import Exchange, Kin, Lesson, Lessons, NoImage, Outcome, Parts, mentioned
+from checker.engines.fast.lessons import Exchange, Kin, Outcome, Parts
 from checker.engines.fast.likeness import Likeness
-from checker.engines.fast.recording import Ask, Asked, Edited, Recorder, Scope, Source
+from checker.engines.fast.recording import Ask, Edited, Recorder, Scope, Source
+from checker.engines.fast.sharing import Learned, Sharing
 from checker.engines.fast.skeletons import agents_of, mobile_names, settled
 from checker.engines.fast.trees import Trees
 from checker.engines.fast.writing import Concluded, Relearn, Varies, Writing
@@ -79,24 +80,6 @@ class PartOf:
     kin: Kin | None
 
 
-class Learned(NamedTuple):
-    """What a run of rules says, or what is known of it without one.
-
-    Attributes:
-        asked: What was asked, with the answers.
-        codes: For each value that was read its code.
-        taken: The cells that were taken to be never written.
-        flags: Of the leaf.
-        outcomes: The transitions.
-    """
-
-    asked: Asked
-    codes: dict[Ask, int]
-    taken: Iterable[Cell]
-    flags: int
-    outcomes: Sequence[Outcome]
-
-
 @dataclass(slots=True)
 class Known:
     """A label that was met: its number, the actor that had it first, and the transitions that have it."""
@@ -141,8 +124,6 @@ class Learner:
         still: The initial configuration's cells: what never varies has its value there.
         pending: How many requests or messages an agent may have before it is not followed further.
         runs: How many times an actor's rules were run in Python.
-        relearned: How many times something was not what it had been taken for.
-        kin: What is known of those that are like an actor.
         owners: What each tree is about.
         taken: For each cell that was taken to be never written, the trees that did so.
         writers: For each cell the trees that write it.
@@ -159,6 +140,7 @@ class Learner:
     columns: Columns = field(init=False)
     writing: Writing = field(init=False)
     likeness: Likeness = field(init=False)
+    sharing: Sharing = field(init=False)
     trees: Trees = field(default_factory=Trees)
     leaves: Leaves = field(default_factory=Leaves)
     owners: list[Actor | PartOf | Edited | Question] = field(default_factory=list)
@@ -173,15 +155,14 @@ class Learner:
     whose: dict[int, Actor] = field(default_factory=dict)
     answers: dict[int, Hashable] = field(default_factory=dict)
     reads: dict[int, tuple[tuple[int, Ask, Any], ...]] = field(default_factory=dict)
-    kin: dict[Actor, Kin] = field(default_factory=dict)
     runs: int = 0
-    relearned: int = 0
 
     def __post_init__(self) -> None:
         mobile = mobile_names(self.setting, self.still)
         self.columns = Columns(mobile, agents_of(self.setting, self.still))
         self.writing = Writing(self.columns, self.still, self.varying)
         self.likeness = Likeness(self.setting, self.still, mobile, self.columns.apart)
+        self.sharing = Sharing(self.likeness, self.columns, self.varying, self.still)
         for cell, value in self.still.items():
             self.columns.start(cell, value)
             if cell[0] in PREDICTED or (cell[0] in ("placement", "parent") and cell[-1] in mobile):
@@ -226,7 +207,7 @@ class Learner:
 
     def _relearn(self, news: Relearn) -> None:
         """Forget what rests on what a cell was taken for, of all whose cells are alike."""
-        self.relearned += 1
+        self.sharing.forgotten += 1
         for cell in dict.fromkeys((news.cell, *self.likeness.alike(news.cell))):
             if isinstance(news, Varies):
                 self.varying.add(cell)
@@ -246,12 +227,12 @@ class Learner:
             self.trees.forget(tree)
 
     def _learn_root(self, tree: int, actor: Actor, source: CodedSource) -> None:
-        kin, run = self._kin(actor), Run(actor)
+        kin, run = self.sharing.kin_of(actor.rules, actor.about), Run(actor)
         exchange = self.likeness.nobody if kin is None else kin.exchange
-        found = self._known(kin, source)
+        found = self.sharing.known(kin, source)
         if found is None:
             found = self._run(run, source, exchange)
-            self._teach(kin, found)
+            self.sharing.teach(kin, found)
         steps, parts = [], []
         for number, outcome in enumerate(found.outcomes):
             effect = self._effect(outcome)
@@ -325,7 +306,7 @@ class Learner:
         self._grow(tree, self._found(recorder.scopes[0], source), leaf)
 
     def _learn_part(self, tree: int, part: PartOf, source: CodedSource) -> None:
-        found = self._known(part.kin, source)
+        found = self.sharing.known(part.kin, source)
         if found is None:
             run = part.run
             if run.recorder is None:
@@ -336,7 +317,7 @@ class Learner:
             recorder.source = source  # it agrees on all that the rules themselves asked
             writes, scope = recorder.apart(lambda: self.writing.part(concluded, part.name))
             found = self._found(scope, source, [Outcome(writes=self._written(writes))])
-            self._teach(part.kin, found)
+            self.sharing.teach(part.kin, found)
         self._grow_one(tree, found, self._effect(found.outcomes[0]).writes)
 
     def _learn_edit(self, tree: int, edited: Edited, source: CodedSource) -> None:
@@ -350,78 +331,6 @@ class Learner:
     ) -> Learned:
         codes = {ask: source.code(self.columns.asked(ask)) for ask in scope.asked if ask.question is None}
         return Learned(scope.asked, codes, scope.taken, flags, outcomes)
-
-    # --- what is known of those that are alike ----------------------------------------------------------------------
-
-    def _kin(self, actor: Actor) -> Kin | None:
-        """Return what is known of the agents that are like an actor's; None where there are none."""
-        if actor not in self.kin and isinstance(actor.about, str) and actor.about in self.likeness.agents:
-            first, exchange = self.likeness.agents[actor.about]
-            of_first = self.kin.setdefault(Actor(actor.rules, first), Kin(Lessons(), self.likeness.nobody))
-            self.kin[actor] = Kin(of_first.lessons, exchange)
-        return self.kin.get(actor)
-
-    def _known(self, kin: Kin | None, source: CodedSource) -> Learned | None:
-        """Return what those that are alike found where their cells gave the same answers, under one's own names."""
-        if kin is None:
-            return None
-        exchange, back = kin.exchange, kin.exchange.inverse
-        asked, codes = dict[Ask, Any](), dict[Ask, int]()
-
-        def answer(ask: Ask) -> Any:
-            image = back.ask(ask)
-            if image.cell not in self.varying:
-                raise NoImage
-            number = self.columns.asked(image)
-            code = source.code(number)
-            said = self.columns.all[number].value(code)
-            if image.question is None:
-                codes[image] = code
-            else:
-                said = image.question(said, *image.constants)
-            asked[image] = said
-            return exchange.answer(image, said)
-
-        try:
-            kin.lessons.begin(self.relearned)
-            lesson = kin.lessons.find(answer)
-            own = None if lesson is None else lesson.image(back)
-            return None if own is None else Learned(asked, codes, self._still(own), own.flags, own.outcomes)
-        except NoImage:
-            return None
-
-    def _still(self, lesson: Lesson) -> Iterable[Cell]:
-        """Return what a lesson takes to be never written; raises NoImage where anything is not as it takes it to be."""
-        for cell, value in lesson.taken.items():
-            if cell in self.varying or self.still.read(cell) != value:
-                raise NoImage
-        for cell, depth in lesson.depths.items():
-            if cell not in self.varying or self.columns.holes.get(cell, 0) != depth:
-                raise NoImage
-        return (*lesson.still, *lesson.taken)
-
-    def _teach(self, kin: Kin | None, found: Learned) -> None:
-        """Let those that are alike know what one of them found, where it has an image."""
-        if kin is None:
-            return
-        try:
-            written = {place[0] for each in found.outcomes for place, _ in each.writes}
-            about = {cell for cell in found.taken if self.likeness.mentions_any(cell)}
-            lesson = Lesson(
-                found.flags,
-                tuple(found.outcomes),
-                frozenset(found.taken).difference(about),
-                {cell: self.still.read(cell) for cell in about},
-                {cell: self.columns.holes.get(cell, 0) for cell in written},
-                mentioned(found.asked, found.outcomes),
-            ).image(kin.exchange)
-            asked = {
-                kin.exchange.ask(ask): kin.exchange.answer(ask, said) for ask, said in found.asked.items()
-            }
-        except NoImage:
-            return
-        kin.lessons.begin(self.relearned)
-        kin.lessons.learn(asked, lesson)
 
     def _note_writer(self, tree: int, writes: Writes) -> None:
         cells = dict.fromkeys(self.columns.all[number].place[0] for number, _ in writes)
