@@ -4,7 +4,7 @@ from math import comb
 
 import pytest
 from checked_missions import load, verdict_of
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from scale import examples
 
@@ -120,6 +120,7 @@ def checked(text, **more):
     st.sampled_from([1, 2, 2, 3]),
     st.sampled_from(["atomic", "timed"]),
 )
+@example(steps=[(("a0",), "control(MOVE_HOST_TO {stop})")], number=2, control="atomic")  # what varies of one
 @examples(25)
 def test_a_family_on_its_routes_is_what_is_written_out_by_hand(steps, number, control):
     family, hand = as_family(steps, number, control), by_hand(steps, number, control)
