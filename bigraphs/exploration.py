@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Final, NamedTuple
 
 from bigraphs.engine.machine import Machine
 from bigraphs.reached import Reached
-from bigraphs.slices import slice_of, take_over
+from bigraphs.slices import Copy, slices_of
 from bigraphs.system import System
 from bigraphs.transitions import TransitionSystem
 from bigraphs.workers import Workers
@@ -63,7 +64,9 @@ class _Search:
         self.end = None if max_time is None else self.begun + max_time
         self.max_states, self.max_time, self.watch = max_states, max_time, watch
         self.machine = Machine(system, self.check_time)
-        self.workers = Workers(threads, self.ahead)
+        self.reached = Reached(self.machine, max_states)
+        work = partial(slices_of, self.reached)
+        self.workers = Workers(threads, work, partial(Copy, self.reached))
 
     def check_time(self) -> None:
         if self.end is not None and time.monotonic() > self.end:
@@ -72,7 +75,6 @@ class _Search:
     def run(self) -> TransitionSystem:
         """Explore; return what was found, and why it ended early, if it did."""
         reason = ""
-        self.reached = Reached(self.machine, self.max_states)
         try:
             self.reached.begin()
             while self.reached.waiting:
@@ -94,12 +96,9 @@ class _Search:
         self.workers.share(state, len(waiting))
         found = self.workers.found(state, self.look)
         if found is not None:
-            return take_over(self.reached, found)
+            copy, answer = found
+            return copy.take_over(answer)
         return self.reached.expand(waiting.popleft(), state)
-
-    def ahead(self, skipped: int, count: int) -> bytes:
-        """Expand states that wait after others, in a worker."""
-        return slice_of(self.reached, skipped, count)
 
     def look(self) -> None:
         """Tell now and then how far it has come."""

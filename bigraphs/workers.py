@@ -1,18 +1,19 @@
 """Processes that do a part of what waits, ahead of the one that asks; what they find is taken in order.
 
-A worker is a fork, so that it knows all that is known and nothing has to be sent to it. It does one slice, answers, and
-ends. A slice whose worker has failed, whatever the reason, is given back: who asks does it again, and meets an error
-where it would have met it alone.
+A worker is a fork, so that it knows all that is known and nothing has to be sent to it. It does every n-th piece of what
+waits, answers piece by piece, and ends. What a worker that failed has not answered, whatever the reason, is left to
+the one that asks, who meets an error where it would have met it alone.
 """
 
 from __future__ import annotations
 
+import gc
 import os
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Generic, TypeAlias, TypeVar
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -20,104 +21,145 @@ if TYPE_CHECKING:
 
 BEGIN: Final = 0.5
 """After how many seconds help is asked for: small systems are done by then."""
-LEAST: Final = 0.02
-"""For less seconds of work no worker is started."""
-MOST: Final = 0.5
-"""How many seconds of work a worker is given."""
+LEAST: Final = 0.08
+"""For less seconds of work no worker is started: to copy the memory that both write takes some 0.03 of each."""
+PIECE: Final = 0.1
+"""How many seconds of work a piece is, at most."""
+PIECES: Final = 8
+"""How many pieces a worker is given, or up to twice as many: parts that lie together take equally long, others do not."""
 LOOK_EVERY: Final = 0.1
 """Seconds between two looks around while a worker is waited for."""
 
+Piece: TypeAlias = tuple[int, int]
+"""How many parts that wait are skipped after the piece before, and how many are in it."""
 
-@dataclass(frozen=True, slots=True)
-class _Slice:
-    """What a worker does: so many parts from a first one on."""
+Work: TypeAlias = Callable[[Sequence[Piece]], Iterator[bytes]]
+"""What a worker does: yields an answer for each piece."""
 
-    first: int
-    count: int
+
+Memory = TypeVar("Memory")
+
+
+@dataclass(eq=False, slots=True)
+class _Worker(Generic[Memory]):
+    """A process that is at work, and what its answers are understood by."""
+
     process: ForkProcess
-    answer: Connection
+    answers: Connection
+    memory: Memory
+
+    def end(self) -> None:
+        """End it, whatever it does."""
+        self.process.kill()
+        self.process.join()
+        self.process.close()
+        self.answers.close()
 
 
-class Workers:
+class Workers(Generic[Memory]):
     """Those who help with parts that are numbered from 0, each of which takes about as long as those before it."""
 
-    def __init__(self, processes: int, work: Callable[[int, int], bytes]) -> None:
-        """Take what a worker does: how many of the parts that wait it skips, and how many it does."""
-        self._helpers = processes - 1 if hasattr(os, "fork") else 0
-        self._work = work
-        self._slices: deque[_Slice] = deque()
+    def __init__(self, processes: int, work: Work, remember: Callable[[], Memory]) -> None:
+        """Take what is to be remembered of the moment at which a worker was started: it comes with its answers."""
+        self._processes = max(processes, 1) if hasattr(os, "fork") else 1
+        self._work, self._remember = work, remember
+        self._given: deque[tuple[int, _Worker[Memory]]] = deque()  # the first part of each piece, and who does it
         self._since, self._from = time.monotonic(), 0
-        self._pace = 0.0
+        self._at_once, self._frozen = 1, False
+        self._pace = 0.0  # seconds that one process takes for a part, lately
 
     def share(self, first: int, waiting: int) -> None:
-        """Start workers on some of the parts that wait, from `first` on, if all those before them are done."""
-        if not self._helpers or self._slices or first == self._from:
+        """Give workers some of the parts that wait, from `first` on, once what was given is done and if it is worth it."""
+        if self._processes == 1 or self._given:
             return
-        if self._pace == 0.0:
-            seconds = time.monotonic() - self._since
-            if seconds < BEGIN:
-                return
-            self._pace = seconds / (first - self._from)
-        count = min(waiting // (self._helpers + 1), max(1, int(MOST / self._pace)))
-        if count * self._pace < LEAST:
-            return
-        self._since, self._from = time.monotonic(), first
-        for helper in range(1, self._helpers + 1):
-            self._start(helper * count, first + helper * count, count)
+        if self._at_once > 1 or time.monotonic() - self._since >= BEGIN:
+            self._measure(first, 1)
+        if self._pace:
+            turns, count = self._pieces(waiting)
+            if turns * count * self._pace >= LEAST:
+                self._start(first, turns, count)
 
-    def _start(self, skipped: int, first: int, count: int) -> None:
-        """Start a worker, to which Ctrl-C says nothing; without room for one more, do without."""
+    def _pieces(self, waiting: int) -> tuple[int, int]:
+        """Return how many pieces each process is to do, and how many parts a piece has."""
+        parts = waiting // self._processes
+        count = max(1, min(parts // PIECES, int(PIECE / self._pace)))
+        return min(parts // count, 2 * PIECES), count
+
+    def _measure(self, first: int, at_once: int) -> None:
+        """Note how long a part has taken since it was last noted, and how many processes do the next ones."""
+        now = time.monotonic()
+        if first > self._from:
+            self._pace = self._at_once * (now - self._since) / (first - self._from)
+        self._since, self._from, self._at_once = now, first, at_once
+
+    def _start(self, first: int, turns: int, count: int) -> None:
+        """Start workers; this process does the first piece of each turn."""
+        self._frozen = True
+        gc.freeze()  # a collection would copy all memory that the processes share
+        between = (self._processes - 1) * count
+        helpers: list[_Worker[Memory]] = []
+        try:
+            for place in range(1, self._processes):
+                pieces = [(place * count, count), *[(between, count)] * (turns - 1)]
+                helpers.append(self._started(pieces))
+        except OSError:  # there is no room for one more
+            self._processes = 1 + len(helpers)
+        for turn in range(turns):
+            begin = first + turn * (between + count)
+            self._given += [(begin + place * count, helper) for place, helper in enumerate(helpers, 1)]
+        self._measure(first, 1 + len(helpers))
+
+    def _started(self, pieces: Sequence[Piece]) -> _Worker[Memory]:
+        """Return a worker, to which Ctrl-C says nothing."""
         from multiprocessing import get_context  # noqa: PLC0415 - small systems need no help
         from signal import SIG_BLOCK, SIG_SETMASK, SIGINT, pthread_sigmask  # noqa: PLC0415
 
         context = get_context("fork")
-        answer, send = context.Pipe(duplex=False)
-        process = context.Process(target=_run, args=(self._work, send, skipped, count), daemon=True)
+        answers, send = context.Pipe(duplex=False)
+        process = context.Process(target=_run, args=(self._work, send, pieces), daemon=True)
         mask = pthread_sigmask(SIG_BLOCK, {SIGINT})
         try:
             process.start()
-        except OSError:
-            self._helpers = 0
-        else:
-            self._slices.append(_Slice(first, count, process, answer))
         finally:
             pthread_sigmask(SIG_SETMASK, mask)
             send.close()
+        return _Worker(process, answers, self._remember())
 
-    def found(self, first: int, look: Callable[[], None]) -> bytes | None:
-        """Wait for what a worker has found from a part on; None if no worker has done it. Look around meanwhile."""
-        if not self._slices or self._slices[0].first != first:
+    def found(self, first: int, look: Callable[[], None]) -> tuple[Memory, bytes] | None:
+        """Wait for what a worker has found from a part on; None if no worker does it. Look around meanwhile."""
+        if not self._given or self._given[0][0] != first:
             return None
-        if first == self._from + self._slices[0].count:  # the end of what was left to this process
-            self._pace = (time.monotonic() - self._since) / self._slices[0].count
-        given = self._slices[0]
+        worker = self._given[0][1]
         try:
-            while not given.answer.poll(LOOK_EVERY):
+            while not worker.answers.poll(LOOK_EVERY):
                 look()
-            return given.answer.recv_bytes()
+            answer = worker.answers.recv_bytes()
         except (EOFError, OSError):
+            self._leave(worker)
             return None
-        finally:
-            self._end(self._slices.popleft())
+        self._given.popleft()
+        if all(other is not worker for _, other in self._given):
+            worker.end()
+        return worker.memory, answer
+
+    def _leave(self, worker: _Worker[Memory]) -> None:
+        """Take back what a worker has not done."""
+        worker.end()
+        self._given = deque((first, other) for first, other in self._given if other is not worker)
 
     def close(self) -> None:
         """End the workers that are at work."""
-        while self._slices:
-            self._end(self._slices.popleft())
-
-    def _end(self, given: _Slice) -> None:
-        given.process.kill()
-        given.process.join()
-        given.process.close()
-        given.answer.close()
+        while self._given:
+            self._leave(self._given[0][1])
+        if self._frozen:
+            gc.unfreeze()
 
 
-def _run(work: Callable[[int, int], bytes], send: Connection, *given: int) -> None:
-    """Do a slice in a worker, without collecting garbage: that would copy all memory that the processes share."""
-    import gc  # noqa: PLC0415 - only workers need it
-
+def _run(work: Work, send: Connection, pieces: Sequence[Piece]) -> None:
+    """Answer for each piece, in a worker."""
     gc.disable()
     try:
-        send.send_bytes(work(*given))
+        for answer in work(pieces):
+            send.send_bytes(answer)
     except Exception:  # noqa: BLE001 - who asks meets it in turn
         raise SystemExit(1) from None

@@ -103,12 +103,10 @@ class World:
             self.bare.append(alone and all(self.bare[kid] for kid in row[2]))
         return found
 
-    def adopt(self, first: int, rows: Iterable[Row]) -> Codes:
-        """Take over the rows that a copy of this world has numbered from `first` on."""
-        codes = Codes(first, [])
+    def adopt(self, codes: Codes, rows: Iterable[Row]) -> None:
+        """Take over the next rows that a copy of this world has numbered."""
         for label, ports, kids, itself in rows:
             codes.here.append(self.code((label, ports, tuple(sorted(codes.translated(kids))), itself)))
-        return codes
 
 
 def has_edges(bigraph: Bigraph) -> bool:
