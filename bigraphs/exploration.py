@@ -91,7 +91,7 @@ class _Search:
         return self.reached.result(time.monotonic() - self.begun, reason)
 
     def go_on(self) -> bool:
-        """Add the transitions of the next state, or of a slice that a worker has expanded; say whether there was room."""
+        """Add the transitions of the next state, or those that a worker has found; say whether there was room."""
         state, waiting = self.reached.expanded, self.reached.waiting
         self.workers.share(state, len(waiting))
         found = self.workers.found(state, self.look)
@@ -106,7 +106,5 @@ class _Search:
         now = time.monotonic()
         if now >= self.next_look:
             reached = self.reached
-            self.watch(
-                Progress(len(reached), len(reached.targets), len(reached.waiting), now - self.begun)
-            )
+            self.watch(Progress(len(reached), len(reached.targets), len(reached.waiting), now - self.begun))
             self.next_look = time.monotonic() + LOOK_EVERY

@@ -1,4 +1,4 @@
-"""What an exploration has reached: states, numbered as they were found, the transitions between them, and what waits."""
+"""What an exploration has reached: states, numbered as they were found, transitions between them, and what waits."""
 
 from __future__ import annotations
 

@@ -119,12 +119,10 @@ class Copy:
     def _number(self, found: Slice) -> None:
         """Number the states that the copy took for new, as far as there is room for those that are."""
         reached, machine = self.reached, self.reached.machine
-        for place, (key, raw) in enumerate(zip(found.keys, found.raw, strict=True)):
+        for place, raw in enumerate(found.raw):
             known = _recoded(machine.world, raw, self.codes) if self.codes.here else raw
-            if machine.world.plain:
-                key = known
-            elif place in found.doubtful:
-                key = machine.labelling.canonical_of(known)
+            doubtful = machine.world.plain or place in found.doubtful
+            key = machine.labelling.canonical_of(known) if doubtful else found.keys[place]
             number = reached.visited.find(key)
             if number < 0:
                 if reached.full():

@@ -1,6 +1,6 @@
 """Processes that do a part of what waits, ahead of the one that asks; what they find is taken in order.
 
-A worker is a fork, so that it knows all that is known and nothing has to be sent to it. It does every n-th piece of what
+A worker is a fork: it knows all that is known, and nothing has to be sent to it. It does every n-th piece of what
 waits, answers piece by piece, and ends. What a worker that failed has not answered, whatever the reason, is left to
 the one that asks, who meets an error where it would have met it alone.
 """
@@ -26,7 +26,7 @@ LEAST: Final = 0.08
 PIECE: Final = 0.1
 """How many seconds of work a piece is, at most."""
 PIECES: Final = 8
-"""How many pieces a worker is given, or up to twice as many: parts that lie together take equally long, others do not."""
+"""How many pieces a worker is given, or up to twice as many: neighbours take equally long, others do not."""
 LOOK_EVERY: Final = 0.1
 """Seconds between two looks around while a worker is waited for."""
 
@@ -38,6 +38,11 @@ Work: TypeAlias = Callable[[Sequence[Piece]], Iterator[bytes]]
 
 
 Memory = TypeVar("Memory")
+
+
+def cores() -> int:
+    """Return how many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @dataclass(eq=False, slots=True)
@@ -63,20 +68,22 @@ class Workers(Generic[Memory]):
         """Take what is to be remembered of the moment at which a worker was started: it comes with its answers."""
         self._processes = max(processes, 1) if hasattr(os, "fork") else 1
         self._work, self._remember = work, remember
-        self._given: deque[tuple[int, _Worker[Memory]]] = deque()  # the first part of each piece, and who does it
+        self._given: deque[tuple[int, _Worker[Memory]]] = (
+            deque()
+        )  # the first part of each piece, and who does it
         self._since, self._from = time.monotonic(), 0
         self._at_once, self._frozen = 1, False
         self._pace = 0.0  # seconds that one process takes for a part, lately
 
     def share(self, first: int, waiting: int) -> None:
-        """Give workers some of the parts that wait, from `first` on, once what was given is done and if it is worth it."""
+        """Give workers some of the parts that wait, from `first` on, if it is worth it and nothing is given."""
         if self._processes == 1 or self._given:
             return
         if self._at_once > 1 or time.monotonic() - self._since >= BEGIN:
             self._measure(first, 1)
         if self._pace:
             turns, count = self._pieces(waiting)
-            if turns * count * self._pace >= LEAST:
+            if turns and turns * count * self._pace >= LEAST:
                 self._start(first, turns, count)
 
     def _pieces(self, waiting: int) -> tuple[int, int]:
@@ -116,7 +123,7 @@ class Workers(Generic[Memory]):
 
         context = get_context("fork")
         answers, send = context.Pipe(duplex=False)
-        process = context.Process(target=_run, args=(self._work, send, pieces), daemon=True)
+        process = context.Process(target=_run, args=(self._work, send, answers, pieces), daemon=True)
         mask = pthread_sigmask(SIG_BLOCK, {SIGINT})
         try:
             process.start()
@@ -155,11 +162,12 @@ class Workers(Generic[Memory]):
             gc.unfreeze()
 
 
-def _run(work: Work, send: Connection, pieces: Sequence[Piece]) -> None:
-    """Answer for each piece, in a worker."""
+def _run(work: Work, send: Connection, answers: Connection, pieces: Sequence[Piece]) -> None:
+    """Answer for each piece, in a worker; its own way to hear them is closed, so that it notices when nobody does."""
+    answers.close()
     gc.disable()
     try:
         for answer in work(pieces):
             send.send_bytes(answer)
-    except Exception:  # noqa: BLE001 - who asks meets it in turn
+    except Exception:  # who asks meets it in turn
         raise SystemExit(1) from None

@@ -79,7 +79,9 @@ class State:
         kids, codes = self.kids, self.codes
         if self.world.regions == 1 and not self.world.sharing:
             return array("I", sorted([codes[slot] for slot in bits(kids[-1])])).tobytes()
-        inside = [[self.kid_code(slot) for slot in bits(kids[~region])] for region in range(self.world.regions)]
+        inside = [
+            [self.kid_code(slot) for slot in bits(kids[~region])] for region in range(self.world.regions)
+        ]
         shared = bits(self.occupied()) if self.world.sharing else ()
         return to_key(self.world, [*inside, [codes[slot] for slot in shared if len(self.parents[slot]) > 1]])
 
