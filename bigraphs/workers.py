@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from multiprocessing.context import ForkProcess
 
 BEGIN: Final = 0.5
-"""After how many seconds help is asked for: small systems are done by then."""
-LEAST: Final = 0.08
+"""After how many seconds help is asked for, of the processor as all here: small systems are done by then."""
+LEAST: Final = 0.1
 """For less seconds of work no worker is started: to copy the memory that both write takes some 0.03 of each."""
 PIECE: Final = 0.1
 """How many seconds of work a piece is, at most."""
@@ -71,7 +71,7 @@ class Workers(Generic[Memory]):
         self._given: deque[tuple[int, _Worker[Memory]]] = (
             deque()
         )  # the first part of each piece, and who does it
-        self._since, self._from = time.monotonic(), 0
+        self._since, self._from = time.process_time(), 0
         self._at_once, self._frozen = 1, False
         self._pace = 0.0  # seconds that one process takes for a part, lately
 
@@ -79,7 +79,7 @@ class Workers(Generic[Memory]):
         """Give workers some of the parts that wait, from `first` on, if it is worth it and nothing is given."""
         if self._processes == 1 or self._given:
             return
-        if self._at_once > 1 or time.monotonic() - self._since >= BEGIN:
+        if self._at_once > 1 or time.process_time() - self._since >= BEGIN:
             self._measure(first, 1)
         if self._pace:
             turns, count = self._pieces(waiting)
@@ -94,7 +94,7 @@ class Workers(Generic[Memory]):
 
     def _measure(self, first: int, at_once: int) -> None:
         """Note how long a part has taken since it was last noted, and how many processes do the next ones."""
-        now = time.monotonic()
+        now = time.process_time()
         if first > self._from:
             self._pace = self._at_once * (now - self._since) / (first - self._from)
         self._since, self._from, self._at_once = now, first, at_once
