@@ -30,15 +30,28 @@ class Column(Sequence[Value]):
 
     def append(self, value: Value) -> None:
         """Add a value."""
-        code = self._numbers.get(value)
-        if code is None:
-            code = self._numbers[value] = len(self.values)
-            self.values.append(value)
+        self._put(self.code(value))
+
+    def extend(self, other: Column[Value], count: int) -> None:
+        """Add the first values of another list."""
+        codes = [self.code(value) for value in other.values]
+        for code in other.codes[:count]:
+            self._put(codes[code])
+
+    def _put(self, code: int) -> None:
         try:
             self.codes.append(code)
         except OverflowError:
             self.codes = array(_WIDER[self.codes.typecode], self.codes)
             self.codes.append(code)
+
+    def code(self, value: Value) -> int:
+        """Return the number of a value, which need not be in the list."""
+        code = self._numbers.get(value)
+        if code is None:
+            code = self._numbers[value] = len(self.values)
+            self.values.append(value)
+        return code
 
     def __len__(self) -> int:
         return len(self.codes)

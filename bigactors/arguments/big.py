@@ -71,6 +71,13 @@ def _limits(task: Parser) -> None:
         type=seconds,
         help="explore no longer than SECONDS (default: no limit)",
     )
+    task.add_argument(
+        "--threads",
+        metavar="N",
+        type=at_least_one,
+        help="let up to N processes share the work after half a second; what is found is the same for every N "
+        "(default: as many as there are cores)",
+    )
 
 
 def _full(task: Parser) -> None:

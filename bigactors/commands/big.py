@@ -21,6 +21,7 @@ from bigraphs.exports.json import bigraph_json
 from bigraphs.notation import load_system, read_system, write_big
 from bigraphs.system import System, SystemKind
 from bigraphs.transitions import TransitionSystem
+from bigraphs.workers import cores
 from physical.messages import counted
 
 if TYPE_CHECKING:
@@ -59,7 +60,13 @@ def explored(options: Namespace, system: System) -> TransitionSystem:
         def told(progress: Progress) -> None:
             _show_progress(watch, name, progress)
 
-        return explore(system, max_states=options.max_states, max_time=options.max_time, watch=told)
+        return explore(
+            system,
+            max_states=options.max_states,
+            max_time=options.max_time,
+            threads=options.threads or cores(),
+            watch=told,
+        )
 
 
 def _show_progress(watch: Watch, name: str, progress: Progress) -> None:

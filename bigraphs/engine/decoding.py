@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from array import array
-
 from bigraphs.bigraph import Bigraph, Link, Node, assemble
 from bigraphs.canonical import canonical
-from bigraphs.engine.state import Key, State, bits
+from bigraphs.engine.state import Key, State, bits, codes_in
 from bigraphs.engine.world import REFERENCE, World
 
 
@@ -35,16 +33,10 @@ def _live_edges(state: State) -> list[int]:
 def from_key(world: World, key: Key) -> State:
     """Return the state that a key of `State.key` tells, its nodes in one order that the key decides."""
     builder = _Builder(world)
-    numbers = array("I", key)
-    if world.regions == 1 and not world.sharing:
-        builder.region(0, numbers.tolist())
-    else:
-        start = 0
-        for region in range(world.regions):
-            end = start + 1 + numbers[start]
-            builder.region(region, numbers[start + 1 : end].tolist())
-            start = end
-        builder.shared(numbers[start:].tolist())
+    *regions, shared = codes_in(world, key)
+    for region, codes in enumerate(regions):
+        builder.region(region, codes)
+    builder.shared(shared)
     return builder.finish()
 
 

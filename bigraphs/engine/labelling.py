@@ -12,9 +12,10 @@ it maps to what was seen.
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterator
 from typing import NamedTuple, TypeAlias
 
-from bigraphs.engine.state import Key, State, bits
+from bigraphs.engine.state import Key, State, codes_in
 from bigraphs.engine.world import REFERENCE, Row, World
 
 Incidence: TypeAlias = tuple[int, int]
@@ -48,20 +49,27 @@ class Labelling:
 
     def canonical(self, state: State) -> Key:
         """Return a key that two states of this world share if, and only if, they are the same bigraph."""
+        return self.canonical_of(state.key())
+
+    def canonical_of(self, key: Key) -> Key:
+        """Return the canonical key of the state that has a key."""
         if self.world.plain:
-            return state.key()
+            return key
         graph = _Graph(self)
-        for region in range(self.world.regions):
-            graph.add_region(region, [state.kid_code(slot) for slot in bits(state.kids[~region])])
-        if self.world.sharing:
-            for slot in bits(state.occupied()):
-                if len(state.parents[slot]) > 1:
-                    graph.add(state.codes[slot], -1)
+        *regions, shared = codes_in(self.world, key)
+        for region, codes in enumerate(regions):
+            graph.add_region(region, codes)
+        for code in shared:
+            graph.add(code, -1)
         return graph.key()
 
     def number(self, label: object) -> int:
         """Return the number of a label; those below are kept for relations between places."""
-        return self._labels.setdefault(label, len(self._labels) + 3)
+        return self._labels.setdefault(label, len(self))
+
+    def __len__(self) -> int:
+        """Return how many numbers of labels there are."""
+        return len(self._labels) + 3
 
     def profile(self, code: int) -> Profile:
         """Return what a code says."""
@@ -110,6 +118,16 @@ class Labelling:
     def _named(self, ports: tuple[int, ...]) -> tuple[int, ...]:
         fixed = len(self.world.names)
         return tuple(link if 0 <= link < fixed else -1 for link in ports)
+
+
+def labels_in(key: Key) -> Iterator[int]:
+    """Yield the numbers of the labels in a canonical key."""
+    numbers, place = array("I" if key[:1] == b"~" else "Q", key[1:]), 0
+    while place < len(numbers):
+        end = place + 2 + numbers[place + 1]
+        yield numbers[place]
+        yield from (near >> _SHIFT for near in numbers[place + 2 : end])
+        place = end
 
 
 class _Graph:

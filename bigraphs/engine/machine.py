@@ -110,8 +110,9 @@ class Machine:
 
     def steps(self, spot: Spot) -> Iterator[Step]:
         """Yield all that can happen: every occurrence in the first class of priority that has any."""
+        askable = spot.askable()
         for rules, instant in self.classes:
-            if instant:
+            if instant or not rules & askable:
                 continue
             enabled = [(reaction, found) for reaction, live in spot.enabled(rules) for found in live]
             settled: set[Key] = set()
@@ -149,7 +150,10 @@ class Machine:
 
     def _settle_once(self, spot: Spot, seen: set[Key], count: int) -> tuple[Spot, int] | None:
         """Run the first instantaneous class that is enabled to its end; None if there is none."""
+        askable = spot.askable()
         for rules, instant in self.classes:
+            if not rules & askable:
+                continue
             if not instant:
                 if any(True for _ in spot.enabled(rules)):
                     return None

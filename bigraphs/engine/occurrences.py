@@ -111,14 +111,18 @@ class Spot:
         spot.lost = lost
         return spot
 
-    def enabled(self, rules: int) -> Iterator[tuple[Reaction, list[Occurrence]]]:
-        """Yield those of the rules in a mask that may act, in order, and where they may."""
+    def askable(self) -> int:
+        """Return the mask of the rules that are not known to have no occurrence."""
         if self._possible < 0:
             self.carry()
             self.lacking = self.lacking or self._index.lacking(self.state)
             self._possible = self._index.spared(self.lacking)
             self.known |= self._index.all & ~self._possible
-        for number in numbers_in(rules & self._possible & (~self.known | self.having)):
+        return self._possible & (~self.known | self.having)
+
+    def enabled(self, rules: int) -> Iterator[tuple[Reaction, list[Occurrence]]]:
+        """Yield those of the rules in a mask that may act, in order, and where they may."""
+        for number in numbers_in(rules & self.askable()):
             reaction = self._index.reactions[number]
             if live := self.live(reaction):
                 yield reaction, live

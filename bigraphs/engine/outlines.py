@@ -48,7 +48,8 @@ class Outlines:
 
     def _digest(self, code: int) -> bytes:
         """Return the digest of a subtree; those of what is in it first, without recursion."""
-        waiting, rows, digests = [code], self.world.rows, self._digests
+        rows, digests = self.world.rows, self._digests
+        waiting = [] if code in digests else [code]
         while waiting:
             label, ports, kids, _ = rows[waiting[-1]]
             missing = [kid for kid in kids if kid not in digests]

@@ -79,13 +79,11 @@ class State:
         kids, codes = self.kids, self.codes
         if self.world.regions == 1 and not self.world.sharing:
             return array("I", sorted([codes[slot] for slot in bits(kids[-1])])).tobytes()
-        parts: list[int] = []
-        for region in range(self.world.regions):
-            inside = sorted([self.kid_code(slot) for slot in bits(kids[~region])])
-            parts += [len(inside), *inside]
-        if self.world.sharing:
-            parts += sorted(codes[slot] for slot in bits(self.occupied()) if len(self.parents[slot]) > 1)
-        return array("I", parts).tobytes()
+        inside = [
+            [self.kid_code(slot) for slot in bits(kids[~region])] for region in range(self.world.regions)
+        ]
+        shared = bits(self.occupied()) if self.world.sharing else ()
+        return to_key(self.world, [*inside, [codes[slot] for slot in shared if len(self.parents[slot]) > 1]])
 
     def kid_code(self, slot: int) -> int:
         """Return the code that a node has in a row of one of its parents."""
@@ -125,6 +123,27 @@ class State:
         row = (self.labels[slot], self.ports[slot], kids, itself)
         found = self.world.codes.get(row)
         codes[slot] = self.world.code(row) if found is None else found
+
+
+def to_key(world: World, codes: list[list[int]]) -> Key:
+    """Return the key of a state with these codes in its regions and, last, of its shared nodes."""
+    if world.regions == 1 and not world.sharing:
+        return array("I", sorted(codes[0])).tobytes()
+    parts = [part for inside in codes[:-1] for part in (len(inside), *sorted(inside))]
+    return array("I", parts + sorted(codes[-1])).tobytes()
+
+
+def codes_in(world: World, key: Key) -> list[list[int]]:
+    """Return the codes in each region of a state and, last, of its shared nodes."""
+    numbers = array("I", key).tolist()
+    if world.regions == 1 and not world.sharing:
+        return [numbers, []]
+    found, start = [], 0
+    for _ in range(world.regions):
+        end = start + 1 + numbers[start]
+        found.append(numbers[start + 1 : end])
+        start = end
+    return [*found, numbers[start:]]
 
 
 @lru_cache(maxsize=1 << 17)

@@ -8,7 +8,8 @@ state is told by the codes of the nodes in its regions.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterable
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from bigraphs.bigraph import Bigraph
@@ -19,6 +20,19 @@ Row: TypeAlias = tuple[int, tuple[int, ...], tuple[int, ...], int]
 
 REFERENCE = -1
 """The label of the row that stands, in each of its places, for a node that has several."""
+
+
+@dataclass(frozen=True, slots=True)
+class Codes:
+    """What the codes of a copy of a world are in the world itself: those below `first` are the same."""
+
+    first: int
+    here: list[int]
+
+    def translated(self, codes: Iterable[int]) -> list[int]:
+        """Return codes of the copy as codes of the world."""
+        first, here = self.first, self.here
+        return [code if code < first else here[code - first] for code in codes]
 
 
 class World:
@@ -88,6 +102,11 @@ class World:
             alone = row[3] == 0 and all(0 <= link < fixed for link in row[1])
             self.bare.append(alone and all(self.bare[kid] for kid in row[2]))
         return found
+
+    def adopt(self, codes: Codes, rows: Iterable[Row]) -> None:
+        """Take over the next rows that a copy of this world has numbered."""
+        for label, ports, kids, itself in rows:
+            codes.here.append(self.code((label, ports, tuple(sorted(codes.translated(kids))), itself)))
 
 
 def has_edges(bigraph: Bigraph) -> bool:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, overload
 
+from bigraphs.workers import cores
 from checker.engines.contract import Exploration, Inspect, Options, Progress
 from checker.engines.estimate import estimate
 from checker.engines.fast.checkpoint import Journey, resume, save
@@ -15,7 +16,7 @@ from checker.engines.fast.compiling import compilation_reported
 from checker.engines.fast.graph import GraphSurvey
 from checker.engines.fast.inspecting import inspect_fast
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.space import Space, cores
+from checker.engines.fast.space import Space
 from checker.limits import Bound, BoundMet, Limits, Part, Stop, bounded, is_full, memory_left
 from semantics.state.configuration import Configuration
 

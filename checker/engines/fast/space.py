@@ -4,7 +4,6 @@ It visits the same configurations in the same order and stops at the same bounds
 """
 
 import math
-import os
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -562,8 +561,3 @@ class Space:
 
         self.table = Pages(np.uint32 if self.compact <= 32 else np.uint64, slots)
         rebuild(*rows, self.table.room, write_tags, self.compact, self.pipeline.divide)
-
-
-def cores() -> int:
-    """Return how many cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
