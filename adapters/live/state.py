@@ -149,6 +149,7 @@ class LiveState:
         findings: How many findings were reported: the number of the last one.
         shares: How many strangers were admitted from each plugin, and how many of them are places.
         timers: Since when everything runs that the mission times; None before the start, and where it times nothing.
+        stopped: Since when a run stands still that goes on after it was killed; None where it does not.
     """
 
     configuration: Configuration
@@ -175,6 +176,7 @@ class LiveState:
     findings: int = 0
     shares: Mapping[str, tuple[int, int]] = field(default_factory=dict)
     timers: Timers | None = None
+    stopped: float | None = None
 
     def with_(self, **changes: object) -> LiveState:
         """Return the state with some of its attributes changed."""

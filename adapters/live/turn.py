@@ -68,6 +68,7 @@ class Turning:
         self.told = state.told
         self.shares = dict(state.shares)
         self.timers = state.timers
+        self.stopped = state.stopped
         self.coming: set[Name] = set()  # strangers that are about to be admitted
         self.quiet = state.quiet
         self.last = state.last
@@ -108,6 +109,7 @@ class Turning:
             self.before.findings + len(self.findings),
             self.shares,
             self.timers,
+            self.stopped,
         )
         gathered = (tuple(self.steps), tuple(self.commands), tuple(self.findings), tuple(self.answers))
         again = None if self.again == math.inf else self.again

@@ -107,6 +107,11 @@ def answer_json(answer: Answer) -> tuple[str, dict[str, Any]] | None:
             return None if answer.refusal else ("acknowledged", {"finding": finding, "by": by})
 
 
+def clocks_json(timers: Timers | None) -> dict[str, float]:
+    """Return by what the mission's clocks are counted, as plain data; nothing where it times nothing."""
+    return {} if timers is None else {"began": timers.began, "rested": timers.rested}
+
+
 def flights_json(timers: Timers | None) -> dict[Name, dict[str, Any]]:
     """Return how long the flight of each vehicle takes that is under way, as plain data."""
     under_way = () if timers is None else flying(timers)

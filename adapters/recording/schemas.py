@@ -145,6 +145,19 @@ DEADLINE: Final = _object(
     },
 )
 
+CLOCKS: Final = _object(
+    "By what the clocks of a mission with `timing` are counted: written before the next step, when that changes.",
+    ("began", "rested"),
+    began={
+        "type": "number",
+        "description": "When the mission began, in seconds since 1970 UTC, later by what was spent without listening.",
+    },
+    rested={
+        "type": "number",
+        "description": "For how many seconds the run itself stood still: it was killed, and went on.",
+    },
+)
+
 FLIGHT: Final = _object(
     "How long a flight takes by what the mission says of times: written when that changes.",
     ("vehicle", "takes"),
@@ -331,6 +344,7 @@ SCHEMAS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
     "left_out": (f"bigactors.left_out/{VERSION}", LEFT_OUT),
     "steps": (f"bigactors.step/{VERSION}", STEP),
     "deadlines": (f"bigactors.deadline/{VERSION}", DEADLINE),
+    "clocks": (f"bigactors.clocks/{VERSION}", CLOCKS),
     "flights": (f"bigactors.flight/{VERSION}", FLIGHT),
     "commands": (f"bigactors.command/{VERSION}", COMMAND),
     "reports": (f"bigactors.plugin_report/{VERSION}", REPORT),
