@@ -343,7 +343,7 @@ class ZoneTimes:
         meter = Meter(most + 1, goal=(Watch.ON, most + 1))
         observer, search = self.explored(Observer(self.network, rule, meter))
         if search.found < 0:
-            return Wait(max(_shown(observer, search, Watch.ON), default=0))
+            return Wait(int(_shown(observer, search, Watch.ON)[1].max(initial=0)))
         run = self._measured(search).run()
         longest = self._longest(rule, Watch.ON, most)
         return Wait(longest, run, math.isinf(longest))
@@ -366,14 +366,10 @@ class ZoneTimes:
     def _first(self, rule: Rule) -> Run | None:
         """Return the first run of those that come first to an end."""
         observer, search = self.explored(Observer(self.network, rule, Meter(upper=MOST)))
-        ends = [
-            -int(zone[0, observer.clock(place)])
-            for place, zone in search
-            if observer.spots[place].watch is Watch.END
-        ]
-        if not ends:
+        ends, _ = _shown(observer, search, Watch.END)
+        if not len(ends):
             return None
-        earliest = min(ends)
+        earliest = int(ends.min())
         meter = Meter(upper=earliest, most=earliest, goal=(Watch.END, 0))
         _, search = self.explored(Observer(self.network, rule, meter))
         return self._measured(search).run()
@@ -407,7 +403,7 @@ class ZoneTimes:
                 Observer(self.network, rule, Meter(most + 1, goal=(where, most + 1)))
             )
             if search.found < 0:
-                return max(_shown(observer, search, where), default=NEVER)
+                return float(_shown(observer, search, where)[1].max(initial=NEVER))
             if self.goes_round(observer, self._measured(search)):
                 return math.inf
             most *= 4
@@ -495,8 +491,13 @@ class ZoneTimes:
         return first_stop(self.network)
 
 
-def _shown(observer: Observer, search: Search, where: Watch) -> Iterator[int]:
-    """Yield the most that the clock shows in each zone of some locations."""
-    for place, zone in search:
-        if observer.spots[place].watch is where:
-            yield int(zone[observer.clock(place), 0])
+def _shown(
+    observer: Observer, search: Search, where: Watch
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the least and the most that the observer's clock, the last, shows in the zones of some locations."""
+    places = search.places.room[: search.count]
+    zones = np.flatnonzero(np.array([spot.watch is where for spot in observer.spots])[places])
+    sizes = search.automaton.locations.used[SIZE::LOCATION][places[zones]].astype(np.int64)
+    begins, bounds = search.begins.room[zones], search.bounds.room
+    least, most = -bounds[begins + sizes - 1], bounds[begins + sizes * (sizes - 1)]
+    return least.astype(np.float64), most.astype(np.float64)
