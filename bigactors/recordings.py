@@ -138,11 +138,12 @@ def _timers(trace: Trace, messages: Iterable[Message]) -> Timers | None:
         match message.topic, message.data:
             case "clocks", {"began": int() | float() as began, "rested": int() | float() as rested}:
                 timers = (timers or begun(c, began)).counted(began, rested, message.time)
-            case "steps", _:
-                step = next(steps)
+            case "steps", said:
+                step, date = next(steps), said.get("date", message.time)
                 c = step.target
                 if timers is not None:
-                    timers = stepped(timers, Transition(step.label, c), message.time)
+                    timed = date if isinstance(date, int | float) else message.time
+                    timers = stepped(timers, Transition(step.label, c), timed)
     return timers
 
 

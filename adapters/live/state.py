@@ -303,6 +303,7 @@ class LiveStep:
         choice: The index of the transition among those with its label.
         sight: What the world decided: an observation, or what passes between stations.
         time: When.
+        date: When another station did what it is, by the clock here; else the same.
     """
 
     number: int
@@ -311,6 +312,7 @@ class LiveStep:
     choice: int
     sight: Sight | Elsewhere | None
     time: float
+    date: float
 
 
 @dataclass(frozen=True, slots=True)

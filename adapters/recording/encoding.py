@@ -62,7 +62,8 @@ def step_json(step: LiveStep) -> dict[str, Any]:
         data["observed"] = sight_json(step.sight)
     if transition.shown:
         data["shown"] = transition.shown
-    return {**data, "digest": digest_of_step(step.source, transition.target)}
+    dated = {} if step.date == step.time else {"date": step.date}
+    return {**data, **dated, "digest": digest_of_step(step.source, transition.target)}
 
 
 def command_json(command: Command) -> dict[str, Any]:

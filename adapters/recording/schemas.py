@@ -132,6 +132,10 @@ STEP: Final = _object(
     choice={"type": "integer", "minimum": 0},
     observed=_OBSERVED,
     shown={**_TEXTS, "description": "What `display` showed."},
+    date={
+        "type": "number",
+        "description": "When another station did what it is, by the clock here, in seconds since 1970 UTC.",
+    },
     digest={**_TEXT, "description": "Of the cells that it wrote, with their values."},
 )
 
