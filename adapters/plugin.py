@@ -267,21 +267,31 @@ class Delivered:
         time: When it came.
         number: Its index among the sender's parcels; it may come again.
         parcel: Its content, as plain data.
+        done: When it left, by the clock here; None where that is not known.
     """
 
     station: str
     time: float
     number: int
     parcel: Any
+    done: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Underway:
-    """Another station has sent a vehicle to a node; without a name: it is no longer under way."""
+    """Another station has sent a vehicle to a node; without a name: it is no longer under way.
+
+    Attributes:
+        entity: The vehicle.
+        time: When that came.
+        to: The node.
+        done: When it was so, by the clock here; None where that is not known.
+    """
 
     entity: str
     time: float
     to: str
+    done: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

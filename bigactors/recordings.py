@@ -8,6 +8,7 @@ from pathlib import Path
 
 from adapters.live.orders import stopping
 from adapters.live.state import Bidden, Finding, Outgoing, is_breach
+from adapters.live.timing import Timers, begun, stepped
 from adapters.recording.mcap_files import Message, RecordingError
 from adapters.recording.reading import Recording, read_recording
 from bigactors.diagnostics import as_mistake
@@ -16,7 +17,7 @@ from bigactors.mistakes import Mistake, unreadable
 from checker import ReplayError, Trace, replay
 from checker.traces import SCHEMA
 from semantics.contingencies import Fallback
-from semantics.state.configuration import Configuration
+from semantics.state.configuration import Configuration, Transition
 from semantics.state.partition import Parting, Passage, parcel_of, parted
 from semantics.state.setting import Control, Scheduler
 from specs import MissionError, Source
@@ -84,6 +85,8 @@ class Resumed:
         station: Which part of the mission it flew, None for the whole.
         left: What left for other stations, in its order.
         bidden: The operator's order that stands for each vehicle that was taken over by one.
+        timers: Since when everything runs that the mission times; None where the recording does not say when it began.
+        until: When it was last heard of.
     """
 
     configuration: Configuration
@@ -95,6 +98,8 @@ class Resumed:
     station: Parting | None = None
     left: tuple[Outgoing, ...] = ()
     bidden: Mapping[str, Bidden] = field(default_factory=dict)
+    timers: Timers | None = None
+    until: float = 0.0
 
 
 def resume(path: str, mission: ElaboratedMission) -> Resumed:
@@ -121,13 +126,33 @@ def resume(path: str, mission: ElaboratedMission) -> Resumed:
         parting_of(recording),
         tuple(_left(trace)),
         {name: each for name, each in taken.items() if isinstance(each, Bidden)},
+        None if mission.setting.timing is None else _timers(trace, kept),
+        recording.until,
     )
+
+
+def _timers(trace: Trace, messages: Iterable[Message]) -> Timers | None:
+    """Return since when everything runs after a recorded run, by its dates."""
+    timers, c, steps = None, trace.initial, iter(trace.steps)
+    for message in messages:
+        match message.topic, message.data:
+            case "clocks", {"began": int() | float() as began, "rested": int() | float() as rested}:
+                timers = (timers or begun(c, began)).counted(began, rested, message.time)
+            case "steps", said:
+                step, date = next(steps), said.get("date", message.time)
+                c = step.target
+                if timers is not None:
+                    timed = date if isinstance(date, int | float) else message.time
+                    timers = stepped(timers, Transition(step.label, c), timed)
+    return timers
 
 
 def _goes_on(message: Message) -> bool:
     """Tell whether a message that is no step says something that is still so when another run goes on."""
     said = message.data
     match message.topic:
+        case "clocks":
+            return True
         case "reports":  # a vehicle was taken over
             return bool(said.get("report") == "TakenOver")
         case "given_back":

@@ -29,8 +29,8 @@ LONG = 5.0
 
 def advance(plan: Plan, state: LiveState, batch: Batch, now: float, most: int = MOST_STEPS) -> Turn:
     """Make one turn: take the world in, then let agents continue until nothing more can be done now."""
-    if plan.first.setting.timing is not None and state.timers is None and not is_parted(state.configuration):
-        state = state.with_(timers=begun(state.configuration, now))
+    if plan.first.setting.timing is not None:
+        state = _timed(state, now)
     turning = _taken_in(plan, state, batch, now)
     for said in batch.sayings:
         answer(turning, said)
@@ -38,6 +38,15 @@ def advance(plan: Plan, state: LiveState, batch: Batch, now: float, most: int = 
     check_limits(turning)
     turning.check_times()
     return turning.turn()
+
+
+def _timed(state: LiveState, now: float) -> LiveState:
+    """Return a state in which everything is timed: from now on, or further where the run goes on."""
+    if state.timers is None:
+        return state.with_(timers=begun(state.configuration, now), stopped=None)
+    if state.stopped is None:
+        return state
+    return state.with_(timers=state.timers.resting(state.stopped, now), stopped=None)
 
 
 def watch(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turn:

@@ -23,11 +23,12 @@ from semantics.state.signature import REGION, Name
 
 
 def hear_of(turning: Turning, report: Elsewhere) -> None:
-    """Take in a report about another station."""
+    """Take in a report about another station; its steps are timed by when it says that they were."""
+    turning.done = report.done if isinstance(report, Delivered | Underway) else None
     match report:
         case Delivered():
             _take_in(turning, report)
-        case Underway(entity, _, to):
+        case Underway(entity, _, to, _):
             _fly(turning, entity, to)
         case Hosts(agent, _, host):
             for found in learn(turning.c, agent, host):
@@ -40,6 +41,9 @@ def hear_of(turning: Turning, report: Elsewhere) -> None:
             count = len(turning.findings)
             turning.breaks(f"at {station}: {assumption}", station)
             turning.findings[count:] = [replace(each, elsewhere=True) for each in turning.findings[count:]]
+    if turning.done is not None:
+        turning.check_times()  # what waited on its way may be late, and is done at once
+    turning.done = None
 
 
 def _take_in(turning: Turning, delivered: Delivered) -> None:

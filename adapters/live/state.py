@@ -149,6 +149,7 @@ class LiveState:
         findings: How many findings were reported: the number of the last one.
         shares: How many strangers were admitted from each plugin, and how many of them are places.
         timers: Since when everything runs that the mission times; None before the start, and where it times nothing.
+        stopped: Since when a run stands still that goes on after it was killed; None where it does not.
     """
 
     configuration: Configuration
@@ -175,6 +176,7 @@ class LiveState:
     findings: int = 0
     shares: Mapping[str, tuple[int, int]] = field(default_factory=dict)
     timers: Timers | None = None
+    stopped: float | None = None
 
     def with_(self, **changes: object) -> LiveState:
         """Return the state with some of its attributes changed."""
@@ -301,6 +303,7 @@ class LiveStep:
         choice: The index of the transition among those with its label.
         sight: What the world decided: an observation, or what passes between stations.
         time: When.
+        date: When another station did what it is, by the clock here; else the same.
     """
 
     number: int
@@ -309,6 +312,7 @@ class LiveStep:
     choice: int
     sight: Sight | Elsewhere | None
     time: float
+    date: float
 
 
 @dataclass(frozen=True, slots=True)

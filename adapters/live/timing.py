@@ -25,6 +25,9 @@ from semantics.timing.voyages import travelling
 GRACE: Final = 0.25
 """Seconds that a run itself may need before it sees that something is done."""
 
+OWN: Final = frozenset({Sort.REQUEST, Sort.AGENT, Sort.AFTER})
+"""Clocks of what a run does itself: they stand still while it does."""
+
 FULL: Final = frozenset({Sort.EVERY, Sort.RESTORED})
 """Clocks that are past their bound as the mission begins."""
 
@@ -54,11 +57,15 @@ class Timers:
         situation: What time means in the configuration.
         since: When the clocks began, the oldest of equal ones first.
         windows: Of clauses that have a window and could take their step: whether it binds them still.
+        began: When the mission began, later by what was spent without listening.
+        rested: For how many seconds the run itself stood still since then: it was killed, and went on.
     """
 
     situation: Situation
     since: Mapping[Clock, tuple[float, ...]]
     windows: Mapping[int, int] = field(default_factory=dict)
+    began: float = 0.0
+    rested: float = 0.0
 
     @property
     def seconds(self) -> float:
@@ -71,9 +78,23 @@ class Timers:
 
     def later(self, seconds: float) -> Timers:
         """Return them shifted by a time without listening."""
-        return replace(
-            self, since={clock: tuple(at + seconds for at in began) for clock, began in self.since.items()}
-        )
+        return self.counted(self.began + seconds, self.rested, math.inf)
+
+    def resting(self, since: float, now: float) -> Timers:
+        """Return them after the run itself has stood still: the world went on, and whoever waits begins anew."""
+        return self.counted(self.began, self.rested + max(now - since, 0.0), now)
+
+    def counted(self, began: float, rested: float, now: float) -> Timers:
+        """Return them by another first moment, and another time for which the run itself stood still until now."""
+        shift, still = began - self.began, rested - self.rested
+
+        def start(clock: Clock, at: float) -> float:
+            if clock.sort is Sort.AFTER and still:
+                return now
+            return at + shift + (still if clock.sort in OWN else 0.0)
+
+        since = {clock: tuple(start(clock, at) for at in several) for clock, several in self.since.items()}
+        return replace(self, since=since, began=began, rested=rested)
 
 
 def begun(c: Configuration, now: float) -> Timers:
@@ -83,7 +104,7 @@ def begun(c: Configuration, now: float) -> Timers:
         clock: (-math.inf if clock.sort in FULL else now,) * count
         for clock, count in running_in(situation).items()
     }
-    return _entered(Timers(situation, since), (), now)
+    return _entered(Timers(situation, since, began=now), (), now)
 
 
 def stepped(timers: Timers, transition: Transition, now: float) -> Timers:
@@ -99,7 +120,7 @@ def stepped(timers: Timers, transition: Transition, now: float) -> Timers:
         left = restored in source.first and restored not in after.first
         if left and now - timers.since[restored][0] >= endurance.after * timers.seconds:
             since[aloft] = (now,)
-    return _entered(Timers(after, since, timers.windows), taken, now)
+    return _entered(replace(timers, situation=after, since=since), taken, now)
 
 
 def _entered(timers: Timers, taken: Iterable[int], now: float) -> Timers:

@@ -68,6 +68,8 @@ class Turning:
         self.told = state.told
         self.shares = dict(state.shares)
         self.timers = state.timers
+        self.stopped = state.stopped
+        self.done: float | None = None
         self.coming: set[Name] = set()  # strangers that are about to be admitted
         self.quiet = state.quiet
         self.last = state.last
@@ -108,6 +110,7 @@ class Turning:
             self.before.findings + len(self.findings),
             self.shares,
             self.timers,
+            self.stopped,
         )
         gathered = (tuple(self.steps), tuple(self.commands), tuple(self.findings), tuple(self.answers))
         again = None if self.again == math.inf else self.again
@@ -142,7 +145,8 @@ class Turning:
         word = str(transition.label)
         choice = [each for each in alike if str(each.label) == word].index(transition)
         number = self.before.number + len(self.steps) + 1
-        self.steps.append(LiveStep(number, self.c, transition, choice, sight, self.now))
+        date = self.now if self.done is None else min(self.done, self.now)
+        self.steps.append(LiveStep(number, self.c, transition, choice, sight, self.now, date))
         agent, request = transition.label.agent, transition.label.about
         if agent is not None:
             self.idle.discard(agent)
@@ -155,18 +159,18 @@ class Turning:
         if transition.label.rule == "spawn":
             self.idle.discard(str(request))
         self.c = transition.target
-        self._time(transition)
+        self._time(transition, date)
         if is_parted(self.c):
             self._forward(request.to if isinstance(request, SND) else agent)
             if transition.label.rule == "spawn":
                 self._forward(str(request))
 
-    def _time(self, transition: Transition) -> None:
+    def _time(self, transition: Transition, date: float) -> None:
         """Let the mission's clocks go on over a step; one that is too soon breaks an assumption."""
         if self.timers is None:
             return
-        before, self.timers = self.timers, stepped(self.timers, transition, self.now)
-        for about, message in too_soon(before, transition, self.timers, self.now):
+        before, self.timers = self.timers, stepped(self.timers, transition, date)
+        for about, message in too_soon(before, transition, self.timers, date):
             self._untimely(about, message)
 
     def check_times(self) -> None:

@@ -62,7 +62,8 @@ def step_json(step: LiveStep) -> dict[str, Any]:
         data["observed"] = sight_json(step.sight)
     if transition.shown:
         data["shown"] = transition.shown
-    return {**data, "digest": digest_of_step(step.source, transition.target)}
+    dated = {} if step.date == step.time else {"date": step.date}
+    return {**data, **dated, "digest": digest_of_step(step.source, transition.target)}
 
 
 def command_json(command: Command) -> dict[str, Any]:
@@ -105,6 +106,11 @@ def answer_json(answer: Answer) -> tuple[str, dict[str, Any]] | None:
             return "orders", {"order": order.value, "vehicle": vehicle, "by": by, **told, **refusal}
         case Acknowledging(finding, by):
             return None if answer.refusal else ("acknowledged", {"finding": finding, "by": by})
+
+
+def clocks_json(timers: Timers | None) -> dict[str, float]:
+    """Return by what the mission's clocks are counted, as plain data; nothing where it times nothing."""
+    return {} if timers is None else {"began": timers.began, "rested": timers.rested}
 
 
 def flights_json(timers: Timers | None) -> dict[Name, dict[str, Any]]:

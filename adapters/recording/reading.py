@@ -23,11 +23,13 @@ class Recording:
         messages: All others, in the order written; arrivals only where they were asked for, and nothing of what follows
             from the others and is there for other programs.
         torn: Whether it has no end: the run was killed.
+        until: The time of its last message, of whatever kind.
     """
 
     run: dict[str, Any]
     messages: tuple[Message, ...]
     torn: bool
+    until: float = 0.0
 
     def of(self, topic: str) -> tuple[Message, ...]:
         """Return the messages of a topic."""
@@ -60,16 +62,18 @@ def read_recording(path: Path, *, arrivals: bool = False) -> Recording:
     reader = McapReader(path)
     run: dict[str, Any] | None = None
     kept: list[Message] = []
+    until = 0.0
     for number, message in enumerate(reader.messages()):
         if number > MOST_MESSAGES:
             raise RecordingError(f"it has more than {MOST_MESSAGES:,} messages")
         if not isinstance(message.data, dict):
             raise RecordingError(f"a message of '{message.topic:.40}' is no object")
+        until = max(until, message.time)
         if message.topic == "run" and run is None:
             run = message.data
         elif (arrivals or message.topic != "arrivals") and not message.topic.startswith(OTHERS):
             kept.append(message)
-    return Recording(checked_run(run), tuple(kept), not reader.ended)
+    return Recording(checked_run(run), tuple(kept), not reader.ended, until)
 
 
 def checked_run(run: dict[str, Any] | None) -> dict[str, Any]:

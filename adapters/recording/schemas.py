@@ -132,6 +132,10 @@ STEP: Final = _object(
     choice={"type": "integer", "minimum": 0},
     observed=_OBSERVED,
     shown={**_TEXTS, "description": "What `display` showed."},
+    date={
+        "type": "number",
+        "description": "When another station did what it is, by the clock here, in seconds since 1970 UTC.",
+    },
     digest={**_TEXT, "description": "Of the cells that it wrote, with their values."},
 )
 
@@ -142,6 +146,19 @@ DEADLINE: Final = _object(
     until={
         "type": ["number", "null"],
         "description": "In seconds since 1970 UTC; null once it waits no longer.",
+    },
+)
+
+CLOCKS: Final = _object(
+    "By what the clocks of a mission with `timing` are counted: written before the next step, when that changes.",
+    ("began", "rested"),
+    began={
+        "type": "number",
+        "description": "When the mission began, in seconds since 1970 UTC, later by what was spent without listening.",
+    },
+    rested={
+        "type": "number",
+        "description": "For how many seconds the run itself stood still: it was killed, and went on.",
     },
 )
 
@@ -331,6 +348,7 @@ SCHEMAS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
     "left_out": (f"bigactors.left_out/{VERSION}", LEFT_OUT),
     "steps": (f"bigactors.step/{VERSION}", STEP),
     "deadlines": (f"bigactors.deadline/{VERSION}", DEADLINE),
+    "clocks": (f"bigactors.clocks/{VERSION}", CLOCKS),
     "flights": (f"bigactors.flight/{VERSION}", FLIGHT),
     "commands": (f"bigactors.command/{VERSION}", COMMAND),
     "reports": (f"bigactors.plugin_report/{VERSION}", REPORT),

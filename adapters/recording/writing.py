@@ -13,6 +13,7 @@ from adapters.ration import Ration, Turns
 from adapters.recording.encoding import (
     answer_json,
     arrival_json,
+    clocks_json,
     command_json,
     finding_json,
     flights_json,
@@ -54,6 +55,7 @@ class Recorder:
         self._newest = now
         self._ration: Ration[tuple[str, str]] = Ration(MOST_ARRIVALS)
         self._turns: defaultdict[str, Turns[str]] = defaultdict(lambda: Turns(MOST_ARRIVALS))
+        self._clocks: dict[str, float] = {}
         self._standing: dict[str, Mapping[Name, Any]] = {"deadlines": {}, "flights": {}}
         self._file = McapWriter(path, {topic: simplified(schema) for topic, schema in SCHEMAS.items()})
         self._put("run", now, {"schema": RUN["properties"]["schema"]["const"], **run})
@@ -82,6 +84,10 @@ class Recorder:
     def turn(self, turn: Turn, now: float, verdicts: Callable[[Finding], tuple[str, ...]]) -> None:
         """Write what a turn came to, and hand it to the system if there is anything that must not be lost."""
         self._account(now, self._ration.left_out(now))
+        clocks = clocks_json(turn.state.timers)
+        if clocks != self._clocks:
+            self._clocks = clocks
+            self._put("clocks", now, clocks)
         for step in turn.steps:
             self._put("steps", step.time, step_json(step))
         self._stands("deadlines", "agent", "until", turn.state.due, now)
@@ -108,6 +114,8 @@ class Recorder:
         for message in messages:
             self._put(message.topic, message.time, message.data)
             match message:
+                case Message("clocks", _, clocks):
+                    self._clocks = clocks
                 case Message("deadlines", _, {"agent": str(agent), "until": until}):
                     self._standing["deadlines"] = {**self._standing["deadlines"], agent: until}
         self._file.flush()

@@ -132,12 +132,14 @@ class Posted:
         index: Its index among the parcels to that station.
         parcel: Its content, as plain data.
         knows: The last numbers of other stations that the sender had received: its content may depend on them.
+        time: When it left; None in logs that do not say.
     """
 
     to: str
     index: int
     parcel: Any
     knows: tuple[tuple[str, int], ...] = ()
+    time: float | None = None
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -205,9 +207,10 @@ def entry_json(entry: Entry) -> dict[str, Any]:
             return {**data, "time": time}
         case Broke(assumption, time):
             return {"n": entry.number, "broke": assumption, "time": time}
-        case Posted(to, index, parcel, knows):
+        case Posted(to, index, parcel, knows, time):
             data = {"n": entry.number, "to": to, "index": index, "parcel": parcel}
-            return data | ({"knows": dict(knows)} if knows else {})
+            dated = {} if time is None else {"time": time}
+            return data | ({"knows": dict(knows)} if knows else {}) | dated
         case Took(of, index):
             return {"n": entry.number, "took": of, "index": index}
 
@@ -242,7 +245,10 @@ def entry_of(station: str, data: Any) -> Entry:
             return Entry(station, number, Broke(assumption, _time(data.get("time"))))
         case {"to": str(), "parcel": parcel}:
             knows = _knows(data.get("knows", {}))
-            return Entry(station, number, Posted(_word(data, "to"), _whole(data, "index"), parcel, knows))
+            left = _time(data["time"]) if "time" in data else None
+            return Entry(
+                station, number, Posted(_word(data, "to"), _whole(data, "index"), parcel, knows, left)
+            )
         case {"entity": str(), "since": since, "owned": bool(owned)}:
             return Entry(station, number, Said(_published(station, data), _time(since), owned))
     raise ValueError("an entry says or does none of what stations do")

@@ -37,7 +37,7 @@ def told(turn: Turn, vehicles: Collection[str], known: Mapping[str, int]) -> Ite
     yield from (Took(station, number) for station, number in entered(turn).items())
     for each in turn.parcels:
         knows = tuple((name, number) for name, number in sorted(known.items()) if name != each.station)
-        yield Posted(each.station, each.number, parcel_json(each.parcel), knows)
+        yield Posted(each.station, each.number, parcel_json(each.parcel), knows, turn.steps[-1].time)
 
 
 def believed(turn: Turn, merge: Merge) -> Iterator[Believed]:

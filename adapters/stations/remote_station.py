@@ -55,6 +55,11 @@ class Other:
         self.shown = found
         return found
 
+    def here(self, time: float) -> float:
+        """Return a time of its clock by the clock here, as far as it is known how far it is ahead."""
+        best = self.skew.best
+        return time if best is None else time - best.ahead
+
     def follow(self, message: Message, *, whole: bool) -> bool:
         """Count the entries of a message; return whether no earlier ones are missing."""
         self.last = max(self.last, message.last)

@@ -385,8 +385,8 @@ class Sharing:
                 self._world.report(Believes(node, now, slot, names))
             case Entry(station) if station == self._journal.station:
                 pass  # the run knows
-            case Entry(content=Sent(entity, to)):
-                self._world.report(Underway(entity, now, to))
+            case Entry(station, _, Sent(entity, to, time)):
+                self._world.report(Underway(entity, now, to, self.others[station].here(time)))
             case Entry(content=Hosted(agent, host)):
                 self._world.report(Hosts(agent, now, host))
 
@@ -415,7 +415,8 @@ class Sharing:
         for station, other in self.others.items():
             if other.parcels:
                 for index, posted in other.due(self.others, self._journal.took(station)):
-                    self._world.report(Delivered(station, self._world.now(), index, posted.parcel))
+                    done = None if posted.time is None else other.here(posted.time)
+                    self._world.report(Delivered(station, self._world.now(), index, posted.parcel, done))
 
     # --- links and clocks
 

@@ -81,6 +81,8 @@ def run(options: Namespace) -> Exit:
     terminal = Terminal(flight.resting, tuple(flight.plan.vehicles))
     if flight.resumed is not None:
         terminal.goes_on(flight.resumed.broken, flight.resumed.taken)
+        if flight.mission.setting.timing is not None and flight.resumed.timers is None:
+            tell("the recording does not say when the mission began: all clocks begin anew")
     try:
         with record(flight) as tape, _published(options.publish) as ros:
             lookers = (
@@ -140,6 +142,8 @@ def prepare(options: Namespace) -> Flight:
             number=before.steps,
             told=before.orders,
             findings=len(before.broken),
+            timers=before.timers,
+            stopped=before.until,
         )
         state = resumed(plan, known, time.time())
     return Flight(options, mission, licence, plan, state, plugins, before, log, company)

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from functools import cached_property
 from itertools import combinations
 
 from checker.engines.runs import DELAY, Run, dated, first_run
 from checker.engines.timeline import Timeline
 from checker.engines.times import NO_SPAN, Moments, Span, Stop, TakenStep, Wait
+from checker.properties.critical_path import way_to
 from checker.properties.durations import first_ticks, last_ticks, longest, stopped
 from semantics.properties.propositions import Proposition, holds
 from semantics.races.monitor import CONTROLS
-from semantics.state.configuration import Transition
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.requests import FLY
+from semantics.state.signature import Name
+from semantics.timing.actor_clocks import Sort
 from semantics.timing.clocks import Situation, TimedStep
 
 Awaiting = tuple[int, float | None]
@@ -97,11 +101,42 @@ class Ticks:
         assert run is not None
         return run
 
+    def where(self, formula: Proposition) -> list[bool]:
+        """Return for each configuration whether a proposition is true there."""
+        return [holds(formula, each.c) for each in self.situations]
+
+    def way_to(self, run: Run, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
+        """Return the fewest steps in turn from the end of a run to some configuration, none if none lead there."""
+        timeline, reached = self.timeline, set(self.timeline.order)
+
+        def follow(number: int) -> Iterator[tuple[Transition, int]]:
+            for step in timeline.situations[number].steps:
+                target = timeline.numbers.get(step.transition.target)
+                if step.in_turn and target in reached:
+                    yield step.transition, target
+
+        done = self.transitions(run)
+        start = timeline.numbers[done[-1].target] if done else 0
+        return way_to(start, lambda number: is_end(timeline.situations[number].c), follow)
+
+    def unbounded(self) -> set[str]:
+        """Return the rules by which agents may do something in their turn that nothing says an end of."""
+        return {label.rule for each in self.situations for label in each.unbounded()}
+
+    def longest_flights(self) -> dict[Name, int]:
+        """Return for how many ticks a flight of each agent takes at most, where that is bounded."""
+        most: dict[Name, int] = {}
+        for situation in self.situations:
+            for clock, interval in situation.bounds.items():
+                if clock.sort is Sort.AIM and isinstance(clock.of, FLY):
+                    most[clock.of.agent] = max(most.get(clock.of.agent, 0), interval.hi or 0)
+        return most
+
     # --- durations
 
     def true_in(self, formula: Proposition) -> list[bool]:
         """Return for each state whether a proposition is true there."""
-        true = {number: holds(formula, self.timeline.situations[number].c) for number in self.timeline.order}
+        true = dict(zip(self.timeline.order, self.where(formula), strict=True))
         return [true[number] for number, _ in self.timeline.states]
 
     def within(self, asked: Proposition | None, awaited: Proposition, most: int) -> Wait:

@@ -15,7 +15,7 @@ from checker.engines.reference import crowded
 from checker.engines.runs import DELAY, layers
 from checker.engines.tick_times import Ticks
 from checker.engines.timeline import Timeline
-from checker.engines.times import inspect_in_time
+from checker.engines.times import shown_in_time, shown_to
 from checker.limits import Stop, is_full
 from semantics.state.configuration import Configuration
 
@@ -31,7 +31,10 @@ def explore_in_ticks(initial: Configuration, inspect: Iterable[Inspect], options
             break
         timeline.begin()  # a constant is larger than it was taken for: clocks are counted further
     found.times = _summarise(timeline, found)
-    inspect_in_time(found.times, tuple(inspect))
+    for place in range(len(timeline.order)):
+        for inspection in inspect:
+            for c, steps in shown_in_time(found.times, place, shown_to(inspection)):
+                inspection(place, c, steps)
     found.seconds = time.monotonic() - started
     return found
 

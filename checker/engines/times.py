@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Final, NamedTuple, Protocol
 
@@ -12,6 +12,7 @@ from checker.properties.inspections import InTime
 from semantics.environment import Says
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
+from semantics.state.signature import Name
 from semantics.successors import Expansion
 from semantics.timing.clocks import Situation
 
@@ -122,6 +123,18 @@ class Times(Protocol):
     def moments(self, formula: Proposition) -> Moments:
         """Return when something is first true."""
 
+    def where(self, formula: Proposition) -> Sequence[bool]:
+        """Return for each configuration whether a proposition is true there."""
+
+    def way_to(self, run: Run, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
+        """Return the fewest steps in turn from the end of a run to some configuration, none if none lead there."""
+
+    def unbounded(self) -> Set[str]:
+        """Return the rules by which agents may do something in their turn that nothing says an end of."""
+
+    def longest_flights(self) -> Mapping[Name, int]:
+        """Return for how many ticks a flight of each agent takes at most, where that is bounded."""
+
     def spans(self, steps: Sequence[Set[TakenStep]]) -> list[Span]:
         """Return for each of some sets of steps when one of them is taken."""
 
@@ -132,19 +145,23 @@ class Times(Protocol):
         """Return the first run after which no time can pass any more."""
 
 
-def inspect_in_time(times: Times, inspect: Sequence[object]) -> None:
-    """Show each configuration to inspections as each of them wants to see it."""
-    for place, situation in enumerate(times.situations if inspect else ()):
-        for inspection in inspect:
-            match getattr(inspection, "in_time", InTime.ENABLED):
-                case InTime.TAKEN:
-                    inspection(place, situation.c, _taken(situation, times.taken(place)))  # type: ignore[operator]
-                case InTime.TOGETHER:
-                    for pair in times.together(place):
-                        inspection(place, situation.c, Expansion(pair, ()))  # type: ignore[operator]
-                case _:
-                    c = _without_sayings(situation, times.unsayable(place))
-                    inspection(place, c, situation.expansion)  # type: ignore[operator]
+def shown_in_time(times: Times, place: int, shown: InTime) -> Iterator[tuple[Configuration, Expansion]]:
+    """Yield what is shown of a configuration to an inspection."""
+    situation = times.situations[place]
+    match shown:
+        case InTime.TAKEN:
+            yield situation.c, _taken(situation, times.taken(place))
+        case InTime.TOGETHER:
+            for pair in times.together(place):
+                yield situation.c, Expansion(pair, ())
+        case InTime.ENABLED:
+            yield without_sayings(times.unsayable(place), situation.c), situation.expansion
+
+
+def shown_to(inspection: object) -> InTime:
+    """Return what is shown to an inspection."""
+    shown: InTime = getattr(inspection, "in_time", InTime.ENABLED)
+    return shown
 
 
 def _taken(situation: Situation, steps: set[int]) -> Expansion:
@@ -155,8 +172,8 @@ def _taken(situation: Situation, steps: set[int]) -> Expansion:
     return Expansion(by_agents, by_environment, (), expansion.faults)
 
 
-def _without_sayings(situation: Situation, late: set[int]) -> Configuration:
-    """Return a configuration in which nobody can say any more what is too late at some time while it lasts."""
-    clauses = (situation.c.setting.environment[number] for number in sorted(late))
+def without_sayings(late: Set[int], c: Configuration) -> Configuration:
+    """Return a configuration in which nobody can say any more what some clauses say: it is too late for that."""
+    clauses = (c.setting.environment[number] for number in sorted(late))
     counters = {clause.counter: 0 for clause in clauses if isinstance(clause, Says)}
-    return situation.c.with_(counters) if counters else situation.c
+    return c.with_(counters) if counters else c

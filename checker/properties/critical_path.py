@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, TypeVar
 
 from checker.engines.runs import Run
 from semantics.state.configuration import Configuration, Label, Transition
@@ -14,6 +14,9 @@ from semantics.timing.bounds import Bound, bound_of, going_on, running_in, timed
 from semantics.timing.clocks import Situation, TimedStep
 from semantics.timing.dates import clock_text, lapse_text
 from semantics.timing.intervals import Interval
+
+Node = TypeVar("Node", bound=Hashable)
+Step = TypeVar("Step")
 
 BEGINNING: Final = -1
 """In the place of the number of a step: the start of the mission."""
@@ -105,20 +108,18 @@ def critical_path(
 
 
 def way_to(
-    c: Configuration, is_end: Callable[[Configuration], bool], situations: Iterable[Situation]
-) -> tuple[Transition, ...]:
-    """Return the fewest steps in turn from a configuration to an end, none if none lead there."""
-    known = {each.c: each for each in situations}
-    ways: dict[Configuration, tuple[Transition, ...]] = {c: ()}
-    waiting = deque([c])
+    start: Node, is_end: Callable[[Node], bool], follow: Callable[[Node], Iterable[tuple[Step, Node]]]
+) -> tuple[Step, ...]:
+    """Return the fewest steps from somewhere to an end, none if none lead there."""
+    ways: dict[Node, tuple[Step, ...]] = {start: ()}
+    waiting = deque([start])
     while waiting:
         at = waiting.popleft()
         if is_end(at):
             return ways[at]
-        for step in known[at].steps:
-            target = step.transition.target
-            if step.in_turn and target in known and target not in ways:
-                ways[target] = (*ways[at], step.transition)
+        for step, target in follow(at):
+            if target not in ways:
+                ways[target] = (*ways[at], step)
                 waiting.append(target)
     return ()
 

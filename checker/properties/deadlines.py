@@ -11,18 +11,17 @@ from checker.engines.contract import Exploration
 from checker.engines.runs import Run
 from checker.engines.times import Times
 from checker.limits import BoundMet
-from checker.properties.critical_path import Leg, critical_path, way_to
+from checker.properties.critical_path import Leg, critical_path
 from checker.properties.durations import NEVER
 from checker.properties.schedule import Milestone, Moments, Schedule, flights_of
 from checker.traces import Trace, dated_trace
 from checker.verdicts import Outcome, Verdict, Violation
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
-from semantics.properties.propositions import holds
+from semantics.properties.propositions import And, Not, holds
 from semantics.state.configuration import Configuration
-from semantics.state.requests import FLY
 from semantics.state.signature import Name
-from semantics.timing.actor_clocks import Sort, is_restored
+from semantics.timing.actor_clocks import is_restored
 from semantics.timing.clocks import Situation
 from semantics.timing.dates import clock_text, lapse_text
 from semantics.timing.timing import Timing
@@ -82,7 +81,7 @@ class Deadlines:
         """Return what all verdicts rest on: the scheduler, the bounds that were said; and what was not said."""
         scheduler = self.found.configurations[0].setting.scheduler.value
         bounds = (f"{words} (line {line})" if line else words for words, line in self.timing.lines)
-        unsaid = sorted({label.rule for each in self.times.situations for label in each.unbounded()})
+        unsaid = sorted(self.times.unbounded())
         searched = f"{self.times.searched}, in ticks of {self.text(1)}"
         said = f"searched over {searched}; times are those under 'scheduler {scheduler}'"
         return (
@@ -93,12 +92,8 @@ class Deadlines:
 
     def longest_flights(self) -> tuple[tuple[Name, float], ...]:
         """Return how many seconds a flight of each bigActor takes at most, where that is bounded."""
-        most: dict[Name, int] = {}
-        for situation in self.times.situations:
-            for clock, interval in situation.bounds.items():
-                if clock.sort is Sort.AIM and isinstance(clock.of, FLY):
-                    most[clock.of.agent] = max(most.get(clock.of.agent, 0), interval.hi or 0)
-        return tuple((agent, ticks * self.timing.tick / 1000) for agent, ticks in sorted(most.items()))
+        most = sorted(self.times.longest_flights().items())
+        return tuple((agent, ticks * self.timing.tick / 1000) for agent, ticks in most)
 
     @property
     def outcome(self) -> Outcome:
@@ -112,8 +107,10 @@ class Deadlines:
         responds = asked.then is not None
         awaited = asked.formula if asked.then is None else asked.then
         wait = self.times.within(asked.formula if responds else None, awaited, asked.bound)
-        whole = [each.c for each in self.times.situations] if responds else [self.times.initial]
-        examined = sum(not holds(awaited, c) and (not responds or holds(asked.formula, c)) for c in whole)
+        if responds:
+            examined = sum(self.times.where(And((asked.formula, Not(awaited)))))
+        else:
+            examined = int(not holds(awaited, self.times.initial))
         if wait.late is not None:
             late = (self._late(asked, wait.late, ever=wait.ever),)
             return Verdict(asked, Outcome.VIOLATED, late, 1, examined, different=1)
@@ -128,16 +125,12 @@ class Deadlines:
         awaited = asked.shown if asked.then is None else str(asked.then)
         message = f"still not true at {self.clock(run.end)}{since}: {awaited}"
         details = (*(["it may stay so for ever"] if ever else []), *self._unsaid(trace.configurations[-1]))
-        path = self._path(
-            run, trace, lambda c: holds(asked.then or asked.formula, c), begun if asked.then else 0
-        )
+        path = self._path(run, lambda c: holds(asked.then or asked.formula, c), begun if asked.then else 0)
         return Violation("late", message, trace, details, path=path)
 
-    def _path(
-        self, run: Run, trace: Trace, is_awaited: Callable[[Configuration], bool], since: int = 0
-    ) -> tuple[Leg, ...]:
+    def _path(self, run: Run, is_awaited: Callable[[Configuration], bool], since: int = 0) -> tuple[Leg, ...]:
         """Return the steps that the date of a run is made of, with those that are awaited at its end."""
-        onward = way_to(trace.configurations[-1], is_awaited, self.times.situations)
+        onward = self.times.way_to(run, is_awaited)
         return critical_path(self.times.initial, self.times.transitions(run), run, onward, since)
 
     def _unsaid(self, c: Configuration) -> Iterator[str]:
@@ -179,7 +172,7 @@ class Deadlines:
         message = f"{vehicle} lasts {self.text(lasts)}, and is aloft for longer at {self.clock(run.end)}"
         details = tuple(self._unsaid(trace.configurations[-1]))
         since = run.end - lasts - 1
-        path = self._path(run, trace, lambda c: is_restored(c, vehicle), since)
+        path = self._path(run, lambda c: is_restored(c, vehicle), since)
         return Violation("exhausted", message, trace, details, subject=vehicle, path=path)
 
     def schedule(self, asked: Iterable[Property]) -> Schedule:

@@ -312,6 +312,16 @@ def test_a_run_that_is_resumed_says_what_broke_before_and_who_is_taken_over(caps
         assert RESUMED in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("there")
+def test_a_run_that_goes_on_from_a_recording_without_a_beginning_says_that_its_clocks_begin_anew(capsys):
+    line = ["run", "oil_spill_timed", UAV, "--unverified", "--wait", "0.2"]
+    assert main([*line, "--record", "first.mcap"]) == 2  # no vehicle is heard, so it has not begun
+    assert "clocks" not in capsys.readouterr().err
+    assert main([*line, "--resume", "first.mcap"]) == 2
+    said = "the recording does not say when the mission began: all clocks begin anew"
+    assert said in capsys.readouterr().err
+
+
 def test_a_run_that_goes_on_from_a_broken_one_is_broken():
     terminal = Terminal(lambda _: ())
     terminal.goes_on([BREACH], TAKEN)

@@ -27,7 +27,7 @@ from semantics.races.monitor import CONTROLS
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
-from semantics.successors import Expansion, expand, served
+from semantics.successors import Expansion, served
 
 Bools = NDArray[np.bool_]
 Tally = tuple[Key | None, int, int]
@@ -63,11 +63,11 @@ def look_at_each(survey: Survey, inspection: Inspect) -> None:
     """Let an inspection look at every configuration."""
     for number in range(survey.size):
         look()
-        c = survey.space.configuration(number)
-        inspection(number, c, expand(c))
+        for c, steps in survey.shown(number):
+            inspection(number, c, steps)
 
 
-def _collect(
+def collect(
     survey: Survey, inspection: Inspection, tallies: Iterable[Tally], make: Callable[[], Inspection]
 ) -> None:
     """Let an inspection have found what there is; a new one looks once more where each was met first."""
@@ -76,8 +76,8 @@ def _collect(
     def again(number: int) -> Collected:
         fresh = make()
         fresh.collected.apart = True
-        c = survey.space.configuration(number)
-        fresh(number, c, expand(c))
+        for c, steps in survey.shown(number):
+            fresh(number, c, steps)
         return fresh.collected
 
     collected = inspection.collected
@@ -107,8 +107,8 @@ def _by_discovery(found: dict[Key, tuple[int, int]], again: Callable[[int], Coll
 
 def look_at_agents(survey: Survey, inspection: Inspection) -> None:
     """Collect what an inspection finds of agents, each by itself and all together."""
-    tallies = [*_alone(survey, inspection), *_together(survey, inspection)]
-    _collect(survey, inspection, tallies, lambda: type(inspection)(ALL))
+    tallies = [*_alone(survey, inspection), *together(survey, inspection)]
+    collect(survey, inspection, tallies, lambda: type(inspection)(ALL))
 
 
 def _alone(survey: Survey, inspection: Inspection) -> Iterator[Tally]:
@@ -121,15 +121,25 @@ def _seen(inspection: Inspection, a: Name, c: Configuration) -> tuple[Key | None
     return tuple(each.wrong for each in inspection.seen(excerpt(c, inspection.alone, (a,))))
 
 
-def _together(survey: Survey, inspection: Inspection) -> Iterator[Tally]:
-    """Yield what is found where no agent must move: asked agent by agent, of those that are left each time."""
+def as_it_is(c: Configuration) -> Configuration:
+    """Return a configuration."""
+    return c
+
+
+def together(
+    survey: Survey, inspection: Inspection, view: Callable[[Configuration], Configuration] = as_it_is
+) -> Iterator[Tally]:
+    """Yield what is found where no agent must move: asked agent by agent, of those that are left each time.
+
+    Asked is what a configuration is seen as.
+    """
     agents = survey.agents() if inspection.together else ()
-    trees = [survey.space.learner.question(partial(_still, inspection, a)) for a in agents]
+    trees = [survey.space.learner.question(partial(_still, inspection, a, view)) for a in agents]
     numbers: dict[Hashable, int] = {None: 0}
     for block in survey.blocks() if agents else ():
         rows, answers, kinds = block, np.zeros((0, len(block)), np.int64), np.zeros(len(block), np.int64)
         for tree in trees:
-            said = survey.numbered(survey.space.classify(tree, rows), numbers)
+            said = survey.numbered(survey.classify(tree, rows), numbers)
             left = said > 0
             rows, answers = rows[left], np.vstack((answers[:, left], said[left]))
             kinds = np.unique(kinds[left] << 32 | said[left], return_inverse=True)[1]
@@ -140,8 +150,10 @@ def _together(survey: Survey, inspection: Inspection) -> Iterator[Tally]:
             yield from ((each.wrong, int(count), int(rows[first])) for each in inspection.judged(waits))
 
 
-def _still(inspection: Inspection, a: Name, c: Configuration) -> Hashable:
-    return inspection.still(excerpt(c, inspection.together, (a,)))
+def _still(
+    inspection: Inspection, a: Name, view: Callable[[Configuration], Configuration], c: Configuration
+) -> Hashable:
+    return inspection.still(excerpt(view(c), inspection.together, (a,)))
 
 
 def excerpt(c: Configuration, rules: Iterable[Rules], agents: Iterable[Name]) -> Excerpt:
@@ -166,33 +178,46 @@ def look_at_races(survey: Survey, inspection: ControlRaces) -> None:
     asked = {pair: space.learner.question(partial(_between, inspection, pair)) for pair in pairs}
     controlling = cache(partial(has_control, survey))
     independent = cache(partial(are_independent, survey))
+
+    def are_fine(one: int, other: int) -> bool | None:
+        if not (controlling(one) and controlling(other)):
+            return None
+        return not unordered and independent(one, other)
+
     for rows in survey.blocks():
-        leaves = {a: space.classify(trees[a], rows) for a in agents}
+        leaves = {a: survey.classify(trees[a], rows) for a in agents}
         for a, b in pairs:
-            both = leaves[a].astype(np.int64) << 32 | leaves[b]
-            kinds, firsts, which, counts = np.unique(
-                both, return_index=True, return_inverse=True, return_counts=True
-            )
-            together = np.zeros(len(kinds), np.bool_)
-            for kind, pair in enumerate(kinds):
-                one, other = int(pair) >> 32, int(pair) & 0xFFFFFFFF
-                if not (controlling(one) and controlling(other)):
-                    continue
-                if not unordered and independent(one, other):
-                    tallies.append((None, int(counts[kind]), int(rows[firsts[kind]])))
-                else:
-                    together[kind] = True
-            tallies += _of_rows(survey, asked[a, b], rows[together[which]])
-    _collect(survey, inspection, tallies, lambda: ControlRaces(ALL))
+            tallies += of_pairs(survey, asked[a, b], rows, (leaves[a], leaves[b]), are_fine)
+    collect(survey, inspection, tallies, lambda: ControlRaces(ALL))
+
+
+def of_pairs(
+    survey: Survey,
+    tree: int,
+    rows: NDArray[np.int64],
+    leaves: tuple[NDArray[np.int32], NDArray[np.int32]],
+    are_fine: Callable[[int, int], bool | None],
+) -> Iterator[Tally]:
+    """Yield what a question finds where two leaves say neither that all is fine nor (None) that nothing is there."""
+    both = leaves[0].astype(np.int64) << 32 | leaves[1]
+    kinds, firsts, which, counts = np.unique(both, return_index=True, return_inverse=True, return_counts=True)
+    asked = np.zeros(len(kinds), np.bool_)
+    for kind, pair in enumerate(kinds.tolist()):
+        fine = are_fine(pair >> 32, pair & 0xFFFFFFFF)
+        asked[kind] = fine is False
+        if fine:
+            yield None, int(counts[kind]), int(rows[firsts[kind]])
+    yield from of_rows(survey, tree, rows[asked[which]])
 
 
 def _between(inspection: ControlRaces, pair: tuple[Name, Name], c: Configuration) -> tuple[Key | None, ...]:
     return tuple(each.wrong for each in inspection.between(excerpt(c, (served,), pair), frozenset(pair)))
 
 
-def _of_rows(survey: Survey, tree: int, rows: NDArray[np.int64]) -> Iterator[Tally]:
+def of_rows(survey: Survey, tree: int, rows: NDArray[np.int64]) -> Iterator[Tally]:
+    """Yield what a question finds in some rows."""
     if len(rows):
-        leaves = survey.space.classify(tree, rows)
+        leaves = survey.classify(tree, rows)
         for leaf, first, count in distinct(leaves):
             for key in survey.space.learner.answers[leaf]:  # type: ignore[attr-defined]  # a tuple of keys
                 yield key, count, int(rows[first])
@@ -275,7 +300,7 @@ def look_at_invariant(survey: Survey, inspection: Invariant) -> None:
         (None if fine else inspection.WRONG, int(count), int(first))
         for fine, first, count in zip(good, firsts, counts, strict=True)
     ]
-    _collect(survey, inspection, tallies, lambda: Invariant(inspection.formula, inspection.shown))
+    collect(survey, inspection, tallies, lambda: Invariant(inspection.formula, inspection.shown))
 
 
 def look_at_reachability(survey: Survey, inspection: Reachability) -> None:

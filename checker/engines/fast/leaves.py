@@ -79,6 +79,11 @@ class Leaves:
             self._add(step)
         return self.leaves.append(first, len(self.rule), flags, 0) // LEAF
 
+    def rank_of(self, step: int) -> int:
+        """Return which a transition is among those of its leaf."""
+        firsts = self.leaves.used[FIRST::LEAF]
+        return step - int(firsts[np.searchsorted(firsts, step, side="right") - 1])
+
     def steps_of(self, leaf: int) -> range:
         """Return the numbers of a leaf's transitions."""
         return range(*map(int, self.leaves.room[LEAF * leaf + FIRST : LEAF * leaf + END + 1]))

@@ -108,7 +108,7 @@ class Profiles:
         return _Block(self, codes, len(rows)).true(self.formula)
 
     def _codes(self, one: Subject, rows: Numbers) -> Numbers:
-        leaves = self.survey.space.classify(self.trees[one], rows)
+        leaves = self.survey.classify(self.trees[one], rows)
         self.met[one].update(known(leaves))
         return self.survey.numbered(leaves, self.numbers[one])
 

@@ -12,6 +12,7 @@ from checker.engines.fast.space import Space
 from semantics.state.cells import AGENTS
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
+from semantics.successors import Expansion, expand
 
 BLOCK = 1 << 18
 """Rows that are classified at once: what is worked out of them takes some fifty bytes each."""
@@ -48,6 +49,19 @@ class Survey:
             groups = [column.value(code) for code in range(len(column.values))]
         return tuple(sorted({agent for group in groups for agent in group}))
 
+    def configuration(self, number: int) -> Configuration:
+        """Return a configuration."""
+        return self.space.configuration(number)
+
+    def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
+        """Return the leaf that each configuration leads to in a tree."""
+        return self.space.classify(tree, rows)
+
+    def shown(self, number: int) -> Iterator[tuple[Configuration, Expansion]]:
+        """Yield what an inspection is shown of a configuration."""
+        c = self.configuration(number)
+        yield c, expand(c)
+
     def answers(self, question: Callable[[Configuration], Hashable]) -> list[Answer]:
         """Return each answer once, in the order in which they were first given."""
         found: dict[Hashable, Answer] = {}
@@ -68,7 +82,7 @@ class Survey:
 
     def leaves(self, tree: int) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int32]]]:
         """Yield rows with the leaf that each leads to in a tree, block by block."""
-        return ((rows, self.space.classify(tree, rows)) for rows in self.blocks())
+        return ((rows, self.classify(tree, rows)) for rows in self.blocks())
 
     def where(self, question: Callable[[Configuration], bool], size: int | None = None) -> NDArray[np.bool_]:
         """Return for each expanded configuration, or for the first so many, whether it answers yes."""
@@ -83,7 +97,7 @@ class Survey:
         met: set[int] = set()
         numbers: dict[Hashable, int] = {False: 0, True: 1}
         for rows in self.blocks(size):
-            leaves = self.space.classify(tree, rows)
+            leaves = self.classify(tree, rows)
             met.update(known(leaves))
             found.append(self.numbered(leaves, numbers) == 1)
         return np.concatenate(found), len(met) > 1

@@ -65,7 +65,7 @@ LOCATION, EDGE, TEST, DEADLINE = 8, 7, 3, 2
 """How many numbers each of them has."""
 
 SIZE, CLOCKS, DEADLINES, DEADLINES_END, EDGES, EDGES_END, GOAL, LEAST = range(LOCATION)
-STEP, TARGET, TESTS, TESTS_END, SOURCES, RULE, FIRST = range(EDGE)
+STEP, TARGET, TESTS, TESTS_END, SOURCES, LEARNED, FIRST = range(EDGE)
 
 
 def _numbers() -> Growing:
@@ -78,7 +78,8 @@ class Automaton:
 
     Attributes:
         locations: Of each `LOCATION` numbers: one more than it has clocks, where its parts are, its goal.
-        edges: Of each `EDGE` numbers; the last are its rule and after how many steps it was first taken.
+        edges: Of each `EDGE` numbers; the last are the number by which its step was learned, and after how many steps
+            it was first taken.
         lower, upper: For each clock the largest constant that it is compared with from below and from above.
         rows: The row of each location: those of one row are followed side by side.
         largest: One more than the most clocks that a location has.

@@ -10,8 +10,8 @@ import numpy as np
 
 from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError
 from checker.engines.fast.compiling import compilation_reported
-from checker.engines.times import inspect_in_time
 from checker.engines.zones.automaton import TooLargeError
+from checker.engines.zones.inspecting import inspect_zones
 from checker.engines.zones.network import Network
 from checker.engines.zones.search import CHUNK, Search
 from checker.engines.zones.zone_times import OfRows, ZoneTimes
@@ -53,7 +53,7 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
     if network.crowded(times.reached):
         found.bounds.append(options.limits.bound(Stop.PENDING))
     _summarise(times, found)
-    inspect_in_time(times, tuple(inspect))
+    inspect_zones(times, inspect)
     found.seconds = time.monotonic() - started
     return found
 

@@ -25,6 +25,7 @@ from checker.engines.fast.space import Space
 from checker.engines.fast.table import most_in
 from checker.engines.zones import unfolding
 from checker.engines.zones.automaton import (
+    CLOCKS,
     DEADLINE,
     DEADLINES,
     EDGE,
@@ -147,7 +148,6 @@ class Network(Space):
                 *(np.array(each, np.int32) for each in numbers),
                 *(each.room for each in arrays),
                 *(np.array(each, np.int32) for each in always),
-                self.learner.leaves.rule.room,
             )
         )
 
@@ -163,7 +163,8 @@ class Network(Space):
         self.answers.extend(missing * ANSWER, NONE)
         new = len(self.learner.answers) - self.noted
         for leaf, answer in reversed(list(islice(reversed(self.learner.answers.items()), new))):
-            assert isinstance(answer, ActorClocks)
+            if not isinstance(answer, ActorClocks):
+                continue  # somebody else's question
             if answer not in self.records:
                 self.records[answer] = self._record(answer)
             self.answers.room[ANSWER * leaf : ANSWER * (leaf + 1)] = self.records[answer]
@@ -334,6 +335,18 @@ class Network(Space):
     def index(self, location: int, clock: Clock) -> int:
         """Return the index of a clock that runs in a location."""
         return self.clocks(location).index(clock) + 1
+
+    def indices(self, clock: Clock) -> NDArray[np.int64]:
+        """Return the index of a clock that is directed by nothing in each location, 0 where it does not run."""
+        automaton = self.automaton
+        records = automaton.locations.used.reshape(-1, LOCATION)
+        at = np.flatnonzero(automaton.clocks.used == self.numbers[clock, None])[
+            ::-1
+        ]  # of equal ones the first last
+        locations = np.searchsorted(records[:, CLOCKS], at, side="right") - 1
+        found = np.zeros(len(records), np.int64)
+        found[locations] = at - records[locations, CLOCKS] + 1
+        return found
 
     def measured(self, situation: Situation, ages: Iterable[int]) -> tuple[int, ...]:
         """Return the ages of what measures time, as locations have them."""

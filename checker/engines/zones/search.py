@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.zones import kernel
-from checker.engines.zones.automaton import EDGES, LOCATION, SIZE, UNKNOWN, Automaton, Constraint
+from checker.engines.zones.automaton import EDGES, LOCATION, SIZE, UNKNOWN, Automaton
 from checker.engines.zones.bounds import FREE
 from checker.engines.zones.kernel import (
     AT,
@@ -198,14 +198,6 @@ class Search:
         size = int(self.automaton.locations.room[LOCATION * self.place(zone) + SIZE])
         begin = int(self.begins.room[zone])
         return self.bounds.room[begin : begin + size * size].reshape(size, size)
-
-    def showing(self, zones: NDArray[np.int64], test: Constraint) -> NDArray[np.int64]:
-        """Return which zones of one location have ages at which a clock shows at least so much."""
-        size = int(self.automaton.locations.room[LOCATION * self.place(int(zones[0])) + SIZE])
-        found: NDArray[np.int64] = zones[
-            self.bounds.room[self.begins.room[zones] + size * test.clock] >= test.least
-        ]
-        return found
 
     def by_place(self) -> dict[int, NDArray[np.int64]]:
         """Return the zones of each location."""

@@ -64,7 +64,6 @@ class Timed(NamedTuple):
         served: For each clock whether it is one of a request, of which there may be several.
         lasting: The clocks that run everywhere.
         restored: For each vehicle its clocks RESTORED and ALOFT, and how long it takes (`RESTORING`).
-        rules: For each transition the number of its rule.
         windows: For each window its clause, and its end or `NONE` (`WINDOW`); its clock has the number -1 - window.
     """
 
@@ -80,7 +79,6 @@ class Timed(NamedTuple):
     lasting: Ints
     restored: Ints
     windows: Ints
-    rules: Ints
 
 
 ANSWER, RUNNING, TIMES, RESTORING, WINDOW, CHOICE = 4, 3, 4, 3, 2, 3
@@ -333,7 +331,7 @@ def source_of(t: Timed, a: View, done: int, end: int, clock: int, earlier: int) 
 
 @njit(cache=True)
 def add_edges(  # each argument is another part of what is known
-    m: kernel.Model, t: Timed, g: Growth, a: View, b: View, here: int, row: int, times: int, number: int, rule: int,
+    m: kernel.Model, t: Timed, g: Growth, a: View, b: View, here: int, row: int, times: int, number: int, step: int,
     choices: Ints, s: State,
 ) -> int:  # fmt: skip
     """Add the edges of a step to a row that was looked at: one for each way in which it may be taken.
@@ -397,7 +395,7 @@ def add_edges(  # each argument is another part of what is known
             at = EDGE * s[LEAVING]
             g.edges[at + automata.STEP], g.edges[at + automata.TARGET] = number, target
             g.edges[at + automata.TESTS], g.edges[at + automata.TESTS_END] = fresh, s[TESTED]
-            g.edges[at + automata.SOURCES], g.edges[at + automata.RULE] = s[SOURCED], rule
+            g.edges[at + automata.SOURCES], g.edges[at + automata.LEARNED] = s[SOURCED], step
             g.edges[at + automata.FIRST] = NONE
             add_sources(t, g, a, b, done, end, target, choices, count, chosen, s)
             s[LEAVING] += 1
@@ -498,7 +496,7 @@ def leave_by_steps(
             if not look(m, t, words, target, b, state):
                 return MISS
             times = TIMES * (t.answers[record + 2] + step - first)
-            if add_edges(m, t, g, a, b, here, target, times, number, t.rules[step], choices, s) == FULL:
+            if add_edges(m, t, g, a, b, here, target, times, number, step, choices, s) == FULL:
                 return FULL
             number += 1
     return KNOWN

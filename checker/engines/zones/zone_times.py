@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence, Set
-from functools import cached_property
+from collections.abc import Callable, Iterator, Sequence, Set
+from functools import cached_property, partial, reduce
 from typing import TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
+from checker.engines.fast.inspecting import truths
 from checker.engines.runs import Run
 from checker.engines.tick_times import control_pairs
 from checker.engines.times import Moments, Span, Stop, TakenStep, Wait
@@ -18,24 +19,31 @@ from checker.engines.zones.automaton import (
     EDGES,
     EDGES_END,
     FIRST,
+    LEARNED,
     LOCATION,
-    RULE,
+    SIZE,
     STEP,
     Constraint,
 )
-from checker.engines.zones.bounds import MOST
+from checker.engines.zones.bounds import MOST, NONE
 from checker.engines.zones.dates import Dates, Zone, tested, whole
 from checker.engines.zones.first_run import run_of
 from checker.engines.zones.network import Network
 from checker.engines.zones.observers import Meter, Observer, Rule, Watch
+from checker.engines.zones.questions import NO_TURN, first_turn, is_aloft, longest_flight, unbounded
 from checker.engines.zones.search import Search
+from checker.engines.zones.timed_survey import TimedSurvey
 from checker.limits import look
+from checker.properties.critical_path import way_to
 from checker.properties.durations import NEVER
-from semantics.environment import Says
-from semantics.properties.propositions import Proposition, holds
-from semantics.state.configuration import Transition
-from semantics.timing.actor_clocks import Clock, Sort, is_restored
+from checker.properties.inspections import InTime
+from semantics.properties.propositions import Proposition
+from semantics.state.configuration import Configuration, Transition
+from semantics.state.setting import Scheduler
+from semantics.state.signature import Name
+from semantics.timing.actor_clocks import Clock, Sort, Test
 from semantics.timing.clocks import Situation, TimedStep
+from semantics.timing.timing import Sayable
 
 Made = TypeVar("Made")
 
@@ -87,6 +95,53 @@ class ZoneTimes:
         """What time means in each configuration."""
         return OfRows(self.network.situation, self.order)
 
+    def survey(self, shown: InTime = InTime.ENABLED) -> TimedSurvey:
+        """Return a survey of the configurations."""
+        return TimedSurvey(self.network, self, self.order, shown)
+
+    # --- of all zones
+
+    @cached_property
+    def _locations(self) -> NDArray[np.int32]:
+        """The location of each zone."""
+        found: NDArray[np.int32] = self.search.places.room[: self.search.count]
+        return found
+
+    @cached_property
+    def places(self) -> NDArray[np.int64]:
+        """The place of each zone's configuration."""
+        rows = self.network.of_locations.room[self._locations]
+        found: NDArray[np.int64] = self.search.ranks.room[rows].astype(np.int64)
+        return found
+
+    def latest(self, zones: NDArray[np.int64], clock: Clock) -> NDArray[np.int32]:
+        """Return the most that a clock may show in some zones; less than nothing where it does not run."""
+        indices = self.network.indices(clock)[self._locations[zones]]
+        sizes = self.network.automaton.locations.used[SIZE::LOCATION][self._locations[zones]]
+        shown = self.search.bounds.room[self.search.begins.room[zones] + sizes * indices]
+        return np.where(indices > 0, shown, NONE).astype(np.int32)
+
+    def is_due(self, zones: NDArray[np.int64], turn: float, tests: tuple[Test, ...]) -> NDArray[np.bool_]:
+        """Return in which zones what has a turn and tests may be done, apart from its turn.
+
+        What waits for its turn counts as if it had come to its least time. Zones are closed under the passing of time,
+        so two things that are due in one zone are so at one moment of it.
+        """
+        waits = turn > self._first_turns[self.places[zones]] if turn < NO_TURN else np.False_
+        due = [self.latest(zones, clock) >= least for clock, least, _ in tests]
+        found: NDArray[np.bool_] = waits | np.any(due, axis=0) if due else np.ones(len(zones), np.bool_)
+        return found
+
+    @cached_property
+    def _first_turns(self) -> NDArray[np.float64]:
+        """For each configuration the turn of what is in its turn there."""
+        survey = self.survey()
+        found = np.full(len(self.order), NO_TURN)
+        for a in survey.agents() if self.initial.setting.scheduler is Scheduler.FCFS else ():
+            numbers, turns = survey.answered(partial(first_turn, a))
+            found = np.minimum(found, np.array(turns, np.float64)[numbers])
+        return found
+
     @cached_property
     def _by_place(self) -> dict[int, NDArray[np.int64]]:
         return self.search.by_place()
@@ -111,8 +166,9 @@ class ZoneTimes:
         """Return the steps of a configuration that are taken at some time."""
         return set(self.firsts_of(place))
 
-    def taken_rules(self) -> NDArray[np.int32]:
-        """Return the rule of each step that is taken in a configuration, once."""
+    @cached_property
+    def _taken(self) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+        """Each step that is taken in a configuration, once: what was learned of it, and the configuration's place."""
         locations = self.network.automaton.locations.used.reshape(-1, LOCATION)
         edges = self.network.automaton.edges.used.reshape(-1, EDGE)
         counts = np.maximum(locations[:, EDGES_END] - locations[:, EDGES], 0)
@@ -121,8 +177,45 @@ class ZoneTimes:
         taken = edges[:, FIRST] >= 0
         steps = np.stack([rows[taken], edges[taken, STEP]])
         _, first = np.unique(steps, axis=1, return_index=True)
-        found: NDArray[np.int32] = edges[taken, RULE][first]
+        return edges[taken, LEARNED][first], self.search.ranks.room[rows[taken][first]].astype(np.int64)
+
+    def taken_rules(self) -> NDArray[np.int32]:
+        """Return the rule of each step that is taken in a configuration, once."""
+        found: NDArray[np.int32] = self.network.learner.leaves.rule.room[self._taken[0]]
         return found
+
+    def taken_steps(self) -> Iterator[tuple[int, NDArray[np.int64]]]:
+        """Yield each learned step that is taken at some time, with the places where it is."""
+        steps, places = self._taken
+        order = np.argsort(steps, kind="stable")
+        met, begins = np.unique(steps[order], return_index=True)
+        yield from zip(
+            met.tolist(), np.split(places[order], begins[1:]), strict=False
+        )  # no step has one empty part
+
+    def where(self, formula: Proposition) -> list[bool]:
+        """Return for each configuration whether a proposition is true there."""
+        true: list[bool] = truths(self.survey(), formula, len(self.order)).tolist()
+        return true
+
+    def unbounded(self) -> set[str]:
+        """Return the rules by which agents may do something in their turn that nothing says an end of."""
+        survey, found = self.survey(), set[str]()
+        for a in survey.agents():
+            answers, several = survey.answered(partial(unbounded, a))
+            for number, steps in enumerate(several):
+                turns = self._first_turns[answers == number]
+                found |= {rule for rule, turn in steps if turn == NO_TURN or np.any(turns >= turn)}
+        return found
+
+    def longest_flights(self) -> dict[Name, int]:
+        """Return for how many ticks a flight of each agent takes at most, where that is bounded."""
+        survey = self.survey()
+        answers = {a: survey.answers(partial(longest_flight, a)) for a in survey.agents()}
+        bounded = {
+            a: [each.value for each in found if each.value is not None] for a, found in answers.items()
+        }
+        return {a: max(most) for a, most in bounded.items() if most}
 
     def together(self, place: int) -> Iterator[tuple[Transition, ...]]:
         """Yield each pair of pending controls that may be served at one moment."""
@@ -143,17 +236,50 @@ class ZoneTimes:
 
     def unsayable(self, place: int) -> set[int]:
         """Return the clauses whose message cannot be said any more at some time in a configuration."""
-        situation = self.situations[place]
-        clauses = situation.c.setting.environment
-        if Clock(Sort.MISSION) not in situation.first or not any(isinstance(each, Says) for each in clauses):
-            return set()
-        mission = Clock(Sort.MISSION)
-        latest = max(int(zone[self.network.index(at, mission), 0]) for at, zone in self._zones(place))
-        ages = [0] * len(situation.clocks)
-        ages[situation.first[mission]] = latest
-        return set(situation.unsayable(tuple(ages)))
+        return next(set(late) for late, places in self.late_sayings if place in places)
+
+    @cached_property
+    def late_sayings(self) -> list[tuple[frozenset[int], NDArray[np.int64]]]:
+        """The sets of clauses whose messages cannot be said any more at some time, each with the places of that."""
+        ends = {
+            number: times.step.until
+            for number, times in enumerate(self.network.timing.clauses)
+            if isinstance(times.step, Sayable) and times.step.until is not None
+        }
+        every = np.arange(len(self.order))
+        if not ends:
+            return [(frozenset(), every)]
+        latest = np.zeros(len(self.order), np.int64)
+        zones = np.arange(len(self.places))
+        np.maximum.at(latest, self.places, self.latest(zones, Clock(Sort.MISSION)))
+        late = np.stack([latest > until for until in ends.values()])
+        kinds, which = np.unique(late, axis=1, return_inverse=True)
+        return [
+            (
+                frozenset(n for n, is_late in zip(ends, kind, strict=True) if is_late),
+                every[which.ravel() == at],
+            )
+            for at, kind in enumerate(kinds.T)
+        ]
 
     # --- runs
+
+    def way_to(self, run: Run, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
+        """Return the fewest steps in turn from the end of a run to some configuration, none if none lead there."""
+
+        def follow(row: int) -> Iterator[tuple[tuple[int, int], int]]:
+            targets = self._targets(row).items()
+            return (((row, step), target) for step, target in targets if self.search.ranks.room[target] >= 0)
+
+        row = reduce(lambda at, step: self._targets(at)[step], run.steps, 0)
+        way = way_to(row, lambda at: is_end(self.network.configuration(at)), follow)
+        return tuple(self.network.situation(at).steps[step].transition for at, step in way)
+
+    def _targets(self, row: int) -> dict[int, int]:
+        """Return the row that each step in its turn leads to, from where a row was reached."""
+        rows = self.network.of_locations.room
+        edges = (e for location in self.network.locations(row) for e in self.network.automaton.out(location))
+        return {each.step: int(rows[each.target]) for each in sorted(edges, key=lambda each: each.step)}
 
     def transitions(self, run: Run) -> tuple[Transition, ...]:
         """Return what is done in a run."""
@@ -190,7 +316,7 @@ class ZoneTimes:
     def true_in(self, formula: Proposition) -> list[bool]:
         """Return for each location whether a proposition is true there."""
         found = np.zeros(self.network.size, np.bool_)
-        found[self.order] = [holds(formula, c) for c in OfRows(self.network.configuration, self.order)]
+        found[self.order] = self.where(formula)
         true: list[bool] = found[self.network.of_locations.used].tolist()
         return true
 
@@ -217,7 +343,7 @@ class ZoneTimes:
         meter = Meter(most + 1, goal=(Watch.ON, most + 1))
         observer, search = self.explored(Observer(self.network, rule, meter))
         if search.found < 0:
-            return Wait(max(_shown(observer, search, Watch.ON), default=0))
+            return Wait(int(_shown(observer, search, Watch.ON)[1].max(initial=0)))
         run = self._measured(search).run()
         longest = self._longest(rule, Watch.ON, most)
         return Wait(longest, run, math.isinf(longest))
@@ -240,14 +366,10 @@ class ZoneTimes:
     def _first(self, rule: Rule) -> Run | None:
         """Return the first run of those that come first to an end."""
         observer, search = self.explored(Observer(self.network, rule, Meter(upper=MOST)))
-        ends = [
-            -int(zone[0, observer.clock(place)])
-            for place, zone in search
-            if observer.spots[place].watch is Watch.END
-        ]
-        if not ends:
+        ends, _ = _shown(observer, search, Watch.END)
+        if not len(ends):
             return None
-        earliest = min(ends)
+        earliest = int(ends.min())
         meter = Meter(upper=earliest, most=earliest, goal=(Watch.END, 0))
         _, search = self.explored(Observer(self.network, rule, meter))
         return self._measured(search).run()
@@ -281,7 +403,7 @@ class ZoneTimes:
                 Observer(self.network, rule, Meter(most + 1, goal=(where, most + 1)))
             )
             if search.found < 0:
-                return max(_shown(observer, search, where), default=NEVER)
+                return float(_shown(observer, search, where)[1].max(initial=NEVER))
             if self.goes_round(observer, self._measured(search)):
                 return math.inf
             most *= 4
@@ -327,37 +449,40 @@ class ZoneTimes:
 
     def exhausted(self) -> tuple[dict[str, Run], int]:
         """Return the first run on which each vehicle is aloft for too long, and how many configurations show that."""
-        tests = {location: self.exhaustion(location) for location in self.reached.tolist()}
-        first: dict[str, int] = {}
-        where: set[int] = set()
-        for location, several in tests.items():
-            for vehicle, test in several.items():
-                for zone in self.search.showing(self._by_place[location], test):
-                    first[vehicle] = min(int(zone), first.get(vehicle, int(zone)))
-                    where.add(self.network.place(location).number)
-        found = {vehicle: self._exhausting(vehicle, zone, tests) for vehicle, zone in sorted(first.items())}
-        return found, len(where)
+        zones, first, where = np.arange(len(self.places)), dict[Name, int](), np.zeros(0, np.int64)
+        for vehicle, endurance in self.network.timing.endurances:
+            late = self.latest(zones, Clock(Sort.ALOFT, vehicle)) > endurance.lasts
+            showing = zones[self._aloft[vehicle][self.places] & late]
+            if len(showing):
+                first[vehicle] = int(showing[0])
+                where = np.union1d(where, self.places[showing])
+        return {vehicle: self._exhausting(vehicle, zone) for vehicle, zone in sorted(first.items())}, len(
+            where
+        )
 
-    def exhaustion(self, location: int) -> dict[str, Constraint]:
+    @cached_property
+    def _aloft(self) -> dict[Name, NDArray[np.bool_]]:
+        """Where each vehicle that lasts so long is there and is not where it is restored."""
+        vehicles = [vehicle for vehicle, _ in self.network.timing.endurances]
+        return {vehicle: self.survey().where(partial(is_aloft, vehicle)) for vehicle in vehicles}
+
+    def exhaustion(self, location: int) -> dict[Name, Constraint]:
         """Return what the clocks show in a location where a vehicle is aloft for too long."""
-        situation = self.network.situation(self.network.place(location).number)
+        place = int(self.search.ranks.room[self.network.place(location).number])
         return {
             vehicle: Constraint(self.network.index(location, Clock(Sort.ALOFT, vehicle)), endurance.lasts + 1)
-            for vehicle, endurance in situation.timing.endurances
-            if vehicle in situation.c.structure.physical and not is_restored(situation.c, vehicle)
+            for vehicle, endurance in self.network.timing.endurances
+            if place >= 0 and self._aloft[vehicle][place]
         }
 
-    def _exhausting(self, vehicle: str, zone: int, tests: Mapping[int, dict[str, Constraint]]) -> Run:
+    def _exhausting(self, vehicle: Name, zone: int) -> Run:
         def goal(location: int) -> list[Zone]:
             size = len(self.network.automaton.location(location).clocks)
-            wanted = (
-                tested(whole(size), [tests[location][vehicle]])
-                if vehicle in tests.get(location, ())
-                else None
-            )
+            tests = [test for name, test in self.exhaustion(location).items() if name == vehicle]
+            wanted = tested(whole(size), tests) if tests else None
             return [] if wanted is None else [wanted]
 
-        return run_of(self.search, goal, self.search.depth(zone), tests).run()
+        return run_of(self.search, goal, self.search.depth(zone), self.reached.tolist()).run()
 
     def stop(self) -> Stop | None:
         """Return the first run after which no time can pass any more."""
@@ -366,8 +491,13 @@ class ZoneTimes:
         return first_stop(self.network)
 
 
-def _shown(observer: Observer, search: Search, where: Watch) -> Iterator[int]:
-    """Yield the most that the clock shows in each zone of some locations."""
-    for place, zone in search:
-        if observer.spots[place].watch is where:
-            yield int(zone[observer.clock(place), 0])
+def _shown(
+    observer: Observer, search: Search, where: Watch
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the least and the most that the observer's clock, the last, shows in the zones of some locations."""
+    places = search.places.room[: search.count]
+    zones = np.flatnonzero(np.array([spot.watch is where for spot in observer.spots])[places])
+    sizes = search.automaton.locations.used[SIZE::LOCATION][places[zones]].astype(np.int64)
+    begins, bounds = search.begins.room[zones], search.bounds.room
+    least, most = -bounds[begins + sizes - 1], bounds[begins + sizes * (sizes - 1)]
+    return least.astype(np.float64), most.astype(np.float64)

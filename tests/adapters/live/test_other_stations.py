@@ -17,6 +17,7 @@ from checker.traces import SCHEMA
 from semantics.state.parcel_serialization import parcel_json
 from semantics.state.partition import Parcel, Parting, parted, station_of
 from semantics.state.physical_model import InTransit
+from semantics.timing.actor_clocks import Clock, Sort
 
 TEXT = (
     (
@@ -75,6 +76,57 @@ def test_a_message_leaves_with_the_step_that_sends_it_and_enters_at_the_other_st
     assert gcs1.labels[-1] == "⟨leave : op0, gcs0⟩"
     for run in (gcs0, gcs1):
         assert replayed(run) == run.state.configuration
+
+
+# --- times
+
+TIMED = """
+scheduler fcfs
+control timed
+timing {
+  agents react within 2 s
+  uav0 lasts 10 min, restored in west0
+}
+"""
+
+
+def timed(station, vehicles=("uav0",)):
+    plan = plan_of(TEXT + TIMED)
+    owners = {"uav0": "autopilot" if "uav0" in vehicles else "stations"}
+    return Run(Plan(parted(plan.first, Parting(station, HOSTS, {}, {})), owners, peers="stations"))
+
+
+def untimely(run):
+    return [
+        finding.message.partition(";")[0] for finding in run.findings if "mission says" in finding.message
+    ]
+
+
+@pytest.mark.parametrize(
+    ("done", "said"), [(9.5, []), (7.0, ['⟨rcv_msg : op1, react("told")⟩ takes longer than 2 s']), (None, [])]
+)
+def test_a_reaction_to_a_message_is_timed_from_when_that_left_the_other_station(done, said):
+    run = timed("gcs1")
+    run.turn(0.0)
+    run.turn(10.0, reports=[replace(message(1), done=done)])
+    assert run.rules[:2] == ["enter", "rcv_msg"]
+    assert untimely(run) == said
+
+
+@pytest.mark.parametrize(("done", "said"), [(100.0, 1), (300.0, 0)])
+def test_a_vehicle_is_aloft_from_when_the_other_station_says_that_it_was_sent(done, said):
+    run = timed("gcs1", vehicles=())
+    run.turn(0.0, seen("uav0", WEST, 0.0, "stations"))
+    run.turn(350.0, reports=[Underway("uav0", 350.0, "east0", done)])
+    (since,) = run.state.timers.since[Clock(Sort.ALOFT, "uav0")]
+    assert since == done
+    run.turn(800.0, seen("uav0", EAST, 800.0, "stations"), reports=[Underway("uav0", 800.0, "", 700.0)])
+    assert run.findings == []  # the station that commands it tells of it
+    assert run.steps[-1].date == 700.0
+    run.plan = replace(run.plan, vehicles={"uav0": "autopilot"})  # it is handed over to this one
+    for now in (801.0, 802.0):
+        run.turn(now, seen("uav0", EAST, now, channels=("control:gcs1",)))
+    assert len([each for each in untimely(run) if "aloft for longer" in each]) == said
 
 
 def test_a_parcel_that_cannot_enter_is_said_once_and_nothing_after_it_enters():

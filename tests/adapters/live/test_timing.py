@@ -2,13 +2,18 @@
 
 import pytest
 from audited import SHUTTLE, copter, flown_in
-from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
+from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, known_of, mission, plan_of, seen
 
+from adapters.live.core import resumed
 from adapters.live.state import Heard, Saying
-from adapters.live.timing import flying
+from adapters.live.timing import OWN, flying
 from adapters.plugin import Gone, LinkLost, LinkRestored
+from adapters.recording.writing import Recorder
+from bigactors.missions import digest_of
+from bigactors.recordings import resume
 from bigactors.vehicle_lines import vehicle_line
 from semantics.contingencies import Fallback, Precautions
+from semantics.timing.actor_clocks import Sort
 
 FLIGHT = """
 BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) }
@@ -189,6 +194,178 @@ def test_a_mission_without_times_keeps_no_timers():
     run = Run(plan_of(TOUR + "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) }"))
     run.turn(0.0, seen("uav0", WEST, 0.0))
     assert run.state.timers is None
+
+
+# --- a run that goes on after it was killed
+
+GOING_ON = (
+    TOUR
+    + """
+BigActor a hosted_at uav0 with_behavior {
+  observe(CHILDREN(east0))
+  react { case obs => control(MOVE_HOST_TO east0) }
+  observe(CHILDREN(east0))
+  react { case obs => }
+  react { case "go" => after 20 s => }
+}
+scheduler fcfs
+control timed
+environment {
+  boat0 drifts among point (37.01, -8.65), point (37.01, -8.61)
+  boat0 vanishes
+}
+timing {
+  uav0 flies at 18 m/s to 25 m/s
+  uav0 lasts 10 min, restored in west0
+  agents react within 1 s
+  sense within 5 s
+  boat0 drifts at most every 20 min
+  boat0 vanishes after 10 s, within 30 min
+}
+"""
+)
+
+
+OPEN = []
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    while OPEN:
+        OPEN.pop().recorder.close("the test is over", 0.0)
+
+
+class Recorded(Run):
+    """A live run with its recording, which may be left at any moment."""
+
+    def __init__(self, path, text=GOING_ON, before=None):
+        super().__init__(plan_of(text))
+        self.path, self.mission = path, mission(text)
+        header = {"mission": "tour.mission", "text": text, "digest": digest_of(self.mission), "version": "0"}
+        self.recorder = Recorder(path, header, 0.0)
+        OPEN.append(self)
+        if before is not None:
+            self.recorder.copy(before.messages)
+            known = known_of(self.state, timers=before.timers, stopped=before.until)
+            self.state = resumed(
+                self.plan, known.with_(configuration=before.configuration, number=before.steps), before.until
+            )
+
+    def turn(self, now, *heard, **more):
+        turn = super().turn(now, *heard, **more)
+        self.recorder.turn(turn, now, lambda _: ())
+        return turn
+
+    def killed(self):
+        """What its recording says, which has no end."""
+        return resume(str(self.path), self.mission)
+
+    def goes_on(self, path):
+        return Recorded(path, before=self.killed())
+
+
+TURNS = [
+    (0.0, [seen("uav0", WEST, 0.0), boat(WEST, 0.0)], {}),
+    (0.5, [], {}),
+    (40.0, [], {"missed": 30.0}),
+    (41.0, [seen("uav0", BETWEEN, 41.0)], {}),
+    (100.0, [seen("uav0", BETWEEN, 100.0)], {}),
+    (150.0, [seen("uav0", EAST, 150.0)], {}),
+    (151.0, [Heard("ais", Gone("boat0", 151.0, "ais"))], {}),
+    (175.0, [], {}),
+]
+
+
+def clocks(timers):
+    return timers.since, timers.windows, timers.began, timers.rested
+
+
+def test_the_clocks_of_a_recording_are_those_of_its_run_after_every_turn(tmp_path):
+    run = Recorded(tmp_path / "run.mcap")
+    sorts = set()
+    for now, heard, more in TURNS:
+        run.turn(now, *heard, **more)
+        assert clocks(run.killed().timers) == clocks(run.state.timers)
+        sorts |= {clock.sort for clock in run.state.timers.since}
+    assert run.rules.count("commit") == 1
+    assert sorts >= {Sort.MISSION, Sort.EVERY, Sort.ALOFT, Sort.AFTER, Sort.FLIGHT, Sort.AIM}
+
+
+@pytest.mark.parametrize("left", range(1, len(TURNS)))
+def test_a_run_that_goes_on_at_once_has_the_clocks_of_one_that_was_never_killed(tmp_path, left):
+    whole, run = Recorded(tmp_path / "whole.mcap"), Recorded(tmp_path / "first.mcap")
+    for now, heard, more in TURNS[:left]:
+        whole.turn(now, *heard, **more)
+        run.turn(now, *heard, **more)
+    run = run.goes_on(tmp_path / "second.mcap")
+    run.turn(TURNS[left - 1][0])
+    for now, heard, more in TURNS[left:]:
+        whole.turn(now, *heard, **more)
+        run.turn(now, *heard, **more)
+    agree = [clock for clock in whole.state.timers.since if clock.sort is not Sort.AFTER]
+    assert agree
+    assert [run.state.timers.since[each] for each in agree] == [
+        whole.state.timers.since[each] for each in agree
+    ]
+    assert broken(run) == broken(whole)[len(broken(whole)) - len(broken(run)) :]
+
+
+def test_a_flight_goes_on_while_the_run_does_not_and_is_held_to_its_whole_time(tmp_path):
+    run = Recorded(tmp_path / "first.mcap")
+    for now, heard, more in TURNS[:2]:
+        run.turn(now, *heard, **more)
+    (before,) = flying(run.state.timers)
+    again = run.goes_on(tmp_path / "second.mcap")
+    again.turn(200.0, seen("uav0", BETWEEN, 200.0))
+    assert list(flying(again.state.timers)) == [before]
+    assert broken(again) == []
+    again.turn(256.0, seen("uav0", BETWEEN, 256.0))
+    assert [each[:46] for each in broken(again)] == ["the flight of uav0 to east0 takes longer than "]
+    third = again.goes_on(tmp_path / "third.mcap")
+    third.turn(601.0, seen("uav0", BETWEEN, 601.0))
+    assert "uav0 is aloft for longer than 10 min" in broken(third)[-1]
+
+
+def test_what_a_run_does_itself_stands_still_while_it_does(tmp_path):
+    run = Recorded(tmp_path / "first.mcap")
+    run.state = run.state.with_(suspended=True)  # controls wait
+    run.turn(0.0, seen("uav0", WEST, 0.0), boat(WEST, 0.0))
+    run.turn(0.5)
+    assert {clock.sort for clock in run.state.timers.since} & OWN == {Sort.REQUEST}
+    again = run.goes_on(tmp_path / "second.mcap")
+    again.turn(100.5)
+    assert again.state.timers.rested == 100.5  # nothing was recorded after the first turn
+    assert broken(again) == []
+    assert clocks(again.killed().timers) == clocks(again.state.timers)
+
+
+def test_who_waits_for_some_time_waits_anew(tmp_path):
+    run = Recorded(tmp_path / "first.mcap")
+    for now, heard, more in TURNS[:-1]:
+        run.turn(now, *heard, **more)
+    (waits,) = (clock for clock in run.state.timers.since if clock.sort is Sort.AFTER)
+    assert run.state.timers.since[waits][0] < 151.0
+    again = run.goes_on(tmp_path / "second.mcap")
+    again.turn(300.0, seen("uav0", EAST, 300.0))
+    assert again.state.timers.since[waits] == (300.0,)
+    again.turn(320.5, seen("uav0", EAST, 320.5))
+    assert again.rules[-1] == "timeout"
+    assert not any("timeout" in each for each in broken(again))
+
+
+def test_a_recording_that_does_not_say_when_its_mission_began_has_no_clocks(tmp_path):
+    run = Recorded(tmp_path / "first.mcap")
+    for now, heard, more in TURNS[:3]:
+        run.turn(now, *heard, **more)
+    old = Recorded(tmp_path / "old.mcap")
+    old.recorder.copy(each for each in run.killed().messages if each.topic != "clocks")
+    before = old.killed()
+    assert (before.steps, before.timers) == (len(run.steps), None)
+    again = Recorded(tmp_path / "second.mcap", before=before)
+    again.turn(100.0, seen("uav0", BETWEEN, 100.0))
+    (flight,) = flying(again.state.timers)
+    assert flight.since == again.state.timers.began == 100.0
 
 
 # --- flown

@@ -275,7 +275,7 @@ def test_where_bigactors_are_and_what_broke_all_know(tmp_path):
     )
     broke = Finding("broken assumption", "boat0", "boat0 is in east0", 1.0)
     other = replace(broke, message="at gcs1: it rains", elsewhere=True)
-    moved = LiveStep(1, part, Transition(Label("migrate", "op0"), part), 0, None, 1.0)
+    moved = LiveStep(1, part, Transition(Label("migrate", "op0"), part), 0, None, 1.0, 1.0)
 
     async def telling():
         async with running(gcs0, gcs1):

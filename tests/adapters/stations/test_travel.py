@@ -40,11 +40,14 @@ environment { boat0 drifts among point (37.005, -8.605), point (37.005, -8.645)
 RECEIVED = '⟨rcv_msg : {}, react("{}")⟩'
 
 
+TIMED = MISSION + "scheduler fcfs\ncontrol timed\ntiming { agents react within 5 s }\n"
+
+
 @pytest.fixture
-def two(tmp_path):
+def two(tmp_path, request):
     """Two stations, and the cables between them."""
     mission = tmp_path / "post.mission"
-    mission.write_text(MISSION)
+    mission.write_text(getattr(request, "param", MISSION))
     ports = {name: free_port() for name in ("gcs0", "gcs1")}
     with ExitStack() as stack:
         cables = {name: Cable(port) for name, port in ports.items()}
@@ -100,6 +103,26 @@ def test_each_message_arrives_once_though_both_are_killed_and_the_link_is_cut(tw
     assert received(gcs0, "op0", "pong") == 9
     assert gcs1.steps().count("⟨enter : op1, gcs0⟩") == 9
     assert main(["replay", str(gcs0.recording)]) == 0
+
+
+@pytest.mark.parametrize("two", [TIMED], indirect=True)
+def test_a_message_that_was_long_on_its_way_makes_the_reaction_to_it_late_where_it_arrives(two):
+    (gcs0, gcs1), cables = two
+    late = 'react("ping")⟩ takes longer than 5 s; the mission says: agents react within 5 s'
+    until(lambda: gcs0.socket.exists() and gcs1.socket.exists())
+    go(gcs0, 1)
+    until(lambda: received(gcs0, "op0", "pong") == 1)
+    assert "takes longer" not in gcs0.said + gcs1.said
+    for cable in cables.values():
+        cable.joined = False
+    go(gcs0, 1)
+    until(lambda: gcs0.steps().count("⟨leave : op1, gcs1⟩") == 2)
+    time.sleep(8.0)
+    assert "takes longer" not in gcs0.said + gcs1.said
+    for cable in cables.values():
+        cable.joined = True
+    until(lambda: late in gcs1.said)
+    until(lambda: f"at gcs1: ⟨rcv_msg : op1, {late}" in gcs0.said)
 
 
 def test_a_bigactor_goes_to_another_station_with_what_it_carries_and_comes_home(two, capsys):
