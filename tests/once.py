@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+from shutil import rmtree
 
 
 def once(tmp_path_factory, name, make):
@@ -12,6 +13,7 @@ def once(tmp_path_factory, name, make):
     with (shared / f"{name}.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not folder.exists():
+            rmtree(making, ignore_errors=True)  # what failed before
             making.mkdir()
             make(making)
             making.rename(folder)
