@@ -23,6 +23,7 @@ from subprocess import DEVNULL, PIPE, STDOUT, CompletedProcess, Popen
 
 import pytest
 import yaml
+from once import once
 
 from bigactors import Limits, check, load_mission
 from bigactors.docs import GENERATED
@@ -231,8 +232,21 @@ def is_run(block):
 
 @pytest.fixture(scope="session")
 def installed(tmp_path_factory):
-    """Return the variables with which the package is found as it is installed, and its command."""
-    folder = tmp_path_factory.mktemp("installed")
+    """Return the variables with which the package is found as it is installed, and its command.
+
+    All workers share it: of each package the loops are compiled anew.
+    """
+    folder = once(tmp_path_factory, "installed", install)
+    commands = folder / "bin"
+    hidden = ("CI", "PYTEST", "PYTHON")  # in CI pytest prints its summary in full, and no page shows that
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(hidden)}
+    kept |= {"PIP_NO_INDEX": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
+    path = f"{commands}{os.pathsep}{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    return kept | {"PATH": path, "PYTHONPATH": str(folder), "PYTHONUTF8": "1", "COLUMNS": "100"}
+
+
+def install(folder):
+    """Write the package as it is installed, and its command, into a folder."""
     write_package(folder / PACKAGE)
     write_metadata(folder / f"{PACKAGE}-0.dist-info")
     commands = folder / "bin"
@@ -242,11 +256,6 @@ def installed(tmp_path_factory):
             f'#!/bin/sh\nexec "{sys.executable}" {arguments}"$@"\n', encoding="utf-8"
         )
         (commands / name).chmod(0o755)
-    hidden = ("CI", "PYTEST", "PYTHON")  # in CI pytest prints its summary in full, and no page shows that
-    kept = {name: value for name, value in os.environ.items() if not name.startswith(hidden)}
-    kept |= {"PIP_NO_INDEX": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
-    path = f"{commands}{os.pathsep}{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    return kept | {"PATH": path, "PYTHONPATH": str(folder), "PYTHONUTF8": "1", "COLUMNS": "100"}
 
 
 def write_metadata(folder):

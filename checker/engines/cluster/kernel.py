@@ -9,7 +9,7 @@ import numpy as np
 
 from checker.engines.fast.columns import WORD
 from checker.engines.fast.kernel import PLACE, SIZE, WORDS, Batch, State, add_row
-from checker.engines.fast.loops import njit
+from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.prefetch import prefetch
 from checker.engines.fast.table import AHEAD, Words, bits_for, entry_of, fetch, find, hashed
 
@@ -50,7 +50,7 @@ def _key_in(words: Words, at: np.uint64, own: Owning, column: np.uint64) -> np.u
     return own.keys[own.begins[column] + code]
 
 
-@njit(cache=True)
+@inner(cache=True)
 def key_of(words: Words, at: np.uint64, own: Owning) -> np.uint64:
     """Return the key of the row that begins there."""
     key = np.uint64(0)

@@ -13,7 +13,7 @@ import numpy as np
 
 from checker.engines.fast.folding import Folded, unfold
 from checker.engines.fast.kernel import AT, EXPANDED, KEPT, SIZE, WORDS, Batch, Model, State, add_row, code_at
-from checker.engines.fast.loops import njit
+from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.members import (
     AGENTS_OWN,
     EVERYBODY,
@@ -39,7 +39,7 @@ from checker.engines.fast.successors import list_steps, make, make_representativ
 from checker.engines.fast.table import Words, bits_for, entry_of, find
 
 
-@njit(cache=True)
+@inner(cache=True)
 def is_seen(m: Model, r: Members, here: Words, target: Words, to: int, width: int) -> bool:
     """Tell whether properties see a difference between a row and a successor."""
     asked = False
@@ -57,7 +57,7 @@ def is_seen(m: Model, r: Members, here: Words, target: Words, to: int, width: in
     return False
 
 
-@njit(cache=True)
+@inner(cache=True)
 def attribute(r: Members, batch: Batch, count: int, wide: int) -> None:
     """Note whose each transition of a row is, as a number among its actors."""
     for word in range(wide):
@@ -67,7 +67,7 @@ def attribute(r: Members, batch: Batch, count: int, wide: int) -> None:
         add(r.owners, 0, r.whose[k])
 
 
-@njit(cache=True)
+@inner(cache=True)
 def is_ample(
     m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, count: int, at: int, state: State
 ) -> int:
@@ -92,7 +92,7 @@ def part_at(r: Members, k: int) -> int:
     return np.int64(r.part[r.actors[RECORD * r.here[k] + MEMBER]])
 
 
-@njit(cache=True)
+@inner(cache=True)
 def ignores(r: Members, sets: Words, at: int, wide: int) -> bool:
     """Tell whether someone in a set may take a step who has not joined, and of whose part none is taken on the way."""
     for word in range(wide):
@@ -103,7 +103,7 @@ def ignores(r: Members, sets: Words, at: int, wide: int) -> bool:
     return False
 
 
-@njit(cache=True)
+@inner(cache=True)
 def let_join(r: Members, actors: int, wide: int, at: int) -> None:
     """Let a set join: the parts of which all are inside are taken."""
     r.more[:] = np.uint64(0)
@@ -120,7 +120,7 @@ def let_join(r: Members, actors: int, wide: int, at: int) -> None:
         r.inside[word] |= r.sets[at + word]
 
 
-@njit(cache=True)
+@inner(cache=True)
 def end_of(trails: Trails, row: int, taken: Words) -> int:
     """Return where the path from a row ends, with what is taken on it; the path is made shorter."""
     wide = len(taken)
@@ -137,7 +137,7 @@ def end_of(trails: Trails, row: int, taken: Words) -> int:
     return row
 
 
-@njit(cache=True)
+@inner(cache=True)
 def join(
     m: Model,
     r: Members,
@@ -179,7 +179,7 @@ def join(
     return GOING_ON if ignores(r, r.owners, 0, wide) else NOBODY_LEFT
 
 
-@njit(cache=True)
+@inner(cache=True)
 def choose(
     m: Model,
     r: Members,

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.loops import njit
+from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.pages import Pages, more
 from checker.engines.fast.table import (
     Words,
@@ -148,7 +148,7 @@ def unfold_piece(f: Folded, piece: int, number: int) -> None:
             f.whole[piece * width + k] = f.pieces.words[number * width + k]
 
 
-@njit(cache=True)
+@inner(cache=True)
 def unfold(f: Folded, rows: Words, row: int) -> None:
     """Write the words of a row; what it shares with the row before stands there already."""
     for k in range(FOUR):
@@ -206,7 +206,7 @@ def step_left_open(kept: Words, at: int) -> int:
     return np.int64(kept[at + 1] >> _HALF)
 
 
-@njit(cache=True)
+@inner(cache=True)
 def take(f: Folded, words: Words, begin: int, width: int, adding: bool) -> int:
     """Take a successor whose words stand elsewhere; return which of its pieces differ from the row's, as bits."""
     touched, wide = np.int64(0), 1 << f.shift

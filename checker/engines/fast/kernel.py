@@ -43,7 +43,7 @@ from checker.engines.fast.leaves import (
     WRITES,
     WRITES_END,
 )
-from checker.engines.fast.loops import njit
+from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.table import Words, bits_for, entry_of, fetch, fetch_slot, find, hashed, most_in
 from checker.engines.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
 
@@ -189,7 +189,7 @@ def write_part(columns: Words, writes: Ints, steps: Ints, step: int, target: Wor
         target[word] = (target[word] & ~(mask << shift)) | (np.uint64(writes[PAIR * k + 1]) << shift)
 
 
-@njit(cache=True)
+@inner(cache=True)
 def change_piece(
     columns: Words, writes: Ints, steps: Ints, step: int, f: Folded, piece: int, adding: bool
 ) -> int:
@@ -236,7 +236,7 @@ def change_pieces(
     return touched
 
 
-@njit(cache=True)
+@inner(cache=True)
 def copy_pieces(
     columns: Words, copies: Ints, begin: int, end: int, f: Folded, touched: int, adding: bool
 ) -> int:
@@ -267,7 +267,7 @@ def first_turn(all_leaves: Ints, steps: Ints, leaves: Ints, actors: int) -> int:
     return found
 
 
-@njit(cache=True)
+@inner(cache=True)
 def is_repeated(target: Words, taken: Ints, steps: Ints, began: int, end: int, step: int, width: int) -> bool:
     """Tell whether a row leads to the same under the same label already."""
     for other in range(began, end):

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from checker.engines.fast.kernel import ALPHA, TREE, Ints, Model, State, code_at, walk
-from checker.engines.fast.loops import njit
+from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.table import Words
 
 WORD = 64
@@ -118,7 +118,7 @@ class Trails(NamedTuple):
     taken: Words
 
 
-@njit(cache=True)
+@inner(cache=True)
 def meet(m: Model, r: Members, here: Words, state: State) -> int:
     """Note the actors of a row; return how many there are, -1 where something is not known."""
     group = np.int64(0)

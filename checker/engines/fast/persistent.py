@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from checker.engines.fast.loops import njit
+from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.members import (
     ASIDE,
     FOLLOWER,
@@ -25,7 +25,7 @@ from checker.engines.fast.members import (
 from checker.engines.fast.table import Words
 
 
-@njit(cache=True)
+@inner(cache=True)
 def compare(footprints: Words, disturbed: Any, count: int, one: int, other: int) -> int:
     """Note whether one footprint disturbs another (see `checker.reduction.slots.Footprint`): 1 no, 2 yes."""
     words = len(footprints) // (PARTS * count)

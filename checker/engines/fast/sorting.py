@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from checker.engines.fast.kernel import PLACE, Batch, Ints, State, code_at
-from checker.engines.fast.loops import njit
+from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.table import Words, hashed
 
 UNKNOWN, FIXED = 0, 1
@@ -125,7 +125,7 @@ def enter_all(keys: Words, values: Ints, new: Words, to: Ints) -> None:
         keys[slot], values[slot] = new[k], to[k]
 
 
-@njit(cache=True)
+@inner(cache=True)
 def read_whole(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, column: int, node: int) -> int:
     """Return the entry of a whole cell, UNKNOWN where it is not known."""
     d.unknown[KIND], d.unknown[WHAT], count = WHOLE, column, 0
@@ -142,7 +142,7 @@ def read_whole(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, col
     return np.int64(x.payload[node])
 
 
-@njit(cache=True)
+@inner(cache=True)
 def read_row(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, stamp: int) -> int:
     """Note the entries of a row, and colour its members; return how many they are, -1 where one is not known."""
     count = np.int64(0)
@@ -177,7 +177,7 @@ def read_row(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, stamp
     return count
 
 
-@njit(cache=True)
+@inner(cache=True)
 def sort_members(x: Exchanges, d: Desk) -> int:
     """Sort the members of each class by colour, equal ones by number; return how many colours there are."""
     groups = np.int64(0)
@@ -196,7 +196,7 @@ def sort_members(x: Exchanges, d: Desk) -> int:
     return groups
 
 
-@njit(cache=True)
+@inner(cache=True)
 def end_of_group(x: Exchanges, d: Desk, begin: int) -> int:
     """Return where the group of equal members ends that begins there."""
     first = d.order[begin]
@@ -210,7 +210,7 @@ def end_of_group(x: Exchanges, d: Desk, begin: int) -> int:
     return end
 
 
-@njit(cache=True)
+@inner(cache=True)
 def is_tied(d: Desk, begin: int, end: int) -> bool:
     """Tell whether the order of a group matters."""
     if end - begin > 1:
@@ -220,7 +220,7 @@ def is_tied(d: Desk, begin: int, end: int) -> bool:
     return False
 
 
-@njit(cache=True)
+@inner(cache=True)
 def first_tied(x: Exchanges, d: Desk, begin: int) -> int:
     """Return where the first group begins, from some member on, whose order matters; -1 where there is none."""
     while begin < len(d.order):
@@ -231,7 +231,7 @@ def first_tied(x: Exchanges, d: Desk, begin: int) -> int:
     return -1
 
 
-@njit(cache=True)
+@inner(cache=True)
 def refine(x: Exchanges, d: Desk, count: int) -> None:
     """Tell apart members that are mentioned with members of different colours."""
     d.met[:] = np.uint64(0)
@@ -250,7 +250,7 @@ def refine(x: Exchanges, d: Desk, count: int) -> None:
         d.colours[k] = mix(d.colours[k], d.met[k])
 
 
-@njit(cache=True)
+@inner(cache=True)
 def orders_left(x: Exchanges, d: Desk) -> int:
     """Return how many orders of tied members there are, more than `most` where they are more."""
     found = np.int64(1)
@@ -280,7 +280,7 @@ def move(x: Exchanges, d: Desk, entry: int) -> int:
     return found
 
 
-@njit(cache=True)
+@inner(cache=True)
 def is_about(x: Exchanges, entry: int, one: int, other: int) -> bool:
     """Tell whether an entry mentions one of two members."""
     found = False
@@ -289,7 +289,7 @@ def is_about(x: Exchanges, entry: int, one: int, other: int) -> bool:
     return found
 
 
-@njit(cache=True)
+@inner(cache=True)
 def may_change(x: Exchanges, d: Desk, count: int, one: int, other: int) -> int:
     """Tell whether a row is the same with two members exchanged: 0 or 1, UNSETTLED where something is not known."""
     difference = np.uint64(0)
@@ -306,7 +306,7 @@ def may_change(x: Exchanges, d: Desk, count: int, one: int, other: int) -> int:
     return 1 if difference == 0 else 0
 
 
-@njit(cache=True)
+@inner(cache=True)
 def free_groups(x: Exchanges, d: Desk, count: int) -> bool:
     """Note the tied groups whose order does not matter; False where something is not known."""
     begin = first_tied(x, d, 0)
@@ -324,7 +324,7 @@ def free_groups(x: Exchanges, d: Desk, count: int) -> bool:
     return True
 
 
-@njit(cache=True)
+@inner(cache=True)
 def settle(x: Exchanges, d: Desk, count: int) -> int:
     """Bring the members into an order; return how many orders remain, UNSETTLED where something is not known."""
     while True:
@@ -342,7 +342,7 @@ def settle(x: Exchanges, d: Desk, count: int) -> int:
         d.colours[one] = mix(d.colours[one], np.uint64(1))
 
 
-@njit(cache=True)
+@inner(cache=True)
 def next_order(x: Exchanges, d: Desk) -> bool:
     """Go on to the next order of tied members; False after the last."""
     begin = first_tied(x, d, 0)
@@ -367,7 +367,7 @@ def next_order(x: Exchanges, d: Desk) -> bool:
     return False
 
 
-@njit(cache=True)
+@inner(cache=True)
 def note_places(d: Desk) -> bool:
     """Note the place of each member; tell whether some member has another's."""
     moved = False
@@ -384,7 +384,7 @@ def copy(source: Ints, target: Ints) -> None:
         target[k] = source[k]
 
 
-@njit(cache=True)
+@inner(cache=True)
 def choose_order(x: Exchanges, d: Desk, count: int) -> bool:
     """Find the best of all orders that remain; False where something is not known."""
     best, found = np.uint64(0), False
@@ -414,7 +414,7 @@ def put(words: Words, at: int, columns: Words, column: int, code: int) -> None:
     words[at + np.int64(columns[where])] |= np.uint64(code) << columns[where + 1]
 
 
-@njit(cache=True)
+@inner(cache=True)
 def order_members(x: Exchanges, d: Desk, count: int) -> int:
     """Note the place of each member: 1 where some member has another's, 0 where none has, UNSETTLED as elsewhere."""
     left = settle(x, d, count)
@@ -423,7 +423,7 @@ def order_members(x: Exchanges, d: Desk, count: int) -> int:
     return 1 if left > 1 or note_places(d) else 0
 
 
-@njit(cache=True)
+@inner(cache=True)
 def represent(x: Exchanges, d: Desk, words: Words, at: int, width: int, columns: Words, stamp: int) -> bool:
     """Put a row's representative in its place; False where something is not known."""
     count = read_row(x, d, words, at, columns, stamp)

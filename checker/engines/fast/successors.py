@@ -43,13 +43,13 @@ from checker.engines.fast.leaves import (
     STEP,
 )
 from checker.engines.fast.leaves import PARTS as TREES_OF_PARTS
-from checker.engines.fast.loops import njit
+from checker.engines.fast.loops import inner
 from checker.engines.fast.members import MADE, REPRESENTED, UNKNOWN, Members
 from checker.engines.fast.sorting import represent
 from checker.engines.fast.table import Words, hashed
 
 
-@njit(cache=True)
+@inner(cache=True)
 def list_steps(m: Model, here: Words, batch: Batch, state: State) -> int:
     """Note the transitions that a row allows, not made yet; return how many, UNKNOWN where something is not known."""
     first, last = np.int64(0), np.int64(len(m.agents))
@@ -77,7 +77,7 @@ def list_steps(m: Model, here: Words, batch: Batch, state: State) -> int:
     return count
 
 
-@njit(cache=True)
+@inner(cache=True)
 def make(m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, k: int, state: State) -> bool:
     """Make what a transition of a row leads to, if it was not made yet; False where something is not known."""
     if r.made[k]:
@@ -104,7 +104,7 @@ def make(m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, k: i
     return keep(f, batch, k, state)
 
 
-@njit(cache=True)
+@inner(cache=True)
 def keep(f: Folded | None, batch: Batch, k: int, state: State) -> bool:
     """Fold what a transition leads to, where rows are folded, and hash what is kept; False where there is no room."""
     width, kept = state[WORDS], state[KEPT]
@@ -118,7 +118,7 @@ def keep(f: Folded | None, batch: Batch, k: int, state: State) -> bool:
     return True
 
 
-@njit(cache=True)
+@inner(cache=True)
 def make_representative(
     m: Model, r: Members, x: Any, d: Any, f: Folded | None, here: Words, batch: Batch, k: int, state: State
 ) -> bool:
@@ -139,7 +139,7 @@ def make_representative(
     return keep(f, batch, k, state)
 
 
-@njit(cache=True)
+@inner(cache=True)
 def without_repetitions(
     m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, count: int, state: State
 ) -> int:

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.loops import njit
+from checker.engines.fast.loops import inner, njit
 
 Matrix = NDArray[np.int32]
 
@@ -66,7 +66,7 @@ def let_pass(d: Matrix, size: int, clocks: Matrix, most: Matrix) -> None:
     end(d, size, clocks, most)
 
 
-@njit(cache=True)
+@inner(cache=True)
 def end(d: Matrix, size: int, clocks: Matrix, most: Matrix) -> None:
     """Take only ages at which no clock is over its bound: there are some."""
     for i in range(1, size):

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.loops import njit
+from checker.engines.fast.loops import inner, njit
 from checker.engines.zones.automaton import (
     CLOCKS,
     DEADLINE,
@@ -113,7 +113,7 @@ def load(z: Zones, zone: int, size: int, d: Matrix) -> None:
             d[i, j] = z.bounds[at + i * size + j]
 
 
-@njit(cache=True)
+@inner(cache=True)
 def meets(m: Model, edge: int, d: Matrix, size: int) -> bool:
     """Take only the ages at which an edge may be taken; False where there are none."""
     for k in range(m.edges[edge + TESTS], m.edges[edge + TESTS_END]):
@@ -125,13 +125,13 @@ def meets(m: Model, edge: int, d: Matrix, size: int) -> bool:
     return True
 
 
-@njit(cache=True)
+@inner(cache=True)
 def before_rank(m: Model, z: Zones, state: State) -> int:
     """Return the rank of the row that is followed, 0 at first."""
     return 0 if state[RANKED] == 0 or state[GROUPS] > 0 else np.int64(z.ranks[m.rows[z.places[state[AT]]]])
 
 
-@njit(cache=True)
+@inner(cache=True)
 def keep(m: Model, z: Zones, state: State, location: int, d: Matrix, size: int) -> None:
     """Keep a zone, if no other holds it."""
     at = LOCATION * location
@@ -211,7 +211,7 @@ def enter(m: Model, z: Zones, state: State, location: int, d: Matrix, e: Matrix,
     keep(m, z, state, location, d, size)
 
 
-@njit(cache=True)
+@inner(cache=True)
 def follow(
     m: Model, z: Zones, state: State, zone: int, edge: int, d: Matrix, e: Matrix, f: Matrix, bounds: Matrix
 ) -> None:
@@ -235,7 +235,7 @@ def follow(
     enter(m, z, state, target, e, f, bounds)
 
 
-@njit(cache=True)
+@inner(cache=True)
 def ways_of(m: Model, z: Zones, begin: int, last: int) -> int:
     """Return how many edges lead from some zones, -1 where that is not known."""
     ways = np.int64(0)
@@ -247,7 +247,7 @@ def ways_of(m: Model, z: Zones, begin: int, last: int) -> int:
     return ways
 
 
-@njit(cache=True)
+@inner(cache=True)
 def is_full(z: Zones, state: State, ways: int, largest: int) -> bool:
     """Tell whether there is no room for what so many edges lead to."""
     room = state[MISSED] = 2 * ways
@@ -258,7 +258,7 @@ def is_full(z: Zones, state: State, ways: int, largest: int) -> bool:
     )
 
 
-@njit(cache=True)
+@inner(cache=True)
 def next_step(m: Model, z: Zones, begin: int, last: int, step: int) -> int:
     """Return the step after another one that leads from some zones, -1 where there is none."""
     following = np.int64(-1)
@@ -281,7 +281,7 @@ class Scratch(NamedTuple):
     bounds: Matrix
 
 
-@njit(cache=True)
+@inner(cache=True)
 def take(m: Model, z: Zones, state: State, begin: int, last: int, step: int, s: Scratch) -> None:
     """Take one step from some zones."""
     for zone in range(begin, last):

@@ -39,7 +39,7 @@ from checker.engines.fast.leaves import (
     STEP,
     TURN,
 )
-from checker.engines.fast.loops import njit
+from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
 from checker.engines.zones import automaton as automata
 from checker.engines.zones.automaton import DEADLINE, EDGE, LOCATION, TEST
@@ -137,7 +137,7 @@ KNOWN, MISS, FULL = range(3)
 """Why the loops return: all is done, a tree does not know, there is no room."""
 
 
-@njit(cache=True)
+@inner(cache=True)
 def look(m: kernel.Model, t: Timed, words: Words, row: int, v: View, state: State) -> bool:
     """Find out what a row allows; False at what is not known."""
     state[AT], at = row, row * state[WORDS]
@@ -176,7 +176,7 @@ def look(m: kernel.Model, t: Timed, words: Words, row: int, v: View, state: Stat
     return True
 
 
-@njit(cache=True)
+@inner(cache=True)
 def note_clocks(m: kernel.Model, t: Timed, v: View) -> None:
     """Note where each clock runs first, and which are bound: a step that is in its turn is done with them."""
     stamp, index = v.counts[STAMP], np.int64(1)
@@ -204,20 +204,20 @@ def note_clocks(m: kernel.Model, t: Timed, v: View) -> None:
                         v.bound[t.done[at]] = stamp
 
 
-@njit(cache=True)
+@inner(cache=True)
 def steps_of_clause(m: kernel.Model, v: View, clause: int) -> int:
     """Return how many steps a clause has."""
     leaf = LEAF * v.leaves[v.counts[AGENTS] + clause]
     return m.leaves[leaf + END] - m.leaves[leaf + FIRST]
 
 
-@njit(cache=True)
+@inner(cache=True)
 def digit(windows: int, window: int) -> int:
     """Return what the clock of a window says."""
     return windows // 3**window % 3
 
 
-@njit(cache=True)
+@inner(cache=True)
 def add_location(m: kernel.Model, t: Timed, g: Growth, v: View, row: int, windows: int, s: State) -> int:
     """Return the number of the location of a row that was looked at, a new one where it was not met; -1 at no room."""
     found = np.int64(g.of_rows[row])
@@ -260,7 +260,7 @@ def add_location(m: kernel.Model, t: Timed, g: Growth, v: View, row: int, window
     return number
 
 
-@njit(cache=True)
+@inner(cache=True)
 def add_deadlines(m: kernel.Model, t: Timed, g: Growth, v: View, windows: int, begin: int) -> int:
     """Add the deadline of where nothing is followed, or else that of windows; return the end of the deadlines."""
     least = np.int64(NONE)
@@ -278,7 +278,7 @@ def add_deadlines(m: kernel.Model, t: Timed, g: Growth, v: View, windows: int, b
     return begin + 1
 
 
-@njit(cache=True)
+@inner(cache=True)
 def target_row(
     m: kernel.Model,
     words: Words,
@@ -315,7 +315,7 @@ def target_row(
     return new
 
 
-@njit(cache=True)
+@inner(cache=True)
 def source_of(t: Timed, a: View, done: int, end: int, clock: int, earlier: int) -> int:
     """Return the index of the clock that goes on in one of the target, of which so many stand before it; 0 for none."""
     if a.stamps[clock] != a.counts[STAMP]:
@@ -329,7 +329,7 @@ def source_of(t: Timed, a: View, done: int, end: int, clock: int, earlier: int) 
     return a.at[clock] + at if at < a.many[clock] else 0
 
 
-@njit(cache=True)
+@inner(cache=True)
 def add_edges(  # each argument is another part of what is known
     m: kernel.Model, t: Timed, g: Growth, a: View, b: View, here: int, row: int, times: int, number: int, step: int,
     choices: Ints, s: State,
@@ -402,13 +402,13 @@ def add_edges(  # each argument is another part of what is known
     return KNOWN
 
 
-@njit(cache=True)
+@inner(cache=True)
 def is_second(chosen: int, count: int, choice: int) -> bool:
     """Tell whether the second of both ways was chosen, the first choice being the last to change."""
     return bool(chosen >> (count - 1 - choice) & 1)
 
 
-@njit(cache=True)
+@inner(cache=True)
 def put(tests: Ints, s: State, clock: int, least: int, most: int) -> None:
     """Add a test."""
     at = TEST * s[TESTED]
@@ -416,7 +416,7 @@ def put(tests: Ints, s: State, clock: int, least: int, most: int) -> None:
     s[TESTED] += 1
 
 
-@njit(cache=True)
+@inner(cache=True)
 def add_sources(
     t: Timed, g: Growth, a: View, b: View, done: int, end: int, target: int, choices: Ints, count: int, chosen: int,
     s: State,
@@ -468,7 +468,7 @@ def leave(
     return KNOWN
 
 
-@njit(cache=True)
+@inner(cache=True)
 def leave_by_steps(
     m: kernel.Model, t: Timed, g: Growth, a: View, b: View, words: Words, origins: Any, table: Any, most: int,
     scratch: Words, taken: Ints, choices: Ints, here: int, row: int, state: State, s: State,

@@ -1,7 +1,5 @@
 """Lets the tests of this folder import the modules beside them, and those of live runs; flies what they look at."""
 
-import fcntl
-import os
 import subprocess
 import sys
 from contextlib import suppress
@@ -13,21 +11,20 @@ import pytest
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "live")]
 
 from live_missions import WEST  # noqa: E402 - found by the line before
+from once import once  # noqa: E402
 from recorded import Tape, eventful, uav  # noqa: E402
+
+
+def fly(folder):
+    """Fly the live demonstration into a folder."""
+    line = [sys.executable, "-m", "bigactors.live_demo", str(folder)]
+    subprocess.run(line, check=True, capture_output=True, timeout=300)
 
 
 @pytest.fixture(scope="session")
 def spill_watch(tmp_path_factory):
     """Return the recording of spill_watch, flown by the simulated plane of `make live-demo`: once for all workers."""
-    shared = tmp_path_factory.getbasetemp()
-    shared = shared.parent if "PYTEST_XDIST_WORKER" in os.environ else shared
-    folder, flying = shared / "spill_watch", shared / "spill_watch_flying"
-    with (shared / "spill_watch.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not folder.exists():
-            line = [sys.executable, "-m", "bigactors.live_demo", str(flying)]
-            subprocess.run(line, check=True, capture_output=True, timeout=300)
-            flying.rename(folder)
+    folder = once(tmp_path_factory, "spill_watch", fly)
     return folder / "run.mcap"
 
 
