@@ -32,7 +32,14 @@ from hatch_build import PACKAGE, write_package
 from specs.missions import shipped_missions
 
 ROOT = Path(__file__).parents[1]
-FLYING = {"docs/tutorial/flight.md"}
+LONG = {
+    "docs/tutorial/flight.md",
+    "docs/explanation/time.md",
+    "docs/reference/output.md",
+    *(f"docs/how-to/{name}.md" for name in ("connect-a-vehicle", "own-rule", "python", "write-a-plugin")),
+}
+"""Pages that fly, or show many commands one after the other."""
+
 PAGES = [
     *(ROOT / name for name in ("ARCHITECTURE.md", "CONTRIBUTING.md", "README.md")),
     *sorted((ROOT / "docs").rglob("*.md")),
@@ -91,8 +98,8 @@ def name_of(page):
 
 
 def by_length(page):
-    """Return a page as a parameter: one that flies is for the long tests."""
-    return pytest.param(page, marks=pytest.mark.long) if name_of(page) in FLYING else page
+    """Return a page as a parameter: some are for the long tests."""
+    return pytest.param(page, marks=pytest.mark.long) if name_of(page) in LONG else page
 
 
 def blocks(page):

@@ -15,6 +15,14 @@ from once import once  # noqa: E402
 from recorded import Tape, eventful, uav  # noqa: E402
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Count what looks at a whole flight among the long tests."""
+    for item in items:
+        if "spill_watch" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.long)
+
+
 def fly(folder):
     """Fly the live demonstration into a folder."""
     line = [sys.executable, "-m", "bigactors.live_demo", str(folder)]
