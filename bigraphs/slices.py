@@ -6,7 +6,6 @@ numbers here that it would have got without a copy.
 
 from __future__ import annotations
 
-import pickle
 from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -53,6 +52,8 @@ class Slice:
 
 def slices_of(copy: Reached, pieces: Sequence[tuple[int, int]]) -> Iterator[bytes]:
     """Expand, in a copy that is good for nothing else, pieces of what waits: so many are skipped, so many expanded."""
+    import pickle  # noqa: PLC0415 - a small system has no workers
+
     queue, copy.max_states, labels = copy.waiting, None, len(copy.machine.labelling)
     source = copy.expanded
     for skipped, count in pieces:
@@ -104,6 +105,8 @@ class Copy:
 
     def take_over(self, answer: bytes) -> bool:
         """Add what the copy has found out about the states that wait longest; say whether there was room for it."""
+        import pickle  # noqa: PLC0415 - as above
+
         found: Slice = pickle.loads(answer)
         reached, first, before = self.reached, len(self.reached), len(self.numbers)
         reached.machine.world.adopt(self.codes, found.rows)
