@@ -36,7 +36,11 @@ LONG = {
     "docs/tutorial/flight.md",
     "docs/explanation/time.md",
     "docs/reference/output.md",
-    *(f"docs/how-to/{name}.md" for name in ("connect-a-vehicle", "own-rule", "python", "write-a-plugin")),
+    "docs/tutorial/race.md",
+    *(
+        f"docs/how-to/{name}.md"
+        for name in ("bigraphs", "connect-a-vehicle", "own-rule", "python", "write-a-plugin")
+    ),
 }
 """Pages that fly, or show many commands one after the other."""
 

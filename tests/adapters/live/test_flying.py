@@ -85,6 +85,7 @@ def test_a_plane_that_the_wind_carries_out_of_its_place_breaks_an_assumption_tha
     assert vehicle.mode == (vehicle.kind.profile.home if broken else vehicle.kind.profile.guided)
 
 
+@pytest.mark.long
 def test_the_oil_spill_mission_flies_is_recorded_and_replays_equal(verified, capsys):
     folder = verified("oil_spill")
     path = folder / "run.mcap"

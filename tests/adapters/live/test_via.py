@@ -56,6 +56,7 @@ def spots(items):
     return [(item.x, item.y) for item in items[1:] if item.command != Cmd.TAKEOFF]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("loss", [0.0, 0.3])
 def test_a_plane_flies_round_the_town_by_the_gates_that_its_mission_names(folder, loss):
     log, plane = Log(), Vehicle(Kind.PLANE, AIRFIELD)
