@@ -1,9 +1,12 @@
 """Explore with learned trees, up to the same bounds as the reference explorer."""
 
 import errno
+import gc
 import math
+import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, overload
@@ -26,6 +29,12 @@ if TYPE_CHECKING:
 
 CHUNK = 1 << 15
 """Configurations that are expanded between two looks at the clock."""
+
+OBJECTS_BETWEEN_COLLECTIONS = 200_000
+"""What is learned stays: Python's 700 make it look through all of that again and again, for a quarter of learning."""
+
+HOLDING = 0.0005
+"""Seconds after which a thread that runs rules lets another begin its next loop; Python's 5 ms are ten loops long."""
 
 EXPLORING = 0.5
 """What part of the time is for exploring: to look at what was explored takes as long again."""
@@ -79,8 +88,22 @@ def explore_fast(initial: Configuration, inspect: tuple[Inspect, ...], options: 
     Raises:
         CheckpointError: There is none to go on from, or it is of something else.
     """
-    with compilation_reported(options.report):
+    with compilation_reported(options.report), seldom_disturbed():
         return _Explorer(initial, options).run(inspect)
+
+
+@contextmanager
+def seldom_disturbed() -> Iterator[None]:
+    """Let Python look for garbage, and let it change threads, as suits an exploration; after it as before."""
+    thresholds, interval = gc.get_threshold(), sys.getswitchinterval()
+    if thresholds[0]:  # else it never looks
+        gc.set_threshold(max(thresholds[0], OBJECTS_BETWEEN_COLLECTIONS), *thresholds[1:])
+    sys.setswitchinterval(min(interval, HOLDING))
+    try:
+        yield
+    finally:
+        gc.set_threshold(*thresholds)
+        sys.setswitchinterval(interval)
 
 
 class _Explorer:

@@ -13,8 +13,11 @@ from typing import Any
 
 from checker.engines.fast.kernel import AT, GATHERED, LATER, PUT_OFF, SIFTED, Batch, Model, State
 
-EACH = 2
-"""Slices for each thread that are ahead of what is stored: one that is expanded, one that waits."""
+EACH = 4
+"""Slices for each thread that are ahead of what is stored: one that is expanded, some that wait."""
+
+SHARE = 2
+"""Into how many slices for each thread what is to be expanded is divided at least."""
 
 WORTH = 1 << 8
 """From how many rows on a slice is expanded by another thread: handing over takes time, too."""
@@ -98,7 +101,7 @@ class Pipeline:
 
     def fair(self, rows: int) -> int:
         """Return how many rows a slice should have at most, so that all threads have some of so many."""
-        return rows if self.beside is None else max(rows // (EACH * self.threads), WORTH)
+        return rows if self.beside is None else max(rows // (SHARE * self.threads), WORTH)
 
     def add(self, part: Slice) -> None:
         """Add a slice behind the others, which is expanded by other threads, or by this one when its turn comes."""
@@ -107,9 +110,10 @@ class Pipeline:
             part.expanding = self.beside.submit(self._expand_beside, part)
 
     def _expand_beside(self, part: Slice) -> None:
-        """Expand a slice in another thread; as long as nobody waits for it, there is time to sift it, too."""
+        """Expand a slice in another thread, and sift it, too, if there are more ready than can be stored just now."""
         self.expand(part)
-        if part is not self.awaited:
+        ready = (each for each in tuple(self.ahead) if each.expanding is not None and each.expanding.done())
+        if part is not self.awaited and sum(1 for _ in ready) >= self.threads:
             self.sift(part)
 
     def take(self) -> Slice:
