@@ -11,8 +11,21 @@ from typing import Any
 
 import numpy as np
 
-from checker.engines.fast.folding import Folded, unfold
-from checker.engines.fast.kernel import AT, EXPANDED, KEPT, SIZE, WORDS, Batch, Model, State, add_row, code_at
+from checker.engines.fast.folding import NO_ROOM, Folded, intern, unfold
+from checker.engines.fast.kernel import (
+    AT,
+    EXPANDED,
+    FULL,
+    KEPT,
+    NODE,
+    SIZE,
+    WORDS,
+    Batch,
+    Model,
+    State,
+    add_row,
+    code_at,
+)
 from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.members import (
     AGENTS_OWN,
@@ -123,17 +136,19 @@ def let_join(r: Members, actors: int, wide: int, at: int) -> None:
 @inner(cache=True)
 def end_of(trails: Trails, row: int, taken: Words) -> int:
     """Return where the path from a row ends, with what is taken on it; the path is made shorter."""
-    wide = len(taken)
+    wide, sought, sets = len(taken), trails.sought, trails.sets
     while trails.leads[row] >= 0:
         lead = np.int64(trails.leads[row])
+        begin, beyond = wide * trails.taken[row], wide * trails.taken[lead]
         further = trails.leads[lead] >= 0
         for word in range(wide):
-            if further:
-                trails.taken[row * wide + word] |= trails.taken[lead * wide + word]
-            taken[word] |= trails.taken[row * wide + word]
-        if further:
-            trails.leads[row] = trails.leads[lead]
-        row = np.int64(trails.leads[row])
+            sought[word] = sets.words[begin + word] | (sets.words[beyond + word] if further else np.uint64(0))
+            taken[word] |= sought[word]
+        number = intern(sets, sought, True) if further else np.int64(NO_ROOM)
+        if number >= 0:
+            trails.leads[row], trails.taken[row] = trails.leads[lead], number
+            lead = np.int64(trails.leads[row])
+        row = lead
     return row
 
 
@@ -276,7 +291,7 @@ def expand_reduced(
     It is counted how often each transition was met, and how often it was followed. False where something is not known
     of the row that comes next: of that, nothing was stored.
     """
-    kept, wide = state[KEPT], len(r.taken)
+    kept = state[KEPT]
     bits = np.uint32(bits_for(len(table)))
     while state[AT] < until and state[SIZE] + len(batch.steps) <= room:
         row = state[AT]
@@ -292,7 +307,12 @@ def expand_reduced(
         onward = np.int64(EVERYBODY)
         if count:
             onward = choose(m, r, x, d, trails, f, here, words, table, batch, count, state)
-        known = onward != UNKNOWN
+        known, path = onward != UNKNOWN, np.int64(0)
+        if onward >= 0:
+            path = intern(trails.sets, r.taken, True)
+            if path == NO_ROOM:
+                state[NODE] = FULL
+                known = False
         for k in range(count if known else 0):
             if onward == EVERYBODY or has(r.inside, 0, r.whose[k]):
                 if x is None:  # a call hands over all of `Members`
@@ -317,9 +337,7 @@ def expand_reduced(
                 agent = np.int64(r.part[r.step_actor[step]]) // KINDS
                 trails.leads[number] = NO_AGENT - (agent + 1 if agent < r.agents else 0)
             if k == onward:
-                trails.leads[row] = number
-                for word in range(wide):
-                    trails.taken[row * wide + word] = r.taken[word]
+                trails.leads[row], trails.taken[row] = number, path
         state[AT] += 1
         state[EXPANDED] = state[AT]
     return True

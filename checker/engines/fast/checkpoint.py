@@ -23,7 +23,7 @@ from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import Space
 from semantics.state.canonical import canonical
 
-SCHEMA = "bigactors.checkpoint/3"
+SCHEMA = "bigactors.checkpoint/4"
 KEPT = (EXPANDED, SIZE, CUT, CROWDS)
 """What of the loops' state goes on; the rest follows from the mission."""
 

@@ -2,7 +2,8 @@
 
 A row is cut into pieces of as many words each, and pieces are interned: what two rows have in common they share. A row
 of up to four pieces is kept as their numbers; of one with up to sixteen pieces four numbers are interned again, as a
-node, and the row is kept as the numbers of its nodes. Rows are equal exactly if these numbers are. A successor differs
+node, and the row is kept as the numbers of its nodes. Each node has every fourth piece of the row: what varies much stands side by
+side, and is so divided among all nodes. Rows are equal exactly if these numbers are. A successor differs
 from its origin in a piece or two, so only these are looked up, and the nodes above them. This is the collapse of
 Holzmann (1997) in a tree, as Laarman, van de Pol and Weber (2011) fold rows, but four at a time: two look-ups instead
 of one for each level of a binary tree.
@@ -82,7 +83,8 @@ class Folded(NamedTuple):
         pieces, nodes: What is interned. A thread that only looks up has counts of its own: what was added since, and
             may not be written to its end, it has never met.
         deep: Whether there are nodes between pieces and rows: a number for a flag.
-        shift: Pieces have 2 to the power of this many words.
+        piece_of: For each word of a row in which piece it is.
+        begins: For each piece with which word it begins.
         whole: The words of the row.
         below, above: The numbers of its pieces, and of its nodes.
         before, fresh: Room for numbers of pieces, and of nodes.
@@ -93,7 +95,8 @@ class Folded(NamedTuple):
     pieces: Interned
     nodes: Interned
     deep: int
-    shift: int
+    piece_of: Numbers
+    begins: Numbers
     whole: Words
     below: Numbers
     above: Numbers
@@ -143,9 +146,9 @@ def unfold_piece(f: Folded, piece: int, number: int) -> None:
     """Write the words of a piece, if they are not there already."""
     if f.below[piece] != number:
         f.below[piece] = number
-        width = f.pieces.counts[WIDE]
+        width, begin = f.pieces.counts[WIDE], f.begins[piece]
         for k in range(width):
-            f.whole[piece * width + k] = f.pieces.words[number * width + k]
+            f.whole[begin + k] = f.pieces.words[number * width + k]
 
 
 @inner(cache=True)
@@ -209,22 +212,23 @@ def step_left_open(kept: Words, at: int) -> int:
 @inner(cache=True)
 def take(f: Folded, words: Words, begin: int, width: int, adding: bool) -> int:
     """Take a successor whose words stand elsewhere; return which of its pieces differ from the row's, as bits."""
-    touched, wide = np.int64(0), 1 << f.shift
+    touched, wide = np.int64(0), f.pieces.counts[WIDE]
     for first in range(0, width, wide):
         differs = False
         for k in range(wide):
             f.sought[k] = words[begin + first + k] if first + k < width else np.uint64(0)
             differs = differs or f.sought[k] != f.whole[first + k]
         if differs:
-            touched = put_piece(f, first >> f.shift, intern(f.pieces, f.sought, adding), touched)
+            touched = put_piece(f, f.piece_of[first], intern(f.pieces, f.sought, adding), touched)
     return touched
 
 
 @njit(cache=True, inline="always")
 def seek_piece(f: Folded, piece: int) -> None:
     """Copy the words of a piece of the successor to where what is looked up stands."""
-    begin = f.below[piece] << f.shift
-    for k in range(1 << f.shift):
+    wide = f.pieces.counts[WIDE]
+    begin = f.below[piece] * wide
+    for k in range(wide):
         f.sought[k] = f.pieces.words[begin + k]
 
 
@@ -353,14 +357,17 @@ class Folding:
         width: How many words a row has.
     """
 
-    __slots__ = ("_deep", "_desk", "_shift", "_shown", "nodes", "pieces", "width")
+    __slots__ = ("_begins", "_deep", "_desk", "_piece_of", "_shown", "nodes", "pieces", "width")
 
     def __init__(self, width: int, pieces: Words = _NONE, nodes: Words = _NONE) -> None:
         self._deep = width > SHALLOW
         count = FOUR * FOUR if self._deep else FOUR
         self.width = width
-        self._shift = (-(-width // count) - 1).bit_length()
-        self.pieces = Pool(1 << self._shift, pieces)
+        wide = -(-width // count)
+        order = np.arange(count).reshape(-1, count // FOUR).T.ravel()  # which piece of the row each is
+        self._begins = wide * order
+        self._piece_of = np.repeat(np.argsort(order), wide)
+        self.pieces = Pool(wide, pieces)
         self.nodes = Pool(PAIR, nodes)
         self._desk = Desk(count, self.pieces.width)
         begin_with_zeros(self.folded)
@@ -377,7 +384,7 @@ class Folding:
         return self._at_desk(*self._shown)
 
     def _at_desk(self, pieces: Interned, nodes: Interned) -> Folded:
-        return Folded(pieces, nodes, int(self._deep), self._shift, *self._desk.rooms)
+        return Folded(pieces, nodes, int(self._deep), self._piece_of, self._begins, *self._desk.rooms)
 
     def show(self) -> None:
         """Let all threads look up what is there now."""

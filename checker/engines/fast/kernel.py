@@ -199,8 +199,8 @@ def change_piece(
     for k in range(steps[record + WRITES], steps[record + WRITES_END]):
         where = PLACE * writes[PAIR * k]
         word, shift, mask = np.int64(columns[where]), columns[where + 1], columns[where + 2]
-        if word >> f.shift == piece:
-            word -= piece << f.shift
+        if f.piece_of[word] == piece:
+            word -= f.begins[piece]
             f.sought[word] = (f.sought[word] & ~(mask << shift)) | (np.uint64(writes[PAIR * k + 1]) << shift)
     return np.int64(intern(f.pieces, f.sought, adding))
 
@@ -245,10 +245,10 @@ def copy_pieces(
         code = np.uint64(code_at(f.whole, 0, columns, copies[PAIR * k + 1]))
         where = PLACE * copies[PAIR * k]
         word, shift, mask = np.int64(columns[where]), columns[where + 1], columns[where + 2]
-        piece = word >> f.shift
+        piece = f.piece_of[word]
         if f.below[piece] >= 0:
             seek_piece(f, piece)
-            word -= piece << f.shift
+            word -= f.begins[piece]
             f.sought[word] = (f.sought[word] & ~(mask << shift)) | (code << shift)
             touched = put_piece(f, piece, intern(f.pieces, f.sought, adding), touched)
     return touched
@@ -653,12 +653,14 @@ def make_masks(masks: Words, steps: Ints, writes: Ints, columns: Words, width: i
 
 
 @njit(cache=True)
-def note_pieces(touches: Words, steps: Ints, writes: Ints, columns: Words, shift: int, first: int) -> None:
+def note_pieces(
+    touches: Words, steps: Ints, writes: Ints, columns: Words, piece_of: State, first: int
+) -> None:
     """Note for each transition, from a first one on, which pieces of a folded row it writes into, as bits."""
     for step in range(first, len(touches)):
         touches[step] = 0
         for k in range(steps[STEP * step + WRITES], steps[STEP * step + WRITES_END]):
-            touches[step] |= _ONE << (columns[PLACE * writes[PAIR * k]] >> np.uint64(shift))
+            touches[step] |= _ONE << np.uint64(piece_of[np.int64(columns[PLACE * writes[PAIR * k]])])
 
 
 @njit(cache=True)

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from checker.engines.fast.folding import Interned
 from checker.engines.fast.kernel import ALPHA, TREE, Ints, Model, State, code_at, walk
 from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.table import Words
@@ -111,11 +112,15 @@ class Trails(NamedTuple):
 
     Attributes:
         leads: Where the path leads on; less than 0 where it ends, with whose step led there (see `NO_AGENT`).
-        taken: The parts that are taken on the way there, as words of bits.
+        taken: The number of the set of parts that are taken on the way there.
+        sets: Those sets by number, as words of bits: they are few.
+        sought: Room for one that is looked up.
     """
 
     leads: Ints
-    taken: Words
+    taken: Ints
+    sets: Interned
+    sought: Words
 
 
 @inner(cache=True)

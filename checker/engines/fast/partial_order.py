@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.columns import Packing
+from checker.engines.fast.folding import Pool
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.leaves import LEAF
 from checker.engines.fast.members import (
@@ -37,6 +38,9 @@ from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name
 
 NOBODY = -1
+
+SETS = 1 << 8
+"""For how many sets more there is room at least where rows begin to be expanded."""
 
 AGENT_PARTS = ("program", "line", "request")
 
@@ -74,8 +78,9 @@ class Choosing:
         self.actors = Growing(np.int32)
         self.step_actor = Growing(np.int32)
         self.step_flags = Growing(np.int32)
-        self.leads, self.taken = Pages(np.int32, 1), Pages(np.uint64, self.wide)
+        self.leads, self.taken = Pages(np.int32, 1), Pages(np.int32, 1)
         self.leads.room[0] = NO_AGENT
+        self.sets = Pool(self.wide, np.zeros(0, np.uint64))
         self.stride = self.width = 0
         self.roomy: tuple[int, int] | None = None
         self.room: tuple[Any, ...] = ()
@@ -89,16 +94,17 @@ class Choosing:
     @property
     def trails(self) -> Trails:
         """The paths so far; growing makes others: don't keep them."""
-        return Trails(self.leads.room, self.taken.room)
+        return Trails(self.leads.room, self.taken.room, self.sets.interned, np.zeros(self.wide, np.uint64))
 
     def reserve(self, rows: int) -> None:
-        """Make room for the paths of so many rows."""
+        """Make room for the paths of so many rows, and for more sets of what is taken on them."""
         self.leads.grow(rows)
-        self.taken.grow(rows * self.wide)
+        self.taken.grow(rows)
+        self.sets.reserve(SETS)
 
     def held(self, rows: int) -> int:
         """Return how many bytes the paths of so many rows take."""
-        return self.leads.held(rows) + self.taken.held(rows * self.wide)
+        return self.leads.held(rows) + self.taken.held(rows) + self.sets.held
 
     def see(self, groups: list[tuple[Name, ...]], where: Packing, successors: int) -> None:
         """Take in what was learned since; groups are the agents that there are, for each value of their cell."""

@@ -428,7 +428,7 @@ class Space:
         if folded is None:
             kernel.make_masks(*arrays, self.packing.words, known)
         else:
-            kernel.note_pieces(*arrays, folded.shift, known)
+            kernel.note_pieces(*arrays, folded.piece_of, known)
 
     def _groups(self) -> list[tuple[Name, ...]]:
         """Return the agents that there are, for each value of the cell that says so."""
