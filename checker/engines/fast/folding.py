@@ -2,8 +2,8 @@
 
 A row is cut into pieces of as many words each, and pieces are interned: what two rows have in common they share. A row
 of up to four pieces is kept as their numbers; of one with up to sixteen pieces four numbers are interned again, as a
-node, and the row is kept as the numbers of its nodes. Each node has every fourth piece of the row: what varies much stands side by
-side, and is so divided among all nodes. Rows are equal exactly if these numbers are. A successor differs
+node, and the row is kept as the numbers of its nodes. Each node has every fourth piece of the row: what varies much
+stands side by side, and is so divided among all nodes. Rows are equal exactly if these numbers are. A successor differs
 from its origin in a piece or two, so only these are looked up, and the nodes above them. This is the collapse of
 Holzmann (1997) in a tree, as Laarman, van de Pol and Weber (2011) fold rows, but four at a time: two look-ups instead
 of one for each level of a binary tree.
