@@ -229,7 +229,13 @@ class PhysicalModel:
 
     def _standing(self, place: Name) -> Placed | None:
         """Return where a place stands that has room of its own: what is carried has none."""
-        return None if self.carrier(place) is not None else self.position(place)
+        match self.placement(place):
+            case Carried():
+                return None
+            case InTransit(origin=origin):
+                return origin
+            case placement:
+                return placement
 
     def before(self, entity: Name, place: Name, at: Placed | None) -> tuple[Placed, ...]:
         """Return where those stand that A(P) takes before a place that an entity is in, which stands there itself."""
