@@ -51,13 +51,15 @@ def note_disturbers(r: Members, actors: int, wide: int, k: int) -> None:
     actor = RECORD * r.here[k]
     now, follower = np.int64(r.actors[actor + NOW]), r.actors[actor + FOLLOWER]
     begin = now * r.count
+    row = np.uint64(begin)  # indices are unsigned where there are most
     for word in range(wide):
         first, last = WORD * word, min(WORD * word + WORD, actors)
         found, asked = np.uint64(0), True
-        for j in range(first, last):
-            known = np.uint64(disturbed[begin + ever[j]])
+        here = np.uint64(first)
+        for bit in range(np.uint64(last - first)):
+            known = np.uint64(disturbed[row + np.uint64(ever[here + bit])])
             asked = asked and known != np.uint64(0)
-            found |= (known >> np.uint64(1)) << np.uint64(j - first)
+            found |= (known >> np.uint64(1)) << bit
         if not asked:
             for j in range(first, last):
                 if disturbed[begin + ever[j]] == 0:
