@@ -1,5 +1,6 @@
 """Hypothesis profiles: `default` finds the same examples in every run, `thorough` looks further."""
 
+import gc
 import os
 import signal
 import sys
@@ -14,6 +15,15 @@ from scale import examples
 # What is begun in a shell's background ignores Ctrl-C, and so would the processes that tests interrupt.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# Thousands of tests stay: to look through them again and again took a tenth of the time.
+gc.set_threshold(100_000, 20, 50)
+
+
+def pytest_collection_finish() -> None:
+    """Let what was collected be looked through no more."""
+    gc.freeze()
+
 
 _SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]  # whole configurations are large values
 
