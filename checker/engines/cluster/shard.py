@@ -281,14 +281,13 @@ class Shard(Space):
         self.outbox = Outbox()
         return tuple(found)
 
-    def take(self, *parcels: Parcel) -> Standing:
+    def take(self, *parcels: Parcel) -> None:
         """Take in what the others have sent, in their order."""
         self.hear(parcels)
         for peer, parcel in enumerate(parcels):
             for count in self.translated(peer, parcel):
                 arrays = (self.rows.words, self.rows.origins, self.table.room)
                 loops.store(*arrays, None, None, None, self.batch, 0, count, self.state)
-        return self.standing()
 
     def hear(self, parcels: Sequence[Parcel]) -> None:
         """Take in the values that the others have told."""
@@ -372,12 +371,11 @@ class Shard(Space):
 
     # --- limits, counts -------------------------------------------------------------------------------------------
 
-    def keep(self, size: int) -> Standing:
+    def keep(self, size: int) -> None:
         """Keep so many rows, and take in no more: the limit of configurations was met."""
         self.state[SIZE] = self.state[LIMIT] = size
         self.state[CUT] += 1
         self._rebuild(len(self.table.room))
-        return self.standing()
 
     def rules(self, *, followed: bool = True) -> Counter[str]:
         """Return how many transitions each rule has."""
