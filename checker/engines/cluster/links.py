@@ -63,24 +63,26 @@ class Sockets:
         self._me = me
         try:
             for peer, address in enumerate(addresses[:me]):
-                link = socket.create_connection(address, PATIENCE)
+                link = self._peers[peer] = socket.create_connection(address, PATIENCE)
                 link.sendall(_number(me))
-                self._peers[peer] = _proven(link, secret, me, peer)
+                _prove(link, secret, me, peer)
             while len(self._peers) < len(addresses) - 1:
                 self._admit(self._server.accept()[0], secret)
         except OSError as error:
+            self.close()
             raise LostError(f"worker {me} could not meet the others: {error}") from error
-        finally:
-            self._server.close()
+        self._server.close()
 
     def _admit(self, link: socket.socket, secret: bytes) -> None:
         """Let one in who has called; a stranger is left alone."""
         link.settimeout(PATIENCE)
         try:
             peer = int.from_bytes(_received(link, len(_number(0))), "big")
-            self._peers[peer] = _proven(link, secret, self._me, peer)
+            _prove(link, secret, self._me, peer)
         except OSError:
             link.close()
+        else:
+            self._peers[peer] = link
 
     def exchange(self, given: Sequence[Any]) -> list[Any]:
         """Give each worker something, in their order, and return what each has given to this one."""
@@ -135,8 +137,8 @@ def _received(link: socket.socket, size: int) -> bytearray:
     return told
 
 
-def _proven(link: socket.socket, secret: bytes, me: int, peer: int) -> socket.socket:
-    """Return a link when both ends have proved that they know the secret, each by its own number.
+def _prove(link: socket.socket, secret: bytes, me: int, peer: int) -> None:
+    """Let both ends of a link prove that they know the secret, each by its own number; then nothing is too late.
 
     Raises:
         OSError: The other one does not.
@@ -152,7 +154,6 @@ def _proven(link: socket.socket, secret: bytes, me: int, peer: int) -> socket.so
     for name, value in SILENCE.items():
         if hasattr(socket, name):
             link.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
-    return link
 
 
 def _proof(secret: bytes, prover: int, challenge: bytes) -> bytes:

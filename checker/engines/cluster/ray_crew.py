@@ -241,7 +241,7 @@ def connect(cluster: Cluster) -> None:
     quiet = {"include_dashboard": False, "log_to_driver": False, "logging_level": "error"}
     try:
         if cluster.address is None:
-            ray.init(num_cpus=cluster.workers, object_store_memory=STORE, **quiet)
+            ray.init("local", num_cpus=cluster.workers, object_store_memory=STORE, **quiet)
         else:
             ray.init(address=cluster.address, log_to_driver=False, logging_level="error")
     except Exception as error:  # Ray raises plain ones where it is not up in time

@@ -23,6 +23,7 @@ from checker.engines.fast.kernel import AT, CROWDS, CUT, EXPANDED, GATHERED, LIM
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import FIRST_ROWS, MOST_ROWS, Space
+from checker.engines.fast.writing import Deeper, Varies
 from checker.limits import memory_taken
 from semantics.state.configuration import Configuration
 
@@ -301,13 +302,12 @@ class Shard(Space):
         """Note another worker's values; a cell that varies there is not still here either."""
         learner, cell = self.learner, entry.place[0]
         if len(entry.place) == 3 and learner.columns.dig(cell, entry.place[1] + 1):
-            learner.forget_those(learner.writers, cell)
+            learner.relearn(Deeper(cell))
         number = learner.columns.number(entry.place)
         codes = [learner.columns.all[number].code(value) for value in entry.values]
         dictionary.add(entry.column, number, codes)
         if any(codes) and cell not in learner.varying:
-            learner.varying.add(cell)
-            learner.forget_those(learner.taken, cell)
+            learner.relearn(Varies(cell))
 
     def translated(self, peer: int, parcel: Parcel) -> Iterator[int]:
         """Put the rows of a parcel into the batch, some at a time; yield how many there are."""

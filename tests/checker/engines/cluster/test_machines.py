@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -24,7 +25,7 @@ PORT = 20_000 + os.getpid() % 10_000  # Ray looks for heads with the same addres
 PATIENCE = 120.0
 
 EXPLORE = """
-import json, os, signal, sys
+import json, os, signal, sys, time
 from checker import Cluster, Engine, Keeping, explore
 from checker.engines.cluster import explorer, ray_crew
 from specs.elaboration import load_mission
@@ -32,7 +33,9 @@ from specs.elaboration import load_mission
 mission, address, folder = sys.argv[1:]
 explorer.ROUND = 64
 ray_crew.connect(Cluster(2, address))
-ray = ray_crew.load_ray()
+ray, deadline = ray_crew.load_ray(), time.monotonic() + 30.0
+while sum(each["Alive"] for each in ray.nodes()) < 2 and time.monotonic() < deadline:  # it has just begun
+    time.sleep(0.1)
 actors = ray_crew.processes(ray.get_runtime_context().get_node_id(), 2)
 def ask(actor):
     return ray.get(actor.__ray_call__.remote(lambda _: (ray.util.get_node_ip_address(), os.getpid())))
@@ -64,6 +67,7 @@ def machines():
         run("ip", "netns", "add", names[0])
     except subprocess.CalledProcessError as error:
         pytest.skip(f"no network namespaces here: {error.stderr.strip()}")
+    folder = tempfile.mkdtemp(prefix="ray-")  # a short path: sockets are in it
     try:
         run("ip", "netns", "add", names[1])
         run("ip", "link", "add", "cable", "netns", names[0], "type", "veth", "peer", "cable", "netns", names[1])
@@ -71,21 +75,28 @@ def machines():
             run("ip", "-n", name, "address", "add", f"{host}/24", "dev", "cable")
             for link in ("lo", "cable"):
                 run("ip", "-n", name, "link", "set", link, "up")
+        ALIKE["RAY_TMPDIR"] = folder
         start(names[0], "--head", "--port", str(PORT), "--node-ip-address", HEAD, "--include-dashboard", "false")
         start(names[1], "--address", f"{HEAD}:{PORT}", "--node-ip-address", OTHER)
         yield names
     finally:
         for name in names:
             switch_off(name)
+        shutil.rmtree(folder)
 
 
-TOKEN = {"RAY_AUTH_MODE": "token", "RAY_AUTH_TOKEN": secrets.token_hex(), "RAY_USAGE_STATS_ENABLED": "0"}
+ALIKE = {
+    "RAY_AUTH_MODE": "token",
+    "RAY_AUTH_TOKEN": secrets.token_hex(),
+    "RAY_USAGE_STATS_ENABLED": "0",
+    "PYTHONPATH": str(ROOT),
+}
+"""What is the same in the environments of both machines."""
 
 
 def inside(name, *line):
     """Return what runs a command on a machine, and in which environment."""
-    at = os.environ | TOKEN | {"PYTHONPATH": str(ROOT)}
-    return ("ip", "netns", "exec", name, *map(str, line)), at
+    return ("ip", "netns", "exec", name, *map(str, line)), os.environ | ALIKE
 
 
 def start(name, *options):
@@ -121,7 +132,7 @@ def test_two_machines_explore_what_one_process_does_even_if_a_worker_is_killed(m
     ran = subprocess.run(line, env=at, capture_output=True, text=True, timeout=PATIENCE)
     assert ran.returncode == 0, ran.stderr
     places, places_after, reports, counts = json.loads(ran.stdout.splitlines()[-1])
-    assert sorted(places) == [HEAD, OTHER]
+    assert sorted(places) == [HEAD, OTHER], ran.stderr
     assert HEAD in places_after
     assert reports > 40
     alone = explore(load_mission(MISSION).initial, engine=Engine.FAST)
