@@ -10,6 +10,7 @@ import pickle
 import socket
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from typing import Any, Protocol
 
 from checker.engines.cluster.crew import LostError
@@ -87,7 +88,9 @@ class Sockets:
     def exchange(self, given: Sequence[Any]) -> list[Any]:
         """Give each worker something, in their order, and return what each has given to this one."""
         found = list(given)
-        sent = self._sending.submit(self._send, given)  # while this thread listens: so nobody waits for another
+        sent = self._sending.submit(
+            self._send, given
+        )  # while this thread listens: so nobody waits for another
         try:
             for peer in _in_turn(self._me, -1, len(given)):
                 link = self._peers[peer]
@@ -109,10 +112,8 @@ class Sockets:
         """End all links: whoever waits at the other end is told."""
         self._server.close()
         for link in self._peers.values():
-            try:
+            with suppress(OSError):  # the other end may have been faster
                 link.shutdown(socket.SHUT_RDWR)  # wakes who waits here, too
-            except OSError:
-                pass  # the other end was faster
             link.close()
         self._peers = {}
 
@@ -138,7 +139,7 @@ def _received(link: socket.socket, size: int) -> bytearray:
 
 
 def _prove(link: socket.socket, secret: bytes, me: int, peer: int) -> None:
-    """Let both ends of a link prove that they know the secret, each by its own number; then nothing is too late.
+    """Let both ends of a link prove that they know the secret, each by its own number; from then on none is in a hurry.
 
     Raises:
         OSError: The other one does not.

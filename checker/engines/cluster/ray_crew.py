@@ -60,12 +60,14 @@ class Process:
     def __init__(self) -> None:
         self.joined: dict[str, tuple[Worker, Sockets, int]] = {}
 
-    def join(self, crew: str, revived: int, *worker: Any) -> tuple[str, Address]:
-        """Join a crew as the worker that is described, unless it is one; return which checker runs here, and where."""
+    def join(
+        self, crew: str, revived: int, initial: Configuration, pending: int, me: int, workers: int
+    ) -> tuple[str, Address]:
+        """Join a crew as some worker, unless it is one; return which checker runs here, and where it is met."""
         links = Sockets(load_ray().util.get_node_ip_address())
         known, before, _ = self.joined.get(crew, (None, None, 0))
         if known is None or before is None:
-            known = Worker(*worker, links)
+            known = Worker(initial, pending, me, workers, links)
         else:
             before.close()
             known.links = links
@@ -189,7 +191,9 @@ class RayCrew:
                 self.name, self.revived, *self.about, worker, self.size
             )
             try:
-                joined: tuple[str, Address] = self.ray.get(reference, timeout=max(0.0, deadline - time.monotonic()))
+                joined: tuple[str, Address] = self.ray.get(
+                    reference, timeout=max(0.0, deadline - time.monotonic())
+                )
                 return joined
             except errors.ActorUnschedulableError as error:
                 raise MachineError(f"worker {worker} can't be placed: {error}") from error
@@ -241,7 +245,7 @@ def connect(cluster: Cluster) -> None:
     quiet = {"include_dashboard": False, "log_to_driver": False, "logging_level": "error"}
     try:
         if cluster.address is None:
-            ray.init("local", num_cpus=cluster.workers, object_store_memory=STORE, **quiet)
+            ray.init(address="local", num_cpus=cluster.workers, object_store_memory=STORE, **quiet)
         else:
             ray.init(address=cluster.address, log_to_driver=False, logging_level="error")
     except Exception as error:  # Ray raises plain ones where it is not up in time

@@ -1,4 +1,4 @@
-"""A worker: explores with the others, and answers surveys, edges and checkpoints for its rows, which it numbers itself."""
+"""A worker: explores with the others; answers surveys, edges and checkpoints for its rows, which it numbers itself."""
 
 import time
 from collections.abc import Iterable, Sequence
@@ -107,7 +107,9 @@ class Worker:
             if not any(missing for missing, _ in recalled):
                 break
             if recalled == before:
-                raise CheckpointError(f"{folder}: what is learned from this checkpoint is not what was learned")
+                raise CheckpointError(
+                    f"{folder}: what is learned from this checkpoint is not what was learned"
+                )
         loading.finish()
         if not all(self.told(self._fits(layer, self.told(shard.boundaries)))):
             raise CheckpointError(f"{folder}: the workers' parts of this checkpoint don't fit together")

@@ -53,9 +53,7 @@ class LocalCrew:
         self, initial: Configuration, workers: int, pending: int = 64, dies: tuple[tuple[int, int], ...] = ()
     ) -> None:
         self.initial, self.pending = initial, pending
-        self.workers = [
-            Worker(initial, pending, me, workers, LocalLinks(self, me)) for me in range(workers)
-        ]
+        self.workers = [Worker(initial, pending, me, workers, LocalLinks(self, me)) for me in range(workers)]
         self.board = Board(workers)
         self.dies = dies
         self.called: list[list[str]] = [[] for _ in range(workers)]
