@@ -53,7 +53,7 @@ def measured(size: Size, workers: int) -> dict[str, Any]:
             initial(size),
             limits=Limits(configurations=None),
             report=look,
-            every=0.0,
+            every=0.05,
             engine=engine,
             keeping=keeping,
             cluster=Cluster(workers),

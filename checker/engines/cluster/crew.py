@@ -12,7 +12,7 @@ class ClusterError(Exception):
 
 
 class Crew(Protocol):
-    """Workers that are asked together; each question waits for all before it (see `worker.Worker`).
+    """Workers that are asked together; what they exchange meanwhile is their own affair (see `worker.Worker`).
 
     Each method raises `LostError` where a worker has died.
     """
@@ -27,13 +27,11 @@ class Crew(Protocol):
     def every(self, method: str, *arguments: Any) -> list[Any]:
         """Return what each of them answers."""
 
-    def exchange(self, giving: str, taking: str, *arguments: Any) -> list[Any]:
-        """Let each of them give something for every one, then take what it was given; return the answers to that."""
-
     def revive(self) -> None:
-        """Start anew those who died.
+        """Start anew those who died, and link all with each other.
 
         Raises:
             ClusterError: They run something else.
             MachineError: They can't be started.
+            LostError: Some died at once.
         """

@@ -15,9 +15,9 @@ from checker.engines.cluster.crew import Crew, LostError
 from checker.engines.cluster.lookup import Configurations, Found, Origins, Survey, look_at_each
 from checker.engines.cluster.merging import is_mergeable, merge
 from checker.engines.cluster.numbering import Places
+from checker.engines.cluster.rounds import Stage
 from checker.engines.cluster.shard import Standing
 from checker.engines.contract import (
-    CheckpointError,
     Exploration,
     Inspect,
     MachineError,
@@ -32,6 +32,9 @@ MOST_LOSSES = 5
 
 ROUND = 1 << 14
 """Rows that each worker expands between two exchanges, for each worker that there is: so parcels stay as large."""
+
+LONGEST = 0.25
+"""Seconds for which workers go on by themselves at most: so soon the user's wish for the end is noticed."""
 
 Answer = TypeVar("Answer")
 
@@ -136,7 +139,7 @@ class Expedition:
         }
         return [limits.bound(stop) for stop, is_met in met.items() if is_met]
 
-    # --- rounds ---------------------------------------------------------------------------------------------------
+    # --- stages ---------------------------------------------------------------------------------------------------
 
     def visit_all(self) -> None:
         """Go on until all is explored, or a bound is met."""
@@ -145,7 +148,7 @@ class Expedition:
         if self.is_done():
             return
         while not self.is_done():
-            self.go_round()
+            self.go_on()
         self.save()
 
     def is_done(self) -> bool:
@@ -164,17 +167,18 @@ class Expedition:
             self.standings = self.load(self.latest.number)
         self.is_lost = False
 
-    def go_round(self) -> None:
-        """Let each worker expand some rows, and the others take what is theirs, unless a bound is met."""
-        self.look_at_bounds(time.monotonic() - self.began)
+    def go_on(self) -> None:
+        """Let the workers go on until there is something to be looked at, unless a bound is met."""
+        now = time.monotonic()
+        self.look_at_bounds(now - self.began)
         if self.bounds:
             return
-        if all(each.expanded == each.end for each in self.standings):
-            self.layer += 1
-        before = [each.size for each in self.standings]
         self.is_kept = False
-        self.standings = self.crew.exchange("expand", "take", self.layer, ROUND * self.crew.size)
-        self.trim(before)
+        stage = Stage(
+            ROUND * self.crew.size, self.seconds_left(now), self.limits.configurations, self.limits.memory
+        )
+        explored = self.crew.every("explore", self.layer, stage)
+        self.layer, self.standings = explored[0][0], [standing for _, standing in explored]
         now = time.monotonic()
         if self.options.report is not None and now - self.reported >= self.options.every:
             self.options.report(self.progress(now - self.began))
@@ -182,18 +186,16 @@ class Expedition:
         if now - self.kept >= self.keeping.every:
             self.save()
 
-    def trim(self, before: list[int]) -> None:
-        """Give up what is beyond the limit of configurations, of that which came last."""
-        most = self.limits.configurations
-        sizes = [each.size for each in self.standings]
-        excess = 0 if most is None else sum(sizes) - most
-        if excess <= 0:
-            return
-        for worker in reversed(range(len(sizes))):
-            given_up = min(excess, sizes[worker] - before[worker])
-            sizes[worker] -= given_up
-            excess -= given_up
-        self.standings = self.crew.every("keep", tuple(sizes))
+    def seconds_left(self, now: float) -> float:
+        """Return how long there is nothing to be looked at: no report, no checkpoint, and no end of the time."""
+        left = [LONGEST]
+        if self.options.report is not None:
+            left.append(self.reported + self.options.every - now)
+        if self.folder is not None:
+            left.append(self.kept + self.keeping.every - now)
+        if self.limits.seconds is not None:
+            left.append(self.limits.seconds - self.limits.spent - (now - self.began))
+        return min(left)
 
     def look_at_bounds(self, seconds: float) -> None:
         """Note whether time, or some worker's memory, has come to its end, or the user wants the end."""
@@ -226,21 +228,5 @@ class Expedition:
         self.kept = time.monotonic()
 
     def load(self, number: int) -> list[Standing]:
-        """Let all workers go back to a checkpoint, and tell each other what they have forgotten."""
-        self.crew.every("load", str(self.folder), number, self.digest)
-        known: list[tuple[int, int]] = []
-        while True:
-            recalled = self.crew.exchange("recall", "hear")
-            if not any(missing for missing, _ in recalled):
-                standings = self.crew.every("go_on")
-                boundaries = tuple(each for each, _ in self.crew.every("summary"))
-                if not all(self.crew.every("fits", self.layer, boundaries)):
-                    raise CheckpointError(
-                        f"{self.folder}: the workers' parts of this checkpoint don't fit together"
-                    )
-                return standings
-            if recalled == known:
-                raise CheckpointError(
-                    f"{self.folder}: what is learned from this checkpoint is not what was learned"
-                )
-            known = recalled
+        """Let all workers go back to a checkpoint."""
+        return self.crew.every("load", str(self.folder), number, self.digest, self.layer)

@@ -2,7 +2,6 @@
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Sequence
-from functools import partial
 from typing import Any, TypeVar, overload
 
 import numpy as np
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from checker.engines.cluster.crew import Crew
 from checker.engines.cluster.numbering import Places
+from checker.engines.cluster.worker import Edges
 from checker.engines.contract import Inspect
 from checker.engines.graph import Graph
 from semantics.properties.propositions import Proposition
@@ -149,8 +149,8 @@ class Survey:
         labels: dict[Label, int] = {}
         parts = [(np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int64))]
         for first in range(0, max(found.expanded, default=0), BLOCK):
-            answers, edges = found.surely(partial(self._edges, first))
-            parts += [self._gathered(worker, told, answers, labels) for worker, told in enumerate(edges)]
+            edges = found.every("edges", first, BLOCK)
+            parts += [self._gathered(worker, told, labels) for worker, told in enumerate(edges)]
         sources, actions, targets = (np.concatenate(each) for each in zip(*parts, strict=True))
         order = np.argsort(sources, kind="stable")
         sources, actions, targets = sources[order], actions[order], targets[order]
@@ -175,20 +175,15 @@ class Survey:
             missing |= np.bincount(sources, minlength=len(missing)) == 0
         return missing
 
-    def _edges(self, first: int) -> tuple[list[Any], list[Any]]:
-        return self.found.crew.exchange("point", "find", first, BLOCK), self.found.crew.every("edges")
-
     def _gathered(
-        self, worker: int, edges: tuple[Any, ...], answers: list[Any], labels: dict[Label, int]
+        self, worker: int, edges: Edges, labels: dict[Label, int]
     ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]:
         """Return a worker's transitions in numbers that are everybody's."""
         places = self.found.places
-        rows, actions, owners, own, told = edges
+        rows, actions, owners, reached, told = edges
         targets = np.full(len(rows), -1, np.int64)
-        for owner in range(len(answers)):
-            of_owner = np.flatnonzero(owners == owner)
-            reached = own[of_owner] if owner == worker else answers[owner][worker]
-            known = reached >= 0
-            targets[of_owner[known]] = places.all_of(owner, reached[known])
+        for owner in range(self.found.crew.size):
+            known = np.flatnonzero((owners == owner) & (reached >= 0))
+            targets[known] = places.all_of(owner, reached[known])
         numbers = np.array([labels.setdefault(label, len(labels)) for label in told], np.int32)
         return places.all_of(worker, rows), numbers[actions], targets

@@ -1,11 +1,12 @@
 """A crew of Ray actors: the only file that imports Ray.
 
-Parcels go from actor to actor through Ray's object store; whoever leads sees only their references. An actor that dies
-is started anew by Ray, and knows nothing then: calls say which crew they are meant for, so that none is answered by one
-that has forgotten.
+Ray places actors, carries questions and answers, and starts an actor anew that dies. It knows nothing then: calls say
+which crew they are meant for, so that none is answered by one that has forgotten. What workers exchange with each other
+goes over `links.Sockets`.
 """
 
 import os
+import secrets
 import shutil
 import signal
 import socket
@@ -22,6 +23,7 @@ from uuid import uuid4
 
 from checker.engines.cluster.crew import ClusterError, LostError
 from checker.engines.cluster.explorer import Expedition
+from checker.engines.cluster.links import Address, Sockets
 from checker.engines.cluster.transfer import WORKERS_AT_MOST
 from checker.engines.cluster.worker import Worker
 from checker.engines.contract import (
@@ -56,24 +58,45 @@ class Process:
     """
 
     def __init__(self) -> None:
-        self.joined: dict[str, tuple[Worker, int]] = {}
+        self.joined: dict[str, tuple[Worker, Sockets, int]] = {}
 
-    def join(self, crew: str, revived: int, *worker: Any) -> str:
-        """Join a crew as the worker that is described, unless it is one; return which checker it is that runs here."""
-        known = self.joined.get(crew)
-        self.joined[crew] = Worker(*worker) if known is None else known[0], revived
-        return edition()
+    def join(
+        self, crew: str, revived: int, initial: Configuration, pending: int, me: int, workers: int
+    ) -> tuple[str, Address]:
+        """Join a crew as some worker, unless it is one; return which checker runs here, and where it is met."""
+        links = Sockets(load_ray().util.get_node_ip_address())
+        known, before, _ = self.joined.get(crew, (None, None, 0))
+        if known is None or before is None:
+            known = Worker(initial, pending, me, workers, links)
+        else:
+            before.close()
+            known.links = links
+        self.joined[crew] = known, links, revived
+        return edition(), links.address
+
+    def meet(self, crew: str, revived: int, addresses: list[Address], secret: bytes) -> None:
+        """Link the worker of a crew with the others, which do the same."""
+        worker, links = self._of(crew, revived)
+        links.meet(worker.shard.me, addresses, secret)
 
     def call(self, crew: str, revived: int, method: str, *arguments: Any) -> Any:
-        """Return what the worker of a crew answers."""
-        worker, joined = self.joined.get(crew, (None, -1))
-        if joined != revived:
+        """Return what the worker of a crew answers; where it can't, no other waits for it."""
+        worker, links = self._of(crew, revived)
+        try:
+            return getattr(worker, method)(*arguments)
+        except BaseException:
+            links.close()
+            raise
+
+    def _of(self, crew: str, revived: int) -> tuple[Worker, Sockets]:
+        if crew not in self.joined or self.joined[crew][2] != revived:
             raise ForgottenError
-        return getattr(worker, method)(*arguments)
+        return self.joined[crew][:2]
 
     def leave(self, crew: str) -> None:
         """Leave a crew."""
-        self.joined.pop(crew, None)
+        if crew in self.joined:
+            self.joined.pop(crew)[1].close()
 
 
 @lru_cache(maxsize=4)
@@ -112,62 +135,65 @@ class RayCrew:
 
     def every(self, method: str, *arguments: Any) -> list[Any]:
         """Return what each of them answers."""
+        return self._asked("call", method, *arguments)
+
+    def _asked(self, question: str, *arguments: Any) -> list[Any]:
         return self._got(
-            [actor.call.remote(self.name, self.revived, method, *arguments) for actor in self.actors]
+            [getattr(actor, question).remote(self.name, self.revived, *arguments) for actor in self.actors]
         )
 
-    def exchange(self, giving: str, taking: str, *arguments: Any) -> list[Any]:
-        """Let each of them give something for every one, then take what it was given; return the answers to that."""
-        given = [
-            actor.call.options(num_returns=self.size).remote(self.name, self.revived, giving, *arguments)
-            for actor in self.actors
-        ]
-        taken = [
-            actor.call.remote(self.name, self.revived, taking, *(each[worker] for each in given))
-            for worker, actor in enumerate(self.actors)
-        ]
-        return self._got(taken)
-
     def _got(self, references: list[Any]) -> list[Any]:
-        errors = self.ray.exceptions
-        try:
-            found: list[Any] = self.ray.get(references)
-        except (
-            errors.RayActorError,
-            errors.ObjectLostError,
-            errors.OutOfMemoryError,
-            ForgottenError,
-        ) as lost:
-            raise LostError(str(lost).strip().splitlines()[0] if str(lost) else "a worker was lost") from lost
-        except errors.RayTaskError as error:
-            if isinstance(error.cause, CheckpointError):
-                raise error.cause from None  # it says all; where in a worker it was raised is of no interest
-            raise
+        """Return all answers; of failures that counts which is none of a worker that only lost another."""
+        found, failures = [], []
+        for reference in references:
+            try:
+                found.append(self._answer(reference))
+            except Exception as error:
+                failures.append(error)
+        if failures:
+            raise min(failures, key=lambda error: isinstance(error, LostError))
         return found
 
+    def _answer(self, reference: Any) -> Any:
+        errors = self.ray.exceptions
+        try:
+            return self.ray.get(reference)
+        except (errors.RayActorError, errors.ObjectLostError, errors.OutOfMemoryError) as lost:
+            raise LostError(str(lost).strip().splitlines()[0]) from lost
+        except errors.RayTaskError as error:
+            if isinstance(error.cause, ForgottenError):
+                raise LostError("a worker was started anew") from None
+            if isinstance(error.cause, (CheckpointError, LostError)):
+                raise error.cause from None  # it says all; where in a worker it was raised is of no interest
+            raise
+
     def revive(self) -> None:
-        """Wait until all actors are there, and let them join anew.
+        """Wait until all actors are there, let them join anew, and link them.
 
         Raises:
             ClusterError: Some run something else.
             MachineError: Some are not there in time.
+            LostError: Some died since.
         """
         self.revived += 1
         deadline = time.monotonic() + PATIENCE
-        editions = {self._join(worker, deadline) for worker in range(self.size)}
-        if editions != {edition()}:
+        joined = [self._join(worker, deadline) for worker in range(self.size)]
+        if {runs for runs, _ in joined} != {edition()}:
             raise ClusterError(
                 "the machines of the cluster run another version of the checker: install the same on all"
             )
+        self._asked("meet", [address for _, address in joined], secrets.token_bytes())
 
-    def _join(self, worker: int, deadline: float) -> str:
+    def _join(self, worker: int, deadline: float) -> tuple[str, Address]:
         errors = self.ray.exceptions
         while True:
             reference = self.actors[worker].join.remote(
                 self.name, self.revived, *self.about, worker, self.size
             )
             try:
-                joined: str = self.ray.get(reference, timeout=max(0.0, deadline - time.monotonic()))
+                joined: tuple[str, Address] = self.ray.get(
+                    reference, timeout=max(0.0, deadline - time.monotonic())
+                )
                 return joined
             except errors.ActorUnschedulableError as error:
                 raise MachineError(f"worker {worker} can't be placed: {error}") from error
@@ -219,7 +245,7 @@ def connect(cluster: Cluster) -> None:
     quiet = {"include_dashboard": False, "log_to_driver": False, "logging_level": "error"}
     try:
         if cluster.address is None:
-            ray.init(num_cpus=cluster.workers, object_store_memory=STORE, **quiet)
+            ray.init(address="local", num_cpus=cluster.workers, object_store_memory=STORE, **quiet)
         else:
             ray.init(address=cluster.address, log_to_driver=False, logging_level="error")
     except Exception as error:  # Ray raises plain ones where it is not up in time

@@ -23,6 +23,7 @@ from checker.engines.fast.kernel import AT, CROWDS, CUT, EXPANDED, GATHERED, LIM
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import FIRST_ROWS, MOST_ROWS, Space
+from checker.engines.fast.writing import Deeper, Varies
 from checker.limits import memory_taken
 from semantics.state.configuration import Configuration
 
@@ -281,14 +282,13 @@ class Shard(Space):
         self.outbox = Outbox()
         return tuple(found)
 
-    def take(self, *parcels: Parcel) -> Standing:
+    def take(self, *parcels: Parcel) -> None:
         """Take in what the others have sent, in their order."""
         self.hear(parcels)
         for peer, parcel in enumerate(parcels):
             for count in self.translated(peer, parcel):
                 arrays = (self.rows.words, self.rows.origins, self.table.room)
                 loops.store(*arrays, None, None, None, self.batch, 0, count, self.state)
-        return self.standing()
 
     def hear(self, parcels: Sequence[Parcel]) -> None:
         """Take in the values that the others have told."""
@@ -302,13 +302,12 @@ class Shard(Space):
         """Note another worker's values; a cell that varies there is not still here either."""
         learner, cell = self.learner, entry.place[0]
         if len(entry.place) == 3 and learner.columns.dig(cell, entry.place[1] + 1):
-            learner.forget_those(learner.writers, cell)
+            learner.relearn(Deeper(cell))
         number = learner.columns.number(entry.place)
         codes = [learner.columns.all[number].code(value) for value in entry.values]
         dictionary.add(entry.column, number, codes)
         if any(codes) and cell not in learner.varying:
-            learner.varying.add(cell)
-            learner.forget_those(learner.taken, cell)
+            learner.relearn(Varies(cell))
 
     def translated(self, peer: int, parcel: Parcel) -> Iterator[int]:
         """Put the rows of a parcel into the batch, some at a time; yield how many there are."""
@@ -372,12 +371,11 @@ class Shard(Space):
 
     # --- limits, counts -------------------------------------------------------------------------------------------
 
-    def keep(self, size: int) -> Standing:
+    def keep(self, size: int) -> None:
         """Keep so many rows, and take in no more: the limit of configurations was met."""
         self.state[SIZE] = self.state[LIMIT] = size
         self.state[CUT] += 1
         self._rebuild(len(self.table.room))
-        return self.standing()
 
     def rules(self, *, followed: bool = True) -> Counter[str]:
         """Return how many transitions each rule has."""

@@ -1,5 +1,6 @@
-"""A worker: answers rounds, surveys, edges and checkpoints for its rows, which it numbers itself."""
+"""A worker: explores with the others; answers surveys, edges and checkpoints for its rows, which it numbers itself."""
 
+import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -8,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.cluster import checkpoints
+from checker.engines.cluster.links import Links
+from checker.engines.cluster.rounds import Mark, Stage, kept, mark
 from checker.engines.cluster.shard import Shard, Standing
 from checker.engines.cluster.transfer import Parcel
-from checker.engines.contract import Inspect
+from checker.engines.contract import CheckpointError, Inspect
 from checker.engines.fast import kernel as loops
 from checker.engines.fast.graph import pending_in_space
 from checker.engines.fast.inspecting import inspect_fast, is_still, truths
@@ -25,22 +28,26 @@ from semantics.state.configuration import Configuration, Label
 from semantics.state.requests import Request
 
 Edges = tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int64], tuple[Label, ...]]
-"""Of some transitions the rows they leave, the numbers of their labels, whose rows they lead to, and to which of one's
-own (-1: another's); and the labels."""
+"""Of some transitions the rows they leave, the numbers of their labels, whose rows they lead to, and to which of those
+(less than 0: to none); and the labels."""
 
 
 class Worker:
-    """One of the processes that explore together.
+    """One of the processes that explore together; what has `links` in it is asked of all at once.
 
     Attributes:
         shard: Its rows, and what it learned.
+        links: Its links to the others.
     """
 
-    def __init__(self, initial: Configuration, pending: int, me: int, workers: int) -> None:
+    def __init__(self, initial: Configuration, pending: int, me: int, workers: int, links: Links) -> None:
         self.initial = initial
+        self.links = links
         self.shard = Shard(initial, pending, me, workers)
-        self.loading: checkpoints.Loading | None = None
-        self.pointed: Edges | None = None
+
+    def told(self, news: Any) -> list[Any]:
+        """Tell all the same, and return what each tells."""
+        return self.links.exchange([news] * self.shard.workers)
 
     # --- rounds ---------------------------------------------------------------------------------------------------
 
@@ -49,17 +56,31 @@ class Worker:
         self.shard.start()
         return self.shard.standing()
 
-    def expand(self, layer: int, most: int) -> tuple[Parcel, ...]:
-        """Expand some rows of a layer."""
-        return self.shard.expand(layer, most)
+    def explore(self, layer: int, stage: Stage) -> tuple[int, Standing]:
+        """Go on from a layer for a round at least; return the layer, and how far it has come.
 
-    def take(self, *parcels: Parcel) -> Standing:
-        """Take in what was sent."""
-        return self.shard.take(*parcels)
+        In a round some rows of the layer are expanded, and what the others have reached is taken in. The next layer
+        begins when nobody has rows of this one, so distances are those of a breadth-first search.
+        """
+        shard, end = self.shard, time.monotonic() + stage.seconds
+        marks = self._marks()
+        while True:
+            if all(each.expanded == each.end for each in marks):
+                layer += 1
+            before = [each.size for each in marks]
+            shard.take(*self.links.exchange(shard.expand(layer, stage.rows)))
+            marks = self._marks(is_late=time.monotonic() >= end)
+            sizes = [each.size for each in marks]
+            if stage.configurations is not None and sum(sizes) > stage.configurations:
+                sizes = kept(before, sizes, stage.configurations)
+                shard.keep(sizes[shard.me])
+                marks = [each._replace(size=size) for each, size in zip(marks, sizes, strict=True)]
+            if stage.is_over(marks):
+                return layer, shard.standing()
 
-    def keep(self, sizes: tuple[int, ...]) -> Standing:
-        """Keep so many rows; for each worker there is a number."""
-        return self.shard.keep(sizes[self.shard.me])
+    def _marks(self, *, is_late: bool = False) -> list[Mark]:
+        shard = self.shard
+        return self.told(mark(shard.size, shard.expanded, shard.end, is_late=is_late))
 
     # --- checkpoints ----------------------------------------------------------------------------------------------
 
@@ -71,30 +92,30 @@ class Worker:
         """Remove a checkpoint, if there is one."""
         checkpoints.path_of(Path(folder), number, self.shard.me).unlink(missing_ok=True)
 
-    def load(self, folder: str, number: int, digest: str) -> None:
-        """Begin to go back to a checkpoint."""
-        self.loading = checkpoints.Loading(self.shard, Path(folder), number, digest)
+    def load(self, folder: str, number: int, digest: str, layer: int) -> Standing:
+        """Go back to a checkpoint, in which some layer was expanded; all tell each other what they have forgotten.
 
-    def recall(self) -> tuple[Parcel, ...]:
-        """Learn again what can be learned by now, and tell the others what is new."""
-        assert self.loading is not None
-        self.loading.recall()
-        return self.shard.parcels(always=True)
+        Raises:
+            CheckpointError: It is damaged, or of something else.
+        """
+        loading, shard = checkpoints.Loading(self.shard, Path(folder), number, digest), self.shard
+        recalled: list[tuple[int, int]] = []
+        while True:
+            loading.recall()
+            shard.hear(self.links.exchange(shard.parcels(always=True)))
+            before, recalled = recalled, self.told((loading.missing(), len(shard.keys.keys)))
+            if not any(missing for missing, _ in recalled):
+                break
+            if recalled == before:
+                raise CheckpointError(
+                    f"{folder}: what is learned from this checkpoint is not what was learned"
+                )
+        loading.finish()
+        if not all(self.told(self._fits(layer, self.told(shard.boundaries)))):
+            raise CheckpointError(f"{folder}: the workers' parts of this checkpoint don't fit together")
+        return shard.standing()
 
-    def hear(self, *parcels: Parcel) -> tuple[int, int]:
-        """Take in what the others have recalled; return what is missing, and how many values are known."""
-        assert self.loading is not None
-        self.shard.hear(parcels)
-        return self.loading.missing(), len(self.shard.keys.keys)
-
-    def go_on(self) -> Standing:
-        """Take in the rows of the checkpoint, now that all their values are known."""
-        assert self.loading is not None
-        self.loading.finish()
-        self.loading = None
-        return self.shard.standing()
-
-    def fits(self, layer: int, boundaries: tuple[tuple[int, ...], ...]) -> bool:
+    def _fits(self, layer: int, boundaries: list[tuple[int, ...]]) -> bool:
         """Tell whether what it went back to fits to a layer, and to where all workers' layers begin."""
         whole = all(
             len(each) == layer + 3 for each in boundaries
@@ -151,8 +172,8 @@ class Worker:
         """Return where each request is pending."""
         return pending_in_space(Survey(self.shard))
 
-    def point(self, first: int, most: int) -> tuple[Parcel, ...]:
-        """Find the transitions of some rows; send each worker those of its rows that they lead to."""
+    def edges(self, first: int, most: int) -> Edges:
+        """Return the transitions of some of its rows."""
         shard = self.shard
         until = min(first + most, shard.expanded)
         shard.state[AT], found = min(first, until), []
@@ -163,16 +184,21 @@ class Worker:
             found.append(self._point())
             if not known:
                 shard.go_on()
-        self.pointed = self._edges(found)
-        return shard.parcels()
+        edges = self._edges(found)
+        _, _, owners, targets, _ = edges
+        answers = self.links.exchange(self._find(self.links.exchange(shard.parcels())))
+        for owner, answer in enumerate(answers):
+            if owner != shard.me:
+                targets[owners == owner] = answer
+        return edges
 
     def _point(self) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
+        """Return the transitions of a batch; lay out those of their targets to be sent that are others' rows."""
         shard, count = self.shard, int(self.shard.state[GATHERED])
         shard.state[GATHERED] = 0
         batch, width = shard.batch, shard.packing.words
         owners = shard.owners_of(batch.words, batch.origins[:count])
         targets = self._found(count)
-        targets[owners != shard.me] = -1
         others = np.flatnonzero(owners != shard.me)
         shard.outbox.add(batch.words.reshape(-1, width)[others], batch.origins[others], owners[others])
         return batch.origins[:count].copy(), batch.steps[:count].copy(), owners, targets
@@ -193,7 +219,7 @@ class Worker:
         rows, steps, owners, targets = (np.concatenate(each) for each in zip(nothing, *found, strict=True))
         return rows, action_of[steps], owners, targets, tuple(numbers)
 
-    def find(self, *parcels: Parcel) -> list[NDArray[np.int64]]:
+    def _find(self, parcels: Sequence[Parcel]) -> list[NDArray[np.int64]]:
         """Return for each worker which of one's own rows those in its parcel are, less than 0 where they are none."""
         self.shard.hear(parcels)
         found = []
@@ -201,8 +227,3 @@ class Worker:
             parts = [self._found(count) for count in self.shard.translated(peer, parcel)]
             found.append(np.concatenate([np.zeros(0, np.int64), *parts]))
         return found
-
-    def edges(self) -> Edges:
-        """Return the transitions that were found last."""
-        assert self.pointed is not None
-        return self.pointed

@@ -201,11 +201,11 @@ class Learner:
             else:
                 self._learn_answer(tree, owner, source)
         except Relearn as news:
-            self._relearn(news)
+            self.relearn(news)
             return False
         return True
 
-    def _relearn(self, news: Relearn) -> None:
+    def relearn(self, news: Relearn) -> None:
         """Forget what rests on what a cell was taken for, of all whose cells are alike."""
         self.sharing.forgotten += 1
         for cell in dict.fromkeys((news.cell, *self.likeness.alike(news.cell))):

@@ -1,6 +1,11 @@
-"""A crew in this process: the same workers without Ray, each told only what can be pickled; one may be lost."""
+"""A crew in this process: the same workers without Ray, each a thread that is told only what can be pickled.
+
+Some may be lost: in the middle of what they exchange, as between questions.
+"""
 
 import pickle
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier, BrokenBarrierError
 from typing import Any
 
 from checker.engines.cluster.crew import LostError
@@ -8,20 +13,50 @@ from checker.engines.cluster.worker import Worker
 from semantics.state.configuration import Configuration
 
 
+class Board:
+    """Where workers lay down what they exchange."""
+
+    def __init__(self, workers: int) -> None:
+        self.given: list[Any] = [None] * workers
+        self.barrier = Barrier(workers)
+
+
+class LocalLinks:
+    """A worker's links to the others of its crew."""
+
+    def __init__(self, crew: "LocalCrew", me: int) -> None:
+        self.crew = crew
+        self.me = me
+
+    def exchange(self, given: Any) -> list[Any]:
+        self.crew.count(self.me, "exchange")
+        board = self.crew.board
+        board.given[self.me] = given
+        try:
+            board.barrier.wait()
+            found = [sent(each[self.me]) for each in board.given]
+            board.barrier.wait()
+        except BrokenBarrierError:
+            raise LostError from None
+        return found
+
+
 class LocalCrew:
-    """Workers that are called in turn.
+    """Workers that are asked together.
 
     Attributes:
-        dies: After how many calls a worker is lost, and which.
+        dies: Which worker is lost, and after how many questions and exchanges, one after another.
+        called: What each was asked.
     """
 
     def __init__(
         self, initial: Configuration, workers: int, pending: int = 64, dies: tuple[tuple[int, int], ...] = ()
     ) -> None:
-        self.workers = [Worker(initial, pending, me, workers) for me in range(workers)]
         self.initial, self.pending = initial, pending
+        self.workers = [Worker(initial, pending, me, workers, LocalLinks(self, me)) for me in range(workers)]
+        self.board = Board(workers)
         self.dies = dies
-        self.called: list[str] = []
+        self.called: list[list[str]] = [[] for _ in range(workers)]
         self.lost: set[int] = set()
         self.revived = 0
 
@@ -31,29 +66,41 @@ class LocalCrew:
 
     @property
     def calls(self) -> int:
-        return len(self.called)
+        """How many questions and exchanges the worker had that had least."""
+        return min(map(len, self.called))
 
-    def one(self, worker: int, method: str, *arguments: Any) -> Any:
-        self.called.append(method)
-        if self.dies and self.calls >= self.dies[0][0]:
-            self.lost.add(self.dies[0][1])
+    def count(self, worker: int, method: str) -> None:
+        """Count a question or an exchange of a worker, unless it is lost."""
+        self.called[worker].append(method)
+        if self.dies and self.dies[0][1] == worker and len(self.called[worker]) >= self.dies[0][0]:
+            self.lost.add(worker)
             self.dies = self.dies[1:]
         if worker in self.lost:
             raise LostError
-        return sent(getattr(self.workers[worker], method)(*sent(arguments)))
+
+    def one(self, worker: int, method: str, *arguments: Any) -> Any:
+        try:
+            self.count(worker, method)
+            return sent(getattr(self.workers[worker], method)(*sent(arguments)))
+        except BaseException:
+            self.board.barrier.abort()
+            raise
 
     def every(self, method: str, *arguments: Any) -> list[Any]:
-        return [self.one(worker, method, *arguments) for worker in range(self.size)]
-
-    def exchange(self, giving: str, taking: str, *arguments: Any) -> list[Any]:
-        given = self.every(giving, *arguments)
-        return [self.one(worker, taking, *(each[worker] for each in given)) for worker in range(self.size)]
+        with ThreadPoolExecutor(self.size) as threads:
+            answers = [threads.submit(self.one, worker, method, *arguments) for worker in range(self.size)]
+        failures = [error for error in (each.exception() for each in answers) if error is not None]
+        if failures:
+            raise min(failures, key=lambda error: isinstance(error, LostError))
+        return [each.result() for each in answers]
 
     def revive(self) -> None:
         for worker in self.lost:
-            self.workers[worker] = Worker(self.initial, self.pending, worker, self.size)
+            links = LocalLinks(self, worker)
+            self.workers[worker] = Worker(self.initial, self.pending, worker, self.size, links)
             self.revived += 1
         self.lost = set()
+        self.board = Board(self.size)
 
 
 def sent(value: Any) -> Any:
