@@ -88,9 +88,8 @@ class Sockets:
     def exchange(self, given: Sequence[Any]) -> list[Any]:
         """Give each worker something, in their order, and return what each has given to this one."""
         found = list(given)
-        sent = self._sending.submit(
-            self._send, given
-        )  # while this thread listens: so nobody waits for another
+        # While this thread listens, another one sends: so no two wait for each other.
+        sent = self._sending.submit(self._send, given)
         try:
             for peer in _in_turn(self._me, -1, len(given)):
                 link = self._peers[peer]
