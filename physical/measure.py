@@ -140,6 +140,7 @@ def deep_spot(shape: shapely.Polygon, clearance: float) -> tuple[float, float] |
     return None
 
 
+@lru_cache(maxsize=1 << 10)
 def waypoint(geometry: Geometry) -> Geometry:
     """Return where to send what should go there: the centroid if it lies inside, else an interior point."""
     middle = centroid(geometry)

@@ -52,6 +52,19 @@ def in_turn(c: Configuration) -> Iterator[Pending]:
             yield pending
 
 
+def to_serve(c: Configuration) -> Iterator[Pending]:
+    """Yield those of them that somebody serves, from the queue: flights end by themselves, however many there are."""
+    headed: set[Name] = set()
+    for pending in c.eta.queued():
+        agent = pending.request.agent
+        if isinstance(pending.request, SND):
+            yield pending
+        elif agent not in headed:
+            headed.add(agent)
+            if not any(isinstance(each.request, FLY) for each in c.eta.own(agent)):
+                yield pending
+
+
 def served(c: Configuration, pending: Pending) -> tuple[Transition, ...]:
     """Return the transitions that serve a request."""
     rules = SERVING.get(type(pending.request), ())

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from adapters.live.orders import hand_overs, is_authority, is_done, journey, stopping, unshown
-from adapters.live.scheduling import PATIENCE, STEPS_PER_SECOND, in_turn, own_steps, refilled, served
+from adapters.live.scheduling import PATIENCE, STEPS_PER_SECOND, own_steps, refilled, served, to_serve
 from adapters.live.sightings import Fences, placement_seen
 from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Outgoing, Pace, Plan, Turn
 from adapters.live.timing import next_end, stepped, too_late, too_soon
@@ -34,7 +34,7 @@ from semantics.state.partition import (
     station_of,
 )
 from semantics.state.physical_model import Carried, Placed, Placement
-from semantics.state.requests import CTR, FLY, SND
+from semantics.state.requests import CTR, SND
 from semantics.state.signature import Name
 
 MOST_REPORTED = 1_000
@@ -279,7 +279,7 @@ class Turning:
         """Serve the first request that can be served, oldest first."""
         if self.quiet is self.c:
             return False
-        for pending in tuple(in_turn(self.c)):
+        for pending in to_serve(self.c):
             found, held = self.allowed(pending)
             if found:
                 self.take(found[0], found)
@@ -292,8 +292,6 @@ class Turning:
     def allowed(self, pending: Pending) -> tuple[tuple[Transition, ...], bool]:
         """Return the transitions that serve a request now, and whether it only waits for a vehicle's confirmation."""
         request = pending.request
-        if isinstance(request, FLY):
-            return (), False
         found = served(self.c, pending)
         if not isinstance(request, CTR):
             return found, False

@@ -16,6 +16,6 @@ def changed(value: Value, **changes: Any) -> Value:
     made = object.__new__(type(value))
     attributes = made.__dict__
     attributes.update(value.__dict__)
-    assert changes.keys() <= attributes.keys(), changes.keys() - attributes.keys()
     attributes.update(changes)
+    assert len(attributes) == len(value.__dict__), changes.keys() - value.__dict__.keys()
     return made

@@ -38,6 +38,9 @@ MOST_TIMES, SPARE = 64, 16 * 2**20
 NANOSECONDS = 1_000_000_000
 
 
+_COMPACT: Final = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+
+
 class RecordingError(ValueError):
     """A file that is no recording, or that this installation cannot read; the message says why."""
 
@@ -82,8 +85,7 @@ class McapWriter:
 
     def write(self, topic: str, time: float, data: Any) -> None:
         """Write a message; `flush` makes it last. Bytes of a path that are no UTF-8 are written as JSON's escapes."""
-        said = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-        encoded = said.encode(errors="backslashreplace")
+        encoded = _COMPACT.encode(data).encode(errors="backslashreplace")
         at = round(time * NANOSECONDS)
         with writing(self._path):
             self._writer.add_message(self._channels[topic], at, encoded, at)

@@ -57,6 +57,10 @@ class Eta:
             return tuple(each for cell in (*map(line_cell, agents), QUEUE) for each in self._at(cell))
         return tuple(each for agent in agents for each in self.of(agent))
 
+    def queued(self) -> tuple[Pending, ...]:
+        """Return what stands in the queue of `fcfs`, as asked."""
+        return tuple(self._at(QUEUE))
+
     def own(self, agent: Name) -> tuple[Pending, ...]:
         """Return the requests that stand in an agent's own line: all that are READY or FLY do."""
         return tuple(self._at(line_cell(agent)))
