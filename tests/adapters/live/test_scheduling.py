@@ -9,7 +9,7 @@ from semantics.state.requests import FLY
 from specs.elaboration import load_mission
 from specs.missions import shipped_missions
 
-MISSIONS = ("oil_spill", "harbour_watch", "search_and_deploy", "surveillance")
+MISSIONS = ("oil_spill", "harbour_watch", "search_and_deploy")
 
 
 @pytest.mark.parametrize("name", MISSIONS)
