@@ -74,6 +74,7 @@ class Pipeline:
         sift: Looks up what a slice found, which else is done where it is stored.
         ahead: The slices, in their order.
         awaited: The slice that is to be stored next, if it is waited for.
+        is_far_ahead: Whether there were more slices ready, when one was taken last, than could be stored just then.
     """
 
     def __init__(self, threads: int, expand: Callable[[Slice], None], sift: Callable[[Slice], None]) -> None:
@@ -81,6 +82,7 @@ class Pipeline:
         self.expand = expand
         self.sift = sift
         self.awaited: Slice | None = None
+        self.is_far_ahead = False
         self.ahead: deque[Slice] = deque()
         self.beside = ThreadPoolExecutor(threads - 1, "expanding") if threads > 1 else None
 
@@ -112,13 +114,14 @@ class Pipeline:
     def _expand_beside(self, part: Slice) -> None:
         """Expand a slice in another thread, and sift it, too, if there are more ready than can be stored just now."""
         self.expand(part)
-        ready = (each for each in tuple(self.ahead) if each.expanding is not None and each.expanding.done())
-        if part is not self.awaited and sum(1 for _ in ready) >= self.threads:
+        if self.is_far_ahead and part is not self.awaited:
             self.sift(part)
 
     def take(self) -> Slice:
         """Return the first slice when it is expanded; meanwhile this thread expands those that nobody has begun."""
         self.awaited = first = self.ahead.popleft()
+        ready = sum(each.expanding is not None and each.expanding.done() for each in self.ahead)
+        self.is_far_ahead = ready >= self.threads  # told here: only this thread may look through what is ahead
         for part in (first, *self.ahead):
             if part.expanding is None or part.expanding.cancel():
                 part.expanding = Future()
