@@ -121,7 +121,8 @@ class Pipeline:
         """Return the first slice when it is expanded; meanwhile this thread expands those that nobody has begun."""
         self.awaited = first = self.ahead.popleft()
         ready = sum(each.expanding is not None and each.expanding.done() for each in self.ahead)
-        self.is_far_ahead = ready >= self.threads  # told here: only this thread may look through what is ahead
+        # Told here: only this thread may look through what is ahead.
+        self.is_far_ahead = ready >= self.threads
         for part in (first, *self.ahead):
             if part.expanding is None or part.expanding.cancel():
                 part.expanding = Future()
