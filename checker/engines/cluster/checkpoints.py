@@ -108,7 +108,7 @@ def save(shard: Shard, folder: Path, number: int, digest: str) -> None:
     }
     arrays = (
         shard.rows.words[: shard.size * shard.packing.words],
-        shard.rows.origins[: shard.size],
+        shard.rows.origins.kept(shard.size),
         shard.packing.columns,
         np.frombuffer(b"".join(shard.keys.places), np.uint8),
         np.diff(shard.keys.begins).astype(np.int64),
@@ -261,7 +261,7 @@ class Loading:
                 shard.rows.words[first * width : (first + count) * width],
                 hashes,
             )
-        shard.rows.origins[:size] = self.arrays["origins"]
+        shard.rows.origins.restore(self.arrays["origins"], size)
         shard.state[list(KEPT)] = self.arrays["state"]
         *shard.begins, shard.end = self.head["layers"]
         shard.rules_before = Counter(self.head["rules"])

@@ -21,6 +21,7 @@ from checker.engines.fast import kernel as loops
 from checker.engines.fast.columns import WORD, Packing, shifts
 from checker.engines.fast.kernel import AT, CROWDS, CUT, EXPANDED, GATHERED, LIMIT, SIZE
 from checker.engines.fast.learner import Learner
+from checker.engines.fast.origins import Elsewhere
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import FIRST_ROWS, MOST_ROWS, Space
 from checker.engines.fast.writing import Deeper, Varies
@@ -138,9 +139,10 @@ class Shard(Space):
         varying: The columns that have more than one value there.
     """
 
-    ORIGIN = np.uint64
-    PLAIN = sys.maxsize  # rows go from worker to worker
+    ORIGINS = Elsewhere
     """Rows of other workers have numbers, too: row · workers + worker."""
+
+    PLAIN = sys.maxsize  # rows go from worker to worker
 
     def __init__(self, initial: Configuration, pending: int, me: int, workers: int) -> None:
         self.me = me
@@ -173,7 +175,7 @@ class Shard(Space):
         self.learner.forget()
         self.state[[AT, EXPANDED, SIZE, CUT, CROWDS, GATHERED]] = 0
         self.state[LIMIT] = MOST_ROWS
-        self.rows = Rows(self.packing.words, self.rows.room, self.ORIGIN)
+        self.rows = Rows(self.packing.words, self.rows.room, self.ORIGINS)
         self.learner.columns.codes(self.learner.still)  # makes columns that only the first row needs
         self._see()
         self.counts.used[:] = 0
@@ -241,7 +243,7 @@ class Shard(Space):
         chosen, owners = np.zeros(count, np.int64), np.zeros(count, np.int32)
         found = kernel.deal(
             self.rows.words,
-            self.rows.origins,
+            self.rows.origins.loops,
             self.table.room,
             batch,
             count,
@@ -287,7 +289,7 @@ class Shard(Space):
         self.hear(parcels)
         for peer, parcel in enumerate(parcels):
             for count in self.translated(peer, parcel):
-                arrays = (self.rows.words, self.rows.origins, self.table.room)
+                arrays = (self.rows.words, self.rows.origins.loops, self.table.room)
                 loops.store(*arrays, None, None, None, self.batch, 0, count, self.state)
 
     def hear(self, parcels: Sequence[Parcel]) -> None:
@@ -359,11 +361,11 @@ class Shard(Space):
 
         The first configuration, the only one of its layer, is its own origin.
         """
-        first = self.rows.origins[: self.boundaries[1]]
+        first = self.rows.origins.room[: self.boundaries[1]]
         if sum(each[1] for each in boundaries) != 1 or np.any(first != self.me):
             return False
         for layer, (begin, end) in enumerate(pairwise(self.boundaries[1:])):
-            rows, workers = np.divmod(self.rows.origins[begin:end], np.uint64(self.workers))
+            rows, workers = np.divmod(self.rows.origins.room[begin:end], np.uint64(self.workers))
             begins, ends = (np.array([each[k] for each in boundaries], np.uint64) for k in (layer, layer + 1))
             if not np.all((begins[workers] <= rows) & (rows < ends[workers])):
                 return False

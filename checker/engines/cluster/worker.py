@@ -138,7 +138,7 @@ class Worker:
 
     def origin(self, row: int) -> tuple[int, int]:
         """Return the worker and the row that a row was first reached from."""
-        row, worker = divmod(int(self.shard.rows.origins[row]), self.shard.workers)
+        row, worker = divmod(self.shard.rows.origins.origin(row, self.shard.size), self.shard.workers)
         return worker, row
 
     def inspect(self, inspections: tuple[Inspect, ...]) -> tuple[Inspect, ...]:

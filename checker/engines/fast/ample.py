@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from checker.engines.fast.bits import WORD, add, has
 from checker.engines.fast.folding import NO_ROOM, Folded, intern, unfold
 from checker.engines.fast.kernel import (
     AT,
@@ -35,21 +36,17 @@ from checker.engines.fast.members import (
     KINDS,
     MEMBER,
     MOST_HERE,
-    NO_AGENT,
     NOBODY_LEFT,
     RECORD,
     TRIED,
     UNKNOWN,
-    WORD,
     Members,
-    Trails,
-    add,
-    has,
     meet,
 )
 from checker.engines.fast.persistent import find_set
 from checker.engines.fast.successors import list_steps, make, make_representative, without_repetitions
 from checker.engines.fast.table import Words, bits_for, entry_of, find
+from checker.engines.fast.trails import Trails, begin_row, end_of, lead_on
 
 
 @inner(cache=True)
@@ -134,25 +131,6 @@ def let_join(r: Members, actors: int, wide: int, at: int) -> None:
 
 
 @inner(cache=True)
-def end_of(trails: Trails, row: int, taken: Words) -> int:
-    """Return where the path from a row ends, with what is taken on it; the path is made shorter."""
-    wide, sought, sets = len(taken), trails.sought, trails.sets
-    while trails.leads[row] >= 0:
-        lead = np.int64(trails.leads[row])
-        begin, beyond = wide * trails.taken[row], wide * trails.taken[lead]
-        further = trails.leads[lead] >= 0
-        for word in range(wide):
-            sought[word] = sets.words[begin + word] | (sets.words[beyond + word] if further else np.uint64(0))
-            taken[word] |= sought[word]
-        number = intern(sets, sought, True) if further else np.int64(NO_ROOM)
-        if number >= 0:
-            trails.leads[row], trails.taken[row] = trails.leads[lead], number
-            lead = np.int64(trails.leads[row])
-        row = lead
-    return row
-
-
-@inner(cache=True)
 def join(
     m: Model,
     r: Members,
@@ -226,7 +204,7 @@ def choose(
     r.disturbers[: actors * wide] = np.uint64(0)
     r.tried[:actors] = 0
     r.taken[:] = np.uint64(0)
-    mover, found = NO_AGENT - 1 - np.int64(trails.leads[row]), np.int64(0)
+    mover, found = np.int64(trails.movers[row]) - 1, np.int64(0)
     for others in range(2):
         begin = found
         for k in range(count):
@@ -295,6 +273,7 @@ def expand_reduced(
     bits = np.uint32(bits_for(len(table)))
     while state[AT] < until and state[SIZE] + len(batch.steps) <= room:
         row = state[AT]
+        begin_row(trails, row)
         here = words[row * kept : (row + 1) * kept]
         if f is not None:
             unfold(f, words, row)
@@ -335,9 +314,9 @@ def expand_reduced(
                 if number == state[SIZE]:  # it was left out
                     continue
                 agent = np.int64(r.part[r.step_actor[step]]) // KINDS
-                trails.leads[number] = NO_AGENT - (agent + 1 if agent < r.agents else 0)
+                trails.movers[number] = agent + 1 if agent < r.agents else 0
             if k == onward:
-                trails.leads[row], trails.taken[row] = number, path
+                lead_on(trails, row, number, path)
         state[AT] += 1
         state[EXPANDED] = state[AT]
     return True

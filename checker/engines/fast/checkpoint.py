@@ -23,7 +23,7 @@ from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import Space
 from semantics.state.canonical import canonical
 
-SCHEMA = "bigactors.checkpoint/4"
+SCHEMA = "bigactors.checkpoint/5"
 KEPT = (EXPANDED, SIZE, CUT, CROWDS)
 """What of the loops' state goes on; the rest follows from the mission."""
 
@@ -31,7 +31,7 @@ KINDS: Final[Kinds] = {
     "rows": np.uint64,
     "pieces": np.uint64,
     "nodes": np.uint64,
-    "origins": np.uint32,
+    "origins": np.uint64,
     "counts": np.int64,
     "packing": np.uint64,
     "learned": np.int64,
@@ -89,7 +89,7 @@ def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
     arrays = (
         space.rows.words[: space.size * space.rows.kept],
         *space.rows.interned,
-        space.rows.origins[: space.size],
+        space.rows.origins.kept(space.size),
         space.counts.used,
         space.packing.columns[: 3 * len(columns)],
         np.array(space.learned, np.int64),
@@ -114,8 +114,12 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
         where = Packing(head["words"], arrays["packing"])
         if not where.is_sound:
             raise ValueError("its columns stand nowhere in its rows")
-        rows = Rows.of(where.words, arrays["rows"], arrays["origins"], arrays["pieces"], arrays["nodes"])
-        space.restore(where, rows, len(arrays["origins"]), learned)
+        size = int(arrays["state"][1])
+        kept = (arrays[each] for each in ("rows", "origins", "pieces", "nodes"))
+        rows = Rows.of(where.words, size, *kept)
+        if rows.origins.origin(size - 1, size) > arrays["state"][0]:
+            raise ValueError("some row was reached from a later one")
+        space.restore(where, rows, size, learned)
         _check_counts(space, arrays["counts"], arrays["state"])
         space.counts.used[:] = arrays["counts"]
         space.state[list(KEPT)] = arrays["state"]
@@ -128,18 +132,14 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
 
 def _check(arrays: dict[str, NDArray[Any]], journey: Journey, limit: int) -> None:
     """Hold what is read of a search to what any search keeps; raises ValueError."""
-    origins = arrays["origins"]
     expanded, size, cut, crowded = map(int, arrays["state"])
-    if not journey.is_sound or size != len(origins):
+    if not journey.is_sound:
         raise ValueError("its layers and rows do not fit together")
     begin = journey.layer_end - journey.layers[-1]
     if not begin <= expanded <= journey.layer_end <= size <= limit:
         raise ValueError("it has come to no row of its last layer")
     if cut < 0 or (cut and size != limit) or not 0 <= crowded <= expanded:
         raise ValueError("it left out what it can't have left out")
-    before = origins[1:] < np.arange(1, size, dtype=np.uint32)
-    if origins[0] or np.any(origins[1:] < origins[:-1]) or not np.all(before) or origins[-1] > expanded:
-        raise ValueError("some row was reached from a later one")
 
 
 def _check_counts(space: Space, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:

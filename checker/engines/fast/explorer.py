@@ -58,7 +58,7 @@ class Origins(Sequence[int]):
     def __getitem__(self, number: int | slice) -> int | Sequence[int]:
         if isinstance(number, slice):
             return [self[each] for each in range(*number.indices(len(self)))]
-        return int(self.space.rows.origins[range(len(self))[number]])
+        return self.space.rows.origins.origin(range(len(self))[number], len(self))
 
 
 class Configurations(Sequence[Configuration]):

@@ -44,6 +44,7 @@ from checker.engines.fast.leaves import (
     WRITES_END,
 )
 from checker.engines.fast.loops import inner, njit
+from checker.engines.fast.origins import most_origins, note_origin
 from checker.engines.fast.table import Words, bits_for, entry_of, fetch, fetch_slot, find, hashed, most_in
 from checker.engines.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
 
@@ -426,7 +427,7 @@ def gather(m: Model, words: Words, f: Folded | None, batch: Batch, state: State,
 @njit(cache=True, inline="always")
 def room_for(words: Words, origins: Any, table: Any, width: int) -> int:
     """Return how many rows there may be before something must grow."""
-    return min(len(words) // width, len(origins), most_in(len(table)))
+    return min(len(words) // width, most_origins(origins), most_in(len(table)))
 
 
 @njit(cache=True, inline="always")
@@ -448,7 +449,7 @@ def add_row(
     else:
         for j in range(width):
             words[size * width + j] = target[k * width + j]
-        origins[size] = origin
+        note_origin(origins, size, origin)
         table[slot] = entry
         state[SIZE] = size + 1
 

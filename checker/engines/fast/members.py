@@ -7,13 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from checker.engines.fast.folding import Interned
+from checker.engines.fast.bits import WORD
 from checker.engines.fast.kernel import ALPHA, TREE, Ints, Model, State, code_at, walk
-from checker.engines.fast.loops import inner, njit
+from checker.engines.fast.loops import inner
 from checker.engines.fast.table import Words
-
-WORD = 64
-"""Actors of a row in one word of a set."""
 
 MOST_HERE = 8 * WORD
 """A configuration with more actors than these is expanded in full."""
@@ -40,9 +37,6 @@ PARTS = 3
 
 KINDS = 3
 """Parts of an agent (see `checker.reduction.paths.Part`): program, line, requests. Clauses come after all of these."""
-
-NO_AGENT = -1
-"""What a path has where it ends at a row that no agent's step led to; less by as much as an agent's number for its."""
 
 
 class Members(NamedTuple):
@@ -107,22 +101,6 @@ class Members(NamedTuple):
     more: Words
 
 
-class Trails(NamedTuple):
-    """The paths of `checker.reduction.paths`, for each row.
-
-    Attributes:
-        leads: Where the path leads on; less than 0 where it ends, with whose step led there (see `NO_AGENT`).
-        taken: The number of the set of parts that are taken on the way there.
-        sets: Those sets by number, as words of bits: they are few.
-        sought: Room for one that is looked up.
-    """
-
-    leads: Ints
-    taken: Ints
-    sets: Interned
-    sought: Words
-
-
 @inner(cache=True)
 def meet(m: Model, r: Members, here: Words, state: State) -> int:
     """Note the actors of a row; return how many there are, -1 where something is not known."""
@@ -143,21 +121,3 @@ def meet(m: Model, r: Members, here: Words, state: State) -> int:
                 r.place[r.actors[RECORD * actor + MEMBER]] = count
             count += 1
     return count
-
-
-@njit(cache=True, inline="always")
-def has(sets: Words, begin: int, actor: int) -> bool:
-    """Tell whether the set that begins there has an actor."""
-    return bool((sets[begin + (actor >> 6)] >> np.uint64(actor & 63)) & np.uint64(1))
-
-
-@njit(cache=True, inline="always")
-def add(sets: Words, begin: int, actor: int) -> None:
-    """Add an actor to the set that begins there."""
-    sets[begin + (actor >> 6)] |= np.uint64(1) << np.uint64(actor & 63)
-
-
-@njit(cache=True, inline="always")
-def remove(sets: Words, begin: int, actor: int) -> None:
-    """Take an actor out of the set that begins there."""
-    sets[begin + (actor >> 6)] &= ~(np.uint64(1) << np.uint64(actor & 63))

@@ -1,4 +1,4 @@
-"""Large arrays in memory pages of their own: huge pages where available, grown without copying.
+"""Arrays in memory pages of their own: huge ones where they are large and there are any, grown without copying.
 
 They can go over to a file. Then the system writes them out and reads them again as it needs memory; the file has no
 name, so that nothing is left of it however the process ends.
@@ -18,7 +18,10 @@ PIECE = 1 << 20
 """Numbers that are copied at once."""
 
 HUGE = 1 << 21
-"""Bytes of a huge page: memory is taken in such pieces at most."""
+"""Bytes of a huge page: large arrays take memory in such pieces at most."""
+
+LARGE = 8 * HUGE
+"""Bytes of room from which on an array has huge pages: where smaller ones end, the rest of a page would lie idle."""
 
 
 class Pages:
@@ -45,7 +48,8 @@ class Pages:
         """Return how many bytes it takes if only so many first numbers were written; a file takes all of its room."""
         if self.spilled:
             return self.room.nbytes
-        return min(-(-used * self._kind.itemsize // HUGE) * HUGE, self.room.nbytes)
+        page = HUGE if self._is_large else mmap.PAGESIZE
+        return min(-(-used * self._kind.itemsize // page) * page, self.room.nbytes)
 
     def grow(self, count: int) -> None:
         """Make room for so many in all.
@@ -101,7 +105,11 @@ class Pages:
 
     def _advise(self) -> None:
         if hasattr(mmap, "MADV_HUGEPAGE"):
-            self._pages.madvise(mmap.MADV_HUGEPAGE)
+            self._pages.madvise(mmap.MADV_HUGEPAGE if self._is_large else mmap.MADV_NOHUGEPAGE)
+
+    @property
+    def _is_large(self) -> bool:
+        return len(self._pages) >= LARGE
 
 
 def reserve(file: int, size: int) -> None:

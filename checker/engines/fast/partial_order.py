@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
+from checker.engines.fast.bits import WORD
 from checker.engines.fast.columns import Packing
-from checker.engines.fast.folding import Pool
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.leaves import LEAF
 from checker.engines.fast.members import (
@@ -20,15 +20,12 @@ from checker.engines.fast.members import (
     FAIR,
     KINDS,
     MOST_HERE,
-    NO_AGENT,
     PARTS,
     RECORD,
-    WORD,
     Members,
-    Trails,
 )
-from checker.engines.fast.pages import Pages
 from checker.engines.fast.skeletons import agents_of
+from checker.engines.fast.trails import Paths
 from checker.properties.inspections import never_ends
 from checker.reduction.actors import Acting, Actor
 from checker.reduction.ample import Ample
@@ -38,9 +35,6 @@ from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name
 
 NOBODY = -1
-
-SETS = 1 << 8
-"""For how many sets more there is room at least where rows begin to be expanded."""
 
 AGENT_PARTS = ("program", "line", "request")
 
@@ -56,6 +50,7 @@ class Choosing:
 
     Attributes:
         members: That, as the loops see it.
+        paths: The paths so far.
     """
 
     members: Members
@@ -78,9 +73,7 @@ class Choosing:
         self.actors = Growing(np.int32)
         self.step_actor = Growing(np.int32)
         self.step_flags = Growing(np.int32)
-        self.leads, self.taken = Pages(np.int32, 1), Pages(np.int32, 1)
-        self.leads.room[0] = NO_AGENT
-        self.sets = Pool(self.wide, np.zeros(0, np.uint64))
+        self.paths = Paths(len(self.everyone), self.wide)
         self.stride = self.width = 0
         self.roomy: tuple[int, int] | None = None
         self.room: tuple[Any, ...] = ()
@@ -90,21 +83,6 @@ class Choosing:
     def wide(self) -> int:
         """How many words have a bit for each part of each agent, and for each clause."""
         return -(-(KINDS * len(self.everyone) + len(self.clauses)) // WORD) or 1
-
-    @property
-    def trails(self) -> Trails:
-        """The paths so far; growing makes others: don't keep them."""
-        return Trails(self.leads.room, self.taken.room, self.sets.interned, np.zeros(self.wide, np.uint64))
-
-    def reserve(self, rows: int) -> None:
-        """Make room for the paths of so many rows, and for more sets of what is taken on them."""
-        self.leads.grow(rows)
-        self.taken.grow(rows)
-        self.sets.reserve(SETS)
-
-    def held(self, rows: int) -> int:
-        """Return how many bytes the paths of so many rows take."""
-        return self.leads.held(rows) + self.taken.held(rows) + self.sets.held
 
     def see(self, groups: list[tuple[Name, ...]], where: Packing, successors: int) -> None:
         """Take in what was learned since; groups are the agents that there are, for each value of their cell."""

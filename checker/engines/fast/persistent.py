@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from checker.engines.fast.bits import WORD, add, has, remove
 from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.members import (
     ASIDE,
@@ -16,11 +17,7 @@ from checker.engines.fast.members import (
     PARTS,
     RECORD,
     TRIED,
-    WORD,
     Members,
-    add,
-    has,
-    remove,
 )
 from checker.engines.fast.table import Words
 

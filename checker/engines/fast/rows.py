@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast import folding
 from checker.engines.fast.kernel import repack
+from checker.engines.fast.origins import Origins, Rising
 from checker.engines.fast.pages import Pages, more
 
 BLOCK = 1 << 12
@@ -21,25 +21,21 @@ class Rows:
     Attributes:
         width: How many words a row has.
         kept: How many words are kept of each: of rows that are folded two.
+        origins: From which row each was first reached.
     """
 
-    __slots__ = ("_folding", "_origins", "_words", "kept", "width")
+    __slots__ = ("_folding", "_words", "kept", "origins", "width")
 
-    def __init__(self, width: int, room: int, origin: type[np.generic] = np.uint32) -> None:
+    def __init__(self, width: int, room: int, origins: type[Origins] = Rising) -> None:
         self.width = self.kept = width
         self._words = Pages(np.uint64, room * width)
-        self._origins = Pages(origin, room)
+        self.origins = origins(room)
         self._folding: folding.Folding | None = None
 
     @property
     def words(self) -> NDArray[np.uint64]:
         """What is kept of all rows, with their room; growing makes another array: don't keep it."""
         return self._words.room
-
-    @property
-    def origins(self) -> NDArray[Any]:
-        """The origins of all rows, with their room; growing makes another array: don't keep it."""
-        return self._origins.room
 
     @property
     def folded(self) -> folding.Folded | None:
@@ -66,17 +62,17 @@ class Rows:
     @property
     def room(self) -> int:
         """How many rows it has room for."""
-        return min(len(self.words) // self.kept, len(self.origins))
+        return min(len(self.words) // self.kept, self.origins.rows)
 
     @property
     def spilled(self) -> bool:
         """Whether both are in files."""
-        return self._words.spilled and self._origins.spilled
+        return self._words.spilled and self.origins.spilled
 
     def held(self, used: int) -> int:
         """Return how many bytes it takes if only so many first rows were written."""
         folded = 0 if self._folding is None else self._folding.held
-        return self._words.held(used * self.kept) + self._origins.held(used) + folded
+        return self._words.held(used * self.kept) + self.origins.held(used) + folded
 
     def row(self, number: int) -> NDArray[np.uint64]:
         """Return the words of a row."""
@@ -124,7 +120,7 @@ class Rows:
 
     def _grow(self, rows: int, kept: int) -> None:
         self._words.grow(rows * kept)
-        self._origins.grow(rows)
+        self.origins.grow(rows)
 
     def spill(self, folder: Path, used: int) -> None:
         """Go over to files in a folder, with the first so many rows; what they are folded into stays in memory.
@@ -133,7 +129,7 @@ class Rows:
             OSError: There is no such folder, or no room in it.
         """
         self._words.spill(folder, used * self.kept)
-        self._origins.spill(folder, used)
+        self.origins.spill(folder, used)
 
     # --- another packing ------------------------------------------------------------------------------------------
 
@@ -166,20 +162,29 @@ class Rows:
 
     @classmethod
     def of(
-        cls, width: int, kept: NDArray[np.uint64], origins: NDArray[Any], *interned: NDArray[np.uint64]
+        cls,
+        width: int,
+        size: int,
+        kept: NDArray[np.uint64],
+        origins: NDArray[np.uint64],
+        *interned: NDArray[np.uint64],
     ) -> "Rows":
-        """Return rows of so many words as they were kept elsewhere, with what they are folded into (see `interned`).
+        """Return so many rows as they were kept elsewhere, with what they are folded into (see `interned`).
 
         Raises:
-            ValueError: They have not so many words each, or what they are folded into is not there, or is there twice.
+            ValueError: They have not so many words each, what they are folded into is not there, or is there twice, or
+                their origins are not those of any search.
         """
         into = folding.Folding(width, *interned) if any(map(len, interned)) else None
-        found = cls(width if into is None else folding.PAIR, max(len(origins), 1))
-        if len(kept) != len(origins) * found.kept or not (into is None or into.are_rows(kept)):
+        found = cls(
+            width if into is None else folding.PAIR,
+            len(kept) // (width if into is None else folding.PAIR) or 1,
+        )
+        if len(kept) != size * found.kept or not (into is None or into.are_rows(kept)):
             raise ValueError("it has other rows")
         found.width, found._folding = width, into
         found.words[: len(kept)] = kept
-        found.origins[: len(origins)] = origins
+        found.origins.restore(origins, size)
         return found
 
 

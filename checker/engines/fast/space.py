@@ -36,6 +36,7 @@ from checker.engines.fast.kernel import (
     WORDS,
 )
 from checker.engines.fast.learner import Actor, CodedSource, Learner
+from checker.engines.fast.origins import Origins, Rising
 from checker.engines.fast.pages import Pages
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.slices import Slices
@@ -81,7 +82,7 @@ class Space:
         shown: What is known, as other threads may read it while more is learned; None where it is out of date.
     """
 
-    ORIGIN: type[np.generic] = np.uint32
+    ORIGINS: type[Origins] = Rising
     PLAIN = 2
     """How many words rows have at most that are not folded."""
 
@@ -120,7 +121,7 @@ class Space:
         self.masks = Growing(np.uint64, shared=True)
         self.located = 0
         self.grown = -1
-        self.rows = Rows(1, FIRST_ROWS, self.ORIGIN)
+        self.rows = Rows(1, FIRST_ROWS, self.ORIGINS)
         self.table = Pages(np.uint32, 1)
         self._add_first()
         self._make_room(BATCH)
@@ -159,7 +160,7 @@ class Space:
     @property
     def bytes_used(self) -> int:
         """How many bytes rows, origins and the visited set take; of room that was never written, nothing."""
-        paths = 0 if self.choosing is None else self.choosing.held(self.size)
+        paths = 0 if self.choosing is None else self.choosing.paths.held(self.size)
         return self.rows.held(self.size) + self.table.room.nbytes + paths
 
     def rules(self, *, followed: bool = True) -> Counter[str]:
@@ -211,7 +212,7 @@ class Space:
         while self.state[AT] < until:
             new = 2 * len(self.batch.steps)
             self._make_room(new)
-            choosing.reserve(self.rows.room)
+            choosing.paths.reserve(self.rows.room)
             if not self._expand(choosing, until, self.size + new):
                 self._miss()
 
@@ -222,8 +223,8 @@ class Space:
         loop: Callable[..., bool] = expand_reduced
         swaps = self.exchanging
         exchanges = (None, None) if swaps is None else (swaps.exchanges, swaps.desk)
-        known = (self.model, choosing.members, *exchanges, choosing.trails)
-        arrays = (self.rows.words, self.rows.folded, self.rows.origins, self.table.room, self.batch)
+        known = (self.model, choosing.members, *exchanges, choosing.paths.trails)
+        arrays = (self.rows.words, self.rows.folded, self.rows.origins.loops, self.table.room, self.batch)
         return loop(*known, *arrays, until, room, self.met.room, self.counts.room, self.state)
 
     def _gather(self, until: int) -> bool:
@@ -264,7 +265,7 @@ class Space:
 
     def _store_some(self, batch: kernel.Batch, begin: int, end: int) -> int:
         """Store some of the successors of a batch, as far as there is room, and return how far."""
-        arrays = (self.rows.words, self.rows.origins, self.table.room)
+        arrays = (self.rows.words, self.rows.origins.loops, self.table.room)
         folded = self.rows.folded
         model = None if folded is None else self.model
         return int(kernel.store(*arrays, self.compact, model, folded, batch, begin, end, self.state))

@@ -20,6 +20,7 @@ from checker.engines.fast.arrays import Growing
 from checker.engines.fast.kernel import AT, LIMIT
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.leaves import LEAF
+from checker.engines.fast.origins import Origins
 from checker.engines.fast.skeletons import settled
 from checker.engines.fast.space import Space
 from checker.engines.fast.table import most_in
@@ -84,6 +85,7 @@ class Network(Space):
     """
 
     PLAIN = sys.maxsize  # its loops look into rows
+    ORIGINS = Origins  # what is known of a location is asked in the order in which clocks lead there
 
     def __init__(self, initial: Configuration, pending: int) -> None:
         self.initial = initial
@@ -222,7 +224,7 @@ class Network(Space):
         choices = np.zeros(CHOICE * (len(self.restored) + len(self.windows) + 1), np.int32)
 
         def work(model: object, timed: Timed, growth: Growth, view: View) -> int:
-            other, arrays = self._view(), (self.rows.words, self.rows.origins, self.table.room)
+            other, arrays = self._view(), (self.rows.words, self.rows.origins.loops, self.table.room)
             most = min(self.rows.room, most_in(len(self.table.room)), int(self.state[LIMIT]))
             scratch = np.zeros(self.packing.words, np.uint64), np.zeros(2 * self.margin, np.int32), choices
             loop: Callable[..., int] = unfolding.leave

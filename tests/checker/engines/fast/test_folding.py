@@ -9,6 +9,7 @@ from shipped import UNTIMED
 
 from checker import Engine, Limits, explore
 from checker.engines.fast import folding
+from checker.engines.fast.origins import Rising
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import Space
 from specs.elaboration import load_mission
@@ -62,16 +63,18 @@ def test_rows_are_unfolded_as_they_were_in_any_order(whole):
 @given(rows())
 def test_rows_that_are_kept_elsewhere_are_taken_or_refused(whole):
     into, kept = folded(whole)
-    origins = np.zeros(len(whole), np.uint32)
-    interned = (into.pieces.words, into.nodes.words)
-    again = Rows.of(into.width, kept, origins, *interned)
+    size, interned = len(whole), (into.pieces.words, into.nodes.words)
+    origins = Rising(size).kept(size).copy()
+    for k in range(size):  # all are reached from the first
+        origins[k // 64] |= np.uint64(1 << k % 64)
+    again = Rows.of(into.width, size, kept, origins, *interned)
     assert [again.row(k).tolist() for k in range(len(whole))] == whole.tolist()
     broken = kept.copy()
     broken[-1] |= np.uint64(0xFFFF)  # there are not so many pieces or nodes
     twice = tuple(np.concatenate((each, each)) for each in interned)
     for numbers, told in ((broken, interned), (kept, twice), (kept[1:], interned)):
         with pytest.raises(ValueError, match="other rows"):
-            Rows.of(into.width, numbers, origins, *told)
+            Rows.of(into.width, size, numbers, origins, *told)
 
 
 def test_many_pieces_and_nodes_find_room():

@@ -1,0 +1,51 @@
+"""The bits of words, as loops ask for them."""
+
+# mypy: disable-error-code="return-value, assignment, arg-type"
+# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+
+import numpy as np
+
+from checker.engines.fast.loops import njit
+from checker.engines.fast.table import Words
+
+WORD = 64
+"""Bits of a word."""
+
+_ONE = np.uint64(1)
+_PAIRS, _FOURS, _BYTES, _SUM = (
+    np.uint64(each)
+    for each in (0x5555555555555555, 0x3333333333333333, 0x0F0F0F0F0F0F0F0F, 0x0101010101010101)
+)
+
+
+@njit(cache=True, inline="always")
+def ones_in(word: np.uint64) -> int:
+    """Return how many bits of a word are set."""
+    word -= (word >> _ONE) & _PAIRS
+    word = (word & _FOURS) + ((word >> np.uint64(2)) & _FOURS)
+    word = (word + (word >> np.uint64(4))) & _BYTES
+    return np.int64((word * _SUM) >> np.uint64(56))
+
+
+@njit(cache=True, inline="always")
+def lowest(word: np.uint64) -> int:
+    """Return which of the bits of a word that are set is the lowest."""
+    return ones_in((word & (~word + _ONE)) - _ONE)
+
+
+@njit(cache=True, inline="always")
+def has(words: Words, begin: int, bit: int) -> bool:
+    """Tell whether a bit is set of the words that begin there."""
+    return bool((words[begin + (bit >> 6)] >> np.uint64(bit & 63)) & _ONE)
+
+
+@njit(cache=True, inline="always")
+def add(words: Words, begin: int, bit: int) -> None:
+    """Set a bit of the words that begin there."""
+    words[begin + (bit >> 6)] |= _ONE << np.uint64(bit & 63)
+
+
+@njit(cache=True, inline="always")
+def remove(words: Words, begin: int, bit: int) -> None:
+    """Clear a bit of the words that begin there."""
+    words[begin + (bit >> 6)] &= ~(_ONE << np.uint64(bit & 63))
