@@ -131,6 +131,11 @@ class Origins(Pages):
         """What the loops note them in; growing and spilling make another: don't keep it."""
         return self.room
 
+    @property
+    def bytes_each(self) -> float:
+        """How many bytes that of one row takes."""
+        return self.room.itemsize
+
     def origin(self, number: int, size: int) -> int:  # noqa: ARG002 - as others need it
         """Return the origin of one of so many rows, of all that there are."""
         return int(self.room[number])
@@ -172,6 +177,11 @@ class Rising(Origins):
     def rows(self) -> int:
         """Of how many rows they can be noted."""
         return len(self.room) * (WORD // 2)
+
+    @property
+    def bytes_each(self) -> float:
+        """How many bytes that of one row takes, with what it adds to an expanded one."""
+        return 2 / 8
 
     @property
     def loops(self) -> Bits:

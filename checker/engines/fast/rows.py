@@ -69,6 +69,11 @@ class Rows:
         """Whether both are in files."""
         return self._words.spilled and self.origins.spilled
 
+    @property
+    def bytes_each(self) -> float:
+        """How many bytes of memory a row more takes, if all that it is folded into is there."""
+        return 0.0 if self.spilled else self.words.itemsize * self.kept + self.origins.bytes_each
+
     def held(self, used: int) -> int:
         """Return how many bytes it takes if only so many first rows were written."""
         folded = 0 if self._folding is None else self._folding.held

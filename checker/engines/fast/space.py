@@ -535,8 +535,8 @@ class Space:
     def _slots(self, rows: int) -> int:
         """Return how many slots the next table has: for half as many rows more, or for a few where memory ends."""
         table = self.table.room
-        left, row = self.left() + table.nbytes, 0 if self.spilled else 8 * self.rows.kept + 4
-        within = min(slots_for(rows), slots_within(left, self.size, row, table.itemsize))
+        left = self.left() + table.nbytes
+        within = min(slots_for(rows), slots_within(left, self.size, self.rows.bytes_each, table.itemsize))
         return max(int(within), slots_for(rows) * 3 // 4)
 
     def spill(self, folder: Path) -> None:

@@ -73,7 +73,7 @@ def slots_for(rows: int) -> int:
     return rows * 9 // 4
 
 
-def slots_within(left: float, rows: int, row: int, entry: int) -> float:
+def slots_within(left: float, rows: int, row: float, entry: int) -> float:
     """Return how many slots a table has that is full just when memory is, as rows come.
 
     So that memory is not spent on slots whose rows would find none.

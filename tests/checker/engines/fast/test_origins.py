@@ -70,3 +70,9 @@ def test_a_row_that_is_reached_from_itself_is_refused():
     bits[0] = 0b101  # 1 is reached from 1
     with pytest.raises(ValueError, match="from a later one"):
         Rising(2).restore(bits, 2)
+
+
+@pytest.mark.parametrize("kind", [Rising, Elsewhere])
+def test_what_a_row_more_takes_is_what_all_take(kind):
+    origins, rows = kind(1 << 24), 1 << 23
+    assert origins.bytes_each * rows == pytest.approx(origins.held(rows), rel=0.01)
