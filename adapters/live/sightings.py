@@ -146,20 +146,13 @@ class Fences:
     def _fences(self, kind: str) -> list[Fence]:
         if kind not in self._of:
             physical = self.c.structure.physical
-            placed = ((name, physical.placement(name)) for name in places_for(self.c.setting, kind))
+            placed = ((name, physical.placement(name)) for name in self.c.setting.containers(kind))
             self._of[kind] = [
                 (name, at, bounds(at.geometry))
                 for name, at in placed
                 if isinstance(at, Placed) and not at.geometry.is_point
             ]
         return self._of[kind]
-
-
-@lru_cache(maxsize=1 << 10)
-def places_for(setting: Setting, kind: str) -> tuple[Name, ...]:
-    """Return the names of all that may contain an entity of a kind, even of a kind without entities."""
-    signature = setting.signature
-    return tuple(sorted(name for name, of in setting.kinds.items() if kind in signature[of].contains))
 
 
 def contents(physical: PhysicalModel, place: Name, placement: Placement | None) -> frozenset[Name]:

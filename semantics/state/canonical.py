@@ -1,7 +1,10 @@
 """The canonical encoding of values, the same in every process; digests are computed from it."""
 
+from collections.abc import Iterable
 from dataclasses import fields, is_dataclass
 from hashlib import sha256
+from itertools import compress
+from operator import is_not, ne
 from typing import Any
 
 from semantics.state.cells import Cell, Row
@@ -38,10 +41,12 @@ def written(before: Configuration, after: Configuration) -> dict[Cell, Any]:
     old, new = before.state, after.state
     assert isinstance(old, Row)
     assert isinstance(new, Row)
-    if old.layout is new.layout:
-        pairs = zip(new.layout.cells, old.values, new.values, strict=True)
-        return {cell: value for cell, was, value in pairs if was is not value and was != value}
-    return {cell: value for cell, value in new.items() if old.read(cell) != value}
+    if old.layout is not new.layout:
+        return {cell: value for cell, value in new.items() if old.read(cell) != value}
+    others = compress(
+        zip(new.layout.cells, old.values, new.values, strict=True), map(is_not, old.values, new.values)
+    )
+    return {cell: value for cell, was, value in others if was != value}
 
 
 def digest_of_step(before: Configuration, after: Configuration) -> str:
@@ -56,6 +61,10 @@ def _changed(old: Any, new: Any) -> Any:
     if not isinstance(old, tuple) or type(new) is not tuple:
         return new
     shorter = min(len(old), len(new))
-    kept = next((at for at in range(shorter) if old[at] != new[at]), shorter)
-    behind = next((at for at in range(shorter - kept) if old[-1 - at] != new[-1 - at]), shorter - kept)
+    kept = _first_difference(old, new, shorter)
+    behind = _first_difference(reversed(old), reversed(new), shorter - kept)
     return (kept, behind, new[kept : len(new) - behind])
+
+
+def _first_difference(one: Iterable[Any], other: Iterable[Any], most: int) -> int:
+    return next(compress(range(most), map(ne, one, other)), most)
