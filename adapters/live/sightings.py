@@ -95,8 +95,9 @@ def placement_seen(c: Configuration, shape: Placed | None, sighting: Sighting) -
 
 
 def _may_carry(c: Configuration, by: Name, entity: Name) -> bool:
-    """Tell whether a carrier exists for an entity: no entity carries itself, directly or through others."""
-    return by in c.setting.kinds and entity not in (by, *c.structure.physical.carriers(by))
+    """Tell whether a carrier of such a kind exists: no entity carries itself, directly or through others."""
+    known = by in c.setting.kinds and c.setting.carries(by, entity)
+    return known and entity not in (by, *c.structure.physical.carriers(by))
 
 
 def _moved(shape: Geometry, to: Geometry) -> Geometry:

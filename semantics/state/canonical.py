@@ -1,14 +1,17 @@
 """The canonical encoding of values, the same in every process; digests are computed from it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import fields, is_dataclass
 from hashlib import sha256
 from itertools import compress
-from operator import is_not, ne
+from operator import ne
 from typing import Any
 
 from semantics.state.cells import Cell, Row
 from semantics.state.configuration import Configuration
+
+SLICE = 64
+"""How many values are compared at once."""
 
 
 def canonical(value: Any) -> str:
@@ -41,12 +44,20 @@ def written(before: Configuration, after: Configuration) -> dict[Cell, Any]:
     old, new = before.state, after.state
     assert isinstance(old, Row)
     assert isinstance(new, Row)
-    if old.layout is not new.layout:
+    if new.layout.cells[: len(old.values)] != old.layout.cells:  # the new row has not grown from the old one
         return {cell: value for cell, value in new.items() if old.read(cell) != value}
-    others = compress(
-        zip(new.layout.cells, old.values, new.values, strict=True), map(is_not, old.values, new.values)
-    )
-    return {cell: value for cell, was, value in others if was != value}
+    was = old.values + (None,) * (len(new.values) - len(old.values))
+    return {new.layout.cells[at]: new.values[at] for at in _differing(was, new.values)}
+
+
+def _differing(old: tuple[Any, ...], new: tuple[Any, ...]) -> Iterator[int]:
+    """Yield where two tuples differ, which is mostly nowhere: slices are compared before their members are."""
+    for first in range(0, len(new), SLICE):
+        one, other = old[first : first + SLICE], new[first : first + SLICE]
+        if one != other:
+            yield from (
+                at for at, (was, value) in enumerate(zip(one, other, strict=True), first) if was != value
+            )
 
 
 def digest_of_step(before: Configuration, after: Configuration) -> str:

@@ -222,9 +222,9 @@ class Row:
         new = {cell: value for cell, value in changes.items() if cell not in self.layout.index}
         if not new:
             return self.with_(changes)
-        digest = self._hash ^ _digest(new.items())
-        grown = Row(self.layout.growing(new), (*self.values, *new.values()), digest)
-        return grown.with_(changes)
+        row = self.with_({cell: value for cell, value in changes.items() if cell not in new})
+        digest = hash(row) ^ _digest(new.items())
+        return Row(row.layout.growing(new), (*row.values, *new.values()), digest)
 
     def with_each(self, parts: Mapping[str, Changes]) -> "Row":
         """Return the row with what each part writes."""

@@ -10,6 +10,7 @@ from small_missions import figure_2, run
 from physical import Band, box, circle, point, translate_to
 from semantics.observed_steps import Sight, admitting, arriving, happening, steps_seen
 from semantics.state.canonical import canonical, digest, digest_of_step, written
+from semantics.state.cells import Row
 from semantics.state.configuration import Configuration
 from semantics.state.observation_serialization import placement_of, sight_json, sight_of, value_json
 from semantics.state.physical_model import Carried, InTransit, Placed, channels_cell, placement_cell
@@ -168,3 +169,13 @@ def test_of_a_tuple_a_digest_has_what_came_in_the_place_of_what(first, gone, com
     setting = flying().setting
     before, after = (Configuration.of(setting, {("line", "a"): each}) for each in (old, new))
     assert digest_of_step(before, after) == digest({("line", "a"): changed} if old != new else {})
+
+
+@given(st.dictionaries(st.integers(0, 299), st.integers(), max_size=5))
+def test_what_a_step_wrote_is_found_among_many_cells(changes):
+    before = Configuration.of(flying().setting, {("store", str(number)): 0 for number in range(200)})
+    assert isinstance(before.state, Row)
+    writes = {("store", str(number)): value for number, value in changes.items()}
+    after = Configuration(before.setting, before.state.growing(writes))
+    expected = {cell: value for cell, value in writes.items() if before.read(cell) != value}
+    assert written(before, after) == expected
