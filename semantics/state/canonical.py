@@ -44,10 +44,11 @@ def written(before: Configuration, after: Configuration) -> dict[Cell, Any]:
     old, new = before.state, after.state
     assert isinstance(old, Row)
     assert isinstance(new, Row)
-    if new.layout.cells[: len(old.values)] != old.layout.cells:  # the new row has not grown from the old one
+    cells, known = new.layout.cells, old.layout.cells
+    if cells is not known and cells[: len(known)] != known:  # the new row has not grown from the old one
         return {cell: value for cell, value in new.items() if old.read(cell) != value}
     was = old.values + (None,) * (len(new.values) - len(old.values))
-    return {new.layout.cells[at]: new.values[at] for at in _differing(was, new.values)}
+    return {cells[at]: new.values[at] for at in _differing(was, new.values)}
 
 
 def _differing(old: tuple[Any, ...], new: tuple[Any, ...]) -> Iterator[int]:
