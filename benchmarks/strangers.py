@@ -123,7 +123,6 @@ def flown(vessels: int, folder: Path) -> Strangers:
     header = {"mission": "strangers", "text": source.text, "digest": "", "version": "", "verified": False}
     recorder = Recorder(folder / "strangers.mcap", {**header, "vehicles": {}}, 0.0, mission.setting.kinds)
     run = Strangers(plan, Tape(recorder, lambda _finding: ()), started(plan))
-    settle()
     for event, now, heard in events(vessels):
         run.turn(event, now, *heard)
         if event == "coming" and run.known % STEP == 0:
@@ -151,6 +150,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--vessels", type=int, default=len(RECEIVERS) * SHARE)
     options = parser.parse_args()
+    settle()
     with tempfile.TemporaryDirectory() as folder:
         run = flown(options.vessels, Path(folder))
     counts = tuple(run.counts[event] for event in EVENTS)
