@@ -3,7 +3,8 @@
 A hundred simulated vehicles, which speak MAVLink at 10 Hz, and a receiver that sends a thousand AIS positions a second
 are another process; here run the autopilot plugin, the AIS plugin, the loop, the rules and the recording. The clock is
 the system's, which says of each packet when it arrived. The time since it was sent, by the vehicle's own clock, is told
-too: it includes what the simulators wait for the processor. `python -m benchmarks.wire`.
+too: it includes what the simulators wait for the processor. `python -m benchmarks.wire`; with `--parts` it prints where
+the time goes instead (`benchmarks.parts`).
 """
 
 import argparse
@@ -35,6 +36,7 @@ from adapters.recording.writing import Recorder
 from adapters.simulated import Kind, Simulator, Vehicle
 from adapters.transport import Remote
 from benchmarks.live import LANES, TimedRun
+from benchmarks.parts import Parts
 from bigactors import __version__
 from bigactors.missions import digest_of
 from bigactors.terminal import say
@@ -256,6 +258,15 @@ async def flown(vehicles: int, vessels: int, recording: Path) -> AsyncIterator[t
         yield run, watch
 
 
+async def parted(vehicles: int, vessels: int, seconds: float) -> None:
+    """Run for some seconds and print where the time went."""
+    with tempfile.TemporaryDirectory() as folder, Parts().watching() as parts:
+        async with flown(vehicles, vessels, Path(folder) / "wire.mcap") as (run, watch):
+            parts.spent.clear()
+            found = await measured(run, watch, seconds)
+            parts.tell(seconds, found["load of one core"] * seconds)
+
+
 async def measure(vehicles: int, vessels: int, seconds: float) -> dict[str, float]:
     """Run for some seconds and return the figures."""
     with tempfile.TemporaryDirectory() as folder:
@@ -292,15 +303,19 @@ def main() -> None:
     parser.add_argument("--vehicles", type=int, default=100)
     parser.add_argument("--vessels", type=int, default=1000)
     parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--parts", action="store_true", help="where the time goes, by parts")
     parser.add_argument("--simulate", type=int, nargs=2, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.simulate:
         asyncio.run(simulate(options.vehicles, options.vessels, *options.simulate))
         return
-    found = asyncio.run(measure(options.vehicles, options.vessels, options.seconds))
     say(
         f"{options.vehicles} vehicles and {options.vessels} vessels in another process, {os.cpu_count()} cores"
     )
+    if options.parts:
+        asyncio.run(parted(options.vehicles, options.vessels, options.seconds))
+        return
+    found = asyncio.run(measure(options.vehicles, options.vessels, options.seconds))
     for name, value in found.items():
         say(f"  {name:<22} {value:10.1f}")
 

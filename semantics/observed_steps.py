@@ -12,7 +12,7 @@ from semantics.behaviours.reaction_rules import moved
 from semantics.drive import Reach
 from semantics.environment import Observed
 from semantics.rules import commit, env
-from semantics.state.cells import NAMES, Cell, Changes
+from semantics.state.cells import NAMES, Cell, Changes, Row
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.logical_model import links_cell, parent_cell
 from semantics.state.partition import Elsewhere, passing
@@ -86,7 +86,7 @@ def admitting(c: Configuration, kinds: Mapping[Name, str]) -> Configuration:
     new = {name: kind for name, kind in sorted(kinds.items()) if name not in c.setting.kinds}
     if not new:
         return c
-    cells: Changes = {NAMES: tuple(sorted({*c.setting.kinds, *new}))}
+    cells: Changes = {NAMES: tuple(sorted((*c.read(NAMES), *new)))}
     for name in new:
         cells |= {
             placement_cell(name): None,
@@ -94,7 +94,8 @@ def admitting(c: Configuration, kinds: Mapping[Name, str]) -> Configuration:
             parent_cell(name): None,
             links_cell(name): (),
         }
-    return Configuration(c.setting.with_(kinds={**c.setting.kinds, **new}), c.state.with_(cells))
+    assert isinstance(c.state, Row)
+    return Configuration(c.setting.naming(new), c.state.growing(cells))
 
 
 def _is_free(c: Configuration, cell: Cell, value: Any) -> bool:

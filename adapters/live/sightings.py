@@ -95,8 +95,9 @@ def placement_seen(c: Configuration, shape: Placed | None, sighting: Sighting) -
 
 
 def _may_carry(c: Configuration, by: Name, entity: Name) -> bool:
-    """Tell whether a carrier exists for an entity: no entity carries itself, directly or through others."""
-    return by in c.setting.kinds and entity not in (by, *c.structure.physical.carriers(by))
+    """Tell whether a carrier of such a kind exists: no entity carries itself, directly or through others."""
+    known = by in c.setting.kinds and c.setting.carries(by, entity)
+    return known and entity not in (by, *c.structure.physical.carriers(by))
 
 
 def _moved(shape: Geometry, to: Geometry) -> Geometry:
@@ -146,20 +147,13 @@ class Fences:
     def _fences(self, kind: str) -> list[Fence]:
         if kind not in self._of:
             physical = self.c.structure.physical
-            placed = ((name, physical.placement(name)) for name in places_for(self.c.setting, kind))
+            placed = ((name, physical.placement(name)) for name in self.c.setting.containers(kind))
             self._of[kind] = [
                 (name, at, bounds(at.geometry))
                 for name, at in placed
                 if isinstance(at, Placed) and not at.geometry.is_point
             ]
         return self._of[kind]
-
-
-@lru_cache(maxsize=1 << 10)
-def places_for(setting: Setting, kind: str) -> tuple[Name, ...]:
-    """Return the names of all that may contain an entity of a kind, even of a kind without entities."""
-    signature = setting.signature
-    return tuple(sorted(name for name, of in setting.kinds.items() if kind in signature[of].contains))
 
 
 def contents(physical: PhysicalModel, place: Name, placement: Placement | None) -> frozenset[Name]:

@@ -64,7 +64,7 @@ class Turning:
         self.grounded = set(state.grounded)
         self.missing = dict(state.missing)
         self.failed = set(state.failed)
-        self.reported = set(state.reported)
+        self.reported = state.reported
         self.told = state.told
         self.shares = dict(state.shares)
         self.timers = state.timers
@@ -103,7 +103,7 @@ class Turning:
             frozenset(self.grounded),
             self.missing,
             frozenset(self.failed),
-            frozenset(self.reported),
+            self.reported,
             self.last,
             self.before.number + len(self.steps),
             self.told,
@@ -122,7 +122,7 @@ class Turning:
             full = kind == "trouble" and len(self.reported) >= MOST_REPORTED
             if full or message in self.reported:
                 return False
-            self.reported.add(message)
+            self.reported |= {message}
         self.findings.append(Finding(kind, about, message, self.now, fallback))
         return True
 

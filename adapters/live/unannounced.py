@@ -93,7 +93,10 @@ def remove_strangers(turning: Turning, entities: Iterable[Name]) -> None:
     gone = {entity for entity in entities if entity in physical}
     if not gone:
         return
-    carried = {name for name in turning.c.read(NAMES) if not gone.isdisjoint(physical.carriers(name))}
+    setting = turning.c.setting
+    carriers = {entity for entity in gone if setting.signature[setting.kind(entity)].carries}  # mostly none
+    names = turning.c.read(NAMES) if carriers else ()
+    carried = {name for name in names if not carriers.isdisjoint(physical.carriers(name))}
     writes: dict[Cell, object] = {placement_cell(name): None for name in gone | carried}
     writes |= {channels_cell(name): () for name in gone | carried}
     _happen(turning, Sight(_together([f"{entity} vanishes" for entity in sorted(gone)]), writes))

@@ -94,12 +94,13 @@ class Observation:
         swept: What it looked through to the end.
     """
 
-    __slots__ = ("_facts", "family", "swept")
+    __slots__ = ("_facts", "_places", "family", "swept")
 
     def __init__(self, family: Mapping[Name, Fact], swept: Swept = NOTHING_SWEPT) -> None:
         self.family = family
         self.swept = swept
         self._facts: tuple[tuple[Name, Fact], ...] | None = None
+        self._places: frozenset[Name | None] | None = None
 
     @staticmethod
     def of(
@@ -176,6 +177,17 @@ class Observation:
     def children(self, place: Name) -> frozenset[Name]:
         """Return the children that were seen of a place."""
         return frozenset(name for name, fact in self.facts if fact.parent == place)
+
+    def is_parent(self, place: Name, of: Iterable[Name]) -> bool:
+        """Tell whether any of some nodes, which are all that it speaks of, was seen in a place.
+
+        A plain family is looked through once for all places. Another one notes who is asked: it is asked for each.
+        """
+        if not isinstance(self.family, dict):
+            return any(self.parent(node) == place for node in of)
+        if self._places is None:
+            self._places = frozenset(fact.parent for fact in self.family.values())
+        return place in self._places
 
     def links(self, node: Name) -> frozenset[Name]:
         """Return the links on which a node was seen."""

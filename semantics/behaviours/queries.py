@@ -4,7 +4,7 @@ A query denotes a set of nodes of A(P), composed pointwise. Its observation says
 was got on the way: a yes is a pair, a no follows from a place or link that was enumerated.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import assert_never
 
 from semantics.behaviours.observations import (
@@ -79,24 +79,28 @@ class _Looking:
         self.alpha = alpha
         self.names: tuple[Name, ...] = physical.cells.read(NAMES)
         self.applied = [(operator, frozenset(names)) for operator, names in steps]
-        self.links = frozenset(
-            link for name in self.to(QueryOperator.LINKED_TO) for link in self.links_of(name)
-        )
+        self.to = {operator: self._to(operator) for operator in QueryOperator}
+        self.links = self._links_of_all(self.to[QueryOperator.LINKED_TO])
+        operator, inner = self.applied[-1]
+        self.followed = self._links_of_all(inner if operator == QueryOperator.LINKED_TO else ())
 
-    def to(self, operator: QueryOperator) -> frozenset[Name]:
+    def _to(self, operator: QueryOperator) -> frozenset[Name]:
         """Return all that an operator is applied to."""
         all_too = operator in (QueryOperator.CHILDREN, QueryOperator.LINKED_TO)
         both: tuple[Applied, ...] = (operator, "ALL") if all_too else (operator,)
         return frozenset[Name]().union(*(names for applied, names in self.applied if applied in both))
 
+    def _links_of_all(self, names: Iterable[Name]) -> frozenset[Name]:
+        return frozenset(link for name in names for link in self.links_of(name))
+
     def swept(self) -> Swept:
-        nodes = self.to(QueryOperator.LINKED_TO) - {REGION}
-        return Swept(*(tuple(sorted(each)) for each in (self.to(QueryOperator.CHILDREN), nodes, self.links)))
+        nodes = self.to[QueryOperator.LINKED_TO] - {REGION}
+        return Swept(*(tuple(sorted(each)) for each in (self.to[QueryOperator.CHILDREN], nodes, self.links)))
 
     def fact(self, name: Name) -> Fact:
         """Return what is answered of one name."""
         if name.startswith(AGENT):
-            return Fact(self.alpha.host(name.removeprefix(AGENT)) in self.to(QueryOperator.HOSTED_AT))
+            return Fact(self.alpha.host(name.removeprefix(AGENT)) in self.to[QueryOperator.HOSTED_AT])
         parent = self.parent(name)
         links = tuple(link for link in self.links_of(name) if link in self.links) if self.links else ()
         return Fact(self.shows(name, parent), parent, links)
@@ -112,8 +116,9 @@ class _Looking:
             case QueryOperator.CHILDREN:
                 return name in inner or parent in inner
             case QueryOperator.LINKED_TO:
-                links = {link for n in inner for link in self.links_of(n)}
-                return name in inner or (bool(links) and not links.isdisjoint(self.links_of(name)))
+                return name in inner or (
+                    bool(self.followed) and not self.followed.isdisjoint(self.links_of(name))
+                )
             case QueryOperator.HOSTED_AT:
                 return False  # it denotes agents
             case _:
@@ -123,9 +128,9 @@ class _Looking:
         """Return the parent of a node in A(P), as far as it was asked for: its own, or among children."""
         if name == REGION:
             return None
-        if name in self.to(QueryOperator.PARENT):
+        if name in self.to[QueryOperator.PARENT]:
             return self.physical.abstract_parent(name)
-        return self.parent_among(name, self.to(QueryOperator.CHILDREN))
+        return self.parent_among(name, self.to[QueryOperator.CHILDREN])
 
     def parent_among(self, name: Name, places: frozenset[Name]) -> Name | None:
         if len(places) == 1:
@@ -161,6 +166,7 @@ class _Learning:
         self.logical = logical
         self.seen = seen
         self.names: tuple[Name, ...] = logical.cells.read(NAMES)
+        self.looked_at = frozenset(seen.swept.nodes)
 
     def of(self, name: Name) -> Changes:
         """Return the writes about one node."""
@@ -179,8 +185,7 @@ class _Learning:
 
     def is_node(self, name: Name) -> bool:
         """Tell whether a node is in dom(L_q)."""
-        shown = self.seen.fact(name) != NOTHING_SEEN
-        return shown or any(self.seen.parent(node) == name for node in self.names)
+        return self.seen.fact(name) != NOTHING_SEEN or self.seen.is_parent(name, self.names)
 
     def is_denied(self, name: Name) -> bool:
         """Tell whether a node is believed in a place where it was not seen."""
@@ -203,7 +208,7 @@ class _Learning:
     def links(self, name: Name) -> frozenset[Name] | None:
         """Return the new links of a node, None where it keeps what it had."""
         swept = self.seen.swept
-        if name in swept.nodes:
+        if name in self.looked_at:
             return self.seen.links(name)
         if not swept.links:
             return None

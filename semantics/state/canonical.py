@@ -1,11 +1,17 @@
 """The canonical encoding of values, the same in every process; digests are computed from it."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import fields, is_dataclass
 from hashlib import sha256
+from itertools import compress
+from operator import ne
 from typing import Any
 
 from semantics.state.cells import Cell, Row
 from semantics.state.configuration import Configuration
+
+SLICE = 64
+"""How many values are compared at once."""
 
 
 def canonical(value: Any) -> str:
@@ -38,10 +44,21 @@ def written(before: Configuration, after: Configuration) -> dict[Cell, Any]:
     old, new = before.state, after.state
     assert isinstance(old, Row)
     assert isinstance(new, Row)
-    if old.layout is new.layout:
-        pairs = zip(new.layout.cells, old.values, new.values, strict=True)
-        return {cell: value for cell, was, value in pairs if was is not value and was != value}
-    return {cell: value for cell, value in new.items() if old.read(cell) != value}
+    cells, known = new.layout.cells, old.layout.cells
+    if cells is not known and cells[: len(known)] != known:  # the new row has not grown from the old one
+        return {cell: value for cell, value in new.items() if old.read(cell) != value}
+    was = old.values + (None,) * (len(new.values) - len(old.values))
+    return {cells[at]: new.values[at] for at in _differing(was, new.values)}
+
+
+def _differing(old: tuple[Any, ...], new: tuple[Any, ...]) -> Iterator[int]:
+    """Yield where two tuples differ, which is mostly nowhere: slices are compared before their members are."""
+    for first in range(0, len(new), SLICE):
+        one, other = old[first : first + SLICE], new[first : first + SLICE]
+        if one != other:
+            yield from (
+                at for at, (was, value) in enumerate(zip(one, other, strict=True), first) if was != value
+            )
 
 
 def digest_of_step(before: Configuration, after: Configuration) -> str:
@@ -56,6 +73,10 @@ def _changed(old: Any, new: Any) -> Any:
     if not isinstance(old, tuple) or type(new) is not tuple:
         return new
     shorter = min(len(old), len(new))
-    kept = next((at for at in range(shorter) if old[at] != new[at]), shorter)
-    behind = next((at for at in range(shorter - kept) if old[-1 - at] != new[-1 - at]), shorter - kept)
+    kept = _first_difference(old, new, shorter)
+    behind = _first_difference(reversed(old), reversed(new), shorter - kept)
     return (kept, behind, new[kept : len(new) - behind])
+
+
+def _first_difference(one: Iterable[Any], other: Iterable[Any], most: int) -> int:
+    return next(compress(range(most), map(ne, one, other)), most)

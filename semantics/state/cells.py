@@ -5,6 +5,9 @@ another `Cells` instead of a configuration: no code in `semantics/` can tell the
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from functools import reduce
+from itertools import count
+from operator import xor
 from typing import Any, Protocol, TypeVar
 from weakref import WeakValueDictionary
 
@@ -127,13 +130,18 @@ class Written:
 
 
 class Layout:
-    """A sorted tuple of cells with its index; one object for each tuple, so that rows compare by position."""
+    """A tuple of cells with its index; rows that share one compare by position."""
 
     __slots__ = ("__weakref__", "cells", "index")
 
-    def __init__(self, cells: tuple[Cell, ...]) -> None:
+    def __init__(self, cells: tuple[Cell, ...], index: dict[Cell, int] | None = None) -> None:
         self.cells = cells
-        self.index = {cell: position for position, cell in enumerate(cells)}
+        self.index = {cell: position for position, cell in enumerate(cells)} if index is None else index
+
+    def growing(self, cells: Iterable[Cell]) -> "Layout":
+        """Return a layout with more cells at its end, which no other row has."""
+        more = tuple(cells)
+        return Layout(self.cells + more, self.index | dict(zip(more, count(len(self.cells)), strict=False)))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (layout_of, (self.cells,))
@@ -143,20 +151,23 @@ _LAYOUTS: WeakValueDictionary[tuple[Cell, ...], Layout] = WeakValueDictionary()
 
 
 def layout_of(cells: tuple[Cell, ...]) -> Layout:
-    """Return the one layout of these cells, which must be sorted; it is kept as long as a row has it."""
+    """Return the one layout of these cells in this order; it is kept as long as a row has it."""
     layout = _LAYOUTS.get(cells)
     return _LAYOUTS.setdefault(cells, Layout(cells)) if layout is None else layout
 
 
 class Row:
-    """An immutable map from cells to values with a hash that is kept up to date by what changes (Zobrist)."""
+    """An immutable map from cells to values with a hash that is kept up to date by what changes (Zobrist).
+
+    Its cells are sorted unless it has grown: that costs no sorting, but rows that have grown compare by their contents.
+    """
 
     __slots__ = ("_hash", "layout", "values")
 
     def __init__(self, layout: Layout, values: tuple[Any, ...], digest: int | None = None) -> None:
         self.layout = layout
         self.values = values
-        self._hash = _digest(layout, values) if digest is None else digest
+        self._hash = _digest(zip(layout.cells, values, strict=True)) if digest is None else digest
 
     @staticmethod
     def of(contents: Mapping[Cell, Any]) -> "Row":
@@ -186,7 +197,7 @@ class Row:
         return {name: part(name) for name in names}
 
     def items(self) -> Iterator[tuple[Cell, Any]]:
-        """Yield cells with their values, sorted by cell."""
+        """Yield cells with their values, in the order of the layout: sorted unless the row has grown."""
         return zip(self.layout.cells, self.values, strict=True)
 
     def with_(self, changes: Mapping[Cell, Any]) -> "Row":
@@ -201,10 +212,19 @@ class Row:
             position = index[cell]
             old = values[position]
             if old is not value and old != value:
-                digest ^= hash((position, old)) ^ hash((position, value))
+                digest ^= hash((cell, old)) ^ hash((cell, value))
                 values[position] = value
                 changed = True
         return Row(self.layout, tuple(values), digest) if changed else self
+
+    def growing(self, changes: Mapping[Cell, Any]) -> "Row":
+        """Return the row with these values, new cells at its end: nothing is sorted, and no old value is hashed."""
+        new = {cell: value for cell, value in changes.items() if cell not in self.layout.index}
+        if not new:
+            return self.with_(changes)
+        row = self.with_({cell: value for cell, value in changes.items() if cell not in new})
+        digest = hash(row) ^ _digest(new.items())
+        return Row(row.layout.growing(new), (*row.values, *new.values()), digest)
 
     def with_each(self, parts: Mapping[str, Changes]) -> "Row":
         """Return the row with what each part writes."""
@@ -220,8 +240,11 @@ class Row:
         return (
             isinstance(other, Row)
             and self._hash == other._hash
-            and self.layout is other.layout
-            and self.values == other.values
+            and (
+                self.values == other.values
+                if self.layout is other.layout
+                else dict(self.items()) == dict(other.items())
+            )
         )
 
     def __hash__(self) -> int:
@@ -239,8 +262,6 @@ def merged(parts: Iterable[Changes]) -> Changes:
     return changes
 
 
-def _digest(layout: Layout, values: Iterable[Any]) -> int:
-    digest = hash(layout.cells)
-    for position, value in enumerate(values):
-        digest ^= hash((position, value))
-    return digest
+def _digest(items: Iterable[tuple[Cell, Any]]) -> int:
+    """Return a hash of cells with their values that does not depend on their order."""
+    return reduce(xor, map(hash, items), 0)

@@ -1,9 +1,9 @@
 """Kinds: a mission's signature, with the controls of its nodes."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Final
+from typing import Final, Self
 
 Name = str
 """A symbol of logical space: a node, a channel or an agent."""
@@ -78,14 +78,20 @@ class Sorting:
         """Return the kind of an entity."""
         return self.kinds[name]
 
+    def naming(self, kinds: Mapping[Name, str]) -> Self:
+        """Return the sorting with more entities; only where one of them is a place the containers are found anew."""
+        more = replace(self, kinds={**self.kinds, **kinds})
+        if not any(self.signature[kind].contains for kind in kinds.values()):
+            vars(more)["_containers"] = self._containers
+        return more
+
     @cached_property
     def _containers(self) -> dict[str, tuple[Name, ...]]:
-        kinds = sorted(set(self.kinds.values()))
-        holders = {kind: [k for k in kinds if kind in self.signature[k].contains] for kind in kinds}
-        return {
-            kind: tuple(sorted(name for name, of in self.kinds.items() if of in holding))
-            for kind, holding in holders.items()
-        }
+        found: dict[str, list[Name]] = {}
+        for name, kind in sorted(self.kinds.items()):
+            for held in self.signature[kind].contains:
+                found.setdefault(held, []).append(name)
+        return {kind: tuple(names) for kind, names in found.items()}
 
     def containers(self, kind: str) -> tuple[Name, ...]:
         """Return the names of all that may contain an entity of a kind, sorted."""

@@ -9,7 +9,9 @@ from small_missions import figure_2, run
 
 from physical import Band, box, circle, point, translate_to
 from semantics.observed_steps import Sight, admitting, arriving, happening, steps_seen
-from semantics.state.canonical import canonical, digest_of_step, written
+from semantics.state.canonical import canonical, digest, digest_of_step, written
+from semantics.state.cells import Row
+from semantics.state.configuration import Configuration
 from semantics.state.observation_serialization import placement_of, sight_json, sight_of, value_json
 from semantics.state.physical_model import Carried, InTransit, Placed, channels_cell, placement_cell
 from semantics.state.relations import Parent
@@ -141,3 +143,39 @@ def test_a_digest_of_a_step_tells_targets_apart():
 @given(st.recursive(st.integers() | st.text(), lambda inner: st.lists(inner).map(tuple), max_leaves=6))
 def test_equal_values_are_written_alike(value):
     assert canonical((value, frozenset({value}))) == canonical((value, frozenset({value})))
+
+
+def test_a_digest_of_a_step_does_not_depend_on_the_order_in_which_cells_came():
+    c = flying()
+    one, two = admitting(c, {"x": "Uav", "b": "Uav"}), admitting(admitting(c, {"x": "Uav"}), {"b": "Uav"})
+    apart = Configuration.of(one.setting, dict(one.state.items()))
+    assert one == two == apart
+    assert len({hash(one), hash(two), hash(apart)}) == 1
+    assert written(c, one) == written(c, two) == written(c, apart)
+    assert digest_of_step(c, one) == digest_of_step(c, two) == digest_of_step(c, apart)
+    assert digest_of_step(one, c) == digest_of_step(apart, c)
+
+
+SHORT = st.lists(st.integers(0, 1), max_size=2)
+
+
+@given(SHORT, SHORT, SHORT, SHORT)
+def test_of_a_tuple_a_digest_has_what_came_in_the_place_of_what(first, gone, come, last):
+    old, new = (tuple(first + middle + last) for middle in (gone, come))
+    shorter = min(len(old), len(new))
+    kept = next((at for at in range(shorter) if old[at] != new[at]), shorter)
+    behind = next((at for at in range(shorter - kept) if old[-1 - at] != new[-1 - at]), shorter - kept)
+    changed = (kept, behind, new[kept : len(new) - behind])
+    setting = flying().setting
+    before, after = (Configuration.of(setting, {("line", "a"): each}) for each in (old, new))
+    assert digest_of_step(before, after) == digest({("line", "a"): changed} if old != new else {})
+
+
+@given(st.dictionaries(st.integers(0, 299), st.integers(), max_size=5))
+def test_what_a_step_wrote_is_found_among_many_cells(changes):
+    before = Configuration.of(flying().setting, {("store", str(number)): 0 for number in range(200)})
+    assert isinstance(before.state, Row)
+    writes = {("store", str(number)): value for number, value in changes.items()}
+    after = Configuration(before.setting, before.state.growing(writes))
+    expected = {cell: value for cell, value in writes.items() if before.read(cell) != value}
+    assert written(before, after) == expected

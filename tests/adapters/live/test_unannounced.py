@@ -16,6 +16,7 @@ from adapters.plugin import Aged, Gone
 from adapters.web import Listen
 from physical import PhysicalProperty, box, point
 from semantics.contingencies import Fallback, Precautions
+from semantics.state.physical_model import Placed
 
 STAY = (
     "BigActor a hosted_at uav0 with_behavior { loop { observe(CHILDREN(west0)) react { case obs => skip } } }"
@@ -124,7 +125,8 @@ def test_of_places_that_nobody_announced_there_are_few_and_a_point_does_not_beco
 
 def test_nothing_is_carried_by_itself_over_others_or_not():
     """A chain that comes back to where it began would be followed for ever."""
-    run = quiet_run(TOUR.replace("boat0:", "boat1: Vessel = point (37.03, -8.62)\n  boat0:"))
+    text = TOUR.replace("boat0:", "boat1: Vessel = point (37.03, -8.62)\n  boat0:")
+    run = quiet_run(text.replace("kind Vessel", "kind Vessel carries Vessel"))
     for name, by in (("boat0", "boat0"), ("boat0", "boat1"), ("boat1", "boat0"), ("mmsi1", "mmsi1")):
         said = PhysicalProperty(name, "Vessel", point(*WEST), carried_by=by, time=1.0)
         run.turn(1.0, Heard("camera", said))
@@ -134,6 +136,25 @@ def test_nothing_is_carried_by_itself_over_others_or_not():
         None,
         None,
     )
+
+
+def test_only_what_may_carry_an_entity_is_believed_to():
+    run = quiet_run()
+    run.turn(1.0, vessel(0))
+    said = PhysicalProperty("boat0", "Vessel", point(*WEST), carried_by="mmsi0", time=1.0)
+    run.turn(1.0, Heard("camera", said))
+    physical = run.state.configuration.structure.physical
+    assert physical.placement("boat0") == Placed(point(*WEST))
+
+
+def test_what_a_stranger_carries_goes_with_it():
+    run = quiet_run(TOUR.replace("kind Vessel", "kind Vessel carries Vessel"))
+    run.turn(1.0, vessel(0))
+    said = PhysicalProperty("boat0", "Vessel", point(*WEST), carried_by="mmsi0", time=1.0)
+    run.turn(1.0, Heard("camera", said))
+    assert run.state.configuration.structure.physical.carrier("boat0") == "mmsi0"
+    run.turn(2.0, Heard("ais", Gone("mmsi0", 2.0, "ais")))
+    assert there(run, "mmsi0", "boat0") == [False, False]
 
 
 def test_nobody_moves_an_entity_by_calling_it_something_else():

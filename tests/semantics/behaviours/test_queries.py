@@ -1,11 +1,13 @@
 """Queries, observations, and what L ⊕ L_q does to L."""
 
+from types import MappingProxyType
+
 from hypothesis import given
 from hypothesis import strategies as st
 from small_missions import aboard, mission
 
 from semantics import strategies
-from semantics.behaviours.observations import All, Nodes, Observation, Of, Query
+from semantics.behaviours.observations import NOTHING_SEEN, All, Nodes, Observation, Of, Query
 from semantics.behaviours.queries import evaluate, overlay
 from semantics.state.agents import Agents
 from semantics.state.cells import Cells
@@ -118,6 +120,14 @@ def test_a_new_border_node_goes_to_the_region():
     assert (logical.parent("spill"), logical.parent("area")) == ("area", REGION)
 
 
+def test_a_place_of_which_only_who_is_in_it_is_known_goes_to_the_region():
+    c = mission(["sea", "area", "spill"], beliefs=Beliefs({"area": None, "spill": None}))
+    seen = look(c, of("HOSTED_AT PARENT", "spill"))
+    assert seen.fact("area") == NOTHING_SEEN
+    logical = learn(c, seen).structure.logical
+    assert (logical.parent("spill"), logical.parent("area")) == ("area", REGION)
+
+
 def test_where_a_cycle_would_arise_the_node_not_looked_at_goes_to_the_region():
     c = mission(["sea", "area"], beliefs=Beliefs({"sea": "area", "area": REGION}))
     logical = learn(c, look(c, of("PARENT", "area"))).structure.logical
@@ -185,3 +195,31 @@ def test_an_observation_answers_what_was_asked_and_no_more():
 def test_what_is_linked_to_the_parent_of_the_region_is_the_region():
     c = mission(["sea", "u0"], channels={"u0": ["w"]})
     assert "sea" in look(c, of("LINKED_TO CHILDREN PARENT PARENT PARENT", "u0")).shown
+
+
+@given(st.data())
+def test_the_same_is_learned_whoever_is_asked_name_by_name(data):
+    world = data.draw(strategies.worlds())
+    names = sorted(world.kinds)
+    unknown = data.draw(st.lists(st.sampled_from(names), unique=True))
+    c = world.initial(beliefs=Beliefs(dict.fromkeys(unknown)))
+    seen = look(c, data.draw(strategies.queries(names)))
+    asked = Observation(
+        MappingProxyType(dict(seen.family)), seen.swept
+    )  # as the checker has it: no plain family
+    assert overlay(c.structure.logical, seen) == overlay(c.structure.logical, asked)
+
+
+def test_observing_asks_each_name_a_few_times_however_many_there_are():
+    class Counted(dict):
+        asked = 0
+
+        def get(self, *words):
+            Counted.asked += 1
+            return super().get(*words)
+
+    names = ["sea", "area", "spill", "base", "u0", "u1", "gcs0", "gcs1"]
+    c = mission(names, beliefs=Beliefs(dict.fromkeys(names)))
+    seen = look(c, of("CHILDREN", "base"))
+    overlay(c.structure.logical, Observation(Counted(seen.family), seen.swept))
+    assert Counted.asked <= 3 * len(names)
