@@ -80,9 +80,9 @@ def measured(size: Size, means: Means) -> dict[str, Any]:
         kept = sum(path.stat().st_size for path in Path(folder).rglob("shard-*.checkpoint"))
     count = len(found.configurations)
     assert (count, found.transitions) == COUNTS[size.agents, size.side, size.handover]
-    half = next(mark for mark in marks if mark[1] >= count / 2)
-    last = marks[-1]
-    rate = (last[1] - half[1]) / max(last[0] - half[0], 1e-9)
+    marks = [mark for mark in marks if mark[1] >= count / 2] or [(0.0, 0), (found.seconds, count)]
+    (begun, half), (ended, last) = marks[0], marks[-1]
+    rate = (last - half) / max(ended - begun, 1e-9)
     about = {
         "engine": str(means),
         "seconds": found.seconds,
