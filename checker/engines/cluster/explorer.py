@@ -46,6 +46,7 @@ class Expedition:
         crew: The workers.
         initial: Where it starts.
         folder: Where checkpoints are, None for nowhere.
+        is_temporary: Whether that is gone when all ends, so that only a worker that dies meanwhile goes back to them.
         latest: The last one.
         layer: How far the rows that are expanded are from the first.
         standings: How far each worker has come.
@@ -54,8 +55,11 @@ class Expedition:
         is_kept: Whether the last checkpoint is of where they are.
     """
 
-    def __init__(self, crew: Crew, initial: Configuration, options: Options) -> None:
+    def __init__(
+        self, crew: Crew, initial: Configuration, options: Options, *, is_temporary: bool = False
+    ) -> None:
         self.crew = crew
+        self.is_temporary = is_temporary
         self.initial = initial
         self.options = options
         self.limits = limits = options.limits
@@ -149,7 +153,8 @@ class Expedition:
             return
         while not self.is_done():
             self.go_on()
-        self.save()
+        if self.bounds or not self.is_temporary:  # else the last one is not older than it may ever be
+            self.save()
 
     def is_done(self) -> bool:
         """Tell whether there is nothing to be expanded, or a bound was met."""

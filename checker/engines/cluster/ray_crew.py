@@ -291,11 +291,12 @@ def explore_with_ray(initial: Configuration, inspect: tuple[Inspect, ...], optio
     crew = RayCrew(initial, options.limits.pending, cluster.workers)
     if keeping.doubted:
         raise ClusterError("only the fast explorer can be doubted: --paranoid goes with --engine fast")
-    if keeping.folder is None and cluster.address is None:
+    is_temporary = keeping.folder is None and cluster.address is None
+    if is_temporary:
         folder = tempfile.mkdtemp(prefix="bigactors-")
         weakref.finalize(crew, shutil.rmtree, folder, ignore_errors=True)
         options = replace(options, keeping=replace(keeping, folder=folder))
-    return Expedition(crew, initial, options).run(inspect)
+    return Expedition(crew, initial, options, is_temporary=is_temporary).run(inspect)
 
 
 @lru_cache(maxsize=1)

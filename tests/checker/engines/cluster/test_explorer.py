@@ -255,6 +255,19 @@ def test_what_was_found_under_a_limit_of_time_is_not_explored_otherwise(tmp_path
     assert list(found.configurations) == [initial]
 
 
+@pytest.mark.usefixtures("small_rounds")
+def test_in_a_temporary_folder_nothing_is_kept_of_what_ends_before_a_checkpoint_is_due(tmp_path):
+    initial = start("distributed_handover")
+    expected = whole(together(initial, 2))
+    crew = LocalCrew(initial, 2)
+    options = Options(LIMITS, keeping=Keeping(str(tmp_path)))
+    found = Expedition(crew, initial, options, is_temporary=True).run(())
+    assert not list(tmp_path.rglob("*.checkpoint"))
+    crew.lost = {1}
+    assert whole(found) == expected  # all was explored once more
+    assert crew.revived == 1
+
+
 # --- checkpoints ----------------------------------------------------------------------------------------------
 
 
