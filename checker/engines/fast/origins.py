@@ -111,7 +111,7 @@ def origins_in(bits: Words) -> NDArray[np.int64]:
     return told
 
 
-class Origins(Pages):
+class OriginPages(Pages):
     """Origins that are numbers, in any order."""
 
     __slots__ = ()
@@ -153,7 +153,7 @@ class Origins(Pages):
         self.room[:size] = kept
 
 
-class Elsewhere(Origins):
+class Elsewhere(OriginPages):
     """Those of rows that may have been reached from another worker's."""
 
     __slots__ = ()
@@ -161,7 +161,7 @@ class Elsewhere(Origins):
     NUMBER = np.uint64
 
 
-class Rising(Origins):
+class Rising(OriginPages):
     """Origins that never decrease, of rows of which the first is its own; counts are those of rows, not of words."""
 
     __slots__ = ("_before", "_counted")

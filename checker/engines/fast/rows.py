@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from checker.engines.fast import folding
 from checker.engines.fast.kernel import repack
-from checker.engines.fast.origins import Origins, Rising
+from checker.engines.fast.origins import OriginPages, Rising
 from checker.engines.fast.pages import Pages, more
 
 BLOCK = 1 << 12
@@ -26,7 +26,7 @@ class Rows:
 
     __slots__ = ("_folding", "_words", "kept", "origins", "width")
 
-    def __init__(self, width: int, room: int, origins: type[Origins] = Rising) -> None:
+    def __init__(self, width: int, room: int, origins: type[OriginPages] = Rising) -> None:
         self.width = self.kept = width
         self._words = Pages(np.uint64, room * width)
         self.origins = origins(room)

@@ -36,7 +36,7 @@ from checker.engines.fast.kernel import (
     WORDS,
 )
 from checker.engines.fast.learner import Actor, CodedSource, Learner
-from checker.engines.fast.origins import Origins, Rising
+from checker.engines.fast.origins import OriginPages, Rising
 from checker.engines.fast.pages import Pages
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.slices import Slices
@@ -82,7 +82,7 @@ class Space:
         shown: What is known, as other threads may read it while more is learned; None where it is out of date.
     """
 
-    ORIGINS: type[Origins] = Rising
+    ORIGINS: type[OriginPages] = Rising
     PLAIN = 2
     """How many words rows have at most that are not folded."""
 

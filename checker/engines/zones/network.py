@@ -20,7 +20,7 @@ from checker.engines.fast.arrays import Growing
 from checker.engines.fast.kernel import AT, LIMIT
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.leaves import LEAF
-from checker.engines.fast.origins import Origins
+from checker.engines.fast.origins import OriginPages
 from checker.engines.fast.skeletons import settled
 from checker.engines.fast.space import Space
 from checker.engines.fast.table import most_in
@@ -85,7 +85,7 @@ class Network(Space):
     """
 
     PLAIN = sys.maxsize  # its loops look into rows
-    ORIGINS = Origins  # what is known of a location is asked in the order in which clocks lead there
+    ORIGINS = OriginPages  # what is known of a location is asked in the order in which clocks lead there
 
     def __init__(self, initial: Configuration, pending: int) -> None:
         self.initial = initial
