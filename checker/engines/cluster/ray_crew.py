@@ -14,6 +14,8 @@ import tempfile
 import threading
 import time
 import weakref
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from functools import lru_cache
 from hashlib import sha256
@@ -234,8 +236,26 @@ def connect(cluster: Cluster) -> None:
         ClusterError: There is none at the address, or Ray is not installed.
         MachineError: None could be started here.
     """
-    if _is_here(cluster.address):
-        os.environ["RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"] = "0"  # so it listens on the loopback address alone
+    with _listening_here() if _is_here(cluster.address) else nullcontext():
+        _connect(cluster)
+
+
+@contextmanager
+def _listening_here() -> Iterator[None]:
+    """Let Ray, where it is loaded or started until left, listen on the loopback address alone."""
+    name = "RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"
+    before = os.environ.get(name)
+    os.environ[name] = "0"
+    try:
+        yield
+    finally:  # what this process starts later may be of a cluster of several machines
+        if before is None:
+            del os.environ[name]
+        else:
+            os.environ[name] = before
+
+
+def _connect(cluster: Cluster) -> None:
     ray = load_ray()
     if ray.is_initialized():
         return

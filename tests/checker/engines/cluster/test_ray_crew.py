@@ -125,6 +125,9 @@ def test_what_was_found_is_had_again_when_a_worker_is_killed_afterwards(ray):
 def test_ray_listens_on_the_loopback_address_alone(ray):
     assert ray.util.get_node_ip_address() == "127.0.0.1"
     assert os.environ["RAY_USAGE_STATS_ENABLED"] == "0"
+    assert "RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER" not in os.environ, (
+        "clusters of several machines would be refused"
+    )
     listening = set()
     for table in ("tcp", "tcp6"):
         lines = Path(f"/proc/net/{table}").read_text().splitlines()[1:]
