@@ -112,6 +112,8 @@ class Cable:
 
     def _pass(self, end):
         try:
+            if not self.joined:  # cut while it was waited for: what comes now is sent after that
+                raise OSError("cut")
             data = end.recv(65_536)
             self._other[end].sendall(data)
         except OSError:
