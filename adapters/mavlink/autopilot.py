@@ -138,12 +138,12 @@ class Autopilot:
     def objection(self, entity: str, place: Geometry, name: str) -> str | None:
         """Return why a vehicle can't stay at a place, as far as its kind is known; None if it can."""
         pilot = self._pilots[entity]
-        return unfit(GoTo("", entity, place, name=name), pilot.craft, pilot.known)
+        return unfit(GoTo("", entity, place, name=name), pilot.craft, pilot.known, pilot.on_board)
 
     def bar(self, entity: str, place: Geometry, name: str) -> str | None:
         """Return why a vehicle can't pass a place; None if it can."""
         pilot = self._pilots[entity]
-        return impassable(place, pilot.craft, pilot.known, name)
+        return impassable(place, pilot.craft, pilot.known, name, pilot.on_board)
 
     def is_known(self) -> bool:
         """Tell whether all vehicles have reported their parameters, or were asked for long enough."""
@@ -152,7 +152,7 @@ class Autopilot:
     def remarks(self) -> Iterator[str]:
         """Yield messages to the operator about the vehicles before take-off."""
         for pilot in self._pilots.values():
-            yield from remarks(pilot.craft, pilot.known)
+            yield from remarks(pilot.craft, pilot.known, pilot.on_board)
 
     async def command(self, command: Command) -> None:
         """Take on a command; raises Refused."""
@@ -218,12 +218,15 @@ class Autopilot:
             self._log(now, message.raw)
         for _, count in self._logged.left_out(now):
             self._troubles.note("not logged", f"{count:,} packets, over {MOST_LOGGED:,} in a second")
-        if message.system in self._stations.ids.values() or message.fields.get("type") == GROUND_STATION:
+        if self._is_of_a_station(message):
             self._overheard(message)
             return
         listened = self._listening.look(now)
         pilot = self._pilot_of(message, remote, listened)
-        if pilot is None or not self._is_for_us(message) or not self._is_its_source(pilot, remote):
+        if pilot is None or not self._is_its_source(pilot, remote):
+            return
+        if not self._is_for_us(message):
+            self._pilots[pilot.craft.entity] = piloting.overheard(pilot, message)
             return
         self._routes[pilot.system] = remote
         self._take(pilot.craft.entity, piloting.hear(pilot, message, listened))
@@ -260,12 +263,24 @@ class Autopilot:
             self._routes[pilot.system] = host.removeprefix("[").removesuffix("]"), int(port)
             self._elsewhere.pop(pilot.system, None)
 
+    def _is_of_a_station(self, message: Message) -> bool:
+        """Tell whether a message is of a ground station: its id or its heartbeat says so, or whom it speaks to."""
+        if message.system in self._stations.ids.values():
+            return True
+        if message.name == "HEARTBEAT":
+            return bool(message["type"] == GROUND_STATION)
+        return message.system not in self._systems and self._addressed(message) is not None
+
+    def _addressed(self, message: Message) -> Pilot | None:
+        to = message.target
+        return next((pilot for pilot in self._pilots.values() if to and pilot.system == to), None)
+
     def _overheard(self, message: Message) -> None:
-        """Report that another ground station sends to a vehicle of ours; its messages are ignored here."""
-        if message.system not in self._own and message.target in {
-            pilot.system for pilot in self._pilots.values()
-        }:
+        """Report that another ground station sends to a vehicle of ours; what it may change is read again."""
+        pilot = self._addressed(message)
+        if message.system not in self._own and pilot is not None:
             self._troubles.note("second ground station", f"system {message.system} says {message.name}")
+            self._pilots[pilot.craft.entity] = piloting.overheard(pilot, message)
 
     def _is_for_us(self, message: Message) -> bool:
         return not message.target or message.target in self._own

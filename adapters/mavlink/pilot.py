@@ -5,23 +5,26 @@ A pure state machine: no socket, no clock, no randomness.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Final
 
 from adapters.mavlink import next_step, streams, takeover
+from adapters.mavlink import survey as surveys
 from adapters.mavlink import task as tasks
 from adapters.mavlink.changed import changed
 from adapters.mavlink.command import long, read_parameter
 from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, REGULAR, Cmd, MissionType
 from adapters.mavlink.fleet import CONTROL, Craft, Stations
-from adapters.mavlink.items import Items
 from adapters.mavlink.link import Link, watch
 from adapters.mavlink.loiter_radius import circle, home_circle
+from adapters.mavlink.merging import OnBoard
 from adapters.mavlink.message import Message
 from adapters.mavlink.objections import not_ours, objection
 from adapters.mavlink.profiles import Profile, unknown_kind
+from adapters.mavlink.refuges import beyond_fence
 from adapters.mavlink.streams import Streams
+from adapters.mavlink.survey import Survey, changed_by
 from adapters.mavlink.sync import Sync
 from adapters.mavlink.takeover import Helm
 from adapters.mavlink.task import Progress, Task
@@ -36,6 +39,7 @@ from adapters.plugin import (
     GoTo,
     HandOver,
     Hold,
+    LinkRestored,
     Refused,
     Report,
     Return,
@@ -57,6 +61,14 @@ UNANSWERED: Final = 8
 
 MOST_QUESTIONS: Final = 10
 """How often a vehicle is asked, once a second, for its parameters: it does not answer for one that it lacks."""
+
+JUST_NOW: Final = 5.0
+"""Seconds for which an order believes what was read before it, if nothing shows that it has changed."""
+
+HEADING: Final = 5.0
+FLOWN: Final = 10.0
+NOW_AND_THEN: Final = 60.0
+"""Seconds after which a mission is read again: before it is flown, while it is flown, and else."""
 
 _ANSWERS: Final = frozenset(
     {
@@ -87,7 +99,8 @@ class Pilot:
         known: Its state as its messages show it.
         link: Whether it is heard.
         streams: The messages requested of it.
-        on_board: The missions and fences that were read back since it booted.
+        on_board: The missions, fences and rally points that were read back since anybody may have changed them.
+        survey: The reading of what is on board.
         moving: The command that it carries out.
         handing: The hand-over in progress.
         helm: Whether it follows its orders.
@@ -106,7 +119,8 @@ class Pilot:
     known: Telemetry = field(default_factory=Telemetry)
     link: Link = field(default_factory=Link)
     streams: Streams = field(default_factory=Streams)
-    on_board: Mapping[MissionType, Items] = field(default_factory=dict)
+    on_board: OnBoard = field(default_factory=dict)
+    survey: Survey = field(default_factory=Survey)
     moving: Task | None = None
     handing: Task | None = None
     helm: Helm = field(default_factory=Helm)
@@ -132,23 +146,53 @@ class Outcome:
 def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     """Take on a command; raises Refused if it is known to be impossible."""
     if isinstance(told, GiveBack):
+        pilot = _unsure(pilot)
         return Outcome(changed(pilot, helm=takeover.given_back(pilot.known), moving=None))
     if pilot.helm.taken:
         raise Refused(f"it was taken over: {pilot.helm.taken}", "an operator may give it back")
-    reason = objection(told, pilot.craft, pilot.stations, pilot.known)
+    reason = objection(told, pilot.craft, pilot.stations, pilot.known, pilot.on_board)
     if reason:
         raise Refused(reason)
     _check_not_rejected(pilot.moving, told)
-    checked = pilot.known.profile is not None
     if isinstance(told, HandOver):
         station = pilot.stations.ids[told.join.removeprefix(CONTROL)]
-        return Outcome(
-            changed(pilot, handing=Task(told, station, since=now, boots=pilot.known.boots, checked=checked))
-        )
+        return Outcome(changed(pilot, handing=Task(told, station, since=now, boots=pilot.known.boots)))
+    outside = () if not isinstance(told, Return) else _out_of_fence(pilot, now)
     if isinstance(told, Hold | Return):
-        pilot = changed(pilot, handing=None)  # where it stops it stays ours
-    task = Task(told, since=now, boots=pilot.known.boots, checked=checked)
-    return Outcome(changed(pilot, moving=_continued(pilot.moving, task)))
+        pilot = changed(_unsure(pilot), handing=None)  # where it stops it stays ours
+    elif not _continues(pilot.moving, told):
+        pilot = _read_again(pilot, told, now)
+    task = Task(told, since=now, boots=pilot.known.boots)
+    return Outcome(changed(pilot, moving=_continued(pilot.moving, task)), reports=outside)
+
+
+def _unsure(
+    pilot: Pilot, kinds: Collection[MissionType] = tuple(MissionType), *, quiet: bool = False
+) -> Pilot:
+    """Return a pilot that believes nothing of what is on board before it is read again.
+
+    `quiet`: what was switched on is not doubted with it.
+    """
+    on_board = {kind: items for kind, items in pilot.on_board.items() if kind not in kinds}
+    known = pilot.known
+    if MissionType.FENCE in kinds and not quiet:
+        known = changed(known, polygon=False)
+    return changed(pilot, on_board=on_board, survey=surveys.doubt(pilot.survey, kinds), known=known)
+
+
+def _read_again(pilot: Pilot, told: Command, now: float) -> Pilot:
+    """Read again what an order depends on, unless that was done just now: a path needs its mission, a start all."""
+    needed = [*MissionType] if not pilot.known.flying else []
+    needed += [MissionType.MISSION] if isinstance(told, Follow) else []
+    stale = [kind for kind in needed if now - pilot.survey.read.get(kind, now) > JUST_NOW]
+    return _unsure(pilot, stale, quiet=True) if stale else pilot
+
+
+def _out_of_fence(pilot: Pilot, now: float) -> tuple[Report, ...]:
+    """Report that a vehicle's return leads it out of its fence."""
+    fence = pilot.craft.fence
+    reasons = () if fence is None else beyond_fence(fence, pilot.known, pilot.on_board)
+    return tuple(Trouble(pilot.craft.entity, now, "returns outside its fence", reason) for reason in reasons)
 
 
 def _check_not_rejected(before: Task | None, told: Command) -> None:
@@ -157,16 +201,24 @@ def _check_not_rejected(before: Task | None, told: Command) -> None:
         raise Refused(f"the request was rejected: {before.rejection}", "request it again")
 
 
+def _continues(before: Task | None, told: Command) -> bool:
+    """Tell whether a command is that of before, of which a place has moved."""
+    if before is None or before.command.request != told.request:
+        return False
+    return isinstance(told, Follow) or not before.over
+
+
 def _continued(before: Task | None, task: Task) -> Task:
     """Continue a task whose place has moved: it keeps its start, and a path continues with the current item."""
     follows = isinstance(task.command, Follow)
-    if before is None or before.command.request != task.command.request or (before.over and not follows):
+    if before is None or not _continues(before, task.command):
         return task
     return replace(
         task,
         height=before.height,
         begun=before.begun and not follows,
         resumes=before.resumes or (before.begun and follows),
+        passed=before.passed,
         boots=before.boots,
     )
 
@@ -176,20 +228,74 @@ def hear(pilot: Pilot, message: Message, now: float) -> Outcome:
     return _with_its_words(_heard(pilot, message, now), now)
 
 
+def overheard(pilot: Pilot, message: Message) -> Pilot:
+    """Take a message between the vehicle and another station: what that may change is no longer believed."""
+    kinds = changed_by(message, pilot.system)
+    return _unsure(pilot, kinds, quiet=True) if kinds else pilot
+
+
 def _heard(pilot: Pilot, message: Message, now: float) -> Outcome:
-    known = absorb(pilot.known, message, now)
-    if known.boots != pilot.known.boots:
-        pilot = changed(pilot, on_board={}, questions=0)
-    pilot = changed(pilot, known=known, streams=streams.hear(pilot.streams, message, now))
-    answered: tuple[Message, ...] = ()
+    before, known = pilot.known, absorb(pilot.known, message, now)
+    pilot = _with_known(pilot, known)
+    pilot = changed(pilot, streams=streams.hear(pilot.streams, message, now))
+    pilot, answered = _read_on(pilot, message, now)
+    if known.position is not before.position:
+        pilot = _with_passed(pilot)
     if message.name in _ANSWERS and pilot.moving is not None and not pilot.moving.over:
         heard = tasks.hear(pilot.moving, message, now)
-        pilot, answered = changed(pilot, moving=heard.task), heard.sent
+        pilot, answered = changed(pilot, moving=heard.task), (*answered, *heard.sent)
     elif message.name != "HEARTBEAT":  # a take-over shows at once
         pilot, published, trouble = _publication(pilot, now)
-        return Outcome(pilot, reports=trouble, published=published)  # tasks continue at the next tick
+        return Outcome(pilot, _spoken(pilot, answered), trouble, published)  # tasks continue at the next tick
     outcome = _advance(pilot, now)
     return changed(outcome, sent=_spoken(pilot, (*answered, *outcome.sent)))
+
+
+def _with_known(pilot: Pilot, known: Telemetry) -> Pilot:
+    """Take on a state; where it shows that something else may be on board, that is read again."""
+    before, pilot = pilot.known, changed(pilot, known=known)
+    if known.boots != before.boots:
+        return changed(pilot, on_board={}, survey=Survey(), questions=0)
+    if known.profile is not None and known.mode == known.profile.auto != before.mode:
+        pilot = changed(pilot, survey=surveys.soon(pilot.survey, MissionType.MISSION))
+    if (known.total, known.numbers) == (before.total, before.numbers):
+        return pilot
+    return _unsure(pilot, tuple(_renumbered(pilot, before)), quiet=True)
+
+
+def _renumbered(pilot: Pilot, before: Telemetry) -> Iterator[MissionType]:
+    """Yield the kinds of which MISSION_CURRENT shows that they are not the ones of before."""
+    known, mission = pilot.known, pilot.on_board.get(MissionType.MISSION, ())
+    first = known.profile is not None and known.profile.dialect.home_is_item
+    if known.total not in (before.total, max(0, len(mission) - first)):
+        yield MissionType.MISSION
+    if known.numbers is not None and before.numbers is not None:
+        pairs = zip(MissionType, known.numbers, before.numbers, strict=True)
+        yield from (kind for kind, now, then in pairs if now != then)
+
+
+def _read_on(pilot: Pilot, message: Message, now: float) -> tuple[Pilot, tuple[Message, ...]]:
+    """Let the reading of what is on board take an answer."""
+    if message.name not in surveys.ANSWERS or _uploads(pilot):
+        return pilot, ()
+    survey, sent, kind = surveys.hear(pilot.survey, message, now)
+    pilot = changed(pilot, survey=survey)
+    if kind is not None:
+        pilot = changed(pilot, on_board={**pilot.on_board, kind: survey.found[kind]})
+    return pilot, sent
+
+
+def _uploads(pilot: Pilot) -> bool:
+    task = pilot.moving
+    return task is not None and not task.over and isinstance(task.doing, Sync)
+
+
+def _with_passed(pilot: Pilot) -> Pilot:
+    """Note which place of its path a vehicle is in."""
+    task, profile = pilot.moving, pilot.known.profile
+    if task is None or profile is None or not pilot.helm.held or not isinstance(task.command, Follow):
+        return pilot
+    return changed(pilot, moving=tasks.seen(task, _vehicle(pilot, task, profile)))
 
 
 def tick(pilot: Pilot, now: float) -> Outcome:
@@ -201,15 +307,35 @@ def tick(pilot: Pilot, now: float) -> Outcome:
 def _ticked(pilot: Pilot, now: float) -> Outcome:
     link, change = watch(pilot.link, pilot.craft.entity, pilot.known, now)
     pilot = changed(pilot, link=link)
+    if isinstance(change, LinkRestored):
+        pilot = _unsure(pilot)
     questions: tuple[Message, ...] = ()
     before = pilot.unanswered
     if pilot.known.heard is not None and not link.lost:
         pilot, questions = _asked(pilot, now)
+        pilot, more = _surveyed(pilot, now)
+        questions = (*questions, *more)
     outcome = _advance(pilot, now)
     reports = outcome.reports if change is None else (change, *outcome.reports)
     if before < UNANSWERED <= pilot.unanswered and pilot.known.signs and not pilot.signs:
         reports = (*reports, Trouble(pilot.craft.entity, now, "no answer", _deaf(pilot)))
     return changed(outcome, sent=_spoken(pilot, (*questions, *outcome.sent)), reports=reports)
+
+
+def _surveyed(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
+    """Read what is on board a vehicle that obeys us, again from time to time, and more often what it flies."""
+    profile, known = pilot.known.profile, pilot.known
+    if profile is None or _authority(pilot) is None or not _is_ours(pilot) or _uploads(pilot):
+        return pilot, ()
+    pending = pilot.moving is not None and not pilot.moving.accepted and not pilot.moving.over
+    mission = HEADING if pending else FLOWN if known.mode == profile.auto else NOW_AND_THEN
+    every = {
+        MissionType.MISSION: mission,
+        MissionType.FENCE: NOW_AND_THEN / 2,
+        MissionType.RALLY: NOW_AND_THEN,
+    }
+    survey, sent = surveys.tick(pilot.survey, every, pilot.on_board, pilot.system, now)
+    return changed(pilot, survey=survey), sent
 
 
 def _with_its_words(outcome: Outcome, now: float) -> Outcome:
@@ -287,9 +413,9 @@ def _untold(pilot: Pilot) -> Iterator[Message]:
 
 
 def is_known(pilot: Pilot) -> bool:
-    """Tell whether a vehicle has reported all requested parameters, or was asked for long enough."""
+    """Tell whether a vehicle has told all that was asked, what is on board too, or was asked for long enough."""
     known = pilot.known.profile is not None and pilot.known.home is not None
-    return known and not any(_untold(pilot))
+    return known and not any(_untold(pilot)) and (pilot.survey.settled or not _is_ours(pilot))
 
 
 def _spoken(pilot: Pilot, sent: tuple[Message, ...]) -> tuple[Message, ...]:
@@ -307,7 +433,9 @@ def _advance(pilot: Pilot, now: float) -> Outcome:
         if task is None or task.over:
             continue
         progress = _progress(pilot, task, now)
-        pilot = changed(pilot, on_board={**pilot.on_board, **(progress.on_board or {})})
+        for kind, items in (progress.on_board or {}).items():
+            survey = surveys.settle(pilot.survey, kind, items, now)
+            pilot = changed(pilot, on_board={**pilot.on_board, kind: items}, survey=survey)
         pilot = _onwards(pilot, slot, progress.task)
         sent += progress.sent
         reports += [progress.report] if progress.report else []
@@ -327,6 +455,8 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
     before, pilot = pilot.helm, changed(pilot, helm=helm)
     if helm.taken and not before.taken:
         return _taken_over(pilot, now)
+    if helm.held and not before.held:
+        pilot = _unsure(pilot, quiet=True)  # who had it for a moment may have done more than that
     return pilot, tuple(_changes(pilot, before, now))
 
 
@@ -383,10 +513,10 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
     if profile is None or pilot.known.mode is None:  # not heard yet, or of a kind that can't be commanded
         return _unknown(pilot, task, now)
     if not task.checked:
-        reason = objection(task.command, pilot.craft, pilot.stations, pilot.known)
+        reason = objection(task.command, pilot.craft, pilot.stations, pilot.known, pilot.on_board)
         if reason:
             return tasks.rejected(task, reason, now)
-        task = replace(task, checked=True)
+        task = replace(task, checked=pilot.survey.settled)
     foreign = not_ours(pilot.stations, pilot.known)
     if foreign and isinstance(task.doing, Sync):  # a task that was begun can't be ended here
         return tasks.rejected(task, foreign, now)
@@ -408,6 +538,8 @@ def _vehicle(pilot: Pilot, task: Task, profile: Profile) -> next_step.Vehicle:
         height=task.height or 0.0,
         begun=task.begun,
         resumes=task.resumes,
+        passed=task.passed,
+        furthest=task.furthest,
         speaker=pilot.stations.speaker(_authority(pilot)),
         deaf=_deaf(pilot),
     )

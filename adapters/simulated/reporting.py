@@ -200,7 +200,8 @@ def _time(vehicle: Vehicle) -> Message:
 
 
 def _current(vehicle: Vehicle) -> Message:
-    total = max(0, len(vehicle.store.items.get(MissionType.MISSION, ())) - 1)
+    home = vehicle.kind.profile.dialect.home_is_item
+    total = max(0, len(vehicle.store.items.get(MissionType.MISSION, ())) - home)
     return say("MISSION_CURRENT", seq=vehicle.current, total=total)
 
 
