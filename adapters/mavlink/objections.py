@@ -39,15 +39,23 @@ MAX_PATH = 500
 
 
 def objection(
-    command: Command, craft: Craft, stations: Stations, known: Telemetry, on_board: OnBoard = NOTHING_READ
+    command: Command,
+    craft: Craft,
+    stations: Stations,
+    known: Telemetry,
+    on_board: OnBoard = NOTHING_READ,
+    *,
+    again: bool = False,
 ) -> str | None:
-    """Return the objection in the operator's words; None if none is known."""
-    return next(_objections(command, craft, stations, known, on_board), None)
+    """Return the objection in the operator's words; None if none is known.
+
+    `again`: the command was taken on before it was known what is on board, and only that can be new.
+    """
+    first = () if again else _objections(command, craft, stations, known)
+    return next(chain(first, _of_on_board(command, craft, known, on_board)), None)
 
 
-def _objections(
-    command: Command, craft: Craft, stations: Stations, known: Telemetry, on_board: OnBoard
-) -> Iterator[str]:
+def _objections(command: Command, craft: Craft, stations: Stations, known: Telemetry) -> Iterator[str]:
     foreign = not_ours(stations, known)
     if foreign:
         yield foreign
@@ -55,21 +63,30 @@ def _objections(
         yield from _of_hand_over(command, stations, known)
     if isinstance(command, Follow):
         yield from _of_landing(known)
-    if isinstance(command, Follow) and not 0 < len(command.path) <= MAX_PATH:
+        yield from _of_length(command)
+    yield from _of_place(command, craft, known)
+
+
+def _of_length(command: Follow) -> Iterator[str]:
+    if not 0 < len(command.path) <= MAX_PATH:
         yield f"a path has 1 to {MAX_PATH} points, this one {len(command.path)}"
+
+
+def _of_on_board(command: Command, craft: Craft, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
+    """Object to what on board prevents a flight."""
+    if not isinstance(command, GoTo | Follow) or known.profile is None:
         return
-    yield from _of_place(command, craft, known, on_board)
-    if isinstance(command, GoTo | Follow) and known.profile is not None:
-        yield from _of_legs(command, craft, known, on_board)
-        yield from _of_gates(command, known)
-        yield from _of_items(command, known.profile, known, on_board)
+    yield from _of_zones(command, craft, known.profile, known, on_board)
+    yield from _of_legs(command, craft, known, on_board)
+    yield from _of_items(command, known.profile, known, on_board)
 
 
 def unfit(
     command: GoTo | Follow, craft: Craft, known: Telemetry, on_board: OnBoard = NOTHING_READ
 ) -> str | None:
     """Return why no station can send a vehicle to a place: it is too small, or outside a fence."""
-    return next(_of_place(command, craft, known, on_board), None)
+    zones = () if known.profile is None else _of_zones(command, craft, known.profile, known, on_board)
+    return next(chain(_of_place(command, craft, known), zones), None)
 
 
 def impassable(
@@ -102,14 +119,12 @@ def remarks(craft: Craft, known: Telemetry, on_board: OnBoard = NOTHING_READ) ->
         yield f"{craft.entity} circles its home at {radius:g} m when it returns, which leaves the fence"
 
 
-def _of_place(command: Command, craft: Craft, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
+def _of_place(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]:
     yield from _of_fence(command, craft, known)
     if isinstance(command, GoTo | Follow) and known.profile is not None:
         yield from _of_size(command, craft, known.profile, known)
         yield from _of_own_fences(command, craft, known.profile, known)
-        yield from _of_zones(command, craft, known.profile, known, on_board)
-        if craft.fence is not None:
-            yield from beyond_fence(craft.fence, known, on_board)
+        yield from _of_gates(command, known)
 
 
 def not_ours(stations: Stations, known: Telemetry) -> str | None:
@@ -185,9 +200,10 @@ def _of_own_fences(command: GoTo | Follow, craft: Craft, profile: Profile, known
 def _of_zones(
     command: GoTo | Follow, craft: Craft, profile: Profile, known: Telemetry, on_board: OnBoard
 ) -> Iterator[str]:
-    """Object to points that a zone on board does not allow, and to zones that can't be kept."""
+    """Object to points that a zone on board does not allow, to zones that can't be kept, and to rally points."""
     if craft.fence is not None:
         yield from widened(craft.fence, known, on_board)
+        yield from beyond_fence(craft.fence, known, on_board)
     around = room(craft, profile, known) if profile.drift > 1.0 else 0.0
     *passed, last = map(waypoint, _path(command))
     stops = [*((at, 0.0, "a point of its way") for at in passed), (last, around, command.name or "the place")]

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Final
 
 from adapters.mavlink import next_step, streams, takeover
@@ -154,15 +155,18 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     if reason:
         raise Refused(reason)
     _check_not_rejected(pilot.moving, told)
+    checked = pilot.known.profile is not None
     if isinstance(told, HandOver):
         station = pilot.stations.ids[told.join.removeprefix(CONTROL)]
-        return Outcome(changed(pilot, handing=Task(told, station, since=now, boots=pilot.known.boots)))
+        task = Task(told, station, since=now, boots=pilot.known.boots, checked=checked, surveyed=True)
+        return Outcome(changed(pilot, handing=task))
     outside = () if not isinstance(told, Return) else _out_of_fence(pilot, now)
     if isinstance(told, Hold | Return):
         pilot = changed(_unsure(pilot), handing=None)  # where it stops it stays ours
     elif not _continues(pilot.moving, told):
         pilot = _read_again(pilot, told, now)
-    task = Task(told, since=now, boots=pilot.known.boots)
+    surveyed = pilot.survey.settled or isinstance(told, Hold | Return)
+    task = Task(told, since=now, boots=pilot.known.boots, checked=checked, surveyed=surveyed)
     return Outcome(changed(pilot, moving=_continued(pilot.moving, task)), reports=outside)
 
 
@@ -512,11 +516,12 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
     profile = pilot.known.profile
     if profile is None or pilot.known.mode is None:  # not heard yet, or of a kind that can't be commanded
         return _unknown(pilot, task, now)
-    if not task.checked:
-        reason = objection(task.command, pilot.craft, pilot.stations, pilot.known, pilot.on_board)
+    if not (task.checked and task.surveyed):
+        judge = partial(objection, task.command, pilot.craft, pilot.stations, pilot.known, pilot.on_board)
+        reason = judge(again=task.checked)
         if reason:
             return tasks.rejected(task, reason, now)
-        task = replace(task, checked=pilot.survey.settled)
+        task = replace(task, checked=True, surveyed=pilot.survey.settled)
     foreign = not_ours(pilot.stations, pilot.known)
     if foreign and isinstance(task.doing, Sync):  # a task that was begun can't be ended here
         return tasks.rejected(task, foreign, now)

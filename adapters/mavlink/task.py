@@ -42,6 +42,7 @@ class Task:
         furthest: The highest item of the mission that it was seen at since it began it.
         boots: The vehicle's number of boots for which this holds.
         checked: Whether it is possible for this kind of vehicle.
+        surveyed: Whether it is possible with what is on board.
         complained: Whether a delay of this step was reported.
     """
 
@@ -61,6 +62,7 @@ class Task:
     furthest: int = 0
     boots: int = 0
     checked: bool = False
+    surveyed: bool = False
     complained: bool = False
 
 
