@@ -20,6 +20,9 @@ from adapters.mavlink.zones import Zone, zones
 UNION: Final = 2
 """The bit of ArduPilot's FENCE_OPTIONS with which one zone to stay in is enough; PX4 knows nothing else."""
 
+RETURNS_BY_LANDING: Final = (1.0, 2.0)
+"""ArduPlane's RTL_AUTOLAND with which it goes on to its landing sequence, in AUTO."""
+
 OnBoard = Mapping[MissionType, Items]
 """What was read back and, as far as can be told, has not changed since; what is not in it is not known."""
 
@@ -67,6 +70,16 @@ def landing(found: Items, known: Telemetry) -> Items:
     if marked is None and not _dialect(known).marks_landing:
         marked = next((at for at, item in enumerate(found) if item.command in _LANDINGS), None)
     return () if marked is None else found[marked:]
+
+
+def landing_now(known: Telemetry, on_board: OnBoard) -> bool:
+    """Tell whether a vehicle flies the landing sequence by which it returns, in the mode of a mission."""
+    profile, found = known.profile, on_board.get(MissionType.MISSION)
+    asked = known.parameters.get("RTL_AUTOLAND") in RETURNS_BY_LANDING
+    if profile is None or not asked or known.mode != profile.auto or known.current is None or found is None:
+        return False
+    tail = landing(found, known)
+    return bool(tail) and known.current >= len(found) - len(tail)
 
 
 def jumps_out(found: Items, known: Telemetry) -> int | None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from adapters.mavlink import command as to
 from adapters.mavlink.constants import AUTHORITY_PARAMETERS, Cmd, Fence, Frame, MissionType
 from adapters.mavlink.items import Items, e7, fence, route
-from adapters.mavlink.merging import OnBoard, is_on_board, merged
+from adapters.mavlink.merging import OnBoard, is_on_board, landing_now, merged
 from adapters.mavlink.message import Message
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.refuges import ARMING_ITEMS, refuges
@@ -114,7 +114,10 @@ def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
         case Hold():
             return _in_mode(vehicle, vehicle.profile.hold) or _stopped(vehicle) or Underway(done=True)
         case Return():
-            return _in_mode(vehicle, vehicle.profile.home) or Underway(done=_is_home(vehicle))
+            lands = landing_now(vehicle.known, vehicle.on_board)
+            return (None if lands else _in_mode(vehicle, vehicle.profile.home)) or Underway(
+                done=_is_home(vehicle)
+            )
         case GiveBack() | Rebind():
             raise AssertionError("it is done at once")
 

@@ -162,7 +162,7 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
         return Outcome(changed(pilot, handing=task))
     outside = () if not isinstance(told, Return) else _out_of_fence(pilot, now)
     if isinstance(told, Hold | Return):
-        pilot = changed(_unsure(pilot), handing=None)  # where it stops it stays ours
+        pilot = changed(pilot, handing=None)  # where it stops it stays ours
     elif not _continues(pilot.moving, told):
         pilot = _read_again(pilot, told, now)
     surveyed = pilot.survey.settled or isinstance(told, Hold | Return)
@@ -185,7 +185,12 @@ def _unsure(
 
 
 def _read_again(pilot: Pilot, told: Command, now: float) -> Pilot:
-    """Read again what an order depends on, unless that was done just now: a path needs its mission, a start all."""
+    """Read again what an order depends on, unless that was done just now: a path needs its mission, a start all.
+
+    While a vehicle was held, or flew home, it was anybody's.
+    """
+    if pilot.moving is not None and isinstance(pilot.moving.command, Hold | Return):
+        return _unsure(pilot)
     needed = [*MissionType] if not pilot.known.flying else []
     needed += [MissionType.MISSION] if isinstance(told, Follow) else []
     stale = [kind for kind in needed if now - pilot.survey.read.get(kind, now) > JUST_NOW]
@@ -455,7 +460,7 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
     if not _is_ours(pilot):
         return changed(pilot, helm=Helm(boots=known.boots)), ()
     command = None if pilot.moving is None else pilot.moving.command
-    helm = takeover.watch(pilot.helm, known, profile, command, _undone(pilot, profile))
+    helm = takeover.watch(pilot.helm, known, profile, command, _undone(pilot, profile), pilot.on_board)
     before, pilot = pilot.helm, changed(pilot, helm=helm)
     if helm.taken and not before.taken:
         return _taken_over(pilot, now)

@@ -9,7 +9,7 @@ from adapters.mavlink.fencing import zones_beside
 from adapters.mavlink.fleet import Craft
 from adapters.mavlink.items import Items
 from adapters.mavlink.items import fence as polygon_items
-from adapters.mavlink.merging import OnBoard, landing
+from adapters.mavlink.merging import RETURNS_BY_LANDING, OnBoard, landing
 from adapters.mavlink.refuges import rally_points
 from adapters.mavlink.telemetry import Telemetry
 from adapters.mavlink.zones import zones
@@ -37,7 +37,7 @@ def _of_mission(found: Items, known: Telemetry) -> Iterator[str]:
         yield f"has a mission of {len(found) - int(first)} items on board, which the flights of this mission replace"
     if kept:
         yield f"keeps its landing sequence: the last {len(kept)} items of the mission on board follow each of this one"
-    if known.parameters.get("RTL_AUTOLAND") in (1.0, 2.0) and not kept:
+    if known.parameters.get("RTL_AUTOLAND") in RETURNS_BY_LANDING and not kept:
         yield "has no landing sequence on board, which its RTL_AUTOLAND asks for: when it returns, it circles"
 
 

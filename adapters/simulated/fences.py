@@ -37,7 +37,7 @@ def switch_by_itself(vehicle: Vehicle) -> None:
     if not auto or vehicle.parameters.get("FENCE_ENABLE"):
         return
     if not vehicle.armed:
-        vehicle.fences = vehicle.fences if auto == AFTER_TAKEOFF[1] else Fence(0)
+        vehicle.fences = Fence(0) if auto == AFTER_TAKEOFF[0] else vehicle.fences
         return
     due = auto == ON_ARMING or (auto in AFTER_TAKEOFF and vehicle.body.height > HIGH)
     before = vehicle.fences & vehicle.configured

@@ -34,7 +34,7 @@ AT_HOME: Final = 1.0
 
 def follow(vehicle: Vehicle, seconds: float) -> None:
     """Fly the mission for a while."""
-    items = vehicle.store.items.get(MissionType.MISSION, ())
+    items = vehicle.store.mission
     first = int(vehicle.kind.profile.dialect.home_is_item)
     if len(items) <= first:
         return
@@ -100,8 +100,7 @@ def may_land(vehicle: Vehicle) -> bool:
 
 def land(vehicle: Vehicle) -> bool:
     """Begin the landing sequence of the mission on board; tell whether it has one."""
-    items = vehicle.store.items.get(MissionType.MISSION, ())
-    start = _landing(items)
+    start = _landing(vehicle.store.mission)
     if start is None:
         vehicle.words.append((WARNING, "Unable to start landing sequence"))
         return False
@@ -118,5 +117,4 @@ def missing(vehicle: Vehicle) -> str:
     if not vehicle.parameters.get("ARMING_MIS_ITEMS"):
         return ""
     known = Telemetry(parameters=vehicle.parameters)
-    mission = vehicle.store.items.get(MissionType.MISSION, ())
-    return next(missing_items(mission, known, vehicle.store.items), "")
+    return next(missing_items(vehicle.store.mission, known, vehicle.store.items), "")

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Final
 
 from adapters.mavlink.command import ANYWHERE
-from adapters.mavlink.constants import AUTOPILOT_VERSION, INTEGERS, STREAMS, Cmd, Fence, MissionType, Result
+from adapters.mavlink.constants import AUTOPILOT_VERSION, INTEGERS, STREAMS, Cmd, Fence, Result
 from adapters.mavlink.message import Message, is_for, say
 from adapters.mavlink.profiles import TakeOff, mode_number
 from adapters.mavlink.signing import EPOCH, UNITS, Signing, Verdict, check
@@ -194,13 +194,13 @@ def _set_current(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Res
 
 
 def _make_current(vehicle: Vehicle, index: float) -> bool:
-    there = index in range(len(vehicle.store.items.get(MissionType.MISSION, ())))
+    there = index in range(len(vehicle.store.mission))
     vehicle.current = int(index) if there else vehicle.current
     return there
 
 
 def _start_mission(vehicle: Vehicle, _reporter: Reporter, _message: Message) -> Result:
-    if not vehicle.store.items.get(MissionType.MISSION):
+    if not vehicle.store.mission:
         return Result.FAILED
     vehicle.mode = vehicle.kind.profile.auto
     return Result.ACCEPTED

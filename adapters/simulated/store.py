@@ -127,7 +127,7 @@ class Store:
         if going is None:
             return []
         if now - going.heard >= self.manner.give_up:
-            self.receiving = None
+            self.abandon()
             return [_ack(going, MissionResult.CANCELLED)]
         return self._ask(going, now) if now - going.asked >= self.manner.ask_again else []
 
@@ -139,12 +139,19 @@ class Store:
         most = self.most[kind] if ready else 0
         if not ready or going.count > most:
             return [_ack(going, MissionResult.NO_SPACE), _said(f"Only {most} items are supported")]
-        if self._in_place(kind):
-            self.items[kind] = self.items.get(kind, ())[: going.count]
         return self._ask(going, now) if going.count else self._complete(going)
 
-    def _in_place(self, kind: MissionType) -> bool:
-        return self.manner.in_place and kind is MissionType.MISSION
+    @property
+    def mission(self) -> Items:
+        """The mission as it is now: of ArduPilot's, what has come of the next one has overwritten its beginning."""
+        going, items = self.receiving, self.items.get(MissionType.MISSION, ())
+        if going is None or going.kind is not MissionType.MISSION or not self.manner.in_place:
+            return items
+        return (*going.items, *items[len(going.items) : going.count])
+
+    def abandon(self) -> None:
+        """Give up an upload; what was overwritten stays so."""
+        self.items[MissionType.MISSION], self.receiving = self.mission, None
 
     def _clear(self, message: Message) -> list[Message]:
         every = message.fields.get("mission_type") == ALL_KINDS
@@ -166,11 +173,9 @@ class Store:
         item = item_of(message.fields)
         wrong = _wrong(item, going.kind)
         if wrong is not None:
-            self.receiving = None
+            self.abandon()
             return [_ack(going, wrong)]
         going = replace(going, items=(*going.items, item), heard=now)
-        if self._in_place(going.kind):
-            self.items[going.kind] = (*going.items, *self.items[going.kind][len(going.items) :])
         return self._complete(going) if len(going.items) == going.count else self._ask(going, now)
 
     def _ask(self, going: Receiving, now: float) -> list[Message]:

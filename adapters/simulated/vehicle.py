@@ -298,7 +298,7 @@ class Vehicle:
         self.armed = armed and self.armed
         self.current, self.target = 0, None
         self.mode = self.mode if self.armed else self.first_mode
-        self.store.receiving = None
+        self.store.abandon()
         self.low, self.failed_safe = None, False
         self.fences = NO_FENCE
         if self.parameters.get("FENCE_ENABLE"):
