@@ -15,6 +15,7 @@ from adapters.mavlink import roster as rosters
 from adapters.mavlink.codec import Decoder, Encoder, Garbage
 from adapters.mavlink.constants import GROUND_COMPONENT, GROUND_STATION, NO_AUTOPILOT
 from adapters.mavlink.fleet import Craft, Stations
+from adapters.mavlink.inventory import overheard
 from adapters.mavlink.keys import Keeper
 from adapters.mavlink.message import Message, say
 from adapters.mavlink.objections import impassable, remarks, unfit
@@ -226,7 +227,7 @@ class Autopilot:
         if pilot is None or not self._is_its_source(pilot, remote):
             return
         if not self._is_for_us(message):
-            self._pilots[pilot.craft.entity] = piloting.overheard(pilot, message)
+            self._pilots[pilot.craft.entity] = overheard(pilot, message)
             return
         self._routes[pilot.system] = remote
         self._take(pilot.craft.entity, piloting.hear(pilot, message, listened))
@@ -280,7 +281,7 @@ class Autopilot:
         pilot = self._addressed(message)
         if message.system not in self._own and pilot is not None:
             self._troubles.note("second ground station", f"system {message.system} says {message.name}")
-            self._pilots[pilot.craft.entity] = piloting.overheard(pilot, message)
+            self._pilots[pilot.craft.entity] = overheard(pilot, message)
 
     def _is_for_us(self, message: Message) -> bool:
         return not message.target or message.target in self._own

@@ -5,17 +5,17 @@ A pure state machine: no socket, no clock, no randomness.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Final
 
-from adapters.mavlink import next_step, streams, takeover
+from adapters.mavlink import inventory, next_step, streams, takeover
 from adapters.mavlink import survey as surveys
 from adapters.mavlink import task as tasks
 from adapters.mavlink.changed import changed
 from adapters.mavlink.command import long, read_parameter
-from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, REGULAR, Cmd, MissionType
+from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, REGULAR, Cmd
 from adapters.mavlink.fleet import CONTROL, Craft, Stations
 from adapters.mavlink.link import Link, watch
 from adapters.mavlink.loiter_radius import circle, home_circle
@@ -23,9 +23,8 @@ from adapters.mavlink.merging import OnBoard
 from adapters.mavlink.message import Message
 from adapters.mavlink.objections import not_ours, objection
 from adapters.mavlink.profiles import Profile, unknown_kind
-from adapters.mavlink.refuges import beyond_fence
 from adapters.mavlink.streams import Streams
-from adapters.mavlink.survey import Survey, changed_by
+from adapters.mavlink.survey import Survey
 from adapters.mavlink.sync import Sync
 from adapters.mavlink.takeover import Helm
 from adapters.mavlink.task import Progress, Task
@@ -62,14 +61,6 @@ UNANSWERED: Final = 8
 
 MOST_QUESTIONS: Final = 10
 """How often a vehicle is asked, once a second, for its parameters: it does not answer for one that it lacks."""
-
-JUST_NOW: Final = 5.0
-"""Seconds for which an order believes what was read before it, if nothing shows that it has changed."""
-
-HEADING: Final = 5.0
-FLOWN: Final = 10.0
-NOW_AND_THEN: Final = 60.0
-"""Seconds after which a mission is read again: before it is flown, while it is flown, and else."""
 
 _ANSWERS: Final = frozenset(
     {
@@ -147,7 +138,7 @@ class Outcome:
 def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     """Take on a command; raises Refused if it is known to be impossible."""
     if isinstance(told, GiveBack):
-        pilot = _unsure(pilot)
+        pilot = inventory.unsure(pilot)
         return Outcome(changed(pilot, helm=takeover.given_back(pilot.known), moving=None))
     if pilot.helm.taken:
         raise Refused(f"it was taken over: {pilot.helm.taken}", "an operator may give it back")
@@ -160,48 +151,14 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
         station = pilot.stations.ids[told.join.removeprefix(CONTROL)]
         task = Task(told, station, since=now, boots=pilot.known.boots, checked=checked, surveyed=True)
         return Outcome(changed(pilot, handing=task))
-    outside = () if not isinstance(told, Return) else _out_of_fence(pilot, now)
+    outside = () if not isinstance(told, Return) else inventory.out_of_fence(pilot, now)
     if isinstance(told, Hold | Return):
         pilot = changed(pilot, handing=None)  # where it stops it stays ours
     elif not _continues(pilot.moving, told):
-        pilot = _read_again(pilot, told, now)
+        pilot = inventory.read_again(pilot, told, now)
     surveyed = pilot.survey.settled or isinstance(told, Hold | Return)
     task = Task(told, since=now, boots=pilot.known.boots, checked=checked, surveyed=surveyed)
     return Outcome(changed(pilot, moving=_continued(pilot.moving, task)), reports=outside)
-
-
-def _unsure(
-    pilot: Pilot, kinds: Collection[MissionType] = tuple(MissionType), *, quiet: bool = False
-) -> Pilot:
-    """Return a pilot that believes nothing of what is on board before it is read again.
-
-    `quiet`: what was switched on is not doubted with it.
-    """
-    on_board = {kind: items for kind, items in pilot.on_board.items() if kind not in kinds}
-    known = pilot.known
-    if MissionType.FENCE in kinds and not quiet:
-        known = changed(known, polygon=False)
-    return changed(pilot, on_board=on_board, survey=surveys.doubt(pilot.survey, kinds), known=known)
-
-
-def _read_again(pilot: Pilot, told: Command, now: float) -> Pilot:
-    """Read again what an order depends on, unless that was done just now: a path needs its mission, a start all.
-
-    While a vehicle was held, or flew home, it was anybody's.
-    """
-    if pilot.moving is not None and isinstance(pilot.moving.command, Hold | Return):
-        return _unsure(pilot)
-    needed = [*MissionType] if not pilot.known.flying else []
-    needed += [MissionType.MISSION] if isinstance(told, Follow) else []
-    stale = [kind for kind in needed if now - pilot.survey.read.get(kind, now) > JUST_NOW]
-    return _unsure(pilot, stale, quiet=True) if stale else pilot
-
-
-def _out_of_fence(pilot: Pilot, now: float) -> tuple[Report, ...]:
-    """Report that a vehicle's return leads it out of its fence."""
-    fence = pilot.craft.fence
-    reasons = () if fence is None else beyond_fence(fence, pilot.known, pilot.on_board)
-    return tuple(Trouble(pilot.craft.entity, now, "returns outside its fence", reason) for reason in reasons)
 
 
 def _check_not_rejected(before: Task | None, told: Command) -> None:
@@ -237,17 +194,11 @@ def hear(pilot: Pilot, message: Message, now: float) -> Outcome:
     return _with_its_words(_heard(pilot, message, now), now)
 
 
-def overheard(pilot: Pilot, message: Message) -> Pilot:
-    """Take a message between the vehicle and another station: what that may change is no longer believed."""
-    kinds = changed_by(message, pilot.system)
-    return _unsure(pilot, kinds, quiet=True) if kinds else pilot
-
-
 def _heard(pilot: Pilot, message: Message, now: float) -> Outcome:
     before, known = pilot.known, absorb(pilot.known, message, now)
-    pilot = _with_known(pilot, known)
+    pilot = inventory.with_known(pilot, known)
     pilot = changed(pilot, streams=streams.hear(pilot.streams, message, now))
-    pilot, answered = _read_on(pilot, message, now)
+    pilot, answered = inventory.read_on(pilot, message, now)
     if known.position is not before.position:
         pilot = _with_passed(pilot)
     if message.name in _ANSWERS and pilot.moving is not None and not pilot.moving.over:
@@ -258,45 +209,6 @@ def _heard(pilot: Pilot, message: Message, now: float) -> Outcome:
         return Outcome(pilot, _spoken(pilot, answered), trouble, published)  # tasks continue at the next tick
     outcome = _advance(pilot, now)
     return changed(outcome, sent=_spoken(pilot, (*answered, *outcome.sent)))
-
-
-def _with_known(pilot: Pilot, known: Telemetry) -> Pilot:
-    """Take on a state; where it shows that something else may be on board, that is read again."""
-    before, pilot = pilot.known, changed(pilot, known=known)
-    if known.boots != before.boots:
-        return changed(pilot, on_board={}, survey=Survey(), questions=0)
-    if known.profile is not None and known.mode == known.profile.auto != before.mode:
-        pilot = changed(pilot, survey=surveys.soon(pilot.survey, MissionType.MISSION))
-    if (known.total, known.numbers) == (before.total, before.numbers):
-        return pilot
-    return _unsure(pilot, tuple(_renumbered(pilot, before)), quiet=True)
-
-
-def _renumbered(pilot: Pilot, before: Telemetry) -> Iterator[MissionType]:
-    """Yield the kinds of which MISSION_CURRENT shows that they are not the ones of before."""
-    known, mission = pilot.known, pilot.on_board.get(MissionType.MISSION, ())
-    first = known.profile is not None and known.profile.dialect.home_is_item
-    if known.total not in (before.total, max(0, len(mission) - first)):
-        yield MissionType.MISSION
-    if known.numbers is not None and before.numbers is not None:
-        pairs = zip(MissionType, known.numbers, before.numbers, strict=True)
-        yield from (kind for kind, now, then in pairs if now != then)
-
-
-def _read_on(pilot: Pilot, message: Message, now: float) -> tuple[Pilot, tuple[Message, ...]]:
-    """Let the reading of what is on board take an answer."""
-    if message.name not in surveys.ANSWERS or _uploads(pilot):
-        return pilot, ()
-    survey, sent, kind = surveys.hear(pilot.survey, message, now)
-    pilot = changed(pilot, survey=survey)
-    if kind is not None:
-        pilot = changed(pilot, on_board={**pilot.on_board, kind: survey.found[kind]})
-    return pilot, sent
-
-
-def _uploads(pilot: Pilot) -> bool:
-    task = pilot.moving
-    return task is not None and not task.over and isinstance(task.doing, Sync)
 
 
 def _with_passed(pilot: Pilot) -> Pilot:
@@ -317,34 +229,19 @@ def _ticked(pilot: Pilot, now: float) -> Outcome:
     link, change = watch(pilot.link, pilot.craft.entity, pilot.known, now)
     pilot = changed(pilot, link=link)
     if isinstance(change, LinkRestored):
-        pilot = _unsure(pilot)
+        pilot = inventory.unsure(pilot)
     questions: tuple[Message, ...] = ()
     before = pilot.unanswered
     if pilot.known.heard is not None and not link.lost:
         pilot, questions = _asked(pilot, now)
-        pilot, more = _surveyed(pilot, now)
-        questions = (*questions, *more)
+        if _authority(pilot) is not None and _is_ours(pilot):
+            pilot, more = inventory.surveyed(pilot, now)
+            questions = (*questions, *more)
     outcome = _advance(pilot, now)
     reports = outcome.reports if change is None else (change, *outcome.reports)
     if before < UNANSWERED <= pilot.unanswered and pilot.known.signs and not pilot.signs:
         reports = (*reports, Trouble(pilot.craft.entity, now, "no answer", _deaf(pilot)))
     return changed(outcome, sent=_spoken(pilot, (*questions, *outcome.sent)), reports=reports)
-
-
-def _surveyed(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
-    """Read what is on board a vehicle that obeys us, again from time to time, and more often what it flies."""
-    profile, known = pilot.known.profile, pilot.known
-    if profile is None or _authority(pilot) is None or not _is_ours(pilot) or _uploads(pilot):
-        return pilot, ()
-    pending = pilot.moving is not None and not pilot.moving.accepted and not pilot.moving.over
-    mission = HEADING if pending else FLOWN if known.mode == profile.auto else NOW_AND_THEN
-    every = {
-        MissionType.MISSION: mission,
-        MissionType.FENCE: NOW_AND_THEN / 2,
-        MissionType.RALLY: NOW_AND_THEN,
-    }
-    survey, sent = surveys.tick(pilot.survey, every, pilot.on_board, pilot.system, now)
-    return changed(pilot, survey=survey), sent
 
 
 def _with_its_words(outcome: Outcome, now: float) -> Outcome:
@@ -465,7 +362,7 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
     if helm.taken and not before.taken:
         return _taken_over(pilot, now)
     if helm.held and not before.held:
-        pilot = _unsure(pilot, quiet=True)  # who had it for a moment may have done more than that
+        pilot = inventory.unsure(pilot, quiet=True)  # who had it for a moment may have done more than that
     return pilot, tuple(_changes(pilot, before, now))
 
 

@@ -147,7 +147,7 @@ def _next(
 ) -> MissionType | None:
     """Return the kind to be read next."""
     due = [
-        (kind in certain, survey.read.get(kind, NEVER), kind)
+        (kind in certain, max(survey.read.get(kind, NEVER), survey.given_up.get(kind, NEVER)), kind)
         for kind, seconds in every.items()
         if now - survey.given_up.get(kind, NEVER) > RETRY
         and (kind not in certain or now - survey.read.get(kind, NEVER) >= _period(survey, kind, seconds))
