@@ -153,7 +153,7 @@ class Autopilot:
     def remarks(self) -> Iterator[str]:
         """Yield messages to the operator about the vehicles before take-off."""
         for pilot in self._pilots.values():
-            yield from remarks(pilot.craft, pilot.known, pilot.on_board)
+            yield from remarks(pilot.craft, pilot.known, pilot.on_board, pilot.survey.given_up)
 
     async def command(self, command: Command) -> None:
         """Take on a command; raises Refused."""

@@ -3,20 +3,57 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from typing import TYPE_CHECKING, Final
+from typing import Final, Protocol, TypeVar
 
 from adapters.mavlink import survey as surveys
 from adapters.mavlink.changed import changed
 from adapters.mavlink.constants import MissionType
+from adapters.mavlink.fleet import Craft
+from adapters.mavlink.merging import OnBoard
 from adapters.mavlink.message import Message
 from adapters.mavlink.refuges import beyond_fence
 from adapters.mavlink.survey import Survey, changed_by
 from adapters.mavlink.sync import Sync
+from adapters.mavlink.task import Task
 from adapters.mavlink.telemetry import Telemetry
 from adapters.plugin import Command, Follow, Hold, Report, Return, Trouble
 
-if TYPE_CHECKING:
-    from adapters.mavlink.pilot import Pilot
+
+class Believer(Protocol):
+    """A pilot, as far as it has to do with what is on board; frozen, and copied by `changed`."""
+
+    @property
+    def craft(self) -> Craft:
+        """The vehicle's description."""
+        ...
+
+    @property
+    def system(self) -> int:
+        """Its system id."""
+        ...
+
+    @property
+    def known(self) -> Telemetry:
+        """Its state."""
+        ...
+
+    @property
+    def on_board(self) -> OnBoard:
+        """What is believed to be on board."""
+        ...
+
+    @property
+    def survey(self) -> Survey:
+        """The reading of it."""
+        ...
+
+    @property
+    def moving(self) -> Task | None:
+        """The command that it carries out."""
+        ...
+
+
+Pilot = TypeVar("Pilot", bound=Believer)
 
 JUST_NOW: Final = 5.0
 """Seconds for which an order believes what was read before it, if nothing shows that it has changed."""
@@ -54,7 +91,12 @@ def read_again(pilot: Pilot, told: Command, now: float) -> Pilot:
     return unsure(pilot, stale, quiet=True) if stale else pilot
 
 
-def out_of_fence(pilot: Pilot, now: float) -> tuple[Report, ...]:
+def is_surveyed(pilot: Believer) -> bool:
+    """Tell whether it is certain what is on board, or asking for it was in vain."""
+    return all(kind in pilot.on_board or kind in pilot.survey.given_up for kind in MissionType)
+
+
+def out_of_fence(pilot: Believer, now: float) -> tuple[Report, ...]:
     """Report that a vehicle's return leads it out of its fence."""
     fence = pilot.craft.fence
     reasons = () if fence is None else beyond_fence(fence, pilot.known, pilot.on_board)
@@ -79,7 +121,7 @@ def with_known(pilot: Pilot, known: Telemetry) -> Pilot:
     return unsure(pilot, tuple(_renumbered(pilot, before)), quiet=True)
 
 
-def _renumbered(pilot: Pilot, before: Telemetry) -> Iterator[MissionType]:
+def _renumbered(pilot: Believer, before: Telemetry) -> Iterator[MissionType]:
     """Yield the kinds of which MISSION_CURRENT shows that they are not the ones of before."""
     known, mission = pilot.known, pilot.on_board.get(MissionType.MISSION, ())
     first = known.profile is not None and known.profile.dialect.home_is_item
@@ -101,7 +143,7 @@ def read_on(pilot: Pilot, message: Message, now: float) -> tuple[Pilot, tuple[Me
     return pilot, sent
 
 
-def _uploads(pilot: Pilot) -> bool:
+def _uploads(pilot: Believer) -> bool:
     task = pilot.moving
     return task is not None and not task.over and isinstance(task.doing, Sync)
 

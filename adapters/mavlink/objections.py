@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from itertools import chain, pairwise, product
 from types import MappingProxyType
 from typing import Final
@@ -105,12 +105,14 @@ def impassable(
     return next(filter(None, reasons), None)
 
 
-def remarks(craft: Craft, known: Telemetry, on_board: OnBoard = NOTHING_READ) -> Iterator[str]:
+def remarks(
+    craft: Craft, known: Telemetry, on_board: OnBoard = NOTHING_READ, unread: Collection[MissionType] = ()
+) -> Iterator[str]:
     """Yield messages to the operator about a vehicle before take-off."""
     own = own_fences(known, given=craft.fence is not None)
     if str(own):
         yield f"{craft.entity} keeps {own}, too: fences of its own are on"
-    yield from (f"{craft.entity} {remark}" for remark in remarks_on_board(craft, known, on_board))
+    yield from (f"{craft.entity} {remark}" for remark in remarks_on_board(craft, known, on_board, unread))
     profile, home = known.profile, known.home
     if profile is None or home is None or craft.fence is None or profile.drift == 1.0:
         return

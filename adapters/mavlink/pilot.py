@@ -156,7 +156,7 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
         pilot = changed(pilot, handing=None)  # where it stops it stays ours
     elif not _continues(pilot.moving, told):
         pilot = inventory.read_again(pilot, told, now)
-    surveyed = pilot.survey.settled or isinstance(told, Hold | Return)
+    surveyed = inventory.is_surveyed(pilot) or isinstance(told, Hold | Return)
     task = Task(told, since=now, boots=pilot.known.boots, checked=checked, surveyed=surveyed)
     return Outcome(changed(pilot, moving=_continued(pilot.moving, task)), reports=outside)
 
@@ -355,6 +355,7 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
     if profile is None:
         return pilot, ()
     if not _is_ours(pilot):
+        pilot = inventory.unsure(pilot) if pilot.on_board or known.polygon else pilot
         return changed(pilot, helm=Helm(boots=known.boots)), ()
     command = None if pilot.moving is None else pilot.moving.command
     helm = takeover.watch(pilot.helm, known, profile, command, _undone(pilot, profile), pilot.on_board)
@@ -423,7 +424,7 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
         reason = judge(again=task.checked)
         if reason:
             return tasks.rejected(task, reason, now)
-        task = replace(task, checked=True, surveyed=pilot.survey.settled)
+        task = replace(task, checked=True, surveyed=inventory.is_surveyed(pilot))
     foreign = not_ours(pilot.stations, pilot.known)
     if foreign and isinstance(task.doing, Sync):  # a task that was begun can't be ended here
         return tasks.rejected(task, foreign, now)

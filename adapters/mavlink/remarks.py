@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from adapters.mavlink.constants import Cmd, MissionType
 from adapters.mavlink.fencing import zones_beside
@@ -17,11 +17,13 @@ from adapters.mavlink.zones import zones
 _OURS = (Cmd.WAYPOINT, Cmd.LOITER_UNLIMITED, Cmd.TAKEOFF)
 
 
-def remarks_on_board(craft: Craft, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
-    """Yield what an operator should know of what is on board a vehicle."""
-    unread = [kind.name.lower() for kind in MissionType if kind not in on_board]
-    if unread and known.profile is not None:
-        yield f"has not told what is on board: {', '.join(unread)}"
+def remarks_on_board(
+    craft: Craft, known: Telemetry, on_board: OnBoard, unread: Collection[MissionType]
+) -> Iterator[str]:
+    """Yield what an operator should know of what is on board a vehicle; `unread` was asked for in vain."""
+    missing = [kind.name.lower() for kind in unread if kind not in on_board]
+    if missing:
+        yield f"does not tell what is on board: {', '.join(missing)}"
     yield from _of_mission(on_board.get(MissionType.MISSION, ()), known)
     yield from _of_fence(craft, known, on_board)
     rally = rally_points(on_board)

@@ -115,7 +115,8 @@ def hear(
 def settle(survey: Survey, kind: MissionType, items: Items, now: float) -> Survey:
     """Note what was found on board."""
     found = {**survey.found, kind: items}
-    return replace(survey, read={**survey.read, kind: now}, found=found)
+    given_up = {each: at for each, at in survey.given_up.items() if each != kind}
+    return replace(survey, read={**survey.read, kind: now}, found=found, given_up=given_up)
 
 
 def doubt(survey: Survey, kinds: Collection[MissionType]) -> Survey:

@@ -7,6 +7,7 @@
 from adapters.simulated.clock import run
 from adapters.simulated.disturbance import Disturbance
 from adapters.simulated.serving import Simulator
-from adapters.simulated.vehicle import Kind, Vehicle
+from adapters.simulated.state import Kind
+from adapters.simulated.vehicle import Vehicle
 
 __all__ = ["Disturbance", "Kind", "Simulator", "Vehicle", "run"]

@@ -9,7 +9,8 @@ from adapters.mavlink.signing import Signing, load
 from adapters.simulated.clock import run
 from adapters.simulated.disturbance import Disturbance
 from adapters.simulated.serving import Simulator
-from adapters.simulated.vehicle import Kind, Vehicle
+from adapters.simulated.state import Kind
+from adapters.simulated.vehicle import Vehicle
 
 
 def home(text: str) -> tuple[float, float, float]:

@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from adapters.mavlink.constants import Fence, FenceAction
 from adapters.mavlink.merging import UNION
-from adapters.simulated.body import Body, metres_to, moved
+from adapters.simulated.body import Body, metres_to
+from adapters.simulated.state import State
 from physical import contains, point
-
-if TYPE_CHECKING:
-    from adapters.simulated.vehicle import Vehicle
 
 WARNING: Final = 4
 NOTICE: Final = 5
-
-STOPS_BEFORE: Final = 4.0
-"""Metres before its circle fence at which what drives stops, in silence."""
 
 REPORT_ONLY: Final = 0.0
 """ArduPilot's FENCE_ACTION with which it only says that it is outside."""
@@ -31,7 +24,7 @@ HIGH: Final = 10.0
 """Metres above home at which a take-off counts as done."""
 
 
-def switch_by_itself(vehicle: Vehicle) -> None:
+def switch_by_itself(vehicle: State) -> None:
     """Switch the fences as FENCE_AUTOENABLE says: off again before a take-off, on after it, or on arming."""
     auto = vehicle.parameters.get("FENCE_AUTOENABLE", 0.0)
     if not auto or vehicle.parameters.get("FENCE_ENABLE"):
@@ -47,7 +40,7 @@ def switch_by_itself(vehicle: Vehicle) -> None:
         vehicle.words.append((NOTICE, "Polygon fence auto-enabled"))
 
 
-def keep(vehicle: Vehicle) -> None:
+def keep(vehicle: State) -> None:
     """Return, or stop, as soon as it is outside a fence; what drives has stopped before its circle."""
     here = vehicle.body
     outside = not holds(vehicle, here.latitude, here.longitude, here.height)
@@ -63,7 +56,7 @@ def keep(vehicle: Vehicle) -> None:
     vehicle.breached = outside
 
 
-def holds(vehicle: Vehicle, latitude: float, longitude: float, height: float) -> bool:
+def holds(vehicle: State, latitude: float, longitude: float, height: float) -> bool:
     """Tell whether somewhere is inside all fences that are on."""
     inside = _in_zones(vehicle, latitude, longitude)
     if Fence.CIRCLE in vehicle.fences:
@@ -74,26 +67,12 @@ def holds(vehicle: Vehicle, latitude: float, longitude: float, height: float) ->
     return inside
 
 
-def in_force(vehicle: Vehicle) -> bool:
-    """Tell whether the zones on board are kept: ArduPilot switches them, PX4 has an action for them."""
-    acts = vehicle.fence_action is not None and vehicle.fence_action > FenceAction.WARN
-    return acts or Fence.POLYGON in vehicle.fences
-
-
-def _in_zones(vehicle: Vehicle, latitude: float, longitude: float) -> bool:
+def _in_zones(vehicle: State, latitude: float, longitude: float) -> bool:
     """Tell whether somewhere is in the zones to stay in, of PX4 one, and out of the others."""
-    if not in_force(vehicle):
+    if not vehicle.keeps_zones:
         return True
     at = point(latitude, longitude)
     within = [zone.shape is not None and contains(zone.shape, at) for zone in vehicle.zones if zone.within]
     outside = [zone.shape is not None and contains(zone.shape, at) for zone in vehicle.zones if zone.outside]
     one = vehicle.kind.profile.dialect.unites or int(vehicle.parameters.get("FENCE_OPTIONS", 0)) & UNION
     return (any(within) if one and within else all(within)) and not any(outside)
-
-
-def before_the_circle(vehicle: Vehicle, course: float) -> float:
-    """Return the metres that it may drive on a course before it stops at its circle fence."""
-    ahead = moved(replace(vehicle.body, course=course, speed=1.0), vehicle.kind.limits, course, 1.0, 0.0, 1.0)
-    home = Body(*vehicle.home[:2])
-    here, there = (metres_to(home, at.latitude, at.longitude)[0] for at in (vehicle.body, ahead))
-    return math.inf if there < here else vehicle.parameters["FENCE_RADIUS"] - STOPS_BEFORE - here

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from adapters.mavlink.constants import Cmd, MissionType
 from adapters.mavlink.items import Item, Items
 from adapters.mavlink.refuges import missing_items
 from adapters.mavlink.telemetry import Telemetry
 from adapters.simulated.body import Target, metres_to
-
-if TYPE_CHECKING:
-    from adapters.simulated.vehicle import Vehicle
+from adapters.simulated.state import State
 
 WARNING: Final = 4
 INFO: Final = 6
@@ -32,7 +30,7 @@ AT_HOME: Final = 1.0
 """RTL_AUTOLAND with which it goes straight to its landing sequence, or first to where it returns to."""
 
 
-def follow(vehicle: Vehicle, seconds: float) -> None:
+def follow(vehicle: State, seconds: float) -> None:
     """Fly the mission for a while."""
     items = vehicle.store.mission
     first = int(vehicle.kind.profile.dialect.home_is_item)
@@ -48,7 +46,7 @@ def follow(vehicle: Vehicle, seconds: float) -> None:
         _next(vehicle, item)
 
 
-def _fly(vehicle: Vehicle, item: Item, seconds: float) -> None:
+def _fly(vehicle: State, item: Item, seconds: float) -> None:
     if item.command == Cmd.TAKEOFF:
         vehicle.take_off(item.z, seconds)
     elif item.command in _FLOWN:
@@ -60,7 +58,7 @@ def _fly(vehicle: Vehicle, item: Item, seconds: float) -> None:
             vehicle.arm(armed=False)
 
 
-def _done(vehicle: Vehicle, item: Item) -> bool:
+def _done(vehicle: State, item: Item) -> bool:
     if item.command == Cmd.TAKEOFF:
         return vehicle.body.height >= item.z - 1.0
     if item.command not in _FLOWN:
@@ -68,7 +66,7 @@ def _done(vehicle: Vehicle, item: Item) -> bool:
     return item.command == Cmd.WAYPOINT and _away(vehicle, item) <= vehicle.kind.radius
 
 
-def _next(vehicle: Vehicle, item: Item) -> None:
+def _next(vehicle: State, item: Item) -> None:
     vehicle.reached.append(vehicle.current)
     if item.command == Cmd.WAYPOINT:
         words = f"Reached waypoint #{vehicle.current} dist {_away(vehicle, item):.0f}m"
@@ -77,11 +75,11 @@ def _next(vehicle: Vehicle, item: Item) -> None:
     vehicle.current = round(item.parameters[0]) if jumps else vehicle.current + 1
 
 
-def _away(vehicle: Vehicle, item: Item) -> float:
+def _away(vehicle: State, item: Item) -> float:
     return metres_to(vehicle.body, item.x / 1e7, item.y / 1e7)[0]
 
 
-def refuge(vehicle: Vehicle) -> tuple[float, float]:
+def refuge(vehicle: State) -> tuple[float, float]:
     """Return where it returns to: the nearest rally point, or home if that is meant or none is near enough."""
     rally = [(item.x / 1e7, item.y / 1e7) for item in vehicle.store.items.get(MissionType.RALLY, ())]
     home, limit = vehicle.home[:2], 1000.0 * vehicle.parameters.get("RALLY_LIMIT_KM", 0.0)
@@ -90,7 +88,7 @@ def refuge(vehicle: Vehicle) -> tuple[float, float]:
     return min([*near, *([home] if both or not near else [])], key=lambda at: metres_to(vehicle.body, *at)[0])
 
 
-def may_land(vehicle: Vehicle) -> bool:
+def may_land(vehicle: State) -> bool:
     """Tell whether it is time to look for a landing sequence."""
     asked = vehicle.parameters.get("RTL_AUTOLAND")
     if asked != AT_HOME or vehicle.refuge is None:
@@ -98,7 +96,7 @@ def may_land(vehicle: Vehicle) -> bool:
     return metres_to(vehicle.body, *vehicle.refuge)[0] <= 1.5 * vehicle.home_circle
 
 
-def land(vehicle: Vehicle) -> bool:
+def land(vehicle: State) -> bool:
     """Begin the landing sequence of the mission on board; tell whether it has one."""
     start = _landing(vehicle.store.mission)
     if start is None:
@@ -112,7 +110,7 @@ def _landing(items: Items) -> int | None:
     return next((at for at, item in enumerate(items) if item.command == Cmd.DO_LAND_START), None)
 
 
-def missing(vehicle: Vehicle) -> str:
+def missing(vehicle: State) -> str:
     """Return which item it needs on board before it is armed, or an empty text."""
     if not vehicle.parameters.get("ARMING_MIS_ITEMS"):
         return ""

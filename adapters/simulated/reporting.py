@@ -11,7 +11,8 @@ from typing import Any, Final
 from adapters.mavlink.constants import GEOFENCE, PREARM_HEALTHY, Landed, ModeFlag
 from adapters.mavlink.message import Message, say
 from adapters.mavlink.texts import CHUNK
-from adapters.simulated.vehicle import WARNING, Vehicle
+from adapters.simulated.state import WARNING
+from adapters.simulated.vehicle import Vehicle
 
 DEFAULT: Final = {
     "HEARTBEAT": 1.0,

@@ -1,291 +1,31 @@
-"""A simulated vehicle: its state, its behaviour in each mode, and its start-up.
+"""A simulated vehicle: its behaviour in each mode, and its start-up.
 
 Commands and messages are `protocol`'s and `reporting`'s business, packets `serving`'s.
 """
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
-from enum import Enum
+from dataclasses import dataclass
 from typing import Final
 
-from adapters.mavlink.constants import Fence, FenceAction, MissionType
-from adapters.mavlink.profiles import BOAT, COPTER, PLANE, PX4_COPTER, PX4_PLANE, ROVER, Profile, TakeOff
-from adapters.mavlink.signing import Signing
-from adapters.mavlink.zones import Zone, zones
-from adapters.simulated import body as bodies
+from adapters.mavlink.constants import Fence
 from adapters.simulated import fences, missions
-from adapters.simulated.body import Body, Limits, Target, astray, metres_to, moved, towards
-from adapters.simulated.store import ARDUPILOT_MANNER, PX4_MANNER, Store
-from physical import Geometry
+from adapters.simulated.body import Body, Target, moved
+from adapters.simulated.state import NO_FENCE, WARNING, State
 
-WAYPOINT_RADIUS: Final = 50.0
-"""Metres from a waypoint at which a plane takes the next."""
-
-GRAVITY: Final = 9.81
-FIX_AFTER: Final = 10.0
 READY_AFTER: Final = 19.0
 """Seconds after boot at which it has a fix, and could be armed; before, it says that it is near (0, 0)."""
 
-UP_AFTER: Final = 5.0
-"""Seconds after boot at which it takes missions."""
-
-WARNING: Final = 4
-INFO: Final = 6
-"""MAV_SEVERITY_WARNING and MAV_SEVERITY_INFO."""
-
 ENDURANCE: Final = 7_200.0
 """Seconds for which a full battery lasts."""
-
-SAG: Final = 1.8
-"""Volts that it loses over the second half of its charge; that alone is not low yet."""
-
-NO_FENCE: Final = Fence(0)
-
-PARAMETERS: Final = {
-    "WP_RADIUS": WAYPOINT_RADIUS,
-    "ARMING_MIS_ITEMS": 0.0,
-    "FENCE_ACTION": 1.0,
-    "FENCE_ENABLE": 0.0,
-    "FENCE_RADIUS": 300.0,
-    "RALLY_INCL_HOME": 0.0,
-    "RALLY_LIMIT_KM": 5.0,
-    "BATT_LOW_VOLT": 10.5,
-    "BATT_LOW_TIMER": 10.0,
-    "BATT_FS_LOW_ACT": 0.0,
-}
-ALTITUDES: Final = {
-    "FENCE_AUTOENABLE": 0.0,
-    "FENCE_ALT_MAX": 100.0,
-    "FENCE_ALT_MIN": -10.0,
-    "FENCE_OPTIONS": 0.0,
-}
-OF_KINDS: Final = {
-    TakeOff.MISSION: ALTITUDES
-    | {"FENCE_TYPE": 4.0, "WP_LOITER_RAD": 80.0, "RTL_AUTOLAND": 0.0, "RTL_RADIUS": 0.0},
-    TakeOff.COMMAND: ALTITUDES | {"FENCE_TYPE": 7.0},
-    TakeOff.NONE: {"FENCE_TYPE": 6.0},
-}
-"""What ArduPilot 4.6 has by default, but for the radius of a plane's circle, which its simulator sets."""
-
-
-OF_PX4: Final = {
-    "BAT_CRIT_THR": 0.07,
-    "COM_LOW_BAT_ACT": 0.0,
-    "GF_ACTION": 2.0,
-    "GF_MAX_HOR_DIST": 0.0,
-    "GF_MAX_VER_DIST": 0.0,
-    "MIS_TAKEOFF_ALT": 2.5,
-    "MIS_TKO_LAND_REQ": 0.0,
-    "NAV_LOITER_RAD": 80.0,
-    "RTL_LOITER_RAD": 80.0,
-}
-"""What PX4 has by default, but for a plane's MIS_TKO_LAND_REQ of 2, with which it takes no path."""
 
 LOW_BATTERY_RETURNS: Final = 3.0
 """PX4's COM_LOW_BAT_ACT with which it returns at a critical charge."""
 
 
-class Kind(Enum):
-    """A kind of vehicle: MAV_TYPE, profile, limits, radius around a waypoint, how it asks for mission items."""
-
-    PLANE = (1, PLANE, bodies.PLANE, WAYPOINT_RADIUS, "MISSION_REQUEST")
-    COPTER = (2, COPTER, bodies.COPTER, 2.0, "MISSION_REQUEST_INT")
-    ROVER = (10, ROVER, bodies.ROVER, 2.0, "MISSION_REQUEST_INT")
-    BOAT = (11, BOAT, bodies.ROVER, 4.0, "MISSION_REQUEST_INT")
-    PX4_PLANE = (1, PX4_PLANE, bodies.PLANE, WAYPOINT_RADIUS, "MISSION_REQUEST_INT")
-    PX4_COPTER = (2, PX4_COPTER, bodies.COPTER, 2.0, "MISSION_REQUEST_INT")
-
-    @property
-    def profile(self) -> Profile:
-        """Its modes, and how it takes off."""
-        return self.value[1]
-
-    @property
-    def limits(self) -> Limits:
-        """What it can do."""
-        return self.value[2]
-
-    @property
-    def returns(self) -> float:
-        """The value of BATT_FS_LOW_ACT with which a low battery sends it home; 1 lets a copter land."""
-        return 2.0 if self is Kind.COPTER else 1.0
-
-    @property
-    def radius(self) -> float:
-        """Metres from a waypoint at which it takes the next."""
-        return self.value[3]
-
-
 @dataclass(slots=True)
-class Vehicle:
-    """The state of a simulated vehicle.
-
-    Attributes:
-        kind: What it is.
-        home: Degrees, metres above sea level.
-        system: Its MAVLink system id.
-        speedup: How much faster than ours its clock says that time passes.
-        enforce: Whether it obeys only the station that has the authority (SYSID_ENFORCE).
-        accept_unsigned: Whether unsigned packets are obeyed although it has a key, as on ArduPilot's first link.
-        fixed: Whether its receiver has satellites.
-        fences: Which of its fences are on.
-        version: Of its firmware: before 4.6 all fences were switched at once.
-        slowed: What part of its kind's speed it makes over the ground, as against a head wind.
-        wind: Metres a second to the north and to the east: it carries a plane out of its circle.
-        serial: Its autopilot's serial number: at most 18 bytes.
-        voltage: Its battery's when it is full; when it is low for a while, the fail-safe acts once.
-        charge: How much of its battery is left, from 1 to 0.
-        low: Since when it is low.
-        failed_safe: Whether the fail-safe has acted since it booted.
-        words: What it has to say, with its severity.
-        told: The item of its mission that it has said it begins.
-        breached: Whether it was outside a fence when it last looked.
-        refuge: Where it returns to, since it does.
-        lands: Whether it has looked for a landing sequence since it returns.
-    """
-
-    kind: Kind
-    home: tuple[float, float, float]
-    system: int = 1
-    speedup: float = 1.0
-    enforce: bool = True
-    accept_unsigned: bool = False
-    fixed: bool = True
-    booted: float = 0.0
-    time: float = 0.0
-    armed: bool = False
-    mode: int = 0
-    current: int = 0
-    target: Target | None = None
-    fences: Fence = NO_FENCE
-    version: tuple[int, int, int] = (4, 6, 3)
-    wind: tuple[float, float] = (0.0, 0.0)
-    slowed: float = 1.0
-    parameters: dict[str, float] = field(default_factory=dict)
-    signing: Signing | None = None
-    serial: bytes = b""
-    body: Body = field(init=False)
-    store: Store = field(init=False)
-    reached: list[int] = field(default_factory=list)
-    voltage: float = 12.6
-    low: float | None = None
-    failed_safe: bool = False
-    charge: float = 1.0
-    words: list[tuple[int, str]] = field(default_factory=list)
-    told: int | None = None
-    breached: bool = False
-    refuge: tuple[float, float] | None = None
-    lands: bool = False
-
-    def __post_init__(self) -> None:
-        latitude, longitude, altitude = self.home
-        dialect = self.kind.profile.dialect
-        defaults = OF_PX4 if dialect.typed else PARAMETERS | OF_KINDS[self.kind.profile.takeoff]
-        authority = {self.authority_parameter: 255.0} if dialect.authority else {}
-        self.parameters = defaults | authority | self.parameters
-        self.mode = self.mode or self.first_mode
-        self.body = Body(latitude, longitude)
-        manner = ARDUPILOT_MANNER if dialect.home_is_item else PX4_MANNER
-        self.store = Store(
-            manner, self.kind.value[4], (round(latitude * 1e7), round(longitude * 1e7), altitude)
-        )
-
-    @property
-    def authority_parameter(self) -> str:
-        """The name of its authority parameter."""
-        return self.kind.profile.dialect.authority[self.version >= (4, 7, 0)]
-
-    @property
-    def speed(self) -> float:
-        """The speed over the ground that it flies at, in m/s."""
-        return self.kind.limits.speed * self.slowed
-
-    @property
-    def first_mode(self) -> int:
-        """The mode in which it boots."""
-        return self.kind.profile.hold if self.kind.profile.climb is not None else 0
-
-    @property
-    def fence_action(self) -> FenceAction | None:
-        """What it does at its fences, which need no switch; None where they are switched."""
-        action = self.parameters.get(self.kind.profile.dialect.fence_action)
-        return None if action is None else FenceAction(int(action))
-
-    @property
-    def zones(self) -> tuple[Zone, ...]:
-        """The zones of the fence on board that make sense."""
-        found = zones(self.store.items.get(MissionType.FENCE, ()))
-        return tuple(zone for zone in found if zone.shape is not None and (zone.within or zone.outside))
-
-    @property
-    def fence(self) -> Geometry | None:
-        """The first zone that it stays in, if there is one in force."""
-        within = (zone.shape for zone in self.zones if zone.within)
-        return next(within, None) if fences.in_force(self) else None
-
-    @property
-    def configured(self) -> Fence:
-        """Which fences it would keep within if they were on."""
-        configured = Fence(int(self.parameters.get("FENCE_TYPE", 0)))
-        return configured if self.zones else configured & ~Fence.POLYGON
-
-    def switch_fences(self, fences: Fence, *, on: bool) -> None:
-        """Switch the fences on, or off, that it is configured to have."""
-        meant = fences & Fence(int(self.parameters["FENCE_TYPE"]))
-        self.fences = self.fences | meant if on else self.fences & ~meant
-
-    @property
-    def circle(self) -> float:
-        """The radius at which it circles where it is told none."""
-        profile = self.kind.profile
-        return abs(self.parameters[profile.dialect.circle]) if self.kind.limits.must_move else profile.circle
-
-    @property
-    def home_circle(self) -> float:
-        """The radius at which it circles its home; counter-clockwise if negative."""
-        return self.parameters.get(self.kind.profile.dialect.home_circle) or self.circle
-
-    @property
-    def volts(self) -> float:
-        """Its battery's voltage now."""
-        return self.voltage - SAG * max(0.0, 1.0 - 2.0 * self.charge)
-
-    def arm(self, *, armed: bool) -> None:
-        """Arm or disarm it, and say so."""
-        if armed != self.armed:
-            self.words.append((INFO, f"Throttle {'armed' if armed else 'disarmed'}"))
-        self.armed = armed
-
-    @property
-    def flies(self) -> bool:
-        """Whether it is off the ground; for what does not fly, whether it is armed."""
-        return self.armed and (self.kind.profile.takeoff is TakeOff.NONE or self.body.height > 1.0)
-
-    @property
-    def uptime(self) -> float:
-        """Seconds since it booted, by its own clock."""
-        return (self.time - self.booted) * self.speedup
-
-    @property
-    def has_fix(self) -> bool:
-        """Whether it knows where it is."""
-        return self.fixed and self.uptime >= FIX_AFTER
-
-    @property
-    def tilt(self) -> tuple[float, float]:
-        """Roll and pitch in degrees: a plane banks as its turn takes it, the others stay level."""
-        body = self.body
-        if not self.kind.limits.must_move or body.speed < 1.0:
-            return 0.0, 0.0
-        bank = math.atan(body.speed * math.radians(body.turn) / GRAVITY)
-        return math.degrees(bank), math.degrees(math.atan2(body.climb, body.speed))
-
-    @property
-    def up(self) -> bool:
-        """Whether it takes missions."""
-        return self.uptime >= UP_AFTER
+class Vehicle(State):
+    """A simulated vehicle."""
 
     @property
     def ready(self) -> bool:
@@ -345,11 +85,6 @@ class Vehicle:
                 return
         self.go(Target(*self.refuge, self.kind.profile.altitude, self.home_circle), seconds)
 
-    def stay(self) -> None:
-        """Hold where it is."""
-        self.mode = self.kind.profile.hold
-        self.target = Target(self.body.latitude, self.body.longitude, self.body.height, self.circle)
-
     def _climb(self, seconds: float) -> None:
         """Take off in the mode for it, and hold once it is high enough."""
         height = self.target.height if self.target else 0.0
@@ -385,29 +120,6 @@ class Vehicle:
         self.words.append((WARNING, "Critical battery, return"))
         if self.parameters["COM_LOW_BAT_ACT"] == LOW_BATTERY_RETURNS:
             self.mode = self.kind.profile.home
-
-    def take_off(self, height: float, seconds: float) -> None:
-        """Climb where it is, once it is fast enough."""
-        limits = self.kind.limits
-        speed = self.speed if limits.must_move else 0.0
-        rising = height if not limits.must_move or self.body.speed > 0.6 * speed else self.body.height
-        self.body = moved(self.body, limits, self.body.course, speed, rising, seconds)
-
-    def go(self, target: Target, seconds: float) -> None:
-        """Go to a target, and stay there."""
-        limits = self.kind.limits
-        if limits.must_move:
-            _, bearing = metres_to(self.body, target.latitude, target.longitude)
-            circle = target.circle * astray(bearing, self.wind)
-            course = towards(self.body, target.latitude, target.longitude, circle)
-            self.body = moved(self.body, limits, course, self.speed, target.height, seconds)
-            return
-        distance, course = metres_to(self.body, target.latitude, target.longitude)
-        speed = min(self.speed, distance)  # slows down over the last second
-        if limits.climb == 0 and Fence.CIRCLE in self.fences:
-            speed = min(speed, max(0.0, fences.before_the_circle(self, course)))
-        height = target.height if limits.climb else 0.0
-        self.body = moved(self.body, limits, course, speed, height, seconds)
 
     def _idle(self, seconds: float) -> None:
         """Circle where it is, if it must move; else stop, at the height that it was told to take off to."""

@@ -327,7 +327,7 @@ def test_a_landing_sequence_stays_on_board_behind_each_mission_and_brings_the_pl
             assert isinstance(await f.ended("r2"), Arrived)
             await f.plugin.command(Return("r3", "uav0"))
             assert isinstance(await f.ended("r3", 1200), Arrived)
-            assert not f.vehicle.armed
+            await until(lambda: not f.vehicle.armed)
             assert f.world.of(TakenOver) == []
 
     run(main())

@@ -1,12 +1,15 @@
 """Moves that name what they pass: the vehicle gets a mission, flies it, and what is committed is true."""
 
 import asyncio
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from audited import LOOK, PLACES, flown_in
 from live_missions import EAST, TOUR, WEST, Run, known_of, plan_of, seen
 
 from adapters.live.core import resumed
+from adapters.live.operator_socket import give_back, order
 from adapters.live.state import Heard
 from adapters.mavlink.constants import Cmd, MissionType
 from adapters.mavlink.items import e7
@@ -70,6 +73,52 @@ def test_a_plane_flies_round_the_town_by_the_gates_that_its_mission_names(folder
     assert passed(flown.witness) == [*GATES, "commit", *reversed(GATES), "commit"]
     assert not any(contains(PLACES["town0"], point(*at)) for _, at, _ in flown.witness.truth)
     assert flown.logical.parent("uav0") == "airfield0"
+
+
+def number_set(_flight, _simulator, witness):
+    witness.vehicle.current = 4
+
+
+def another_mission(_flight, _simulator, witness):
+    """As many items as ours, 1 km farther to the east: it passes neither gate, and ends in the bay."""
+    store, (bay,) = witness.vehicle.store, [e7(waypoint(PLACES["bay0"]))]
+    home, takeoff, north, south, last = store.items[MissionType.MISSION]
+    aside = [replace(item, y=item.y + 120_000) for item in (north, south)]
+    assert (last.x, last.y) == bay
+    store.items[MissionType.MISSION] = (home, takeoff, *aside, last)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("does", [number_set, another_mission])
+def test_a_way_whose_gates_somebody_lets_a_plane_miss_is_never_committed(folder, does):
+    async def foe(flight, simulator, witness):
+        while witness.vehicle.current != 2:
+            await asyncio.sleep(0.1)
+        does(flight, simulator, witness)
+
+    flown = flown_in(folder, "two_gates", Vehicle(Kind.PLANE, AIRFIELD), foe=foe, seconds=900)
+    assert "commit" not in flown.witness.rules
+    assert flown.witness.kinds() >= {"taken over"}
+    assert not flown.ended
+
+
+@pytest.mark.long
+def test_a_mission_that_is_loaded_while_an_operator_holds_the_plane_is_not_flown_when_it_is_given_back(
+    folder,
+):
+    async def operator(flight, simulator, witness):
+        while witness.vehicle.current != 2:
+            await asyncio.sleep(0.1)
+        assert (await order(Path("s"), "hold", "uav0")).refusal == ""
+        while witness.vehicle.mode == Kind.PLANE.profile.auto:
+            await asyncio.sleep(0.5)
+        another_mission(flight, simulator, witness)
+        await asyncio.sleep(5.0)
+        assert (await give_back(Path("s"), "uav0")).refusal == ""
+
+    flown = flown_in(folder, "two_gates", Vehicle(Kind.PLANE, AIRFIELD), foe=operator, seconds=4000)
+    assert flown.ended, flown.witness.told()
+    assert passed(flown.witness) == [*GATES, "commit", *reversed(GATES), "commit"]
 
 
 # --- what is told, and when it is done ------------------------------------------------------------------
