@@ -77,7 +77,8 @@ class Store:
         manner: What its make of autopilot does differently.
         request: How it asks for items: planes with MISSION_REQUEST.
         home: Its home in 1e-7 degrees and metres above sea level.
-        items: What is on board.
+        items: What is on board, each as it was last complete.
+        torn: What an upload of a mission that was given up has left of both.
         receiving: The upload under way.
         most: How many items of each kind it holds.
         refuses: The result with which it refuses what is whole, if it does: a person's wish in a test.
@@ -89,6 +90,7 @@ class Store:
     home: tuple[int, int, float] = (0, 0, 0.0)
     items: dict[MissionType, Items] = field(default_factory=dict)
     receiving: Receiving | None = None
+    torn: Items | None = None
     most: dict[MissionType, int] = field(
         default_factory=lambda: {
             MissionType.MISSION: MAX_ITEMS,
@@ -144,14 +146,17 @@ class Store:
     @property
     def mission(self) -> Items:
         """The mission as it is now: of ArduPilot's, what has come of the next one has overwritten its beginning."""
-        going, items = self.receiving, self.items.get(MissionType.MISSION, ())
+        going, whole = self.receiving, self.items.get(MissionType.MISSION, ())
+        items = whole if self.torn is None else self.torn
         if going is None or going.kind is not MissionType.MISSION or not self.manner.in_place:
             return items
         return (*going.items, *items[len(going.items) : going.count])
 
     def abandon(self) -> None:
         """Give up an upload; what was overwritten stays so."""
-        self.items[MissionType.MISSION], self.receiving = self.mission, None
+        if self.receiving is not None and self.receiving.kind is MissionType.MISSION and self.manner.in_place:
+            self.torn = self.mission
+        self.receiving = None
 
     def _clear(self, message: Message) -> list[Message]:
         every = message.fields.get("mission_type") == ALL_KINDS
@@ -162,6 +167,7 @@ class Store:
         if result is MissionResult.ACCEPTED:
             self.receiving = None
             self.items |= dict.fromkeys(kinds, ())
+            self.torn = None if MissionType.MISSION in kinds else self.torn
         return [_answer(message, kinds[0] if kinds else None, result)]
 
     def _item(self, going: Receiving, message: Message, now: float) -> list[Message]:
@@ -188,10 +194,11 @@ class Store:
         if going.kind in self.refuses:
             return [_ack(going, self.refuses[going.kind])]
         self.items[going.kind] = going.items
+        self.torn = None if going.kind is MissionType.MISSION else self.torn
         return [_ack(going, MissionResult.ACCEPTED)]
 
     def _all(self, kind: MissionType) -> Items:
-        items = self.items.get(kind, ())
+        items = self.mission if kind is MissionType.MISSION else self.items.get(kind, ())
         if kind is not MissionType.MISSION or not items or not self.manner.home_is_item:
             return items
         x, y, z = self.home
