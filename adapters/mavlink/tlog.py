@@ -74,7 +74,7 @@ def read_tlog(path: str | PathLike[str], counting: Counting | None = None) -> It
     counting = counting or Counting()
     try:
         with open_file(path) as file:
-            yield from _messages(file, counting)
+            yield from messages_in(file, counting)
     except OSError as problem:
         raise PhysicalError("tlog", f"cannot read it: {problem.strerror}", "", str(path)) from None
 
@@ -126,7 +126,8 @@ def _placeless(message: Message, after: Telemetry) -> str:
 # --- entries --------------------------------------------------------------------------------------
 
 
-def _messages(file: IO[bytes], counting: Counting) -> Iterator[tuple[float, Message]]:
+def messages_in(file: IO[bytes], counting: Counting) -> Iterator[tuple[float, Message]]:
+    """Yield the messages of a log that is open; as `read_tlog`."""
     clock, found = _Clock(), False
     for stamp, each in entries(file):
         match each:
