@@ -14,7 +14,7 @@ from operator import xor
 
 from physical.written_times import LATEST, epoch_seconds
 
-MAX_LINE = 16_384
+MAX_LINE = 8_192
 """The longest line read, in bytes: a sentence has at most 82 and a tag block 80, but some loggers end no lines."""
 
 _ARMOUR = bytes(range(48, 88)) + bytes(range(96, 120))
