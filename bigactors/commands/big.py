@@ -14,6 +14,7 @@ from bigactors.mistakes import Mistake
 from bigactors.progress import Watch, watching
 from bigactors.terminal import is_terminal, say, tell
 from bigraphs import Bigraph, BigraphError, NotationError
+from bigraphs.confluence import MOST_REACTIONS, Divergence, compare_orders
 from bigraphs.engine.machine import Machine
 from bigraphs.examples import example_names, example_text
 from bigraphs.exploration import Progress, explore
@@ -69,6 +70,34 @@ def explored(options: Namespace, system: System) -> TransitionSystem:
         )
 
 
+def warn_of_orders(options: Namespace, system: System) -> None:
+    """Say of instantaneous rules whose order matters what two orders come to."""
+    orders = compare_orders(system)
+    if orders.divergence is not None:
+        for line in _divergence_lines(options.file, orders.divergence):
+            tell(line)
+    elif not orders.complete:
+        tell(
+            f"warning: {options.file}: the order of the instantaneous rules may matter: of all orders "
+            f"{MOST_REACTIONS:,} reactions were tried, and none had another outcome"
+        )
+
+
+def _divergence_lines(file: str, found: Divergence) -> Iterator[str]:
+    """Yield what is said of a class that is not confluent."""
+    place = f"{file}:{found.rules.position}" if found.rules.position else file
+    names = _instances(rule.name for rule in found.rules.rules)
+    yield f"warning: {place}: the instantaneous class ({names}) is not confluent: the order of its rules matters"
+    yield f"  of {_state_line(found.state)}"
+    yield f"  {found.taken.rule} makes in the end {_state_line(found.taken.outcome)}"
+    where = f"{found.other.rule} elsewhere" if found.other.rule == found.taken.rule else found.other.rule
+    yield f"  {where} makes in the end {_state_line(found.other.outcome)}"
+    hint = f"a run takes the first rule of the class that applies, again and again, here {found.taken.rule}"
+    if found.other.rule == found.taken.rule:
+        hint += ", and of its places the one whose result is least in a canonical order"
+    yield f"hint: {hint}; let the rules exclude each other where that is not meant"
+
+
 def _show_progress(watch: Watch, name: str, progress: Progress) -> None:
     if watch.interrupted:
         raise KeyboardInterrupt
@@ -80,7 +109,9 @@ def _show_progress(watch: Watch, name: str, progress: Progress) -> None:
 def full(options: Namespace) -> Exit:
     """Explore every state, and write what was asked for."""
     check_outputs(options)
-    found = explored(options, read_file(options))
+    system = read_file(options)
+    warn_of_orders(options, system)
+    found = explored(options, system)
     if options.json != "-":
         say(summary(options.file, found))
         for line in _occurrence_lines(found):
@@ -120,6 +151,7 @@ def sim(options: Namespace) -> Exit:
     system = read_file(options)
     if options.until is not None and system.kind is not SystemKind.SBRS:
         raise Mistake("--until is a time, and only an sbrs has times", "give --steps", options.file)
+    warn_of_orders(options, system)
     if options.runs is not None:
         from bigactors.big.many_runs import many_runs  # noqa: PLC0415 - one run needs no statistics
 
@@ -173,6 +205,7 @@ def check(options: Namespace) -> Exit:
             options.file,
         )
     checks.check_formulas(options, system)
+    warn_of_orders(options, system)
     found = explored(options, system)
     decided = list(checks.verdicts_on(options, found))
     if options.json != "-":
@@ -195,6 +228,7 @@ def validate(options: Namespace) -> Exit:
     for each in system.classes:
         how = "at once" if each.instantaneous else "one at a time"
         say(f"  a class, {how}: {_instances(rule.name for rule in each.rules) or 'no rule'}")
+    warn_of_orders(options, system)
     for what, named in (
         ("actions", system.actions),
         ("predicates", system.predicates),

@@ -30,6 +30,20 @@ react decay = A -[ k ]-> B;
 begin sbrs init start; rules = [ {decay} ]; preds = { gone }; end
 """
 
+ORDER = """\
+atomic ctrl A = 0; atomic ctrl B = 0; atomic ctrl C = 0; atomic ctrl D = 0; atomic ctrl E = 0;
+big s = A;
+react ab = A --> B;
+react ac = A --> C;
+react bd = B --> D;
+react ce = C --> E;
+big isd = D; big ise = E;
+begin brs init s;
+  rules = [ (ac, ab), {bd, ce} ];
+  preds = { isd, ise };
+end
+"""
+
 LAMPS = """\
 %active Lamp : 0;
 %passive On : 0;
@@ -135,6 +149,27 @@ class TestBig:
         assert err == (
             "--ltl:1:4: unknown predicate 'meetin'\n    1 | <> meetin\n      |    ^^^^^^\n"
             "hint: did you mean 'meeting'?\n"
+        )
+
+    @pytest.mark.parametrize(
+        ("task", "code"),
+        [(("full",), 0), (("sim",), 0), (("validate",), 0), (("check", "--ctl", "EF isd"), 1)],
+    )
+    def test_an_order_of_instantaneous_rules_that_matters_is_warned_of(self, bigactors, tmp_path, task, code):
+        file = tmp_path / "inst.big"
+        file.write_text(ORDER, encoding="utf-8")
+        found, _, err = bigactors("big", task[0], str(file), *task[1:])
+        assert found == code
+        assert (
+            err
+            == f"""\
+warning: {file}:9:13: the instantaneous class (ac, ab) is not confluent: the order of its rules matters
+  of A
+  ac makes in the end C
+  ab makes in the end B
+hint: a run takes the first rule of the class that applies, again and again, here ac; let the rules exclude each \
+other where that is not meant
+"""
         )
 
     def test_a_property_of_a_bgm_file_that_holds_is_said_to(self, bigactors, walk):
