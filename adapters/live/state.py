@@ -13,7 +13,8 @@ from semantics.contingencies import Fallback, Precautions
 from semantics.observed_steps import Sight
 from semantics.state.cells import Cell
 from semantics.state.configuration import Configuration, Transition
-from semantics.state.partition import Elsewhere, Parcel
+from semantics.state.parcels import Parcel
+from semantics.state.partition import Elsewhere
 from semantics.state.requests import Request
 from semantics.state.signature import Name
 

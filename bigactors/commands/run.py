@@ -32,7 +32,7 @@ from bigactors.recordings import Resumed, resume
 from bigactors.signatures import load_trusted
 from bigactors.sockets import socket_of
 from bigactors.stations import Company, company_of, parting_json
-from bigactors.terminal import paint, say, tell
+from bigactors.terminal import flying_output, paint, say, tell
 from bigactors.vehicle_lines import situation
 from bigactors.verdict_files import Licence, find_verdict, licence_for
 from bigactors.watchers import Log, Tape, Terminal
@@ -77,7 +77,11 @@ class Flight:
 
 def run(options: Namespace) -> Exit:
     """Fly a mission, if there is a verdict that everything holds."""
-    flight = prepare(options)
+    with flying_output():
+        return _run(prepare(options), options)
+
+
+def _run(flight: Flight, options: Namespace) -> Exit:
     terminal = Terminal(flight.resting, tuple(flight.plan.vehicles))
     if flight.resumed is not None:
         terminal.goes_on(flight.resumed.broken, flight.resumed.taken)
