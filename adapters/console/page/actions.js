@@ -1,5 +1,5 @@
 /** What may be said and done, and what became of what was. */
-import { html, memo, byName, useSections, useState, useWatched } from "./ui.js";
+import { Field, html, memo, byName, useSections, useWatched } from "./ui.js";
 import { fateOf } from "./plainly.js";
 import { HeldButton } from "./press.js";
 import { utc } from "./units.js";
@@ -10,10 +10,11 @@ export function Actions({ app }) {
   const act = useWatched(app.mayAct);
   const past = useWatched(app.inPast);
   const why = useWatched(app.whyNot);
+  const { role, mode } = useWatched(app.link.welcome) ?? {};
   const order = (which) => () => app.act({ order: { order: which, vehicle: null } }, { what: which, about: "all" });
   return html`<div class="actions">
+    ${role === "act" && mode === "live" && html`<${Name} key="name" app=${app} />`}
     ${act ? html`
-      <${Name} app=${app} />
       <h3>Say</h3>
       ${sayings.size === 0 && html`<p class="none">The mission lets nobody say anything now.</p>`}
       <ul class="sayings">${[...sayings].sort(([a], [b]) => byName(a, b)).map(([key, saying]) => html`<${Saying} key=${key} app=${app} saying=${saying} over=${agents.get(saying.agent)?.state === "has ended"} />`)}</ul>
@@ -37,16 +38,14 @@ const Fate = memo(({ action }) => html`<li class=${action.state}><time>${utc(act
       ${Object.entries(action.left_out ?? {}).map(([name, why]) => html`<span class="aside" key=${name}>not ${name}: ${why}</span>`)}
       ${(action.notes ?? []).map((note) => html`<span class="aside" key=${note}>${note}</span>`)}</span></li>`);
 
-/** What is being typed stays, whatever is drawn meanwhile; it is taken as the name when it is complete. */
+/** The name is taken when it is complete. */
 function Name({ app }) {
   const name = useWatched(app.name);
-  const [typed, setTyped] = useState(null);
   const [mission] = useSections(app.store, ["mission"], 500);
   const station = mission.get("station");
   const take = (event) => {
     app.name.set(event.currentTarget.value.trim());
-    setTyped(null);
+    event.currentTarget.value = app.name.value;
   };
-  return html`<p class="who"><label for="who">You act as</label> <input id="who" value=${typed ?? name} maxlength=${LONGEST_NAME} placeholder="your name" autocomplete="off"
-    onInput=${(event) => setTyped(event.currentTarget.value)} onChange=${take} /> <span class="quiet">${station ? `for station ${station}, ` : ""}recorded with each action</span></p>`;
+  return html`<p class="who"><label for="who">You act as</label> <${Field} id="who" value=${name} maxlength=${LONGEST_NAME} placeholder="your name" onChange=${take} /> <span class="quiet">${station ? `for station ${station}, ` : ""}recorded with each action</span></p>`;
 }

@@ -281,9 +281,11 @@ class App {
 const onlyOf = (vehicles) => (vehicles.size === 1 ? vehicles.keys().next().value : null);
 
 function Page({ app }) {
-  const { state, why, asks } = useWatched(app.link.state);
+  const state = useWatched(app.link.state);
+  const refused = useRef(null);
   const known = app.clock.now !== null; // what was shown before stays: another run may be served here now
-  return state === "refused" && !known ? html`<${Door} app=${app} why=${why} asks=${asks} />` : html`<${Screen} app=${app} />`;
+  if (known || state.state !== "connecting") refused.current = !known && state.state === "refused" ? state : null;
+  return refused.current ? html`<${Door} app=${app} ...${refused.current} />` : html`<${Screen} app=${app} />`;
 }
 
 function Screen({ app }) {
