@@ -18,7 +18,7 @@ from semantics.behaviours.reaction_rules import moved
 from semantics.brr_driver import mobility_commands
 from semantics.control import commits
 from semantics.environment import Drifts
-from semantics.state.cells import Cell, Changes
+from semantics.state.cells import VOYAGE, Cell, Changes
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.eta import line_cell
 from semantics.state.physical_model import Carried, InTransit, PhysicalModel, placement_cell
@@ -38,8 +38,8 @@ class Voyage:
         origin: Where the vehicle may have been at the `command`.
         toward: What it was sent by (VIA, in order) and to.
         waypoints: Every point that it was sent to in this flight, sorted.
-        hull: Where it may be: the hull of its origin and of everything that it was sent to or by. None where nothing
-            is known of one of them.
+        hull: Where it may be: the hull of its origin and of everything that it was sent to or by. None where something
+            of it drifts within a place: nothing is known. What is absent adds nothing: nobody is sent there.
     """
 
     origin: Extent
@@ -54,7 +54,7 @@ Memory = Voyage | Extent | None
 
 def memory_cell(vehicle: Name) -> Cell:
     """Address what is remembered of a vehicle."""
-    return ("voyage", vehicle)
+    return (VOYAGE, vehicle)
 
 
 def remembered_at_first(setting: Setting) -> Changes:
@@ -85,6 +85,12 @@ def whereabouts(c: Configuration, entity: Name) -> Extent | None:
     if at is None or _is_adrift(c, bearer):
         return None
     return kept or extent(at.geometry)
+
+
+def is_there(c: Configuration, entity: Name) -> bool:
+    """Tell whether P has an entity, and everything that carries it, at some place."""
+    physical = c.structure.physical
+    return physical.position(_outermost(physical, entity)) is not None
 
 
 def origin(c: Configuration, vehicle: Name) -> Extent | None:
@@ -208,7 +214,7 @@ def _sent(
     for name, (_, toward) in flights.items():
         kept: Memory = c.read(memory_cell(name))
         if isinstance(kept, Voyage):
-            where = [whereabouts(c, each) for each in toward]
+            where = [whereabouts(c, each) for each in toward if is_there(c, each)]
             sent_to = tuple(sorted({*kept.waypoints, *points[name]}))
             yield memory_cell(name), Voyage(kept.origin, toward, sent_to, _hull([kept.hull, *where]))
 
