@@ -75,11 +75,15 @@ def nearest_placement(mover: Geometry, target: Geometry, holes: Sequence[Geometr
     """
     if target.is_point:
         return None
-    return _nearest(template(mover) if not mover.is_point else _ANY_POINT, target, tuple(sorted(set(holes))))
+    return _nearest(still(mover), target, tuple(sorted(set(holes))))
 
 
 _ANY_POINT: Final = intern(((0, 0),))
-"""Stands for every point: where a point was doesn't matter to where it can be."""
+
+
+def still(mover: Geometry) -> Geometry:
+    """Return a mover as it was first given; of points one stands for all: where a point was doesn't matter."""
+    return _ANY_POINT if mover.is_point else template(mover)
 
 
 @lru_cache(maxsize=1 << 14)
