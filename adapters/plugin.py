@@ -167,6 +167,15 @@ class Refused(Exception):  # an answer, not an error
 
 
 @dataclass(frozen=True, slots=True)
+class Sent:
+    """A plugin has taken on a command, and tells the vehicle; the vehicle has shown nothing yet."""
+
+    request: str
+    entity: str
+    time: float
+
+
+@dataclass(frozen=True, slots=True)
 class Accepted:
     """The vehicle's own state shows that it follows the request: mode, arming, target or mission."""
 
@@ -426,7 +435,8 @@ Seen = Status | StatusText | Presence
 """Reports for people alone: a run records them, and does nothing by them."""
 
 Report = (
-    Accepted
+    Sent
+    | Accepted
     | Arrived
     | Rejected
     | Doubted
@@ -466,7 +476,8 @@ class Plugin(Protocol):
     cancelled, and then closes everything. `command` may be called from then on, also before the vehicle is heard. It
     returns as soon as the command is accepted, and raises Refused if it never can be. Reports follow: any number of
     Accepted, then one Arrived or Rejected, unless another command replaces it. A rejected request is refused from then
-    on: to repeat it, make a new request.
+    on: to repeat it, make a new request. Hold and Return are owed until they are confirmed: the same request may come
+    again after it was rejected, and begins anew.
     """
 
     @property
@@ -553,6 +564,7 @@ __all__ = [
     "Report",
     "Return",
     "Seen",
+    "Sent",
     "Status",
     "StatusText",
     "TakenOver",

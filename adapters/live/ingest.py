@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from typing import assert_never
 
 from adapters.live.assumptions import STRAYED, broken_by_place, clause_of_leaving, relations
+from adapters.live.fates import confirm, refused, sent
 from adapters.live.flying import arrive, doubt, obey, refuse, renew
 from adapters.live.orders import is_authority
 from adapters.live.other_stations import hear_of
-from adapters.live.sayings import confirm, is_bidden
 from adapters.live.sightings import Refusal, placement_seen, sighting_of
 from adapters.live.state import Batch, Heard
 from adapters.live.turn import Turning
@@ -29,6 +29,7 @@ from adapters.plugin import (
     Presence,
     Rejected,
     Report,
+    Sent,
     Status,
     StatusText,
     TakenOver,
@@ -243,6 +244,8 @@ def note(turning: Turning, report: Report) -> None:
         case Accepted(request, entity) | Arrived(request, entity):
             obey(turning, entity, request, through=isinstance(report, Arrived))
             confirm(turning, entity, request)
+        case Sent(request, entity):
+            sent(turning, entity, request)
         case Delivered() | Underway() | Hosts() | Believes() | Broken():
             hear_of(turning, report)
         case Rejected():
@@ -252,6 +255,7 @@ def note(turning: Turning, report: Report) -> None:
         case TakenOver(entity, _, reason):
             turning.taken[entity] = reason
             turning.bidden.pop(entity, None)
+            turning.owed.pop(entity, None)
             back = f"it gets no commands until `bigactors give-back {entity}`"
             turning.find("taken over", entity, f"{entity} was taken over: {reason}; {back}")
         case LinkLost(entity, _, since):
@@ -272,9 +276,9 @@ def note(turning: Turning, report: Report) -> None:
 def _refuse(turning: Turning, rejected: Rejected) -> None:
     request, entity, reason = rejected.request, rejected.entity, rejected.reason
     refuse(turning, entity, request)
-    if is_bidden(turning, entity, request):
-        turning.find("refused", entity, f"{entity} refuses the operator's order {request}: {reason}")
-    elif entity not in turning.taken:  # else that is what was said
+    if refused(turning, entity, request, reason):
+        return
+    if entity not in turning.taken:  # else that is what was said
         message = f"{entity} refuses {request}: {reason}; the request stays pending"
         turning.find("refused", entity, message)
 

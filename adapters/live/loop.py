@@ -26,12 +26,15 @@ from adapters.plugin import (
     Follow,
     GoTo,
     HandOver,
+    Hold,
     Plugin,
     Published,
     Refused,
     Rejected,
     Report,
+    Return,
     Seen,
+    Sent,
     Status,
     entity_of,
 )
@@ -282,7 +285,9 @@ class LiveRun:
                 raise PluginFailed(f"{failed.source}: {failed.reason}")
         self._begun = True
         if forced:
-            self.state = self.state.with_(suspended=False)  # an unverified run has reported the differences
+            self.state = self.state.with_(
+                suspended=False, owed={}
+            )  # an unverified run has reported the differences
         for order in (*self.state.orders.values(), *self.state.handing.values()):
             if order.command.entity not in self.state.taken:  # a resumed run has compared it
                 self._orders.put_nowait(order.command)
@@ -398,6 +403,8 @@ class LiveRun:
                 if owner is None:
                     raise Refused(f"no vehicle takes commands as {command.entity}")
                 await owner.command(command)
+                if isinstance(command, Hold | Return):
+                    self.inbox.report(Sent(command.request, command.entity, self.clock()))
             except Refused as refused:
                 reason = f"{refused.reason}{f' ({refused.hint})' if refused.hint else ''}"
                 self.inbox.report(Rejected(command.request, command.entity, self.clock(), reason))

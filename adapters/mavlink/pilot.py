@@ -136,6 +136,8 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     if pilot.helm.taken:
         raise Refused(f"it was taken over: {pilot.helm.taken}", "an operator may give it back")
     reason = objection(told, pilot.craft, pilot.stations, pilot.known)
+    if reason and isinstance(told, Hold | Return):
+        return _stops_in_vain(pilot, told, reason, now)
     if reason:
         raise Refused(reason)
     _check_not_rejected(pilot.moving, told)
@@ -151,8 +153,20 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     return Outcome(changed(pilot, moving=_continued(pilot.moving, task)))
 
 
+def _stops_in_vain(pilot: Pilot, told: Hold | Return, reason: str, now: float) -> Outcome:
+    """Reject an order to stop; what it was to end does not go on, should the vehicle obey us again."""
+    ended = tasks.rejected(Task(told, since=now, boots=pilot.known.boots), reason, now)
+    reports = () if ended.report is None else (ended.report,)
+    return Outcome(changed(pilot, moving=ended.task, handing=None), reports=reports)
+
+
 def _check_not_rejected(before: Task | None, told: Command) -> None:
-    """Refuse a rejected request again: a moving place must not take a vehicle back from its pilot."""
+    """Refuse a rejected request again: a moving place must not take a vehicle back from its pilot.
+
+    An order to stop is owed until it is done.
+    """
+    if isinstance(told, Hold | Return):
+        return
     if before is not None and before.rejection and before.command.request == told.request:
         raise Refused(f"the request was rejected: {before.rejection}", "request it again")
 
@@ -160,7 +174,8 @@ def _check_not_rejected(before: Task | None, told: Command) -> None:
 def _continued(before: Task | None, task: Task) -> Task:
     """Continue a task whose place has moved: it keeps its start, and a path continues with the current item."""
     follows = isinstance(task.command, Follow)
-    if before is None or before.command.request != task.command.request or (before.over and not follows):
+    other = before is None or before.command.request != task.command.request
+    if before is None or other or before.rejection or (before.over and not follows):
         return task
     return replace(
         task,

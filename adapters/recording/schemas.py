@@ -198,6 +198,7 @@ COMMAND: Final = _object(
 
 REPORTS: Final = (
     *(
+        "Sent",
         "Accepted",
         "Arrived",
         "Rejected",
