@@ -13,6 +13,7 @@ from adapters.live.orders import is_authority
 from adapters.live.other_stations import hear_of
 from adapters.live.sightings import Refusal, placement_seen, sighting_of
 from adapters.live.state import Batch, Heard
+from adapters.live.surroundings import told_apart
 from adapters.live.turn import Turning
 from adapters.live.unannounced import comes_in, place_strangers, remove_strangers
 from adapters.plugin import (
@@ -107,6 +108,20 @@ def _place(turning: Turning, entity: Name) -> None:
         return
     if not _same_place(turning, entity, here, seen):
         _move(turning, entity, here, seen)
+    elif entity in turning.plan.vehicles and entity not in turning.taken:
+        _check_covered(turning, entity, here, seen)
+
+
+def _check_covered(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> None:
+    """Report a vehicle that stands where something may come over it that cannot come over its point in P."""
+    if turning.suspended or not isinstance(here, Placed) or not isinstance(seen, Placed):
+        return
+    place = told_apart(turning.c, entity, here, seen, turning.plan.first)
+    if place:
+        only = f"{place}, where the mission lists it, holds {entity} at one of the two points only"
+        turning.breaks(
+            f"{entity} is seen at {seen.geometry!r}, the mission has it at {here.geometry!r}: {only}", entity
+        )
 
 
 def _same_place(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> bool:
@@ -242,7 +257,7 @@ def note(turning: Turning, report: Report) -> None:
     """Take in a plugin's report; a report alone commits nothing."""
     match report:
         case Accepted(request, entity) | Arrived(request, entity):
-            obey(turning, entity, request, through=isinstance(report, Arrived))
+            obey(turning, entity, report)
             confirm(turning, entity, request)
         case Sent(request, entity):
             sent(turning, entity, request)

@@ -9,7 +9,7 @@ from enum import StrEnum
 
 from adapters.live.timing import Timers
 from adapters.plugin import Command, Follow, GoTo, HandOver, Hold, Published, Report, Return
-from physical import PhysicalProperty
+from physical import Geometry, PhysicalProperty
 from semantics.contingencies import Fallback, Precautions
 from semantics.observed_steps import Sight
 from semantics.state.cells import Cell
@@ -58,6 +58,7 @@ class Order:
         obeyed: Whether the vehicle has shown that it follows the command, and has shown nothing else since.
         through: Whether the vehicle has reported the end of its path.
         refused: Whether it was refused.
+        waypoint: Around which point the vehicle will stay, as far as it has told.
     """
 
     command: GoTo | Follow | HandOver
@@ -66,6 +67,17 @@ class Order:
     obeyed: bool = False
     through: bool = False
     refused: bool = False
+    waypoint: Geometry | None = None
+
+    @property
+    def goal(self) -> Geometry | None:
+        """The last place of the command, as it was when it was told."""
+        match self.command:
+            case GoTo(place=place):
+                return place
+            case Follow(path=path):
+                return path[-1]
+        return None
 
 
 class Fate(StrEnum):

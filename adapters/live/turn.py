@@ -335,7 +335,7 @@ class Turning:
                 return (), False
         if way.flying:
             for node, place in way.flying:
-                going = journey(self.c, way, node, place, self.request_of(request.agent))
+                going = journey(self.c, way, node, place, self.request_of(request.agent), self.plan.first)
                 if going is None:
                     return (), False
                 self.orders[node] = Order(going, request.agent, self.now)

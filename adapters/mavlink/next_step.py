@@ -7,11 +7,12 @@ cases: the next action is the first whose effect the state does not show.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from adapters.mavlink import command as to
 from adapters.mavlink.constants import AUTHORITY_PARAMETERS, Cmd, Fence, Frame, MissionType
 from adapters.mavlink.items import Items, e7, fence, route
+from adapters.mavlink.loiter_radius import goal, stay
 from adapters.mavlink.message import Message
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.telemetry import Position, Telemetry
@@ -56,9 +57,15 @@ class Load:
 
 @dataclass(frozen=True, slots=True)
 class Underway:
-    """The state shows that the vehicle follows its command; `done` that it has completed it."""
+    """The state shows that the vehicle follows its command; `done` that it has completed it.
+
+    Attributes:
+        done: Whether it has.
+        waypoint: Around which point it will stay, if it is going anywhere.
+    """
 
     done: bool
+    waypoint: Geometry | None = field(default=None, compare=False)
 
 
 Step = Wait | Tell | Load | Underway
@@ -75,6 +82,7 @@ class Vehicle:
         on_board: The missions and fences that were read back since it booted.
         fence: The polygon that it must stay in.
         circle: The radius in metres at which it circles where it stays.
+        room: The radius in metres within which its circles stay, in wind too.
         height: Metres above home at which the command is carried out.
         begun: Whether its mission was seen to begin since the command.
         resumes: Whether the mission continues with the current item.
@@ -93,6 +101,7 @@ class Vehicle:
     begun: bool
     resumes: bool = False
     home_circle: float = 0.0
+    room: float = 0.0
     speaker: int = 0
     deaf: str = ""
 
@@ -146,12 +155,17 @@ def _loaded(vehicle: Vehicle, items: Items, kind: MissionType) -> Load | None:
 
 
 def _go(command: GoTo, vehicle: Vehicle) -> Step:
-    at = waypoint(command.place)
+    at = _stay(command, vehicle)
     return (
         _off_the_ground(vehicle, at)
         or _sent(vehicle, at)
-        or Underway(done=_reached(command.place, at, vehicle))
+        or Underway(done=_reached(command.place, at, vehicle), waypoint=at)
     )
+
+
+def _stay(command: GoTo | Follow, vehicle: Vehicle) -> Geometry:
+    """Return around which point it will stay; commands without room for its circle were refused."""
+    return stay(command, vehicle.room) or waypoint(goal(command))
 
 
 def _off_the_ground(vehicle: Vehicle, at: Geometry) -> Step | None:
@@ -242,7 +256,8 @@ def _targets(known: Telemetry, at: Geometry) -> bool:
 
 
 def _follow(command: Follow, vehicle: Vehicle) -> Step:
-    profile, path = vehicle.profile, tuple(map(waypoint, command.path))
+    profile, last = vehicle.profile, _stay(command, vehicle)
+    path = (*map(waypoint, command.path[:-1]), last)
     takeoff, home = profile.takeoff in (TakeOff.MISSION, TakeOff.COMMAND), profile.dialect.home_is_item
     items = route(path, vehicle.height, takeoff=takeoff, home=home)
     # A flying vehicle need not take off again: it begins with the point after the take-off.
@@ -255,7 +270,7 @@ def _follow(command: Follow, vehicle: Vehicle) -> Step:
         or _begun(vehicle, first)
         or _in_mode(vehicle, profile.auto)
         or _armed(vehicle)
-        or Underway(done=_at_the_end(command, items, vehicle))
+        or Underway(done=_at_the_end(command, last, items, vehicle), waypoint=last)
     )
 
 
@@ -267,9 +282,8 @@ def _begun(vehicle: Vehicle, first: int) -> Step | None:
     return Tell("to begin its mission", to.begin_with(vehicle.system, first, by_command=by_command))
 
 
-def _at_the_end(command: Follow, items: Items, vehicle: Vehicle) -> bool:
-    last = command.path[-1]
-    return vehicle.known.current == len(items) - 1 and _reached(last, waypoint(last), vehicle)
+def _at_the_end(command: Follow, at: Geometry, items: Items, vehicle: Vehicle) -> bool:
+    return vehicle.known.current == len(items) - 1 and _reached(command.path[-1], at, vehicle)
 
 
 def _hand_over(station: int, vehicle: Vehicle) -> Step:

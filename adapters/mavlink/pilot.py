@@ -17,7 +17,7 @@ from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, 
 from adapters.mavlink.fleet import CONTROL, Craft, Stations
 from adapters.mavlink.items import Items
 from adapters.mavlink.link import Link, watch
-from adapters.mavlink.loiter_radius import circle, home_circle
+from adapters.mavlink.loiter_radius import circle, home_circle, room
 from adapters.mavlink.message import Message
 from adapters.mavlink.objections import not_ours, objection
 from adapters.mavlink.profiles import Profile, unknown_kind
@@ -27,7 +27,6 @@ from adapters.mavlink.takeover import Helm
 from adapters.mavlink.task import Progress, Task
 from adapters.mavlink.telemetry import Position, Telemetry, absorb, property_of, waited
 from adapters.plugin import (
-    Accepted,
     Aged,
     Command,
     Doubted,
@@ -351,7 +350,7 @@ def _changes(pilot: Pilot, before: Helm, now: float) -> Iterator[Report]:
     if before.held and not pilot.helm.held:
         yield Doubted(entity, now)
     elif pilot.helm.held and not before.held and task is not None and task.accepted:
-        yield Accepted(task.command.request, entity, now)
+        yield tasks.accepted(task, now)
 
 
 def _undone(pilot: Pilot, profile: Profile) -> str:
@@ -420,6 +419,7 @@ def _vehicle(pilot: Pilot, task: Task, profile: Profile) -> next_step.Vehicle:
         fence=pilot.craft.fence,
         circle=circle(pilot.craft, profile, pilot.known),
         home_circle=home_circle(pilot.craft, profile, pilot.known),
+        room=room(pilot.craft, profile, pilot.known),
         height=task.height or 0.0,
         begun=task.begun,
         resumes=task.resumes,

@@ -219,6 +219,7 @@ REPORT: Final = _object(
     report={"type": "string", "enum": [*REPORTS]},
     request=_TEXT,
     entity=_TEXT,
+    waypoint={**_RING, "description": "Around which point the vehicle will stay."},
     reason=_TEXT,
     what=_TEXT,
     detail=_TEXT,

@@ -1,6 +1,6 @@
 """Event loops with a faster clock, so that tests of minutes take seconds.
 
-Code that waits by asyncio does not notice. Time waits for the process: it passes no timer that was not served. So a busy
+Code that waits by asyncio does not notice. Time waits for the process: it passes no timer that is not served. A busy
 machine makes a simulation slower, and changes nothing in it. Local sockets work with both clocks: data has arrived when
 the sender continues.
 """

@@ -1,6 +1,7 @@
 """Event loops with a faster clock: time waits for the process."""
 
 import asyncio
+import itertools
 import time
 
 import pytest
@@ -23,7 +24,7 @@ async def ticking(ticks, blocks=0.0):
 @pytest.mark.parametrize("speed", [10.0, 100.0, None])
 def test_a_process_that_is_kept_from_running_misses_no_moment_of_simulated_time(speed):
     seen = run(ticking(30, blocks=0.3), speed)
-    steps = [after - before for before, after in zip(seen, seen[1:], strict=False)]
+    steps = [after - before for before, after in itertools.pairwise(seen)]
     assert max(steps) < 1.5 * PERIOD
 
 
@@ -31,7 +32,7 @@ def test_a_faster_clock_keeps_its_pace():
     began = time.monotonic()
     seen = run(ticking(100), 20.0)
     assert seen[-1] == pytest.approx(100 * PERIOD, rel=0.2)
-    assert 0.45 <= time.monotonic() - began
+    assert time.monotonic() - began >= 0.45
 
 
 def test_a_faster_clock_goes_on_while_nothing_but_sockets_is_waited_for():
