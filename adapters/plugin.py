@@ -421,6 +421,7 @@ class Status:
         height: Metres above its home.
         home: Its home, in degrees.
         returning: Whether it is in the mode in which it flies home.
+        lacks: Why it has no position that counts; empty if it has one.
     """
 
     entity: str
@@ -435,6 +436,7 @@ class Status:
     height: float | None = None
     home: tuple[float, float] | None = None
     returning: bool | None = None
+    lacks: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -115,6 +115,8 @@ def _tells(said: Status | None) -> Iterator[str]:
         return
     if said.mode is not None:
         yield f"{said.mode}{'' if said.armed else ', disarmed'}"
+    if said.lacks:
+        yield said.lacks.removeprefix("it ")
     battery = said.battery
     if battery is not None and battery.percent is not None:
         yield f"battery {battery.percent} %"

@@ -12,7 +12,7 @@ import asyncio
 import gc
 import time
 from collections import OrderedDict
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from adapters.listening import Listening
@@ -84,15 +84,23 @@ class NotAsAssumed(Exception):
 
 
 class NotHeard(Exception):
-    """Vehicles of the mission were not heard before the start of the run.
+    """Vehicles of the mission were not heard before the start of the run, or have no position.
 
     Attributes:
         vehicles: Which.
+        heard: Whether all of them were heard at all.
     """
 
-    def __init__(self, vehicles: Sequence[str]) -> None:
-        super().__init__(f"nothing was heard of {', '.join(vehicles)}")
+    def __init__(self, vehicles: Sequence[str], said: Mapping[str, Status] | None = None) -> None:
+        lacking = {name: said[name].lacks for name in vehicles if name in said} if said else {}
+        silent = [name for name in vehicles if name not in lacking]
+        words = [f"nothing was heard of {', '.join(silent)}"] if silent else []
+        words += [
+            f"{name} is heard, and {why or 'does not tell yet what it is'}" for name, why in lacking.items()
+        ]
+        super().__init__("; ".join(words))
         self.vehicles = tuple(vehicles)
+        self.heard = not silent
 
 
 class PluginFailed(Exception):
@@ -272,7 +280,7 @@ class LiveRun:
         until = self._listening.look(self.clock()) + patience
         while missing := sorted(set(self.plan.vehicles) - set(self.state.seen)):
             if self._listening.look(self.clock()) >= until:
-                raise NotHeard(missing)
+                raise NotHeard(missing, self.inbox.said)
             await self._next(0.1)
             batch, answers = self.inbox.take(self._missed())
             turn = watch(self.plan, self.state, batch, self.clock())

@@ -137,7 +137,7 @@ def _of_own_fences(command: GoTo | Follow, craft: Craft, profile: Profile, known
     around = room(craft, profile, known) if profile.drift > 1.0 else 0.0
     height = None
     if known.position is not None:
-        height = height_of(command.altitude, profile, known.position, craft.height_of(profile))
+        height = height_of(command.altitude, profile, known, known.position, craft.height_of(profile))
     name = command.name or "the place"
     *passed, last = _points(command, craft, known)
     for at in passed:

@@ -13,6 +13,7 @@ from adapters.mavlink import next_step, streams, takeover
 from adapters.mavlink import task as tasks
 from adapters.mavlink.changed import changed
 from adapters.mavlink.command import long, read_parameter
+from adapters.mavlink.condition import Condition, look
 from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, REGULAR, Cmd, MissionType
 from adapters.mavlink.fleet import CONTROL, Craft, Stations
 from adapters.mavlink.items import Items
@@ -20,7 +21,7 @@ from adapters.mavlink.link import Link, watch
 from adapters.mavlink.loiter_radius import circle, home_circle, room
 from adapters.mavlink.message import Message
 from adapters.mavlink.objections import not_ours, objection
-from adapters.mavlink.profiles import Profile, unknown_kind
+from adapters.mavlink.profiles import Profile, TakeOff, unknown_kind
 from adapters.mavlink.streams import Streams
 from adapters.mavlink.sync import Sync
 from adapters.mavlink.takeover import Helm
@@ -96,6 +97,7 @@ class Pilot:
         since: Since when it has a position.
         shown: What the last publication depended on.
         status: What was last reported of what it says of itself.
+        condition: What of its position and its home was reported.
     """
 
     craft: Craft
@@ -115,6 +117,7 @@ class Pilot:
     since: float | None = None
     shown: Shown = (None, None, False)
     status: Status | None = None
+    condition: Condition = field(default_factory=Condition)
 
 
 @dataclass(frozen=True)  # no slots: `changed`
@@ -179,6 +182,7 @@ def _continued(before: Task | None, task: Task) -> Task:
     return replace(
         task,
         height=before.height,
+        above=before.above,
         begun=before.begun and not follows,
         resumes=before.resumes or (before.begun and follows),
         boots=before.boots,
@@ -219,8 +223,10 @@ def _ticked(pilot: Pilot, now: float) -> Outcome:
     before = pilot.unanswered
     if pilot.known.heard is not None and not link.lost:
         pilot, questions = _asked(pilot, now)
+    condition, noticed = look(pilot.condition, pilot.craft.entity, pilot.known, now, lost=link.lost)
+    pilot = changed(pilot, condition=condition)
     outcome = _advance(pilot, now)
-    reports = outcome.reports if change is None else (change, *outcome.reports)
+    reports = (*(() if change is None else (change,)), *noticed, *outcome.reports)
     if before < UNANSWERED <= pilot.unanswered and pilot.known.signs and not pilot.signs:
         reports = (*reports, Trouble(pilot.craft.entity, now, "no answer", _deaf(pilot)))
     return changed(outcome, sent=_spoken(pilot, (*questions, *outcome.sent)), reports=reports)
@@ -258,6 +264,7 @@ def _status(pilot: Pilot, now: float) -> Status:
         height=None if known.position is None else known.position.height,
         home=known.home,
         returning=None if profile is None else known.mode == profile.home,
+        lacks=known.lacks(now),
     )
 
 
@@ -337,7 +344,7 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
     if not _is_ours(pilot):
         return changed(pilot, helm=Helm(boots=known.boots)), ()
     command = None if pilot.moving is None else pilot.moving.command
-    helm = takeover.watch(pilot.helm, known, profile, command, _undone(pilot, profile))
+    helm = takeover.watch(pilot.helm, known, profile, command, _undone(pilot, profile, now))
     before, pilot = pilot.helm, changed(pilot, helm=helm)
     if helm.taken and not before.taken:
         return _taken_over(pilot, now)
@@ -353,12 +360,12 @@ def _changes(pilot: Pilot, before: Helm, now: float) -> Iterator[Report]:
         yield tasks.accepted(task, now)
 
 
-def _undone(pilot: Pilot, profile: Profile) -> str:
+def _undone(pilot: Pilot, profile: Profile, now: float) -> str:
     """Return the part of its completed commands that the vehicle no longer does."""
     task = pilot.moving
     if task is None or not task.accepted:
         return ""
-    step = next_step.next_step(task.command, task.station, _vehicle(pilot, task, profile))
+    step = next_step.next_step(task.command, task.station, _vehicle(pilot, task, profile, now))
     return tasks.undone(task, step, pilot.known.boots)
 
 
@@ -405,12 +412,12 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
     if foreign and isinstance(task.doing, Sync):  # a task that was begun can't be ended here
         return tasks.rejected(task, foreign, now)
     task = _with_height(pilot, task)
-    vehicle = _vehicle(pilot, task, profile)
+    vehicle = _vehicle(pilot, task, profile, now)
     step = next_step.next_step(task.command, task.station, vehicle)
     return tasks.advance(task, step, vehicle, lost=pilot.link.lost, now=now)
 
 
-def _vehicle(pilot: Pilot, task: Task, profile: Profile) -> next_step.Vehicle:
+def _vehicle(pilot: Pilot, task: Task, profile: Profile, now: float) -> next_step.Vehicle:
     return next_step.Vehicle(
         system=pilot.system,
         known=pilot.known,
@@ -421,6 +428,8 @@ def _vehicle(pilot: Pilot, task: Task, profile: Profile) -> next_step.Vehicle:
         home_circle=home_circle(pilot.craft, profile, pilot.known),
         room=room(pilot.craft, profile, pilot.known),
         height=task.height or 0.0,
+        above=task.above,
+        lacks=pilot.known.lacks(now),
         begun=task.begun,
         resumes=task.resumes,
         speaker=pilot.stations.speaker(_authority(pilot)),
@@ -445,12 +454,17 @@ def _unknown(pilot: Pilot, task: Task, now: float) -> Progress:
 
 
 def _with_height(pilot: Pilot, task: Task) -> Task:
-    """Fix the height of a task as soon as the vehicle's own position allows."""
-    profile, position = pilot.known.profile, pilot.known.position
+    """Fix the height of a task as soon as the vehicle's own position allows.
+
+    A band is above sea level, and so is what the vehicle is told then; and always if its home has been moved.
+    """
+    known, profile, position = pilot.known, pilot.known.profile, pilot.known.position
     if task.height is not None or profile is None or position is None:
         return task
     band = task.command.altitude if isinstance(task.command, GoTo | Follow) else None
-    return replace(task, height=next_step.height_of(band, profile, position, pilot.craft.height_of(profile)))
+    height = next_step.height_of(band, profile, known, position, pilot.craft.height_of(profile))
+    fixed = (band is not None or known.home_moved) and profile.takeoff is not TakeOff.NONE
+    return replace(task, height=height, above=known.datum if fixed else None)
 
 
 def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Aged, ...], tuple[Report, ...]]:

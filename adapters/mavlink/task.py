@@ -30,7 +30,8 @@ class Task:
     Attributes:
         command: The command.
         station: For a HandOver, the system id of the station that gets the authority.
-        height: Metres above home at which it is carried out, once known.
+        height: Metres above the mission's home at which it is carried out, once known.
+        above: Metres above sea level of that home, if heights are told above sea level.
         step: The current step.
         since: Since when: the start of the step, the vehicle's return to the link, or an upload's last progress.
         reached: The progress of an upload.
@@ -49,6 +50,7 @@ class Task:
     command: Command
     station: int = 0
     height: float | None = None
+    above: float | None = None
     step: Step | None = None
     since: float = 0.0
     reached: tuple[int, int, int] = (0, 0, 0)

@@ -303,6 +303,7 @@ STATUS: Final = _object(
         "maxItems": 2,
         "description": "The latitude and longitude of its home, in degrees.",
     },
+    lacks={**_TEXT, "description": "Why it has no position that counts; empty if it has one."},
     returning={
         "type": ["boolean", "null"],
         "description": "Whether it is in the mode in which it flies home.",

@@ -282,5 +282,6 @@ def _not_begun(error: Exception) -> Exit:
             tell(finding.message, "not as the mission says:")
         tell("the run has not begun: put the world or the mission right, or give --unverified")
         return Exit.VIOLATED
-    hint = "is the address right, and the vehicle switched on?" if isinstance(error, NotHeard) else ""
+    silent = isinstance(error, NotHeard) and not error.heard
+    hint = "is the address right, and the vehicle switched on?" if silent else ""
     raise Mistake(str(error), hint) from error
