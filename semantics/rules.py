@@ -164,7 +164,7 @@ def command(c: Configuration, a: Name) -> Iterator[Transition]:
 def commit(c: Configuration, a: Name, reach: Reach | None = None) -> Iterator[Transition]:
     """Arrive (`control timed`): the destination is where it is now, and R must still match.
 
-    FLY(a, m, R′) ∈ η, in line      m(R) in P, what travels in transit
+    FLY(a, m, R′) ∈ η, in line      m(R) in P, what travels in transit there
     R still matches, but for where the moved node is now      L[m(R) ↦ m(R′)] a forest
     its unmoved part is consistent      drive(P, m(R′)) = P′
     ──────────────────────────────────────────────────────────────────────────────  ⟨commit : FLY(a, m, R′)⟩

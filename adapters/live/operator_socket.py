@@ -25,6 +25,9 @@ MOST_SERVED: Final = 32
 ASKED: Final = b'{"status": true}\n'
 """The line that asks how a run stands."""
 
+ASKED_FATES: Final = b'{"fates": true}\n'
+"""The line that asks what has become of operators' orders."""
+
 EXPECTED: Final = (
     "an object with 'agent' and 'message', 'give_back', 'order' (hold or return) and 'vehicle', or 'acknowledge', "
     "and 'by', in valid Unicode"
@@ -33,16 +36,21 @@ EXPECTED: Final = (
 Listener = Callable[[Said], Awaitable[Answer]]
 """Takes a message, and returns the answer to it."""
 
+Fates = Mapping[str, tuple[str, str]]
+"""What has become of the operator's order to each vehicle, and in words."""
+
 
 class NobodyListens(Exception):
     """No mission runs there, or it does not answer; the message says which."""
 
 
 @asynccontextmanager
-async def listening(path: Path, listener: Listener, describe: Callable[[], str] = str) -> AsyncIterator[None]:
+async def listening(
+    path: Path, listener: Listener, describe: Callable[[], str] = str, fates: Callable[[], Fates] = dict
+) -> AsyncIterator[None]:
     """Listen at a path that only its user may open; raises OSError if that is impossible.
 
-    `describe` says how the run stands, to who asks.
+    `describe` says how the run stands, and `fates` what has become of orders, to who asks.
     The socket of a killed run is replaced; that of a live run is not, be it stopped.
     """
 
@@ -50,7 +58,7 @@ async def listening(path: Path, listener: Listener, describe: Callable[[], str] 
         with suppress(OSError, ValueError, TimeoutError, asyncio.IncompleteReadError):
             async with asyncio.timeout(PATIENCE):
                 line = await reader.readuntil()
-            writer.write(json.dumps(await _answer(line, listener, describe)).encode() + b"\n")
+            writer.write(json.dumps(await _answer(line, listener, describe, fates)).encode() + b"\n")
             await writer.drain()
         writer.close()
         with suppress(OSError):
@@ -96,9 +104,13 @@ def _accepting(server: socket, serve: Serve) -> Iterator[None]:
         reserve.close()
 
 
-async def _answer(line: bytes, listener: Listener, describe: Callable[[], str]) -> dict[str, object]:
+async def _answer(
+    line: bytes, listener: Listener, describe: Callable[[], str], fates: Callable[[], Fates]
+) -> dict[str, object]:
     if line == ASKED:
         return {"refusal": "", "status": describe()}
+    if line == ASKED_FATES:
+        return {"refusal": "", "fates": dict(fates())}
     said = _said(line)
     if said is None:
         return {"refusal": f"this is no saying: {EXPECTED}, was expected"}
@@ -175,6 +187,17 @@ async def status(path: Path) -> str:
         case {"status": str(text)}:
             return text
     raise NobodyListens(f"the run at {path} is of a version that does not tell how it stands")
+
+
+async def fates(path: Path) -> Fates:
+    """Return what has become of operators' orders in the run that listens at a path; raises NobodyListens."""
+    match await _asked(path, ASKED_FATES):
+        case {"fates": dict(found)}:
+            pairs = (
+                (name, each) for name, each in found.items() if isinstance(each, list) and len(each) == 2
+            )
+            return {name: (str(fate), str(words)) for name, (fate, words) in pairs}
+    raise NobodyListens(f"the run at {path} is of a version that does not tell what becomes of orders")
 
 
 def _outcome(answer: dict[str, Any]) -> Outcome:

@@ -22,6 +22,7 @@ from adapters.mavlink.pilot import Outcome, Pilot
 from adapters.mavlink.roster import Roster
 from adapters.mavlink.signing import Verdict
 from adapters.plugin import (
+    NOWHERE_ELSE,
     Aged,
     Command,
     Failed,
@@ -37,7 +38,7 @@ from adapters.plugin import (
 from adapters.ration import Ration
 from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
-from physical import Geometry, PhysicalError
+from physical import Geometry, PhysicalError, Surroundings
 
 TICK: Final = 0.2
 """Seconds between two looks of a pilot at the clock."""
@@ -135,10 +136,12 @@ class Autopilot:
         crafts = (pilot.craft for pilot in self._pilots.values())
         return {craft.entity: craft.fence for craft in crafts if craft.fence is not None}
 
-    def objection(self, entity: str, place: Geometry, name: str) -> str | None:
+    def objection(
+        self, entity: str, place: Geometry, name: str, around: Surroundings = NOWHERE_ELSE
+    ) -> str | None:
         """Return why a vehicle can't stay at a place, as far as its kind is known; None if it can."""
         pilot = self._pilots[entity]
-        return unfit(GoTo("", entity, place, name=name), pilot.craft, pilot.known)
+        return unfit(GoTo("", entity, place, name=name, around=around), pilot.craft, pilot.known)
 
     def bar(self, entity: str, place: Geometry, name: str) -> str | None:
         """Return why a vehicle can't pass a place; None if it can."""

@@ -7,11 +7,12 @@ cases: the next action is the first whose effect the state does not show.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from adapters.mavlink import command as to
 from adapters.mavlink.constants import AUTHORITY_PARAMETERS, Cmd, Fence, Frame, MissionType
 from adapters.mavlink.items import Items, e7, fence, route
+from adapters.mavlink.loiter_radius import goal, stay
 from adapters.mavlink.message import Message
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.telemetry import Position, Telemetry
@@ -19,7 +20,7 @@ from adapters.plugin import Command, Follow, GiveBack, GoTo, HandOver, Hold, Reb
 from physical import Band, Geometry, contains, distance, point, waypoint
 
 TARGET_METRES = 5.0
-"""Metres by which the vehicle's reported target may differ from the commanded one."""
+"""Metres by which the vehicle's reported target may differ from the commanded one, along and in height."""
 
 CLIMBING = 0.2
 """Metres a second."""
@@ -56,9 +57,15 @@ class Load:
 
 @dataclass(frozen=True, slots=True)
 class Underway:
-    """The state shows that the vehicle follows its command; `done` that it has completed it."""
+    """The state shows that the vehicle follows its command; `done` that it has completed it.
+
+    Attributes:
+        done: Whether it has.
+        waypoint: Around which point it will stay, if it is going anywhere.
+    """
 
     done: bool
+    waypoint: Geometry | None = field(default=None, compare=False)
 
 
 Step = Wait | Tell | Load | Underway
@@ -75,12 +82,15 @@ class Vehicle:
         on_board: The missions and fences that were read back since it booted.
         fence: The polygon that it must stay in.
         circle: The radius in metres at which it circles where it stays.
-        height: Metres above home at which the command is carried out.
+        room: The radius in metres within which its circles stay, in wind too.
+        height: Metres above the mission's home at which the command is carried out.
+        above: Metres above sea level of that home, if heights are told above sea level; None for above home.
         begun: Whether its mission was seen to begin since the command.
         resumes: Whether the mission continues with the current item.
         home_circle: The radius in metres at which it circles its home when it returns.
         speaker: The system id of messages to it, that of its authority.
         deaf: Why it seems not to hear us, if so.
+        lacks: Why it has no position, if so.
     """
 
     system: int
@@ -92,9 +102,12 @@ class Vehicle:
     height: float
     begun: bool
     resumes: bool = False
+    above: float | None = None
     home_circle: float = 0.0
+    room: float = 0.0
     speaker: int = 0
     deaf: str = ""
+    lacks: str = ""
 
 
 def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
@@ -117,7 +130,7 @@ def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
 def _prepared(vehicle: Vehicle) -> Step | None:
     """Yield what is missing until the vehicle has a position, accepts missions, and has its fence."""
     if vehicle.known.position is None:
-        return Wait("it has no position yet")
+        return Wait(vehicle.lacks or "it has no position yet")
     dialect = vehicle.profile.dialect
     if dialect.above_sea and vehicle.known.ground is None:
         return Wait("it has no home yet")
@@ -146,12 +159,17 @@ def _loaded(vehicle: Vehicle, items: Items, kind: MissionType) -> Load | None:
 
 
 def _go(command: GoTo, vehicle: Vehicle) -> Step:
-    at = waypoint(command.place)
+    at = _stay(command, vehicle)
     return (
         _off_the_ground(vehicle, at)
         or _sent(vehicle, at)
-        or Underway(done=_reached(command.place, at, vehicle))
+        or Underway(done=_reached(command.place, at, vehicle), waypoint=at)
     )
+
+
+def _stay(command: GoTo | Follow, vehicle: Vehicle) -> Geometry:
+    """Return around which point it will stay; commands without room for its circle were refused."""
+    return stay(command, vehicle.room) or waypoint(goal(command))
 
 
 def _off_the_ground(vehicle: Vehicle, at: Geometry) -> Step | None:
@@ -170,7 +188,9 @@ def _copter_takeoff(vehicle: Vehicle) -> Step | None:
     if not vehicle.known.flying:
         return _told_to_take_off(vehicle)
     position = _position(vehicle)
-    low = position.height < 0.8 * vehicle.profile.rise
+    datum = vehicle.known.datum
+    height = position.height if datum is None else position.altitude - datum
+    low = height < 0.8 * vehicle.profile.rise
     return Wait("it climbs") if low and position.climb > CLIMBING else None
 
 
@@ -187,11 +207,18 @@ def _told_to_take_off(vehicle: Vehicle) -> Step:
 
 
 def _height(vehicle: Vehicle, height: float) -> tuple[float, Frame]:
-    """Return a height above home as the vehicle takes it in commands."""
+    """Return a height above home as the vehicle takes it when it takes off."""
     if not vehicle.profile.dialect.above_sea:
         return height, Frame.HOME
     assert vehicle.known.ground is not None, "plans begin with a home"
     return round(height + vehicle.known.ground, 1), Frame.SEA_LEVEL
+
+
+def _travel_height(vehicle: Vehicle) -> tuple[float, Frame]:
+    """Return the height of the command as the vehicle takes it on its way."""
+    if vehicle.above is None:
+        return _height(vehicle, vehicle.height)
+    return round(vehicle.height + vehicle.above, 1), Frame.SEA_LEVEL
 
 
 def _mission_takeoff(vehicle: Vehicle, at: Geometry) -> Step | None:
@@ -200,7 +227,7 @@ def _mission_takeoff(vehicle: Vehicle, at: Geometry) -> Step | None:
         climbing = known.mode == auto and (known.current or 0) <= 1 and _has_takeoff(vehicle)
         return Wait("it climbs") if climbing else None
     return (
-        _loaded(vehicle, route((at,), vehicle.height, takeoff=True), MissionType.MISSION)
+        _loaded(vehicle, route((at,), vehicle.height, takeoff=True, above=vehicle.above), MissionType.MISSION)
         or _begun(vehicle, 1)
         or _in_mode(vehicle, auto)
         or _armed(vehicle)
@@ -220,11 +247,22 @@ def _sent(vehicle: Vehicle, at: Geometry) -> Step | None:
     """
     known, (x, y) = vehicle.known, e7(at)
     enters = known.mode != vehicle.profile.guided
+    why = "to go there"
     if not enters and _targets(known, at):
-        return None
+        if not _aims_elsewhere(vehicle):
+            return None
+        why = f"to go there at another height: its target is {known.aim:.0f} m above sea level"
     enters = enters or vehicle.profile.dialect.enters
-    height = _height(vehicle, vehicle.height)
-    return Tell("to go there", to.reposition(vehicle.system, x, y, height, vehicle.circle, enters=enters))
+    height = _travel_height(vehicle)
+    return Tell(why, to.reposition(vehicle.system, x, y, height, vehicle.circle, enters=enters))
+
+
+def _aims_elsewhere(vehicle: Vehicle) -> bool:
+    """Tell whether its target is at another height than the command's, as far as both are known."""
+    known = vehicle.known
+    if known.aim is None or known.datum is None or vehicle.profile.takeoff is TakeOff.NONE:
+        return False
+    return abs(known.aim - vehicle.height - known.datum) > TARGET_METRES
 
 
 def _stopped(vehicle: Vehicle) -> Step | None:
@@ -242,9 +280,10 @@ def _targets(known: Telemetry, at: Geometry) -> bool:
 
 
 def _follow(command: Follow, vehicle: Vehicle) -> Step:
-    profile, path = vehicle.profile, tuple(map(waypoint, command.path))
+    profile, last = vehicle.profile, _stay(command, vehicle)
+    path = (*map(waypoint, command.path[:-1]), last)
     takeoff, home = profile.takeoff in (TakeOff.MISSION, TakeOff.COMMAND), profile.dialect.home_is_item
-    items = route(path, vehicle.height, takeoff=takeoff, home=home)
+    items = route(path, vehicle.height, takeoff=takeoff, home=home, above=vehicle.above)
     # A flying vehicle need not take off again: it begins with the point after the take-off.
     first = home + (takeoff and vehicle.known.flying)
     if vehicle.resumes:
@@ -255,7 +294,7 @@ def _follow(command: Follow, vehicle: Vehicle) -> Step:
         or _begun(vehicle, first)
         or _in_mode(vehicle, profile.auto)
         or _armed(vehicle)
-        or Underway(done=_at_the_end(command, items, vehicle))
+        or Underway(done=_at_the_end(command, last, items, vehicle), waypoint=last)
     )
 
 
@@ -267,9 +306,8 @@ def _begun(vehicle: Vehicle, first: int) -> Step | None:
     return Tell("to begin its mission", to.begin_with(vehicle.system, first, by_command=by_command))
 
 
-def _at_the_end(command: Follow, items: Items, vehicle: Vehicle) -> bool:
-    last = command.path[-1]
-    return vehicle.known.current == len(items) - 1 and _reached(last, waypoint(last), vehicle)
+def _at_the_end(command: Follow, at: Geometry, items: Items, vehicle: Vehicle) -> bool:
+    return vehicle.known.current == len(items) - 1 and _reached(command.path[-1], at, vehicle)
 
 
 def _hand_over(station: int, vehicle: Vehicle) -> Step:
@@ -306,11 +344,14 @@ def _reached(place: Geometry, at: Geometry, vehicle: Vehicle) -> bool:
     return contains(place, spot)
 
 
-def height_of(band: Band | None, profile: Profile, position: Position, otherwise: float) -> float:
-    """Return the height above home of the middle of a band; the vehicle's own if there is none."""
+def height_of(
+    band: Band | None, profile: Profile, known: Telemetry, position: Position, otherwise: float
+) -> float:
+    """Return the height above the mission's home of the middle of a band; the vehicle's own if there is none."""
     if band is None or profile.takeoff is TakeOff.NONE:
         return otherwise
-    return round((band.low + band.high) / 2 - (position.altitude - position.height), 2)
+    home = position.altitude - position.height if known.datum is None else known.datum
+    return round((band.low + band.high) / 2 - home, 2)
 
 
 def _position(vehicle: Vehicle) -> Position:

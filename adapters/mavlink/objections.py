@@ -7,7 +7,7 @@ from typing import Final
 
 from adapters.mavlink.fencing import beyond, keeps_no_polygon, own_fences
 from adapters.mavlink.fleet import Craft, Stations
-from adapters.mavlink.loiter_radius import described, home_circle, room
+from adapters.mavlink.loiter_radius import cramped, goal, home_circle, room, stay
 from adapters.mavlink.next_step import height_of
 from adapters.mavlink.profiles import Profile
 from adapters.mavlink.telemetry import Telemetry
@@ -109,7 +109,7 @@ def _of_fence(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]
     why = keeps_no_polygon(known)
     if why:
         yield why
-    points = tuple(map(waypoint, _path(command)))
+    points = _points(command, craft, known)
     radius = 0.0 if known.profile is None else room(craft, known.profile, known)
     outside = [at for at in points if not contains(craft.fence, at)]
     if outside:
@@ -118,15 +118,17 @@ def _of_fence(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]
         yield f"a circle of {radius:g} m around {points[-1]!r} leaves the fence"
 
 
-def _path(command: GoTo | Follow) -> tuple[Geometry, ...]:
-    return (command.place,) if isinstance(command, GoTo) else command.path
+def _points(command: GoTo | Follow, craft: Craft, known: Telemetry) -> tuple[Geometry, ...]:
+    """Return the waypoints of a command, as far as the kind of vehicle is known."""
+    around = 0.0 if known.profile is None else room(craft, known.profile, known)
+    passed = () if isinstance(command, GoTo) else command.path[:-1]
+    return (*map(waypoint, passed), stay(command, around) or waypoint(goal(command)))
 
 
 def _of_size(command: GoTo | Follow, craft: Craft, profile: Profile, known: Telemetry) -> Iterator[str]:
-    if not holds_circle(_path(command)[-1], room(craft, profile, known)):
-        name = command.name or "the place"
-        needed = described(craft, profile, known)
-        yield f"{name} is too small: to stay around its centre the {profile.kind} needs {needed}"
+    reason = cramped(command, craft, profile, known)
+    if reason is not None:
+        yield reason
 
 
 def _of_own_fences(command: GoTo | Follow, craft: Craft, profile: Profile, known: Telemetry) -> Iterator[str]:
@@ -135,19 +137,12 @@ def _of_own_fences(command: GoTo | Follow, craft: Craft, profile: Profile, known
     around = room(craft, profile, known) if profile.drift > 1.0 else 0.0
     height = None
     if known.position is not None:
-        height = height_of(command.altitude, profile, known.position, craft.height_of(profile))
+        height = height_of(command.altitude, profile, known, known.position, craft.height_of(profile))
     name = command.name or "the place"
-    *passed, last = map(waypoint, _path(command))
+    *passed, last = _points(command, craft, known)
     for at in passed:
         yield from beyond(own, known, at, 0.0, None, "a point of its way")
     yield from beyond(own, known, last, around, height, name)
-
-
-def holds_circle(place: Geometry, radius: float) -> bool:
-    """Tell whether a circle around a place's waypoint fits in it; for a point it always does."""
-    if place.is_point:
-        return True
-    return contains(place, _around(waypoint(place), radius))
 
 
 def _around(at: Geometry, radius: float) -> Geometry:

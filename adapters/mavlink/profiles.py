@@ -111,6 +111,7 @@ PX4_DIALECT: Final = Dialect(
     enters=True,
     lands_by_state=True,
     typed=True,
+    streams=(*(name for name in REGULAR if name != "EKF_STATUS_REPORT"), "ESTIMATOR_STATUS"),
 )
 
 

@@ -11,7 +11,7 @@ from enum import Enum
 from functools import lru_cache
 from typing import Final
 
-from adapters.mavlink.constants import Cmd, Fence, FenceAction, MissionType
+from adapters.mavlink.constants import Cmd, Fence, FenceAction, Frame, MissionType
 from adapters.mavlink.items import Item
 from adapters.mavlink.profiles import BOAT, COPTER, PLANE, PX4_COPTER, PX4_PLANE, ROVER, Profile, TakeOff
 from adapters.mavlink.signing import Signing
@@ -132,6 +132,7 @@ class Vehicle:
         enforce: Whether it obeys only the station that has the authority (SYSID_ENFORCE).
         accept_unsigned: Whether unsigned packets are obeyed although it has a key, as on ArduPilot's first link.
         fixed: Whether its receiver has satellites.
+        second: Whether its second receiver has satellites; None if it has no second one.
         fences: Which of its fences are on.
         version: Of its firmware: before 4.6 all fences were switched at once.
         slowed: What part of its kind's speed it makes over the ground, as against a head wind.
@@ -142,6 +143,7 @@ class Vehicle:
         low: Since when it is low.
         failed_safe: Whether the fail-safe has acted since it booted.
         words: What it has to say, with its severity.
+        ground: The altitude of the ground, in metres above sea level: its first home's.
         told: The item of its mission that it has said it begins.
         breached: Whether it was outside a fence when it last looked.
     """
@@ -153,6 +155,7 @@ class Vehicle:
     enforce: bool = True
     accept_unsigned: bool = False
     fixed: bool = True
+    second: bool | None = None
     booted: float = 0.0
     time: float = 0.0
     armed: bool = False
@@ -166,6 +169,7 @@ class Vehicle:
     parameters: dict[str, float] = field(default_factory=dict)
     signing: Signing | None = None
     serial: bytes = b""
+    ground: float = field(init=False)
     body: Body = field(init=False)
     store: Store = field(init=False)
     reached: list[int] = field(default_factory=list)
@@ -179,6 +183,7 @@ class Vehicle:
 
     def __post_init__(self) -> None:
         latitude, longitude, altitude = self.home
+        self.ground = altitude
         dialect = self.kind.profile.dialect
         defaults = OF_PX4 if dialect.typed else PARAMETERS | OF_KINDS[self.kind.profile.takeoff]
         authority = {self.authority_parameter: 255.0} if dialect.authority else {}
@@ -258,7 +263,8 @@ class Vehicle:
     @property
     def flies(self) -> bool:
         """Whether it is off the ground; for what does not fly, whether it is armed."""
-        return self.armed and (self.kind.profile.takeoff is TakeOff.NONE or self.body.height > 1.0)
+        above_ground = self.home[2] + self.body.height - self.ground
+        return self.armed and (self.kind.profile.takeoff is TakeOff.NONE or above_ground > 1.0)
 
     @property
     def uptime(self) -> float:
@@ -268,7 +274,7 @@ class Vehicle:
     @property
     def has_fix(self) -> bool:
         """Whether it knows where it is."""
-        return self.fixed and self.uptime >= FIX_AFTER
+        return (self.fixed or bool(self.second)) and self.uptime >= FIX_AFTER
 
     @property
     def tilt(self) -> tuple[float, float]:
@@ -299,9 +305,20 @@ class Vehicle:
     def restart(self) -> None:
         """Reboot on the ground at home, like a simulator that was killed in flight and restarted."""
         self.reboot()
-        self.body = Body(*self.home[:2])
+        self.body = Body(*self.home[:2], self.ground - self.home[2])
 
     # --- moving -----------------------------------------------------------------------------------
+
+    def set_home(self, latitude: float, longitude: float, altitude: float) -> None:
+        """Move its home; it stays where it is, and so does its target."""
+        rise = altitude - self.home[2]
+        self.home = (latitude, longitude, altitude)
+        self.body = replace(self.body, height=self.body.height - rise)
+        self.target = self.target and replace(self.target, height=self.target.height - rise)
+
+    def height_in(self, height: float, frame: int) -> float:
+        """Return a height in a frame as a height above home."""
+        return height - self.home[2] if frame in (Frame.SEA_LEVEL, Frame.SEA_LEVEL_INT) else height
 
     def move(self, now: float) -> None:
         """Move on to a time."""
@@ -395,11 +412,11 @@ class Vehicle:
             self.told = self.current
             self.words.append((INFO, f"Mission: {self.current} {ITEMS.get(item.command, item.command)}"))
         if item.command == Cmd.TAKEOFF:
-            self._take_off(item.z, seconds)
+            self._take_off(self.height_in(item.z, item.frame), seconds)
         else:
             stays = item.command == Cmd.LOITER_UNLIMITED
             circle = self.circle if stays and self.kind.limits.must_move else 0.0
-            self._go(Target(item.x / 1e7, item.y / 1e7, item.z, circle), seconds)
+            self._go(Target(item.x / 1e7, item.y / 1e7, self.height_in(item.z, item.frame), circle), seconds)
         if self._done(item) and self.current < len(items) - 1:
             self.reached.append(self.current)
             if item.command == Cmd.WAYPOINT:
@@ -409,7 +426,7 @@ class Vehicle:
 
     def _done(self, item: Item) -> bool:
         if item.command == Cmd.TAKEOFF:
-            return self.body.height >= item.z - 1.0
+            return self.body.height >= self.height_in(item.z, item.frame) - 1.0
         distance, _ = metres_to(self.body, item.x / 1e7, item.y / 1e7)
         return item.command == Cmd.WAYPOINT and distance <= self.kind.radius
 
