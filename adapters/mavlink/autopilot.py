@@ -15,6 +15,7 @@ from adapters.mavlink import roster as rosters
 from adapters.mavlink.codec import Decoder, Encoder, Garbage
 from adapters.mavlink.constants import GROUND_COMPONENT, GROUND_STATION, NO_AUTOPILOT
 from adapters.mavlink.fleet import Craft, Stations
+from adapters.mavlink.inventory import overheard
 from adapters.mavlink.keys import Keeper
 from adapters.mavlink.message import Message, say
 from adapters.mavlink.objections import impassable, remarks, unfit
@@ -141,12 +142,13 @@ class Autopilot:
     ) -> str | None:
         """Return why a vehicle can't stay at a place, as far as its kind is known; None if it can."""
         pilot = self._pilots[entity]
-        return unfit(GoTo("", entity, place, name=name, around=around), pilot.craft, pilot.known)
+        command = GoTo("", entity, place, name=name, around=around)
+        return unfit(command, pilot.craft, pilot.known, pilot.on_board)
 
     def bar(self, entity: str, place: Geometry, name: str) -> str | None:
         """Return why a vehicle can't pass a place; None if it can."""
         pilot = self._pilots[entity]
-        return impassable(place, pilot.craft, pilot.known, name)
+        return impassable(place, pilot.craft, pilot.known, name, pilot.on_board)
 
     def is_known(self) -> bool:
         """Tell whether all vehicles have reported their parameters, or were asked for long enough."""
@@ -155,7 +157,7 @@ class Autopilot:
     def remarks(self) -> Iterator[str]:
         """Yield messages to the operator about the vehicles before take-off."""
         for pilot in self._pilots.values():
-            yield from remarks(pilot.craft, pilot.known)
+            yield from remarks(pilot.craft, pilot.known, pilot.on_board)
 
     async def command(self, command: Command) -> None:
         """Take on a command; raises Refused."""
@@ -221,12 +223,15 @@ class Autopilot:
             self._log(now, message.raw)
         for _, count in self._logged.left_out(now):
             self._troubles.note("not logged", f"{count:,} packets, over {MOST_LOGGED:,} in a second")
-        if message.system in self._stations.ids.values() or message.fields.get("type") == GROUND_STATION:
+        if self._is_of_a_station(message):
             self._overheard(message)
             return
         listened = self._listening.look(now)
         pilot = self._pilot_of(message, remote, listened)
-        if pilot is None or not self._is_for_us(message) or not self._is_its_source(pilot, remote):
+        if pilot is None or not self._is_its_source(pilot, remote):
+            return
+        if not self._is_for_us(message):
+            self._pilots[pilot.craft.entity] = overheard(pilot, message)
             return
         self._routes[pilot.system] = remote
         self._take(pilot.craft.entity, piloting.hear(pilot, message, listened))
@@ -263,12 +268,24 @@ class Autopilot:
             self._routes[pilot.system] = host.removeprefix("[").removesuffix("]"), int(port)
             self._elsewhere.pop(pilot.system, None)
 
+    def _is_of_a_station(self, message: Message) -> bool:
+        """Tell whether a message is of a ground station: its id or its heartbeat says so, or whom it speaks to."""
+        if message.system in self._stations.ids.values():
+            return True
+        if message.name == "HEARTBEAT":
+            return bool(message["type"] == GROUND_STATION)
+        return message.system not in self._systems and self._addressed(message) is not None
+
+    def _addressed(self, message: Message) -> Pilot | None:
+        to = message.target
+        return next((pilot for pilot in self._pilots.values() if to and pilot.system == to), None)
+
     def _overheard(self, message: Message) -> None:
-        """Report that another ground station sends to a vehicle of ours; its messages are ignored here."""
-        if message.system not in self._own and message.target in {
-            pilot.system for pilot in self._pilots.values()
-        }:
+        """Report that another ground station sends to a vehicle of ours; what it may change is read again."""
+        pilot = self._addressed(message)
+        if message.system not in self._own and pilot is not None:
             self._troubles.note("second ground station", f"system {message.system} says {message.name}")
+            self._pilots[pilot.craft.entity] = overheard(pilot, message)
 
     def _is_for_us(self, message: Message) -> bool:
         return not message.target or message.target in self._own

@@ -6,6 +6,7 @@ remembers a packet's time stamp before it has checked the signature, so one forg
 
 from __future__ import annotations
 
+import struct
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
@@ -16,6 +17,13 @@ from physical.messages import install_extra
 
 MAX_CHUNK: Final = 65_536
 """Bytes parsed at once; a socket never gives more."""
+
+
+V2_HEADER: Final = 10
+"""Bytes before the fields of a frame of MAVLink 2."""
+
+NUMBERS_AT: Final = 6
+"""Bytes of MISSION_CURRENT before the numbers of what is on board."""
 
 
 class CodecError(PhysicalError):
@@ -89,7 +97,16 @@ def _heard(parsed: Any) -> Message | Garbage | None:
     if name.startswith("UNKNOWN"):  # of another dialect: not an error
         return None
     fields = {field: getattr(parsed, field) for field in parsed.get_fieldnames()}
+    if name == "MISSION_CURRENT":
+        fields = _numbers(raw) | fields
     return Message(name, fields, parsed.get_srcSystem(), parsed.get_srcComponent(), raw)
+
+
+def _numbers(raw: bytes) -> dict[str, int]:
+    """Return the extension fields of MISSION_CURRENT that older dialects of pymavlink leave out; zero if not sent."""
+    sent = raw[V2_HEADER : V2_HEADER + raw[1]] if raw[:1] == b"\xfd" else b""
+    found = struct.unpack_from("<III", sent.ljust(NUMBERS_AT + 12, b"\0"), NUMBERS_AT)
+    return dict(zip(("mission_id", "fence_id", "rally_points_id"), found, strict=True))
 
 
 def _short(reason: str) -> str:

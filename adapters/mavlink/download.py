@@ -19,7 +19,15 @@ MAX_ITEMS: Final = 2_000
 
 @dataclass(frozen=True, slots=True)
 class Download:
-    """A download in progress: `count` is None until the vehicle has sent it."""
+    """A download in progress.
+
+    Attributes:
+        kind: Mission, fence or rally points.
+        system: The vehicle's system id.
+        count: How many items there are; None until the vehicle has sent it.
+        items: Those that have come.
+        asked: When the last request was sent.
+    """
 
     kind: MissionType
     system: int
@@ -55,7 +63,16 @@ def hear(download: Download, message: Message, now: float) -> Step:
         and said["seq"] == len(download.items)
     ):
         return _next(replace(download, items=(*download.items, item_of(said))), now)
+    if message.name == "MISSION_ACK":
+        return _refused(download, said["type"]), ()
     return download, ()
+
+
+def _refused(download: Download, result: int) -> Download:
+    """Begin anew where somebody writes meanwhile; of what a vehicle has no support for, it has nothing."""
+    if result == MissionResult.UNSUPPORTED and download.count is None:
+        return replace(download, count=0)
+    return download if result == MissionResult.ACCEPTED else replace(download, count=None, items=())
 
 
 def _next(download: Download, now: float) -> Step:

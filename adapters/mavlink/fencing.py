@@ -1,4 +1,4 @@
-"""A vehicle's own fences beside the polygon that it is given: a circle around home, and a ceiling."""
+"""A vehicle's own fences beside the polygon that it is given: a circle around home, a ceiling, and zones on board."""
 
 from __future__ import annotations
 
@@ -6,13 +6,26 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from adapters.mavlink.constants import Fence, FenceAction
+from adapters.mavlink.constants import Fence, FenceAction, MissionType
+from adapters.mavlink.items import fence as polygon_items
+from adapters.mavlink.merging import OnBoard, kept_zones, widens
 from adapters.mavlink.profiles import ARDUPILOT_DIALECT, Dialect
 from adapters.mavlink.telemetry import Telemetry
-from physical import Geometry, distance, point
+from adapters.mavlink.zones import Zone, zones
+from physical import Geometry, circle, contains, distance, point, share_interior
+from physical.corridor import corridor
 
 EACH_BY_ITSELF: Final = (4, 6)
 """The version of ArduPilot since which one fence can be switched on without the others."""
+
+
+AFTER_TAKEOFF: Final = 1
+"""ArduPilot's FENCE_AUTOENABLE with which it switches its fences on after a take-off, and off while disarmed."""
+
+LEG_WIDTH: Final = 20.0
+"""Metres by which a straight way should be clear of a zone, both sides together."""
+
+REMEDY: Final = "if that is no longer meant, remove it with a ground station"
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,16 +81,69 @@ def _acts(known: Telemetry) -> bool:
 
 def keeps_no_polygon(known: Telemetry) -> str | None:
     """Return why a vehicle would not obey a given polygon."""
-    action = _dialect(known).fence_action
+    action, told = _dialect(known).fence_action, known.parameters
     if action:
-        told = f"it keeps within no polygon: its {action} is {known.parameters.get(action, 0):g}"
-        return None if _acts(known) else f"{told}; set it to 2 (hold) or 3 (return), or fly with --fence none"
-    if "FENCE_TYPE" not in known.parameters or Fence.POLYGON in _configured(known):
+        remedy = "set it to 2 (hold) or 3 (return)"
+        return None if _acts(known) else _no_polygon(action, told.get(action, 0), remedy)
+    if told.get("FENCE_ACTION") == 0:
+        return _no_polygon("FENCE_ACTION", 0, "it only reports; set it to 1 (return)")
+    if told.get("FENCE_AUTOENABLE") == AFTER_TAKEOFF:
+        return _no_polygon(
+            "FENCE_AUTOENABLE", 1, "before take-off it switches its fences off; set it to 0 or 3"
+        )
+    if "FENCE_TYPE" not in told or Fence.POLYGON in _configured(known):
         return None
-    return (
-        f"it keeps within no polygon: its FENCE_TYPE is {known.parameters['FENCE_TYPE']:g}; "
-        "add 4 to that, or fly with --fence none"
-    )
+    return _no_polygon("FENCE_TYPE", told["FENCE_TYPE"], "add 4 to that")
+
+
+def _no_polygon(name: str, value: float, remedy: str) -> str:
+    return f"it keeps within no polygon: its {name} is {value:g}; {remedy}, or fly with --fence none"
+
+
+def zones_beside(fence: Geometry | None, known: Telemetry, on_board: OnBoard) -> tuple[Zone, ...]:
+    """Return the zones on board that are in force beside the given polygon."""
+    found, ours = on_board.get(MissionType.FENCE, ()), () if fence is None else polygon_items(fence)
+    if fence is not None:
+        return kept_zones(ours, found, known)
+    dialect, told = _dialect(known), known.parameters
+    by_itself = told.get("FENCE_ENABLE") or told.get("FENCE_AUTOENABLE")
+    in_force = _acts(known) if dialect.fence_action else by_itself and Fence.POLYGON in _configured(known)
+    return zones(found) if in_force else ()
+
+
+def widened(fence: Geometry, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
+    """Yield why the zones on board to stay in can be neither kept nor replaced."""
+    foreign = [zone for zone in zones(on_board.get(MissionType.FENCE, ())) if zone.within]
+    own = {zone.key for zone in zones(polygon_items(fence))}
+    foreign = [zone for zone in foreign if zone.key not in own]
+    if not foreign or not widens(known):
+        return
+    if not any(zone.shape is not None and contains(zone.shape, fence) for zone in foreign):
+        yield (
+            f"the fence of the mission leaves {foreign[0]}, which is on board: with both it could fly in either, so "
+            f"one must go; {REMEDY}, or give a fence inside of it (--fence PLACE)"
+        )
+
+
+def barred(zone: Zone, at: Geometry, room: float, name: str) -> str:
+    """Return why a zone prevents a vehicle from circling at a point, or an empty text."""
+    if zone.shape is None:
+        return ""
+    around = circle(at.vertices[0], room) if room else at
+    inside = contains(zone.shape, around)
+    meets = inside or share_interior(zone.shape, around) or contains(around, zone.shape)
+    if zone.within and not inside:
+        return f"{name} is not inside {zone}, which is on board: {REMEDY}"
+    return f"{name} is not clear of {zone}, which is on board: {REMEDY}" if zone.outside and meets else ""
+
+
+def crossed(zone: Zone, start: Geometry, end: Geometry, name: str) -> str:
+    """Return that the straight line to a point crosses a zone to stay out of, or an empty text."""
+    if zone.shape is None or not zone.outside or distance(start, end) < LEG_WIDTH:
+        return ""
+    if not share_interior(zone.shape, corridor((start.vertices[0], end.vertices[0]), LEG_WIDTH)):
+        return ""
+    return f"the straight way to {name} crosses {zone}, which is on board: go round it by VIA, or {REMEDY}"
 
 
 def beyond(

@@ -96,7 +96,8 @@ def _is_home(item: Item) -> bool:
 
 def _alike(a: Item, b: Item) -> bool:
     here, there = ((each.command, _SAME_FRAME.get(each.frame, each.frame), each.x, each.y) for each in (a, b))
-    return here == there and abs(a.z - b.z) <= HEIGHT_TOLERANCE
+    counts = a.command == Cmd.DO_JUMP and a.parameters[0] != b.parameters[0]
+    return here == there and abs(a.z - b.z) <= HEIGHT_TOLERANCE and not counts
 
 
 def item_message(item: Item, index: int, kind: int, system: int, component: int = 1) -> Message:

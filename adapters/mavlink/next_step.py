@@ -6,15 +6,16 @@ cases: the next action is the first whose effect the state does not show.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from adapters.mavlink import command as to
 from adapters.mavlink.constants import AUTHORITY_PARAMETERS, Cmd, Fence, Frame, MissionType
 from adapters.mavlink.items import Items, e7, fence, route
 from adapters.mavlink.loiter_radius import goal, stay
+from adapters.mavlink.merging import OnBoard, is_on_board, landing_now, merged
 from adapters.mavlink.message import Message
 from adapters.mavlink.profiles import Profile, TakeOff
+from adapters.mavlink.refuges import ARMING_ITEMS, refuges
 from adapters.mavlink.telemetry import Position, Telemetry
 from adapters.plugin import Command, Follow, GiveBack, GoTo, HandOver, Hold, Rebind, Return
 from physical import Band, Geometry, contains, distance, point, waypoint
@@ -50,9 +51,9 @@ class Load:
     kind: MissionType
 
     @property
-    def why(self) -> str:
-        """What it is for, as `Tell` says it."""
-        return f"its {self.kind.name.lower()} anew"
+    def what(self) -> str:
+        """Its name for people."""
+        return self.kind.name.lower()
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +80,7 @@ class Vehicle:
         system: Its MAVLink system id.
         known: Its state as its messages show it.
         profile: The profile of its kind.
-        on_board: The missions and fences that were read back since it booted.
+        on_board: The missions, fences and rally points that were read back and have not changed since.
         fence: The polygon that it must stay in.
         circle: The radius in metres at which it circles where it stays.
         room: The radius in metres within which its circles stay, in wind too.
@@ -87,6 +88,8 @@ class Vehicle:
         above: Metres above sea level of that home, if heights are told above sea level; None for above home.
         begun: Whether its mission was seen to begin since the command.
         resumes: Whether the mission continues with the current item.
+        passed: How many places of its path it was seen in.
+        furthest: The highest item of the mission that it was seen at.
         home_circle: The radius in metres at which it circles its home when it returns.
         speaker: The system id of messages to it, that of its authority.
         deaf: Why it seems not to hear us, if so.
@@ -96,13 +99,15 @@ class Vehicle:
     system: int
     known: Telemetry
     profile: Profile
-    on_board: Mapping[MissionType, Items]
+    on_board: OnBoard
     fence: Geometry | None
     circle: float
     height: float
     begun: bool
     resumes: bool = False
     above: float | None = None
+    passed: int = 0
+    furthest: int = 0
     home_circle: float = 0.0
     room: float = 0.0
     speaker: int = 0
@@ -114,28 +119,35 @@ def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
     """Return the first missing step; `station` is the system id that a HandOver gives authority to."""
     match command:
         case GoTo():
-            return _prepared(vehicle) or _go(command, vehicle)
+            return _prepared(vehicle, _takeoff_items(command, vehicle)) or _go(command, vehicle)
         case Follow():
-            return _prepared(vehicle) or _follow(command, vehicle)
+            return _prepared(vehicle, _path_items(command, vehicle)) or _follow(command, vehicle)
         case HandOver():
             return _hand_over(station, vehicle)
         case Hold():
             return _in_mode(vehicle, vehicle.profile.hold) or _stopped(vehicle) or Underway(done=True)
         case Return():
-            return _in_mode(vehicle, vehicle.profile.home) or Underway(done=_is_home(vehicle))
+            lands = landing_now(vehicle.known, vehicle.on_board)
+            return (None if lands else _in_mode(vehicle, vehicle.profile.home)) or Underway(
+                done=_is_home(vehicle)
+            )
         case GiveBack() | Rebind():
             raise AssertionError("it is done at once")
 
 
-def _prepared(vehicle: Vehicle) -> Step | None:
-    """Yield what is missing until the vehicle has a position, accepts missions, and has its fence."""
+def _prepared(vehicle: Vehicle, mission: Items | None = None) -> Step | None:
+    """Return what is missing until the vehicle has a position, accepts missions, has its fence, and can be armed.
+
+    A vehicle that is ready only with certain items on board gets its `mission` first.
+    """
     if vehicle.known.position is None:
         return Wait(vehicle.lacks or "it has no position yet")
     dialect = vehicle.profile.dialect
     if dialect.above_sea and vehicle.known.ground is None:
         return Wait("it has no home yet")
     if not vehicle.known.armed and vehicle.known.healthy is not True:
-        return _ready(vehicle)
+        asks = bool(vehicle.known.parameters.get(ARMING_ITEMS)) and mission is not None
+        return (_loaded(vehicle, mission or (), MissionType.MISSION) if asks else None) or _ready(vehicle)
     if vehicle.fence is None:
         return None
     load = _loaded(vehicle, fence(vehicle.fence), MissionType.FENCE)
@@ -154,8 +166,13 @@ def _ready(vehicle: Vehicle) -> Step:
     )
 
 
-def _loaded(vehicle: Vehicle, items: Items, kind: MissionType) -> Load | None:
-    return None if vehicle.on_board.get(kind) == items else Load(items, kind)
+def _loaded(vehicle: Vehicle, ours: Items, kind: MissionType) -> Step | None:
+    """Read what is on board; then upload ours, with what is kept of that."""
+    found = vehicle.on_board.get(kind)
+    if found is None:
+        return Wait(f"its {kind.name.lower()} is not read yet")
+    wanted = merged(ours, found, kind, vehicle.known)
+    return None if is_on_board(wanted, found, kind) else Load(wanted, kind)
 
 
 def _go(command: GoTo, vehicle: Vehicle) -> Step:
@@ -221,10 +238,17 @@ def _travel_height(vehicle: Vehicle) -> tuple[float, Frame]:
     return round(vehicle.height + vehicle.above, 1), Frame.SEA_LEVEL
 
 
+def _takeoff_items(command: GoTo, vehicle: Vehicle) -> Items | None:
+    """Return the mission by which a vehicle takes off, if it takes one."""
+    if vehicle.profile.takeoff is not TakeOff.MISSION or vehicle.known.flying:
+        return None
+    return route((_stay(command, vehicle),), vehicle.height, takeoff=True, above=vehicle.above)
+
+
 def _mission_takeoff(vehicle: Vehicle, at: Geometry) -> Step | None:
     known, auto = vehicle.known, vehicle.profile.auto
     if known.flying:
-        climbing = known.mode == auto and (known.current or 0) <= 1 and _has_takeoff(vehicle)
+        climbing = known.mode == auto and (known.current or 0) <= 1 and _may_take_off(vehicle)
         return Wait("it climbs") if climbing else None
     return (
         _loaded(vehicle, route((at,), vehicle.height, takeoff=True, above=vehicle.above), MissionType.MISSION)
@@ -235,9 +259,9 @@ def _mission_takeoff(vehicle: Vehicle, at: Geometry) -> Step | None:
     )
 
 
-def _has_takeoff(vehicle: Vehicle) -> bool:
-    items = vehicle.on_board.get(MissionType.MISSION, ())
-    return len(items) > 1 and items[1].command == Cmd.TAKEOFF
+def _may_take_off(vehicle: Vehicle) -> bool:
+    items = vehicle.on_board.get(MissionType.MISSION)
+    return items is None or (len(items) > 1 and items[1].command == Cmd.TAKEOFF)
 
 
 def _sent(vehicle: Vehicle, at: Geometry) -> Step | None:
@@ -279,21 +303,36 @@ def _targets(known: Telemetry, at: Geometry) -> bool:
     return known.target is not None and distance(point(*known.target), at) <= TARGET_METRES
 
 
+def _path_items(command: Follow, vehicle: Vehicle) -> Items:
+    profile, path = vehicle.profile, (*map(waypoint, command.path[:-1]), _stay(command, vehicle))
+    home = profile.dialect.home_is_item
+    return route(path, vehicle.height, takeoff=_by_item(profile), home=home, above=vehicle.above)
+
+
+def _by_item(profile: Profile) -> bool:
+    """Tell whether the missions of a kind of vehicle begin with a take-off."""
+    return profile.takeoff in (TakeOff.MISSION, TakeOff.COMMAND)
+
+
+def _lead(profile: Profile) -> int:
+    """Return the number of the item that is the first place of a path."""
+    return profile.dialect.home_is_item + _by_item(profile)
+
+
 def _follow(command: Follow, vehicle: Vehicle) -> Step:
-    profile, last = vehicle.profile, _stay(command, vehicle)
-    path = (*map(waypoint, command.path[:-1]), last)
-    takeoff, home = profile.takeoff in (TakeOff.MISSION, TakeOff.COMMAND), profile.dialect.home_is_item
-    items = route(path, vehicle.height, takeoff=takeoff, home=home, above=vehicle.above)
+    profile, last, items = vehicle.profile, _stay(command, vehicle), _path_items(command, vehicle)
     # A flying vehicle need not take off again: it begins with the point after the take-off.
-    first = home + (takeoff and vehicle.known.flying)
+    first = _lead(profile) - (_by_item(profile) and not vehicle.known.flying)
     if vehicle.resumes:
         first = vehicle.known.current or first
+    rises = profile.takeoff not in (TakeOff.MISSION, TakeOff.NONE)
     return (
         _loaded(vehicle, items, MissionType.MISSION)
-        or (None if profile.takeoff in (TakeOff.MISSION, TakeOff.NONE) else _off_the_ground(vehicle, path[0]))
+        or (_off_the_ground(vehicle, waypoint(command.path[0])) if rises else None)
         or _begun(vehicle, first)
         or _in_mode(vehicle, profile.auto)
         or _armed(vehicle)
+        or _in_turn(vehicle)
         or Underway(done=_at_the_end(command, last, items, vehicle), waypoint=last)
     )
 
@@ -306,8 +345,20 @@ def _begun(vehicle: Vehicle, first: int) -> Step | None:
     return Tell("to begin its mission", to.begin_with(vehicle.system, first, by_command=by_command))
 
 
+def _in_turn(vehicle: Vehicle) -> Step | None:
+    """Let no place of the path be left out: the number of an item is no proof that the vehicle was there."""
+    current, next_place = vehicle.known.current or 0, _lead(vehicle.profile) + vehicle.passed
+    due = min(next_place, current) if current >= vehicle.furthest else vehicle.furthest
+    if current == due:
+        return None
+    by_command = vehicle.profile.dialect.begins_by_command
+    why = f"to fly to item {due} of its mission, not to item {current}"
+    return Tell(why, to.begin_with(vehicle.system, due, by_command=by_command))
+
+
 def _at_the_end(command: Follow, at: Geometry, items: Items, vehicle: Vehicle) -> bool:
-    return vehicle.known.current == len(items) - 1 and _reached(command.path[-1], at, vehicle)
+    passed_all = vehicle.passed >= len(command.path) - 1
+    return passed_all and vehicle.known.current == len(items) - 1 and _reached(command.path[-1], at, vehicle)
 
 
 def _hand_over(station: int, vehicle: Vehicle) -> Step:
@@ -330,11 +381,23 @@ def _armed(vehicle: Vehicle) -> Step | None:
 
 
 def _is_home(vehicle: Vehicle) -> bool:
-    home, position = vehicle.known.home, vehicle.known.position
-    if home is None or position is None:
-        return vehicle.known.armed is False
-    near = distance(_spot(vehicle), point(*home)) <= vehicle.home_circle + vehicle.profile.reach
-    return near or vehicle.known.armed is False
+    if vehicle.known.armed is False:
+        return True
+    reach = vehicle.home_circle + vehicle.profile.reach
+    return any(
+        distance(_spot(vehicle), refuge) <= reach for refuge in refuges(vehicle.known, vehicle.on_board)
+    )
+
+
+def passing(command: Follow, vehicle: Vehicle) -> int:
+    """Return how many places of a path a vehicle has passed that is at its position now; they are passed in order."""
+    passed = vehicle.passed
+    while passed < len(command.path) - 1:
+        place = command.path[passed]
+        if not _reached(place, waypoint(place), vehicle):
+            return passed
+        passed += 1
+    return passed
 
 
 def _reached(place: Geometry, at: Geometry, vehicle: Vehicle) -> bool:

@@ -3,13 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain, pairwise, product
+from types import MappingProxyType
 from typing import Final
 
-from adapters.mavlink.fencing import beyond, keeps_no_polygon, own_fences
+from adapters.mavlink.constants import MissionType
+from adapters.mavlink.fencing import (
+    barred,
+    beyond,
+    crossed,
+    keeps_no_polygon,
+    own_fences,
+    widened,
+    zones_beside,
+)
 from adapters.mavlink.fleet import Craft, Stations
+from adapters.mavlink.items import route
 from adapters.mavlink.loiter_radius import cramped, goal, home_circle, room, stay
+from adapters.mavlink.merging import OnBoard, jumps_out, merged
 from adapters.mavlink.next_step import height_of
-from adapters.mavlink.profiles import Profile
+from adapters.mavlink.profiles import Profile, TakeOff
+from adapters.mavlink.refuges import beyond_fence, missing_items
+from adapters.mavlink.remarks import remarks_on_board
 from adapters.mavlink.telemetry import Telemetry
 from adapters.plugin import Command, Follow, GoTo, HandOver
 from physical import Geometry, circle, contains, point, waypoint
@@ -17,13 +32,27 @@ from physical import Geometry, circle, contains, point, waypoint
 NEEDS_MORE: Final[dict[float, str]] = {1: "a take-off", 2: "a landing", 3: "a take-off and a landing"}
 """What PX4 demands of each mission (MIS_TKO_LAND_REQ, navigator/mission_params.yaml); 4 and 5 are met by a path."""
 
+NOTHING_READ: Final[OnBoard] = MappingProxyType({})
+
 MAX_PATH = 500
 """Points of a path: fewer than the items that every autopilot holds."""
 
 
-def objection(command: Command, craft: Craft, stations: Stations, known: Telemetry) -> str | None:
-    """Return the objection in the operator's words; None if none is known."""
-    return next(_objections(command, craft, stations, known), None)
+def objection(
+    command: Command,
+    craft: Craft,
+    stations: Stations,
+    known: Telemetry,
+    on_board: OnBoard = NOTHING_READ,
+    *,
+    again: bool = False,
+) -> str | None:
+    """Return the objection in the operator's words; None if none is known.
+
+    `again`: the command was taken on before it was known what is on board, and only that can be new.
+    """
+    first = () if again else _objections(command, craft, stations, known)
+    return next(chain(first, _of_on_board(command, craft, known, on_board)), None)
 
 
 def _objections(command: Command, craft: Craft, stations: Stations, known: Telemetry) -> Iterator[str]:
@@ -34,30 +63,54 @@ def _objections(command: Command, craft: Craft, stations: Stations, known: Telem
         yield from _of_hand_over(command, stations, known)
     if isinstance(command, Follow):
         yield from _of_landing(known)
-    if isinstance(command, Follow) and not 0 < len(command.path) <= MAX_PATH:
-        yield f"a path has 1 to {MAX_PATH} points, this one {len(command.path)}"
-        return
+        yield from _of_length(command)
     yield from _of_place(command, craft, known)
 
 
-def unfit(command: GoTo | Follow, craft: Craft, known: Telemetry) -> str | None:
+def _of_length(command: Follow) -> Iterator[str]:
+    if not 0 < len(command.path) <= MAX_PATH:
+        yield f"a path has 1 to {MAX_PATH} points, this one {len(command.path)}"
+
+
+def _of_on_board(command: Command, craft: Craft, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
+    """Object to what on board prevents a flight."""
+    if not isinstance(command, GoTo | Follow) or known.profile is None:
+        return
+    yield from _of_zones(command, craft, known.profile, known, on_board)
+    yield from _of_legs(command, craft, known, on_board)
+    yield from _of_items(command, known.profile, known, on_board)
+
+
+def unfit(
+    command: GoTo | Follow, craft: Craft, known: Telemetry, on_board: OnBoard = NOTHING_READ
+) -> str | None:
     """Return why no station can send a vehicle to a place: it is too small, or outside a fence."""
-    return next(_of_place(command, craft, known), None)
+    zones = () if known.profile is None else _of_zones(command, craft, known.profile, known, on_board)
+    return next(chain(_of_place(command, craft, known), zones), None)
 
 
-def impassable(place: Geometry, craft: Craft, known: Telemetry, name: str) -> str | None:
+def impassable(
+    place: Geometry, craft: Craft, known: Telemetry, name: str, on_board: OnBoard = NOTHING_READ
+) -> str | None:
     """Return why a place can't be passed; the vehicle needs no room for a circle there."""
     if craft.fence is not None and not contains(craft.fence, waypoint(place)):
         return f"{name} lies outside the fence"
     own = own_fences(known, given=craft.fence is not None)
-    return next(beyond(own, known, waypoint(place), 0.0, None, name), None)
+    zones = zones_beside(craft.fence, known, on_board)
+    reasons = chain(
+        beyond(own, known, waypoint(place), 0.0, None, name),
+        (barred(zone, waypoint(place), 0.0, name) for zone in zones),
+        [_missed(place, known, name)],
+    )
+    return next(filter(None, reasons), None)
 
 
-def remarks(craft: Craft, known: Telemetry) -> Iterator[str]:
+def remarks(craft: Craft, known: Telemetry, on_board: OnBoard = NOTHING_READ) -> Iterator[str]:
     """Yield messages to the operator about a vehicle before take-off."""
     own = own_fences(known, given=craft.fence is not None)
     if str(own):
         yield f"{craft.entity} keeps {own}, too: fences of its own are on"
+    yield from (f"{craft.entity} {remark}" for remark in remarks_on_board(craft, known, on_board))
     profile, home = known.profile, known.home
     if profile is None or home is None or craft.fence is None or profile.drift == 1.0:
         return
@@ -71,6 +124,7 @@ def _of_place(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]
     if isinstance(command, GoTo | Follow) and known.profile is not None:
         yield from _of_size(command, craft, known.profile, known)
         yield from _of_own_fences(command, craft, known.profile, known)
+        yield from _of_gates(command, known)
 
 
 def not_ours(stations: Stations, known: Telemetry) -> str | None:
@@ -125,6 +179,10 @@ def _points(command: GoTo | Follow, craft: Craft, known: Telemetry) -> tuple[Geo
     return (*map(waypoint, passed), stay(command, around) or waypoint(goal(command)))
 
 
+def _path(command: GoTo | Follow) -> tuple[Geometry, ...]:
+    return (command.place,) if isinstance(command, GoTo) else command.path
+
+
 def _of_size(command: GoTo | Follow, craft: Craft, profile: Profile, known: Telemetry) -> Iterator[str]:
     reason = cramped(command, craft, profile, known)
     if reason is not None:
@@ -143,6 +201,77 @@ def _of_own_fences(command: GoTo | Follow, craft: Craft, profile: Profile, known
     for at in passed:
         yield from beyond(own, known, at, 0.0, None, "a point of its way")
     yield from beyond(own, known, last, around, height, name)
+
+
+def _of_zones(
+    command: GoTo | Follow, craft: Craft, profile: Profile, known: Telemetry, on_board: OnBoard
+) -> Iterator[str]:
+    """Object to points that a zone on board does not allow, to zones that can't be kept, and to rally points."""
+    if craft.fence is not None:
+        yield from widened(craft.fence, known, on_board)
+        yield from beyond_fence(craft.fence, known, on_board)
+    around = room(craft, profile, known) if profile.drift > 1.0 else 0.0
+    *passed, last = _points(command, craft, known)
+    stops = [*((at, 0.0, "a point of its way") for at in passed), (last, around, command.name or "the place")]
+    for zone in zones_beside(craft.fence, known, on_board):
+        yield from filter(None, (barred(zone, *stop) for stop in stops))
+
+
+def _of_legs(command: GoTo | Follow, craft: Craft, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
+    """Object to straight ways through zones to stay out of, from where the vehicle is now."""
+    points = [*_points(command, craft, known)]
+    if known.position is not None:
+        points = [point(known.position.latitude, known.position.longitude), *points]
+    name = command.name or "the place"
+    for zone, (start, end) in product(zones_beside(craft.fence, known, on_board), pairwise(points)):
+        yield from filter(
+            None, [crossed(zone, start, end, name if end is points[-1] else "a point of its way")]
+        )
+
+
+def _of_gates(command: GoTo | Follow, known: Telemetry) -> Iterator[str]:
+    """Object to places of a path that are too small to be seen in when they are passed."""
+    for place in _path(command)[:-1]:
+        yield from filter(None, [_missed(place, known, "a place of its way")])
+
+
+def _missed(place: Geometry, known: Telemetry, name: str) -> str:
+    """Return why a vehicle would turn away before it is in a place, or an empty text."""
+    radius = known.parameters.get("WP_RADIUS", 0.0)
+    if radius <= 0.0 or holds_circle(place, radius):
+        return ""
+    return (
+        f"{name} is too small to be passed: the vehicle turns to the next point {radius:g} m before it (WP_RADIUS); "
+        "set that to less, or make the place larger"
+    )
+
+
+def _of_items(command: GoTo | Follow, profile: Profile, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
+    """Object to items that the vehicle asks for before it is armed, and to a landing that can't be kept."""
+    found = on_board.get(MissionType.MISSION)
+    if found is None:
+        return
+    outside = jumps_out(found, known)
+    if outside is not None:
+        yield (
+            f"the landing sequence on board jumps to item {outside}, outside of it, so it can't be kept behind a "
+            "mission: change it with a ground station"
+        )
+    if known.flying:
+        return
+    takes = isinstance(command, Follow) or profile.takeoff is TakeOff.MISSION
+    path = tuple(map(waypoint, _path(command)))
+    by_item = profile.takeoff in (TakeOff.MISSION, TakeOff.COMMAND)
+    ours = route(path, 0.0, takeoff=by_item, home=profile.dialect.home_is_item)
+    mission = merged(ours, found, MissionType.MISSION, known) if takes else found
+    yield from missing_items(mission, known, on_board)
+
+
+def holds_circle(place: Geometry, radius: float) -> bool:
+    """Tell whether a circle around a place's waypoint fits in it; for a point it always does."""
+    if place.is_point:
+        return True
+    return contains(place, _around(waypoint(place), radius))
 
 
 def _around(at: Geometry, radius: float) -> Geometry:

@@ -5,24 +5,27 @@ A pure state machine: no socket, no clock, no randomness.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Final
 
-from adapters.mavlink import next_step, streams, takeover
+from adapters.mavlink import inventory, next_step, streams, takeover
+from adapters.mavlink import survey as surveys
 from adapters.mavlink import task as tasks
 from adapters.mavlink.changed import changed
 from adapters.mavlink.command import long, read_parameter
 from adapters.mavlink.condition import Condition, look
-from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, REGULAR, Cmd, MissionType
+from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, REGULAR, Cmd
 from adapters.mavlink.fleet import CONTROL, Craft, Stations
-from adapters.mavlink.items import Items
 from adapters.mavlink.link import Link, watch
 from adapters.mavlink.loiter_radius import circle, home_circle, room
+from adapters.mavlink.merging import OnBoard
 from adapters.mavlink.message import Message
 from adapters.mavlink.objections import not_ours, objection
 from adapters.mavlink.profiles import Profile, TakeOff, unknown_kind
 from adapters.mavlink.streams import Streams
+from adapters.mavlink.survey import Survey
 from adapters.mavlink.sync import Sync
 from adapters.mavlink.takeover import Helm
 from adapters.mavlink.task import Progress, Task
@@ -36,6 +39,7 @@ from adapters.plugin import (
     GoTo,
     HandOver,
     Hold,
+    LinkRestored,
     Refused,
     Report,
     Return,
@@ -87,7 +91,8 @@ class Pilot:
         known: Its state as its messages show it.
         link: Whether it is heard.
         streams: The messages requested of it.
-        on_board: The missions and fences that were read back since it booted.
+        on_board: The missions, fences and rally points that were read back since anybody may have changed them.
+        survey: The reading of what is on board.
         moving: The command that it carries out.
         handing: The hand-over in progress.
         helm: Whether it follows its orders.
@@ -107,7 +112,8 @@ class Pilot:
     known: Telemetry = field(default_factory=Telemetry)
     link: Link = field(default_factory=Link)
     streams: Streams = field(default_factory=Streams)
-    on_board: Mapping[MissionType, Items] = field(default_factory=dict)
+    on_board: OnBoard = field(default_factory=dict)
+    survey: Survey = field(default_factory=Survey)
     moving: Task | None = None
     handing: Task | None = None
     helm: Helm = field(default_factory=Helm)
@@ -134,10 +140,11 @@ class Outcome:
 def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     """Take on a command; raises Refused if it is known to be impossible."""
     if isinstance(told, GiveBack):
+        pilot = inventory.unsure(pilot)
         return Outcome(changed(pilot, helm=takeover.given_back(pilot.known), moving=None))
     if pilot.helm.taken:
         raise Refused(f"it was taken over: {pilot.helm.taken}", "an operator may give it back")
-    reason = objection(told, pilot.craft, pilot.stations, pilot.known)
+    reason = objection(told, pilot.craft, pilot.stations, pilot.known, pilot.on_board)
     if reason and isinstance(told, Hold | Return):
         return _stops_in_vain(pilot, told, reason, now)
     if reason:
@@ -146,13 +153,16 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     checked = pilot.known.profile is not None
     if isinstance(told, HandOver):
         station = pilot.stations.ids[told.join.removeprefix(CONTROL)]
-        return Outcome(
-            changed(pilot, handing=Task(told, station, since=now, boots=pilot.known.boots, checked=checked))
-        )
+        task = Task(told, station, since=now, boots=pilot.known.boots, checked=checked, surveyed=True)
+        return Outcome(changed(pilot, handing=task))
+    outside = () if not isinstance(told, Return) else inventory.out_of_fence(pilot, now)
     if isinstance(told, Hold | Return):
         pilot = changed(pilot, handing=None)  # where it stops it stays ours
-    task = Task(told, since=now, boots=pilot.known.boots, checked=checked)
-    return Outcome(changed(pilot, moving=_continued(pilot.moving, task)))
+    elif not _continues(pilot.moving, told):
+        pilot = inventory.read_again(pilot, told, now)
+    surveyed = pilot.survey.settled or isinstance(told, Hold | Return)
+    task = Task(told, since=now, boots=pilot.known.boots, checked=checked, surveyed=surveyed)
+    return Outcome(changed(pilot, moving=_continued(pilot.moving, task)), reports=outside)
 
 
 def _stops_in_vain(pilot: Pilot, told: Hold | Return, reason: str, now: float) -> Outcome:
@@ -173,11 +183,17 @@ def _check_not_rejected(before: Task | None, told: Command) -> None:
         raise Refused(f"the request was rejected: {before.rejection}", "request it again")
 
 
+def _continues(before: Task | None, told: Command) -> bool:
+    """Tell whether a command is that of before, of which a place has moved."""
+    if before is None or before.command.request != told.request:
+        return False
+    return isinstance(told, Follow) or not before.over
+
+
 def _continued(before: Task | None, task: Task) -> Task:
     """Continue a task whose place has moved: it keeps its start, and a path continues with the current item."""
     follows = isinstance(task.command, Follow)
-    other = before is None or before.command.request != task.command.request
-    if before is None or other or before.rejection or (before.over and not follows):
+    if before is None or not _continues(before, task.command):
         return task
     return replace(
         task,
@@ -185,6 +201,7 @@ def _continued(before: Task | None, task: Task) -> Task:
         above=before.above,
         begun=before.begun and not follows,
         resumes=before.resumes or (before.begun and follows),
+        passed=before.passed,
         boots=before.boots,
     )
 
@@ -195,19 +212,28 @@ def hear(pilot: Pilot, message: Message, now: float) -> Outcome:
 
 
 def _heard(pilot: Pilot, message: Message, now: float) -> Outcome:
-    known = absorb(pilot.known, message, now)
-    if known.boots != pilot.known.boots:
-        pilot = changed(pilot, on_board={}, questions=0)
-    pilot = changed(pilot, known=known, streams=streams.hear(pilot.streams, message, now))
-    answered: tuple[Message, ...] = ()
+    before, known = pilot.known, absorb(pilot.known, message, now)
+    pilot = inventory.with_known(pilot, known)
+    pilot = changed(pilot, streams=streams.hear(pilot.streams, message, now))
+    pilot, answered = inventory.read_on(pilot, message, now)
+    if known.position is not before.position:
+        pilot = _with_passed(pilot, now)
     if message.name in _ANSWERS and pilot.moving is not None and not pilot.moving.over:
         heard = tasks.hear(pilot.moving, message, now)
-        pilot, answered = changed(pilot, moving=heard.task), heard.sent
+        pilot, answered = changed(pilot, moving=heard.task), (*answered, *heard.sent)
     elif message.name != "HEARTBEAT":  # a take-over shows at once
         pilot, published, trouble = _publication(pilot, now)
-        return Outcome(pilot, reports=trouble, published=published)  # tasks continue at the next tick
+        return Outcome(pilot, _spoken(pilot, answered), trouble, published)  # tasks continue at the next tick
     outcome = _advance(pilot, now)
     return changed(outcome, sent=_spoken(pilot, (*answered, *outcome.sent)))
+
+
+def _with_passed(pilot: Pilot, now: float) -> Pilot:
+    """Note which place of its path a vehicle is in."""
+    task, profile = pilot.moving, pilot.known.profile
+    if task is None or profile is None or not pilot.helm.held or not isinstance(task.command, Follow):
+        return pilot
+    return changed(pilot, moving=tasks.seen(task, _vehicle(pilot, task, profile, now)))
 
 
 def tick(pilot: Pilot, now: float) -> Outcome:
@@ -219,10 +245,15 @@ def tick(pilot: Pilot, now: float) -> Outcome:
 def _ticked(pilot: Pilot, now: float) -> Outcome:
     link, change = watch(pilot.link, pilot.craft.entity, pilot.known, now)
     pilot = changed(pilot, link=link)
+    if isinstance(change, LinkRestored):
+        pilot = inventory.unsure(pilot)
     questions: tuple[Message, ...] = ()
     before = pilot.unanswered
     if pilot.known.heard is not None and not link.lost:
         pilot, questions = _asked(pilot, now)
+        if _authority(pilot) is not None and _is_ours(pilot):
+            pilot, more = inventory.surveyed(pilot, now)
+            questions = (*questions, *more)
     condition, noticed = look(pilot.condition, pilot.craft.entity, pilot.known, now, lost=link.lost)
     pilot = changed(pilot, condition=condition)
     outcome = _advance(pilot, now)
@@ -308,9 +339,9 @@ def _untold(pilot: Pilot) -> Iterator[Message]:
 
 
 def is_known(pilot: Pilot) -> bool:
-    """Tell whether a vehicle has reported all requested parameters, or was asked for long enough."""
+    """Tell whether a vehicle has told all that was asked, what is on board too, or was asked for long enough."""
     known = pilot.known.profile is not None and pilot.known.home is not None
-    return known and not any(_untold(pilot))
+    return known and not any(_untold(pilot)) and (pilot.survey.settled or not _is_ours(pilot))
 
 
 def _spoken(pilot: Pilot, sent: tuple[Message, ...]) -> tuple[Message, ...]:
@@ -328,7 +359,9 @@ def _advance(pilot: Pilot, now: float) -> Outcome:
         if task is None or task.over:
             continue
         progress = _progress(pilot, task, now)
-        pilot = changed(pilot, on_board={**pilot.on_board, **(progress.on_board or {})})
+        for kind, items in (progress.on_board or {}).items():
+            survey = surveys.settle(pilot.survey, kind, items, now)
+            pilot = changed(pilot, on_board={**pilot.on_board, kind: items}, survey=survey)
         pilot = _onwards(pilot, slot, progress.task)
         sent += progress.sent
         reports += [progress.report] if progress.report else []
@@ -344,10 +377,13 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
     if not _is_ours(pilot):
         return changed(pilot, helm=Helm(boots=known.boots)), ()
     command = None if pilot.moving is None else pilot.moving.command
-    helm = takeover.watch(pilot.helm, known, profile, command, _undone(pilot, profile, now))
+    undone = _undone(pilot, profile, now)
+    helm = takeover.watch(pilot.helm, known, profile, command, undone, pilot.on_board)
     before, pilot = pilot.helm, changed(pilot, helm=helm)
     if helm.taken and not before.taken:
         return _taken_over(pilot, now)
+    if helm.held and not before.held:
+        pilot = inventory.unsure(pilot, quiet=True)  # who had it for a moment may have done more than that
     return pilot, tuple(_changes(pilot, before, now))
 
 
@@ -403,11 +439,12 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
     profile = pilot.known.profile
     if profile is None or pilot.known.mode is None:  # not heard yet, or of a kind that can't be commanded
         return _unknown(pilot, task, now)
-    if not task.checked:
-        reason = objection(task.command, pilot.craft, pilot.stations, pilot.known)
+    if not (task.checked and task.surveyed):
+        judge = partial(objection, task.command, pilot.craft, pilot.stations, pilot.known, pilot.on_board)
+        reason = judge(again=task.checked)
         if reason:
             return tasks.rejected(task, reason, now)
-        task = replace(task, checked=True)
+        task = replace(task, checked=True, surveyed=pilot.survey.settled)
     foreign = not_ours(pilot.stations, pilot.known)
     if foreign and isinstance(task.doing, Sync):  # a task that was begun can't be ended here
         return tasks.rejected(task, foreign, now)
@@ -432,6 +469,8 @@ def _vehicle(pilot: Pilot, task: Task, profile: Profile, now: float) -> next_ste
         lacks=pilot.known.lacks(now),
         begun=task.begun,
         resumes=task.resumes,
+        passed=task.passed,
+        furthest=task.furthest,
         speaker=pilot.stations.speaker(_authority(pilot)),
         deaf=_deaf(pilot),
     )

@@ -9,10 +9,12 @@ from typing import Final
 
 from adapters.mavlink.constants import (
     ARDUPILOT,
+    ARMING_PARAMETERS,
     AUTHORITY_PARAMETERS,
     CIRCLE_PARAMETERS,
     FENCE_PARAMETERS,
     HEIGHT_PARAMETERS,
+    LANDING_PARAMETERS,
     PX4,
     REGULAR,
 )
@@ -48,6 +50,8 @@ class Dialect:
         enters: Whether a target is always sent with the flag that enters guided mode; it may be refused without.
         lands_by_state: Whether EXTENDED_SYS_STATE says that it flies; else its HEARTBEAT does.
         typed: Whether parameters are the bytes of their type, not all floats.
+        unites: Whether it may be in any one of its fence's zones to stay in; else it must be in all.
+        marks_landing: Whether a landing sequence begins with a marker; else also with the landing.
         streams: The messages that it is asked to send regularly.
     """
 
@@ -67,6 +71,8 @@ class Dialect:
     enters: bool = False
     lands_by_state: bool = False
     typed: bool = False
+    unites: bool = False
+    marks_landing: bool = True
     streams: tuple[str, ...] = REGULAR
 
     def mode_parameters(self, mode: int) -> tuple[int, ...]:
@@ -112,6 +118,8 @@ PX4_DIALECT: Final = Dialect(
     lands_by_state=True,
     typed=True,
     streams=(*(name for name in REGULAR if name != "EKF_STATUS_REPORT"), "ESTIMATOR_STATUS"),
+    unites=True,
+    marks_landing=False,
 )
 
 
@@ -147,7 +155,7 @@ class Profile:
     circle: float
     reach: float
     altitude: float
-    parameters: tuple[str, ...] = FENCE_PARAMETERS
+    parameters: tuple[str, ...] = (*FENCE_PARAMETERS, *ARMING_PARAMETERS)
     drift: float = 1.0
     dialect: Dialect = ARDUPILOT_DIALECT
     climb: int | None = None
@@ -169,7 +177,7 @@ _ROVER_MODES: Final = {
     0: "MANUAL", 1: "ACRO", 3: "STEERING", 4: "HOLD", 5: "LOITER", 10: "AUTO", 11: "RTL", 15: "GUIDED",
 }  # fmt: skip
 
-FLIES: Final = (*FENCE_PARAMETERS, *HEIGHT_PARAMETERS)
+FLIES: Final = (*FENCE_PARAMETERS, *HEIGHT_PARAMETERS, *ARMING_PARAMETERS)
 
 # Seen: 50 m at waypoints, and circles of 80 m in guided mode, in 8 m/s of wind from 85 to 103 m: 1.29 times as far out.
 PLANE: Final = Profile(
@@ -183,7 +191,7 @@ PLANE: Final = Profile(
     80.0,
     100.0,
     100.0,
-    (*FLIES, *CIRCLE_PARAMETERS),
+    (*FLIES, *CIRCLE_PARAMETERS, *LANDING_PARAMETERS),
     1.3,
 )
 # BRAKE: LOITER would use the centre of a throttle stick that no pilot holds.

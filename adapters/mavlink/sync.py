@@ -7,8 +7,9 @@ from typing import Final
 
 from adapters.mavlink import download as reading
 from adapters.mavlink import upload as writing
-from adapters.mavlink.constants import MissionType
-from adapters.mavlink.items import Items, same
+from adapters.mavlink.constants import MissionResult, MissionType
+from adapters.mavlink.items import Items
+from adapters.mavlink.merging import is_on_board
 from adapters.mavlink.message import Message
 
 ROUNDS: Final = 5
@@ -17,7 +18,10 @@ ROUNDS: Final = 5
 
 @dataclass(frozen=True, slots=True)
 class Sync:
-    """A mission or fence being uploaded by one `speaker`; `rounds` counts the read-backs that differed."""
+    """A mission or fence being uploaded by one `speaker`.
+
+    `rounds` counts the read-backs that differed, and `answer` is the vehicle's last one that is no acceptance.
+    """
 
     items: Items
     kind: MissionType
@@ -26,17 +30,23 @@ class Sync:
     doing: writing.Upload | reading.Download
     rounds: int = 0
     confirmed: bool = False
+    ready: bool = False
+    answer: int | None = None
 
     @property
     def refusal(self) -> str | None:
         """The final refusal, if any."""
         if isinstance(self.doing, writing.Upload) and self.doing.refusal is not None:
-            return (
-                f"the vehicle refuses the {self.kind.name.lower()} (MAV_MISSION_RESULT {self.doing.refusal})"
-            )
+            return f"the vehicle refuses the {self.kind.name.lower()}: {_named(self.doing.refusal)}"
         if self.rounds >= ROUNDS:
-            return f"what is on board differs from the {self.kind.name.lower()} after {ROUNDS} uploads"
+            no = f", which it answers {self.objection}" if self.objection else ""
+            return f"what is on board differs from the {self.kind.name.lower()} after {ROUNDS} uploads{no}"
         return None
+
+    @property
+    def objection(self) -> str:
+        """The vehicle's last answer to the upload, if it was not an acceptance."""
+        return "" if self.answer is None else _named(self.answer)
 
     @property
     def reached(self) -> tuple[int, int, int]:
@@ -49,9 +59,12 @@ class Sync:
 Step = tuple[Sync, tuple[Message, ...]]
 
 
-def begin(items: Items, kind: MissionType, system: int, speaker: int) -> Sync:
-    """Begin with an upload; all messages come from one station's system id, and answers go to it."""
-    return Sync(items, kind, system, speaker, writing.Upload(items, kind, system))
+def begin(items: Items, kind: MissionType, system: int, speaker: int, *, ready: bool = False) -> Sync:
+    """Begin with an upload; all messages come from one station's system id, and answers go to it.
+
+    A vehicle that is `ready` has the space that it will ever have.
+    """
+    return Sync(items, kind, system, speaker, writing.Upload(items, kind, system, ready=ready), ready=ready)
 
 
 def tick(sync: Sync, now: float) -> Step:
@@ -77,13 +90,21 @@ def hear(sync: Sync, message: Message, now: float) -> Step:
 def _onwards(sync: Sync, sent: tuple[Message, ...], now: float) -> Step:
     """Continue from the upload to the download, and from a difference to the next upload."""
     sent = tuple(replace(message, system=sync.speaker) for message in sent)
+    if isinstance(sync.doing, writing.Upload) and sync.doing.answer is not None:
+        sync = replace(sync, answer=sync.doing.answer)
     if sync.confirmed or not sync.doing.over or sync.refusal:
         return sync, sent
     if isinstance(sync.doing, writing.Upload):
         download, asked = reading.tick(reading.Download(sync.kind, sync.system), now)
         said = tuple(replace(message, system=sync.speaker) for message in asked)
         return replace(sync, doing=download), (*sent, *said)
-    if same(sync.items, sync.doing.items, sync.kind):
+    if is_on_board(sync.items, sync.doing.items, sync.kind):
         return replace(sync, confirmed=True), sent
-    again = replace(begin(sync.items, sync.kind, sync.system, sync.speaker), rounds=sync.rounds + 1)
-    return again, sent
+    again = begin(sync.items, sync.kind, sync.system, sync.speaker, ready=sync.ready)
+    return replace(again, rounds=sync.rounds + 1, answer=sync.answer), sent
+
+
+def _named(result: int) -> str:
+    """Return a result by its name in MAVLink."""
+    known = result in tuple(MissionResult)
+    return MissionResult(result).name if known else f"MAV_MISSION_RESULT {result}"

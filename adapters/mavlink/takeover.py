@@ -8,8 +8,10 @@ vehicle back.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Final
 
+from adapters.mavlink.merging import OnBoard, landing_now
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.telemetry import Telemetry
 from adapters.plugin import Command, Follow, GoTo, Hold, Return
@@ -43,13 +45,21 @@ class Helm:
         return self.strange is None and not self.taken
 
 
-def watch(helm: Helm, known: Telemetry, profile: Profile, command: Command | None, undone: str = "") -> Helm:
+def watch(
+    helm: Helm,
+    known: Telemetry,
+    profile: Profile,
+    command: Command | None,
+    undone: str = "",
+    on_board: OnBoard = MappingProxyType({}),
+) -> Helm:
     """Compare a vehicle's state with its last command; `undone` is what it should do and no longer does."""
     if helm.taken or known.mode is None or known.beat is None:
         return helm
     if isinstance(command, Return) and known.armed is False:
         return Helm(boots=known.boots)  # it has landed, and nothing is ordered
-    why = _otherwise(helm, known, profile, command) or undone
+    lands = isinstance(command, Return) and landing_now(known, on_board)
+    why = ("" if lands else _otherwise(helm, known, profile, command)) or undone
     if not why:
         return _as_ordered(helm, known, profile, command)
     if helm.strange is None:

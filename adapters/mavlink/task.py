@@ -12,7 +12,7 @@ from adapters.mavlink.constants import Cmd, MissionType, Result
 from adapters.mavlink.items import Items
 from adapters.mavlink.loiter_radius import goal
 from adapters.mavlink.message import Message
-from adapters.mavlink.next_step import Load, Step, Tell, Underway, Vehicle, Wait
+from adapters.mavlink.next_step import Load, Step, Tell, Underway, Vehicle, Wait, passing
 from adapters.plugin import Accepted, Arrived, Command, Follow, GoTo, Rejected, Report, Trouble
 from physical import Geometry
 
@@ -41,8 +41,11 @@ class Task:
         rejection: Why it was rejected, if it was.
         begun: Whether the mission was seen at its first item, or the vehicle has reported that it resumes it.
         resumes: Whether the path has moved: the vehicle is told to continue with the current item.
+        passed: How many places of a path it was seen in, in their order.
+        furthest: The highest item of the mission that it was seen at since it began it.
         boots: The vehicle's number of boots for which this holds.
         checked: Whether it is possible for this kind of vehicle.
+        surveyed: Whether it is possible with what is on board.
         complained: Whether a delay of this step was reported.
         waypoint: Around which point the vehicle will stay.
     """
@@ -60,8 +63,11 @@ class Task:
     rejection: str | None = None
     begun: bool = False
     resumes: bool = False
+    passed: int = 0
+    furthest: int = 0
     boots: int = 0
     checked: bool = False
+    surveyed: bool = False
     complained: bool = False
     waypoint: Geometry | None = None
 
@@ -94,6 +100,7 @@ def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float)
     if step != task.step:
         task = replace(
             task,
+            begun=task.begun and not isinstance(step, Load),
             step=step,
             since=now,
             reached=(0, 0, 0),
@@ -116,17 +123,30 @@ def undone(task: Task, step: Step, boots: int) -> str:
     """Return the step that a vehicle with a completed command no longer shows, or an empty text."""
     if not task.accepted or boots != task.boots or isinstance(step, Underway | Wait):
         return ""
+    if isinstance(step, Load):
+        return f"the {step.what} on board is not the one that it was given: somebody has changed it"
     return f"it does not do any more what it was told: it would have to be told {step.why}"
+
+
+def seen(task: Task, vehicle: Vehicle) -> Task:
+    """Note that a vehicle that flies its mission is where it is; the places of a path are passed in their order."""
+    flies = (task.begun or task.resumes) and vehicle.known.mode == vehicle.profile.auto
+    if not isinstance(task.command, Follow) or not flies:
+        return task
+    passed = passing(task.command, vehicle)
+    return task if passed == task.passed else replace(task, passed=passed)
 
 
 def _complained(progress: Progress, vehicle: Vehicle, now: float) -> Progress:
     """Report a vehicle's first temporary refusal: the command is repeated, and that may take a while."""
     task = progress.task
-    no = task.doing.objection if isinstance(task.doing, telling.Telling) else ""
-    if not no or task.complained or progress.report or not isinstance(task.step, Tell):
+    no, step = "" if task.doing is None else task.doing.objection, task.step
+    if not no or task.complained or progress.report or not isinstance(step, Tell | Load):
         return progress
     words = vehicle.known.last_words(now)
-    detail = f"it was told {task.step.why}, and answers {no}{words}; it is told again for {PATIENCE:.0f} s"
+    was_told = f"was told {step.why}" if isinstance(step, Tell) else f"was given its {step.what}"
+    again = "told again for" if isinstance(step, Tell) else "given it again, for at most"
+    detail = f"it {was_told}, and answers {no}{words}; it is {again} {PATIENCE:.0f} s"
     report = Trouble(task.command.entity, now, "not now", detail)
     return replace(progress, task=replace(task, complained=True), report=report)
 
@@ -150,8 +170,12 @@ def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
             accepted=False,
             begun=False,
             resumes=False,
+            passed=0,
+            furthest=0,
         )
-    return replace(task, begun=True) if not task.begun and _begins(task, vehicle) else task
+    if task.begun:
+        return replace(task, furthest=max(task.furthest, known.current or 0))
+    return replace(task, begun=True, furthest=0) if _begins(task, vehicle) else task
 
 
 def _begins(task: Task, vehicle: Vehicle) -> bool:
@@ -194,7 +218,8 @@ def _exchange(step: Step, vehicle: Vehicle) -> telling.Telling | syncing.Sync | 
         case Tell():
             return telling.Telling(step.message)
         case Load():
-            return syncing.begin(step.items, step.kind, vehicle.system, vehicle.speaker)
+            ready = vehicle.known.armed is True or vehicle.known.healthy is True
+            return syncing.begin(step.items, step.kind, vehicle.system, vehicle.speaker, ready=ready)
     return None
 
 
@@ -226,5 +251,10 @@ def _failure(step: Step, task: Task, vehicle: Vehicle) -> str:
             answer = f", but answered {no}" if no else ""
             return f"it was told {step.why}, and did not in {PATIENCE:.0f} s{answer}{other}"
         case Load():
-            return f"the {step.kind.name.lower()} could not be confirmed on board in {PATIENCE:.0f} s{other}"
+            no = (
+                f", but answered {task.doing.objection}"
+                if task.doing is not None and task.doing.objection
+                else ""
+            )
+            return f"the {step.what} could not be confirmed on board in {PATIENCE:.0f} s{no}{other}"
     raise AssertionError(step)

@@ -58,6 +58,9 @@ MOST_WORDS: Final = 3
 WARNING: Final = 4
 """MAV_SEVERITY_WARNING: what is less urgent has a larger number."""
 
+_NUMBERS: Final = ("mission_id", "fence_id", "rally_points_id")
+"""In the order of `MissionType`; only PX4 tells them."""
+
 NOWHERE: Final = 0.01
 """Degrees around (0, 0) that are ignored: an autopilot reports them before its filter has settled."""
 
@@ -92,6 +95,8 @@ class Telemetry:
         estimate: Whether its own filter says that its position is good, and when it last said so.
         healthy: Whether it could be armed, and accepts missions.
         current: The number of its current mission item.
+        total: How many items its mission has, as it counts them; None if it does not say.
+        numbers: What changes with its mission, its fence and its rally points; None where it does not say.
         target: Its target in degrees.
         aim: Its target's altitude in metres above sea level.
         home: Its home in degrees.
@@ -127,6 +132,8 @@ class Telemetry:
     estimate: tuple[bool, float] | None = None
     healthy: bool | None = None
     current: int | None = None
+    total: int | None = None
+    numbers: tuple[int, ...] | None = None
     target: tuple[float, float] | None = None
     aim: float | None = None
     home: tuple[float, float] | None = None
@@ -315,7 +322,13 @@ def _home(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
 
 
 def _current(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
-    return changed(known, current=said["seq"])
+    total, numbers = said.get("total", UNKNOWN), tuple(said.get(name, 0) for name in _NUMBERS)
+    return changed(
+        known,
+        current=said["seq"],
+        total=None if total == UNKNOWN else total,
+        numbers=numbers if any(numbers) else None,
+    )
 
 
 def _target(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:

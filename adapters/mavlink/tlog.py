@@ -99,7 +99,7 @@ def positions_of(
             counting.take("position")
             yield time, property_of(craft, after.position, craft.channels)
         else:
-            counting.leave(_placeless(message, after))
+            counting.leave(_placeless(message, after, time))
 
 
 def _foreign(message: Message, why: str) -> str:
@@ -108,7 +108,7 @@ def _foreign(message: Message, why: str) -> str:
     return f"{message.name} of system {message.system}, {why}" if positioned else message.name
 
 
-def _placeless(message: Message, after: Telemetry) -> str:
+def _placeless(message: Message, after: Telemetry, time: float) -> str:
     """Say why a message of a named vehicle shows no position."""
     if message.name in _OTHER_POSITIONS:
         return f"{message.name}: the positions that count are those of {POSITION}"
@@ -118,7 +118,7 @@ def _placeless(message: Message, after: Telemetry) -> str:
         return (
             f"{POSITION} of component {message.component} of system {message.system}, which is no autopilot"
         )
-    if after.fix_time is None:
+    if not after.is_placed(time):
         return f"{POSITION} without a GPS fix"
     return f"{POSITION} that came late, or lies at latitude 0 and longitude 0"
 

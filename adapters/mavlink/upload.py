@@ -5,7 +5,8 @@ timer. ArduPlane sends MISSION_REQUEST, others MISSION_REQUEST_INT: both get MIS
 `adapters.mavlink.sync` reads back what is on board.
 
 A vehicle takes one upload at a time, from one system id. It answers others with DENIED (ArduPilot) or ERROR (PX4)
-until that one is over. So these are final only once they have lasted longer than a vehicle waits.
+until that one is over. So these are final only once they have lasted longer than a vehicle waits. Right after it has
+booted it answers NO_SPACE; once it is ready, that is final the second time.
 """
 
 from __future__ import annotations
@@ -30,7 +31,9 @@ ACK_LOST: Final = 3.0
 """Seconds of silence after the last item, after which its ACK must have been lost."""
 
 _BUSY: Final = {MissionResult.DENIED, MissionResult.ERROR}
-_NOT_FINAL: Final = {MissionResult.INVALID_SEQUENCE, MissionResult.NO_SPACE, MissionResult.CANCELLED}
+_OUT_OF_STEP: Final = {MissionResult.INVALID_SEQUENCE, MissionResult.CANCELLED}
+_NOT_FINAL: Final = {*_OUT_OF_STEP, MissionResult.NO_SPACE}
+NO_SPACE_TWICE: Final = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +50,9 @@ class Upload:
         denied: Since when the vehicle has answered that it is busy, and requested nothing.
         over: Whether it has ended, with or without success.
         refusal: The vehicle's final refusal, if any.
+        answer: Its last answer that is neither an acceptance nor about lost items.
+        ready: Whether it has been up for long enough to know its space.
+        full: How often it has answered that it has no space.
     """
 
     items: Items
@@ -58,6 +64,9 @@ class Upload:
     denied: float | None = None
     over: bool = False
     refusal: int | None = None
+    answer: int | None = None
+    ready: bool = False
+    full: int = 0
 
 
 Step = tuple[Upload, tuple[Message, ...]]
@@ -106,11 +115,19 @@ def _give(upload: Upload, index: int, now: float) -> Step:
 
 
 def _answered(upload: Upload, result: int, now: float) -> Upload:
+    complete = len(upload.wanted) == len(upload.items)
     if result == MissionResult.ACCEPTED:
-        return replace(upload, over=len(upload.wanted) == len(upload.items))
-    if result in _NOT_FINAL:  # booting, or out of step with lost items: the count comes again by timer
+        return replace(upload, over=complete)
+    told = upload.answer if result in _OUT_OF_STEP else result
+    upload = replace(upload, answer=told, full=upload.full + (result == MissionResult.NO_SPACE))
+    too_much = upload.ready and upload.full >= NO_SPACE_TWICE
+    if (
+        result in _NOT_FINAL and not too_much
+    ):  # booting, or out of step with lost items: the count comes again
         return upload if result == MissionResult.INVALID_SEQUENCE else replace(upload, asked=None)
     since = now if upload.denied is None else upload.denied
+    if result in _BUSY and complete and upload.items:
+        return replace(upload, over=True)  # what is read back decides
     if result in _BUSY and now - since <= BUSY:
         return replace(upload, asked=None, denied=since)
     return replace(upload, over=True, refusal=result)

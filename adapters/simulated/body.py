@@ -46,6 +46,16 @@ class Body:
     turn: float = 0.0
 
 
+@dataclass(frozen=True, slots=True)
+class Target:
+    """Where a guided vehicle goes: degrees, metres above home, the circle's radius."""
+
+    latitude: float
+    longitude: float
+    height: float
+    circle: float
+
+
 def metres_to(body: Body, latitude: float, longitude: float) -> tuple[float, float]:
     """Return distance and bearing to a point, as on a plane."""
     north = (latitude - body.latitude) * METRES_PER_DEGREE

@@ -9,13 +9,14 @@ from types import MappingProxyType
 from typing import Final
 
 from adapters.mavlink.command import ANYWHERE
-from adapters.mavlink.constants import AUTOPILOT_VERSION, INTEGERS, STREAMS, Cmd, Fence, MissionType, Result
+from adapters.mavlink.constants import AUTOPILOT_VERSION, INTEGERS, STREAMS, Cmd, Fence, Result
 from adapters.mavlink.message import Message, is_for, say
 from adapters.mavlink.profiles import TakeOff, mode_number
 from adapters.mavlink.signing import EPOCH, UNITS, Signing, Verdict, check
-from adapters.simulated.body import metres_to
+from adapters.simulated.body import Target, metres_to
+from adapters.simulated.missions import missing
 from adapters.simulated.reporting import Reporter, parameter_value
-from adapters.simulated.vehicle import Target, Vehicle
+from adapters.simulated.vehicle import Vehicle
 
 Answer = list[Message]
 
@@ -49,7 +50,7 @@ def hear(vehicle: Vehicle, reporter: Reporter, message: Message, now: float) -> 
         _make_current(vehicle, message["seq"])
         return []
     if message.name.startswith("MISSION_"):
-        return vehicle.store.hear(message, ready=vehicle.ready, now=now)
+        return vehicle.store.hear(message, ready=vehicle.up, now=now)
     answer = _ANSWERS.get(message.name)
     return [] if answer is None else answer(vehicle, reporter, message)
 
@@ -137,7 +138,9 @@ def _arm(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
         vehicle.arm(armed=vehicle.flies and vehicle.kind.profile.takeoff is not TakeOff.NONE)
         return Result.FAILED if vehicle.armed else Result.ACCEPTED
     if not vehicle.ready:
-        reporter.text("PreArm: not ready")
+        reporter.text(
+            "PreArm: Missing mission item" if vehicle.up and missing(vehicle) else "PreArm: not ready"
+        )
         return Result.FAILED
     vehicle.arm(armed=True)
     return Result.ACCEPTED
@@ -205,13 +208,13 @@ def _set_current(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Res
 
 
 def _make_current(vehicle: Vehicle, index: float) -> bool:
-    there = index in range(len(vehicle.store.items.get(MissionType.MISSION, ())))
+    there = index in range(len(vehicle.store.mission))
     vehicle.current = int(index) if there else vehicle.current
     return there
 
 
 def _start_mission(vehicle: Vehicle, _reporter: Reporter, _message: Message) -> Result:
-    if not vehicle.store.items.get(MissionType.MISSION):
+    if not vehicle.store.mission:
         return Result.FAILED
     vehicle.mode = vehicle.kind.profile.auto
     return Result.ACCEPTED

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, Final
 
-from adapters.mavlink.constants import GEOFENCE, PREARM_HEALTHY, Landed, MissionType, ModeFlag
+from adapters.mavlink.constants import GEOFENCE, PREARM_HEALTHY, Landed, ModeFlag
 from adapters.mavlink.message import Message, say
 from adapters.mavlink.texts import CHUNK
 from adapters.simulated.vehicle import WARNING, Vehicle
@@ -242,7 +242,8 @@ def _time(vehicle: Vehicle) -> Message:
 
 
 def _current(vehicle: Vehicle) -> Message:
-    total = max(0, len(vehicle.store.items.get(MissionType.MISSION, ())) - 1)
+    home = vehicle.kind.profile.dialect.home_is_item
+    total = max(0, len(vehicle.store.mission) - home)
     return say("MISSION_CURRENT", seq=vehicle.current, total=total)
 
 

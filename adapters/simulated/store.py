@@ -2,7 +2,7 @@
 
 ArduPilot requests item after item, again after a second, and gives up after eight. It answers an item that it did not
 request with INVALID_SEQUENCE, and overwrites item 0 by home. It serves one ground station at a time: others that upload
-meanwhile, and all that download, get DENIED.
+meanwhile, and all that download, get DENIED. A mission is overwritten item by item as they come, a fence at the end.
 """
 
 from __future__ import annotations
@@ -13,8 +13,18 @@ from typing import Final
 from adapters.mavlink.constants import Cmd, Frame, MissionResult, MissionType
 from adapters.mavlink.items import Item, Items, item_message, item_of
 from adapters.mavlink.message import Message, say
+from adapters.mavlink.survey import ALL_KINDS
 
 MAX_ITEMS: Final = 700
+FENCE_ITEMS: Final = 84
+"""How many items of a fence ArduPilot's storage holds."""
+
+VERTICES: Final = 255
+"""The most corners of one polygon."""
+
+POLYGONS: Final = (Cmd.FENCE_VERTEX_INCLUSION, Cmd.FENCE_VERTEX_EXCLUSION)
+
+WARNING: Final = 4
 HIGHEST: Final = 1e5
 
 
@@ -28,6 +38,7 @@ class Manner:
         busy: Its answer to others that upload meanwhile.
         out_of_turn: Its answer to an item that it did not request, None if it ignores it.
         home_is_item: Whether it overwrites item 0 of a mission by home.
+        in_place: Whether the items of a mission are overwritten as they come.
     """
 
     ask_again: float
@@ -35,12 +46,13 @@ class Manner:
     busy: MissionResult
     out_of_turn: MissionResult | None
     home_is_item: bool
+    in_place: bool
 
 
 ARDUPILOT_MANNER: Final = Manner(
-    1.0, 8.0, MissionResult.DENIED, MissionResult.INVALID_SEQUENCE, home_is_item=True
+    1.0, 8.0, MissionResult.DENIED, MissionResult.INVALID_SEQUENCE, home_is_item=True, in_place=True
 )
-PX4_MANNER: Final = Manner(0.25, 5.0, MissionResult.ERROR, None, home_is_item=False)
+PX4_MANNER: Final = Manner(0.25, 5.0, MissionResult.ERROR, None, home_is_item=False, in_place=False)
 """As mavlink/mavlink_mission.cpp and mavlink_mission.h have it."""
 
 
@@ -61,7 +73,15 @@ class Receiving:
 class Store:
     """What is on board, by kind, and the upload under way.
 
-    `request` is how it asks for items: planes with MISSION_REQUEST.
+    Attributes:
+        manner: What its make of autopilot does differently.
+        request: How it asks for items: planes with MISSION_REQUEST.
+        home: Its home in 1e-7 degrees and metres above sea level.
+        items: What is on board.
+        receiving: The upload under way.
+        most: How many items of each kind it holds.
+        refuses: The result with which it refuses what is whole, if it does: a person's wish in a test.
+        flown: Whether its mission is being flown, so that it can't be cleared.
     """
 
     manner: Manner = ARDUPILOT_MANNER
@@ -69,6 +89,15 @@ class Store:
     home: tuple[int, int, float] = (0, 0, 0.0)
     items: dict[MissionType, Items] = field(default_factory=dict)
     receiving: Receiving | None = None
+    most: dict[MissionType, int] = field(
+        default_factory=lambda: {
+            MissionType.MISSION: MAX_ITEMS,
+            MissionType.FENCE: FENCE_ITEMS,
+            MissionType.RALLY: 50,
+        }
+    )
+    refuses: dict[MissionType, MissionResult] = field(default_factory=dict)
+    flown: bool = False
 
     def hear(self, message: Message, *, ready: bool, now: float) -> list[Message]:
         """Answer a message of the mission protocol."""
@@ -76,6 +105,8 @@ class Store:
         match message.name:
             case "MISSION_COUNT" if kind is not None:
                 return self._count(message, kind, ready=ready, now=now)
+            case "MISSION_CLEAR_ALL":
+                return self._clear(message)
             case "MISSION_REQUEST_LIST" | "MISSION_REQUEST_INT" if self._receives(kind):
                 return [_answer(message, kind, self.manner.busy)]
             case "MISSION_ITEM_INT" if self.receiving is not None and kind is self.receiving.kind:
@@ -96,18 +127,42 @@ class Store:
         if going is None:
             return []
         if now - going.heard >= self.manner.give_up:
-            self.receiving = None
+            self.abandon()
             return [_ack(going, MissionResult.CANCELLED)]
         return self._ask(going, now) if now - going.asked >= self.manner.ask_again else []
 
     def _count(self, message: Message, kind: MissionType, *, ready: bool, now: float) -> list[Message]:
         going = Receiving(message.system, message.component, kind, message["count"], heard=now)
         busy = self.receiving is not None and self.receiving.station != message.system
-        if not ready or going.count > MAX_ITEMS:
-            return [_ack(going, MissionResult.NO_SPACE)]
         if busy:
             return [_ack(going, self.manner.busy)]
+        most = self.most[kind] if ready else 0
+        if not ready or going.count > most:
+            return [_ack(going, MissionResult.NO_SPACE), _said(f"Only {most} items are supported")]
         return self._ask(going, now) if going.count else self._complete(going)
+
+    @property
+    def mission(self) -> Items:
+        """The mission as it is now: of ArduPilot's, what has come of the next one has overwritten its beginning."""
+        going, items = self.receiving, self.items.get(MissionType.MISSION, ())
+        if going is None or going.kind is not MissionType.MISSION or not self.manner.in_place:
+            return items
+        return (*going.items, *items[len(going.items) : going.count])
+
+    def abandon(self) -> None:
+        """Give up an upload; what was overwritten stays so."""
+        self.items[MissionType.MISSION], self.receiving = self.mission, None
+
+    def _clear(self, message: Message) -> list[Message]:
+        every = message.fields.get("mission_type") == ALL_KINDS
+        kinds = [*MissionType] if every else [kind for kind in [_kind(message)] if kind is not None]
+        busy = self.receiving is not None and self.receiving.station != message.system
+        held = self.flown and self.manner.in_place and MissionType.MISSION in kinds
+        result = MissionResult.ERROR if held else self.manner.busy if busy else MissionResult.ACCEPTED
+        if result is MissionResult.ACCEPTED:
+            self.receiving = None
+            self.items |= dict.fromkeys(kinds, ())
+        return [_answer(message, kinds[0] if kinds else None, result)]
 
     def _item(self, going: Receiving, message: Message, now: float) -> list[Message]:
         if message["seq"] != len(going.items):
@@ -116,9 +171,10 @@ class Store:
         if (message.system, message.component) != (going.station, going.component):
             return [_answer(message, going.kind, MissionResult.DENIED)]
         item = item_of(message.fields)
-        if not _sound(item):
-            self.receiving = None
-            return [_ack(going, MissionResult.INVALID)]
+        wrong = _wrong(item, going.kind)
+        if wrong is not None:
+            self.abandon()
+            return [_ack(going, wrong)]
         going = replace(going, items=(*going.items, item), heard=now)
         return self._complete(going) if len(going.items) == going.count else self._ask(going, now)
 
@@ -129,6 +185,8 @@ class Store:
 
     def _complete(self, going: Receiving) -> list[Message]:
         self.receiving = None
+        if going.kind in self.refuses:
+            return [_ack(going, self.refuses[going.kind])]
         self.items[going.kind] = going.items
         return [_ack(going, MissionResult.ACCEPTED)]
 
@@ -146,10 +204,21 @@ class Store:
         return [item_message(items[index], index, kind, message.system, message.component)]
 
 
+def _wrong(item: Item, kind: MissionType) -> MissionResult | None:
+    """Return how an item is refused, if it is."""
+    if kind is MissionType.FENCE and item.command in POLYGONS and item.parameters[0] > VERTICES:
+        return MissionResult.INVALID_PARAM1
+    return None if _sound(item) else MissionResult.INVALID
+
+
 def _sound(item: Item) -> bool:
     """Whether an item is on the earth, and its numbers are numbers."""
     on_earth = abs(item.x) <= 90 * 10**7 and abs(item.y) <= 180 * 10**7
     return on_earth and abs(item.z) <= HIGHEST and all(abs(value) <= HIGHEST for value in item.parameters)
+
+
+def _said(text: str) -> Message:
+    return say("STATUSTEXT", severity=WARNING, text=text.encode())
 
 
 def _kind(message: Message) -> MissionType | None:

@@ -8,17 +8,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from functools import lru_cache
 from typing import Final
 
-from adapters.mavlink.constants import Cmd, Fence, FenceAction, Frame, MissionType
-from adapters.mavlink.items import Item
+from adapters.mavlink.constants import Fence, FenceAction, Frame, MissionType
 from adapters.mavlink.profiles import BOAT, COPTER, PLANE, PX4_COPTER, PX4_PLANE, ROVER, Profile, TakeOff
 from adapters.mavlink.signing import Signing
+from adapters.mavlink.zones import Zone, zones
 from adapters.simulated import body as bodies
-from adapters.simulated.body import Body, Limits, astray, metres_to, moved, towards
+from adapters.simulated import fences, missions
+from adapters.simulated.body import Body, Limits, Target, astray, metres_to, moved, towards
 from adapters.simulated.store import ARDUPILOT_MANNER, PX4_MANNER, Store
-from physical import Geometry, PhysicalError, contains, point, polygon
+from physical import Geometry
 
 WAYPOINT_RADIUS: Final = 50.0
 """Metres from a waypoint at which a plane takes the next."""
@@ -28,12 +28,12 @@ FIX_AFTER: Final = 10.0
 READY_AFTER: Final = 19.0
 """Seconds after boot at which it has a fix, and could be armed; before, it says that it is near (0, 0)."""
 
+UP_AFTER: Final = 5.0
+"""Seconds after boot at which it takes missions."""
+
 WARNING: Final = 4
 INFO: Final = 6
 """MAV_SEVERITY_WARNING and MAV_SEVERITY_INFO."""
-
-ITEMS: Final[dict[int, str]] = {Cmd.TAKEOFF: "Takeoff", Cmd.WAYPOINT: "WP", Cmd.LOITER_UNLIMITED: "LoitUnlim"}
-"""What ArduPilot calls the items of a mission when it begins them."""
 
 ENDURANCE: Final = 7_200.0
 """Seconds for which a full battery lasts."""
@@ -42,20 +42,28 @@ SAG: Final = 1.8
 """Volts that it loses over the second half of its charge; that alone is not low yet."""
 
 NO_FENCE: Final = Fence(0)
-STOPS_BEFORE: Final = 4.0
-"""Metres before its circle fence at which what drives stops, in silence."""
 
 PARAMETERS: Final = {
     "WP_RADIUS": WAYPOINT_RADIUS,
+    "ARMING_MIS_ITEMS": 0.0,
+    "FENCE_ACTION": 1.0,
     "FENCE_ENABLE": 0.0,
     "FENCE_RADIUS": 300.0,
+    "RALLY_INCL_HOME": 0.0,
+    "RALLY_LIMIT_KM": 5.0,
     "BATT_LOW_VOLT": 10.5,
     "BATT_LOW_TIMER": 10.0,
     "BATT_FS_LOW_ACT": 0.0,
 }
-ALTITUDES: Final = {"FENCE_AUTOENABLE": 0.0, "FENCE_ALT_MAX": 100.0, "FENCE_ALT_MIN": -10.0}
+ALTITUDES: Final = {
+    "FENCE_AUTOENABLE": 0.0,
+    "FENCE_ALT_MAX": 100.0,
+    "FENCE_ALT_MIN": -10.0,
+    "FENCE_OPTIONS": 0.0,
+}
 OF_KINDS: Final = {
-    TakeOff.MISSION: ALTITUDES | {"FENCE_TYPE": 4.0, "WP_LOITER_RAD": 80.0, "RTL_RADIUS": 0.0},
+    TakeOff.MISSION: ALTITUDES
+    | {"FENCE_TYPE": 4.0, "WP_LOITER_RAD": 80.0, "RTL_AUTOLAND": 0.0, "RTL_RADIUS": 0.0},
     TakeOff.COMMAND: ALTITUDES | {"FENCE_TYPE": 7.0},
     TakeOff.NONE: {"FENCE_TYPE": 6.0},
 }
@@ -110,16 +118,6 @@ class Kind(Enum):
         return self.value[3]
 
 
-@dataclass(frozen=True, slots=True)
-class Target:
-    """Where a guided vehicle goes: degrees, metres above home, the circle's radius."""
-
-    latitude: float
-    longitude: float
-    height: float
-    circle: float
-
-
 @dataclass(slots=True)
 class Vehicle:
     """The state of a simulated vehicle.
@@ -146,6 +144,8 @@ class Vehicle:
         ground: The altitude of the ground, in metres above sea level: its first home's.
         told: The item of its mission that it has said it begins.
         breached: Whether it was outside a fence when it last looked.
+        refuge: Where it returns to, since it does.
+        lands: Whether it has looked for a landing sequence since it returns.
     """
 
     kind: Kind
@@ -180,6 +180,8 @@ class Vehicle:
     words: list[tuple[int, str]] = field(default_factory=list)
     told: int | None = None
     breached: bool = False
+    refuge: tuple[float, float] | None = None
+    lands: bool = False
 
     def __post_init__(self) -> None:
         latitude, longitude, altitude = self.home
@@ -217,21 +219,22 @@ class Vehicle:
         return None if action is None else FenceAction(int(action))
 
     @property
-    def fence(self) -> Geometry | None:
-        """The polygon that it keeps within."""
-        acts = self.fence_action is not None and self.fence_action > FenceAction.WARN
-        return self.polygon if acts or Fence.POLYGON in self.fences else None
+    def zones(self) -> tuple[Zone, ...]:
+        """The zones of the fence on board that make sense."""
+        found = zones(self.store.items.get(MissionType.FENCE, ()))
+        return tuple(zone for zone in found if zone.shape is not None and (zone.within or zone.outside))
 
     @property
-    def polygon(self) -> Geometry | None:
-        """The polygon that is on board, if it is one."""
-        return _polygon(tuple((each.x, each.y) for each in self.store.items.get(MissionType.FENCE, ())))
+    def fence(self) -> Geometry | None:
+        """The first zone that it stays in, if there is one in force."""
+        within = (zone.shape for zone in self.zones if zone.within)
+        return next(within, None) if fences.in_force(self) else None
 
     @property
     def configured(self) -> Fence:
         """Which fences it would keep within if they were on."""
         configured = Fence(int(self.parameters.get("FENCE_TYPE", 0)))
-        return configured if self.polygon is not None else configured & ~Fence.POLYGON
+        return configured if self.zones else configured & ~Fence.POLYGON
 
     def switch_fences(self, fences: Fence, *, on: bool) -> None:
         """Switch the fences on, or off, that it is configured to have."""
@@ -286,9 +289,14 @@ class Vehicle:
         return math.degrees(bank), math.degrees(math.atan2(body.climb, body.speed))
 
     @property
+    def up(self) -> bool:
+        """Whether it takes missions."""
+        return self.uptime >= UP_AFTER
+
+    @property
     def ready(self) -> bool:
-        """Whether it could be armed, and takes missions."""
-        return self.uptime >= READY_AFTER
+        """Whether it could be armed."""
+        return self.uptime >= READY_AFTER and not missions.missing(self)
 
     def reboot(self, *, armed: bool = False) -> None:
         """Reboot, also in the air; its permanent memory stays. A watchdog's reboot keeps it armed."""
@@ -296,7 +304,7 @@ class Vehicle:
         self.armed = armed and self.armed
         self.current, self.target = 0, None
         self.mode = self.mode if self.armed else self.first_mode
-        self.store.receiving = None
+        self.store.abandon()
         self.low, self.failed_safe = None, False
         self.fences = NO_FENCE
         if self.parameters.get("FENCE_ENABLE"):
@@ -323,35 +331,36 @@ class Vehicle:
     def move(self, now: float) -> None:
         """Move on to a time."""
         seconds, self.time = now - self.time, now
+        profile = self.kind.profile
+        self.store.flown = self.armed and self.mode == profile.auto
+        fences.switch_by_itself(self)
         if not self.armed or seconds <= 0:
             return
         self.charge = max(0.0, self.charge - seconds / ENDURANCE)
-        self._keep_fence()
+        fences.keep(self)
         self._watch_battery()
-        profile = self.kind.profile
         self.told = self.told if self.mode == profile.auto else None
+        self.refuge = self.refuge if self.mode == profile.home else None
         if self.mode == profile.auto:
-            self._follow(seconds)
+            missions.follow(self, seconds)
         elif self.mode == profile.climb:
             self._climb(seconds)
         elif self.mode == profile.guided and self.target:
-            self._go(self.target, seconds)
+            self.go(self.target, seconds)
         elif self.mode == profile.home:
-            self._go(Target(*self.home[:2], profile.altitude, self.home_circle), seconds)
+            self._return(seconds)
         else:
             self._idle(seconds)
 
-    def _keep_fence(self) -> None:
-        """Return, or stop, as soon as it is outside a fence; what drives has stopped before its circle."""
-        here = self.body
-        outside = not self.holds(here.latitude, here.longitude, here.height)
-        if outside and self.fence_action is FenceAction.HOLD:
-            if not self.breached:
-                self.words.append((WARNING, "Geofence violation: holding"))
-                self.stay()
-        elif outside:
-            self.mode = self.kind.profile.home
-        self.breached = outside
+    def _return(self, seconds: float) -> None:
+        """Go to the nearest rally point or home, or by the landing sequence, as it is configured to."""
+        if self.refuge is None:
+            self.refuge, self.lands = missions.refuge(self), False
+        if not self.lands and missions.may_land(self):
+            self.lands = True
+            if missions.land(self):
+                return
+        self.go(Target(*self.refuge, self.kind.profile.altitude, self.home_circle), seconds)
 
     def stay(self) -> None:
         """Hold where it is."""
@@ -361,20 +370,13 @@ class Vehicle:
     def _climb(self, seconds: float) -> None:
         """Take off in the mode for it, and hold once it is high enough."""
         height = self.target.height if self.target else 0.0
-        self._take_off(height, seconds)
+        self.take_off(height, seconds)
         if self.body.height >= height - 1.0:
             self.stay()
 
     def holds(self, latitude: float, longitude: float, height: float) -> bool:
         """Tell whether somewhere is inside all fences that are on."""
-        fence = self.fence
-        inside = fence is None or contains(fence, point(latitude, longitude))
-        if Fence.CIRCLE in self.fences:
-            away = metres_to(Body(*self.home[:2]), latitude, longitude)[0]
-            inside = inside and away <= self.parameters["FENCE_RADIUS"]
-        if Fence.ALT_MAX in self.fences:
-            inside = inside and height <= self.parameters["FENCE_ALT_MAX"]
-        return inside
+        return fences.holds(self, latitude, longitude, height)
 
     def _watch_battery(self) -> None:
         """Return once the battery is low, if the parameters say so; who sends it on after that has overruled it."""
@@ -401,42 +403,15 @@ class Vehicle:
         if self.parameters["COM_LOW_BAT_ACT"] == LOW_BATTERY_RETURNS:
             self.mode = self.kind.profile.home
 
-    def _follow(self, seconds: float) -> None:
-        items = self.store.items.get(MissionType.MISSION, ())
-        first = int(self.kind.profile.dialect.home_is_item)
-        if len(items) <= first:
-            return
-        self.current = max(first, min(self.current, len(items) - 1))
-        item = items[self.current]
-        if self.told != self.current:
-            self.told = self.current
-            self.words.append((INFO, f"Mission: {self.current} {ITEMS.get(item.command, item.command)}"))
-        if item.command == Cmd.TAKEOFF:
-            self._take_off(self.height_in(item.z, item.frame), seconds)
-        else:
-            stays = item.command == Cmd.LOITER_UNLIMITED
-            circle = self.circle if stays and self.kind.limits.must_move else 0.0
-            self._go(Target(item.x / 1e7, item.y / 1e7, self.height_in(item.z, item.frame), circle), seconds)
-        if self._done(item) and self.current < len(items) - 1:
-            self.reached.append(self.current)
-            if item.command == Cmd.WAYPOINT:
-                away = metres_to(self.body, item.x / 1e7, item.y / 1e7)[0]
-                self.words.append((INFO, f"Reached waypoint #{self.current} dist {away:.0f}m"))
-            self.current += 1
-
-    def _done(self, item: Item) -> bool:
-        if item.command == Cmd.TAKEOFF:
-            return self.body.height >= self.height_in(item.z, item.frame) - 1.0
-        distance, _ = metres_to(self.body, item.x / 1e7, item.y / 1e7)
-        return item.command == Cmd.WAYPOINT and distance <= self.kind.radius
-
-    def _take_off(self, height: float, seconds: float) -> None:
+    def take_off(self, height: float, seconds: float) -> None:
+        """Climb where it is, once it is fast enough."""
         limits = self.kind.limits
         speed = self.speed if limits.must_move else 0.0
         rising = height if not limits.must_move or self.body.speed > 0.6 * speed else self.body.height
         self.body = moved(self.body, limits, self.body.course, speed, rising, seconds)
 
-    def _go(self, target: Target, seconds: float) -> None:
+    def go(self, target: Target, seconds: float) -> None:
+        """Go to a target, and stay there."""
         limits = self.kind.limits
         if limits.must_move:
             _, bearing = metres_to(self.body, target.latitude, target.longitude)
@@ -447,16 +422,9 @@ class Vehicle:
         distance, course = metres_to(self.body, target.latitude, target.longitude)
         speed = min(self.speed, distance)  # slows down over the last second
         if limits.climb == 0 and Fence.CIRCLE in self.fences:
-            speed = min(speed, max(0.0, self._before_the_circle(course)))
+            speed = min(speed, max(0.0, fences.before_the_circle(self, course)))
         height = target.height if limits.climb else 0.0
         self.body = moved(self.body, limits, course, speed, height, seconds)
-
-    def _before_the_circle(self, course: float) -> float:
-        """Return the metres that it may drive on a course before it stops at its circle fence."""
-        ahead = moved(replace(self.body, course=course, speed=1.0), self.kind.limits, course, 1.0, 0.0, 1.0)
-        home = Body(*self.home[:2])
-        here, there = (metres_to(home, at.latitude, at.longitude)[0] for at in (self.body, ahead))
-        return math.inf if there < here else self.parameters["FENCE_RADIUS"] - STOPS_BEFORE - here
 
     def _idle(self, seconds: float) -> None:
         """Circle where it is, if it must move; else stop, at the height that it was told to take off to."""
@@ -466,12 +434,3 @@ class Vehicle:
             self.body = moved(self.body, limits, circling, self.speed, self.body.height, seconds)
         elif not limits.must_move:
             self.body = moved(self.body, limits, self.body.course, 0.0, self.body.height, seconds)
-
-
-@lru_cache(maxsize=64)
-def _polygon(corners: tuple[tuple[int, int], ...]) -> Geometry | None:
-    """Return the polygon of corners in 1e-7 degrees, None if they make none; it is asked for at each step."""
-    try:
-        return polygon([(latitude / 1e7, longitude / 1e7) for latitude, longitude in corners])
-    except PhysicalError:
-        return None

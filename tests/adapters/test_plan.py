@@ -39,9 +39,14 @@ READY = Telemetry(
 )
 
 
+NOTHING = dict.fromkeys(MissionType, ())
+"""Read back, and empty."""
+
+
 def step(profile, command=THERE, on_board=None, begun=False, **known):
     known = replace(READY, profile=profile, **known)
-    vehicle = Vehicle(1, known, profile, on_board or {}, None, profile.circle, 100.0, begun)
+    on_board = NOTHING if on_board is None else on_board
+    vehicle = Vehicle(1, known, profile, on_board, None, profile.circle, 100.0, begun)
     return next_step(command, 254, vehicle)
 
 
@@ -63,7 +68,7 @@ def test_a_plane_on_the_ground_loads_a_mission_begins_it_changes_its_mode_arms_a
     assert isinstance(load, Load)
     assert [item.command for item in load.items] == [Cmd.WAYPOINT, Cmd.TAKEOFF, Cmd.LOITER_UNLIMITED]
     assert [item.z for item in load.items[1:]] == [100.0, 100.0]
-    loaded = {"on_board": {load.kind: load.items}}
+    loaded = {"on_board": NOTHING | {load.kind: load.items}}
     assert told(step(PLANE, **loaded)) == Cmd.SET_MISSION_CURRENT
     begun = loaded | {"begun": True}
     assert told(step(PLANE, **begun)) == (Cmd.DO_SET_MODE, PLANE.auto)
@@ -311,12 +316,12 @@ ON_ITS_WAY = {"armed": True, "active": True, "mode": PLANE.auto, "current": 3}
 
 def aboard(way):
     items = route(tuple(map(waypoint, way)), 100.0, takeoff=True)
-    return {MissionType.MISSION: items}
+    return NOTHING | {MissionType.MISSION: items}
 
 
 def test_a_way_that_has_moved_is_told_from_the_item_that_it_is_at_until_that_is_acknowledged():
     state = begun(Follow("r1", "uav0", WAY), **ON_ITS_WAY)
-    state = replace(state, on_board=aboard(WAY), moving=replace(state.moving, begun=True))
+    state = replace(state, on_board=aboard(WAY), moving=replace(state.moving, begun=True, passed=1))
     state, sent, _ = ticked(state, 0, 2)
     assert of(sent, Cmd.SET_MISSION_CURRENT) == []
     moved = (*WAY[:2], box((37.025, -8.61), (37.015, -8.625)))
@@ -333,7 +338,7 @@ def test_a_way_that_has_moved_is_told_from_the_item_that_it_is_at_until_that_is_
 
 
 def test_an_upload_that_gets_no_further_is_given_up():
-    _, sent, reports = ticked(begun(Follow("r1", "uav0", WAY)), 0, PATIENCE + 10)
+    _, sent, reports = ticked(replace(begun(Follow("r1", "uav0", WAY)), on_board=NOTHING), 0, PATIENCE + 10)
     assert any(message.name == "MISSION_COUNT" for message in sent)
     (end,) = ended(reports)
     assert end.reason == "the mission could not be confirmed on board in 45 s"

@@ -331,7 +331,7 @@ def test_a_real_plane_that_an_operator_gives_back_flies_its_mission_to_the_end(t
         await low_battery(1)(seen, process)
         await until(lambda: "taken over" in seen.kinds())
         await asyncio.sleep(30.0)
-        assert await give_back(Path("s"), "uav0") == ""
+        assert (await give_back(Path("s"), "uav0")).refusal == ""
 
     monkeypatch.chdir(tmp_path)
     ending, _, seen = flown_by_run(ROUND, "plane", tmp_path, operator, 1_800)

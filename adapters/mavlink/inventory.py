@@ -1,0 +1,122 @@
+"""What a pilot believes to be on board its vehicle: what was read back since anybody may have changed it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from typing import TYPE_CHECKING, Final
+
+from adapters.mavlink import survey as surveys
+from adapters.mavlink.changed import changed
+from adapters.mavlink.constants import MissionType
+from adapters.mavlink.message import Message
+from adapters.mavlink.refuges import beyond_fence
+from adapters.mavlink.survey import Survey, changed_by
+from adapters.mavlink.sync import Sync
+from adapters.mavlink.telemetry import Telemetry
+from adapters.plugin import Command, Follow, Hold, Report, Return, Trouble
+
+if TYPE_CHECKING:
+    from adapters.mavlink.pilot import Pilot
+
+JUST_NOW: Final = 5.0
+"""Seconds for which an order believes what was read before it, if nothing shows that it has changed."""
+
+HEADING: Final = 5.0
+FLOWN: Final = 10.0
+NOW_AND_THEN: Final = 60.0
+"""Seconds after which a mission is read again: before it is flown, while it is flown, and else."""
+
+
+def unsure(
+    pilot: Pilot, kinds: Collection[MissionType] = tuple(MissionType), *, quiet: bool = False
+) -> Pilot:
+    """Return a pilot that believes nothing of what is on board before it is read again.
+
+    `quiet`: what was switched on is not doubted with it.
+    """
+    on_board = {kind: items for kind, items in pilot.on_board.items() if kind not in kinds}
+    known = pilot.known
+    if MissionType.FENCE in kinds and not quiet:
+        known = changed(known, polygon=False)
+    return changed(pilot, on_board=on_board, survey=surveys.doubt(pilot.survey, kinds), known=known)
+
+
+def read_again(pilot: Pilot, told: Command, now: float) -> Pilot:
+    """Read again what an order depends on, unless that was done just now: a path needs its mission, a start all.
+
+    While a vehicle was held, or flew home, it was anybody's.
+    """
+    if pilot.moving is not None and isinstance(pilot.moving.command, Hold | Return):
+        return unsure(pilot)
+    needed = [*MissionType] if not pilot.known.flying else []
+    needed += [MissionType.MISSION] if isinstance(told, Follow) else []
+    stale = [kind for kind in needed if now - pilot.survey.read.get(kind, now) > JUST_NOW]
+    return unsure(pilot, stale, quiet=True) if stale else pilot
+
+
+def out_of_fence(pilot: Pilot, now: float) -> tuple[Report, ...]:
+    """Report that a vehicle's return leads it out of its fence."""
+    fence = pilot.craft.fence
+    reasons = () if fence is None else beyond_fence(fence, pilot.known, pilot.on_board)
+    return tuple(Trouble(pilot.craft.entity, now, "returns outside its fence", reason) for reason in reasons)
+
+
+def overheard(pilot: Pilot, message: Message) -> Pilot:
+    """Take a message between the vehicle and another station: what that may change is no longer believed."""
+    kinds = changed_by(message, pilot.system)
+    return unsure(pilot, kinds, quiet=True) if kinds else pilot
+
+
+def with_known(pilot: Pilot, known: Telemetry) -> Pilot:
+    """Take on a state; where it shows that something else may be on board, that is read again."""
+    before, pilot = pilot.known, changed(pilot, known=known)
+    if known.boots != before.boots:
+        return changed(pilot, on_board={}, survey=Survey(), questions=0)
+    if known.profile is not None and known.mode == known.profile.auto != before.mode:
+        pilot = changed(pilot, survey=surveys.soon(pilot.survey, MissionType.MISSION))
+    if (known.total, known.numbers) == (before.total, before.numbers):
+        return pilot
+    return unsure(pilot, tuple(_renumbered(pilot, before)), quiet=True)
+
+
+def _renumbered(pilot: Pilot, before: Telemetry) -> Iterator[MissionType]:
+    """Yield the kinds of which MISSION_CURRENT shows that they are not the ones of before."""
+    known, mission = pilot.known, pilot.on_board.get(MissionType.MISSION, ())
+    first = known.profile is not None and known.profile.dialect.home_is_item
+    if known.total not in (before.total, max(0, len(mission) - first)):
+        yield MissionType.MISSION
+    if known.numbers is not None and before.numbers is not None:
+        pairs = zip(MissionType, known.numbers, before.numbers, strict=True)
+        yield from (kind for kind, now, then in pairs if now != then)
+
+
+def read_on(pilot: Pilot, message: Message, now: float) -> tuple[Pilot, tuple[Message, ...]]:
+    """Let the reading of what is on board take an answer."""
+    if message.name not in surveys.ANSWERS or _uploads(pilot):
+        return pilot, ()
+    survey, sent, kind = surveys.hear(pilot.survey, message, now)
+    pilot = changed(pilot, survey=survey)
+    if kind is not None:
+        pilot = changed(pilot, on_board={**pilot.on_board, kind: survey.found[kind]})
+    return pilot, sent
+
+
+def _uploads(pilot: Pilot) -> bool:
+    task = pilot.moving
+    return task is not None and not task.over and isinstance(task.doing, Sync)
+
+
+def surveyed(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
+    """Read what is on board a vehicle that obeys us, again from time to time, and more often what it flies."""
+    profile, known = pilot.known.profile, pilot.known
+    if profile is None or _uploads(pilot):
+        return pilot, ()
+    pending = pilot.moving is not None and not pilot.moving.accepted and not pilot.moving.over
+    mission = HEADING if pending else FLOWN if known.mode == profile.auto else NOW_AND_THEN
+    every = {
+        MissionType.MISSION: mission,
+        MissionType.FENCE: NOW_AND_THEN / 2,
+        MissionType.RALLY: NOW_AND_THEN,
+    }
+    survey, sent = surveys.tick(pilot.survey, every, pilot.on_board, pilot.system, now)
+    return changed(pilot, survey=survey), sent

@@ -1,0 +1,110 @@
+"""Keep what is on board beside what is uploaded: fences next to each other, a landing sequence behind the mission.
+
+An upload replaces all items of its kind. So what is there is read first, and what the vehicle still needs goes up again
+with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Final
+
+from adapters.mavlink.constants import Cmd, MissionType
+from adapters.mavlink.download import MAX_ITEMS
+from adapters.mavlink.items import Item, Items, same
+from adapters.mavlink.profiles import ARDUPILOT_DIALECT, Dialect
+from adapters.mavlink.telemetry import Telemetry
+from adapters.mavlink.zones import Zone, zones
+
+UNION: Final = 2
+"""The bit of ArduPilot's FENCE_OPTIONS with which one zone to stay in is enough; PX4 knows nothing else."""
+
+RETURNS_BY_LANDING: Final = (1.0, 2.0)
+"""ArduPlane's RTL_AUTOLAND with which it goes on to its landing sequence, in AUTO."""
+
+OnBoard = Mapping[MissionType, Items]
+"""What was read back and, as far as can be told, has not changed since; what is not in it is not known."""
+
+_LANDINGS: Final = (Cmd.LAND, Cmd.VTOL_LAND)
+_STARTS: Final = (Cmd.DO_LAND_START, Cmd.DO_RETURN_PATH_START)
+
+
+def merged(ours: Items, found: Items, kind: MissionType, known: Telemetry) -> Items:
+    """Return what must be on board: our items, and those found there that are kept."""
+    if kind is MissionType.FENCE:
+        return (*ours, *(item for zone in kept_zones(ours, found, known) for item in zone.items))
+    if kind is MissionType.MISSION:
+        return (*ours, *_renumbered(landing(found, known), len(found), len(ours)))
+    return ours
+
+
+def is_on_board(wanted: Items, found: Items, kind: MissionType) -> bool:
+    """Tell whether all that is wanted, and nothing else, was found on board; the order of zones has no meaning."""
+    if kind is MissionType.FENCE:
+        here, there = (sorted(zone.key for zone in zones(items)) for items in (wanted, found))
+        return here == there
+    return same(wanted, found, kind)
+
+
+def kept_zones(ours: Items, found: Items, known: Telemetry) -> tuple[Zone, ...]:
+    """Return the zones on board that are not ours and stay: all of which ours does not become wider."""
+    own = {zone.key for zone in zones(ours)}
+    foreign = (zone for zone in zones(found) if zone.key not in own)
+    return tuple(zone for zone in foreign if not (zone.within and widens(known)))
+
+
+def widens(known: Telemetry) -> bool:
+    """Tell whether another zone to stay in lets a vehicle leave ours."""
+    return _dialect(known).unites or bool(int(known.parameters.get("FENCE_OPTIONS", 0)) & UNION)
+
+
+def landing(found: Items, known: Telemetry) -> Items:
+    """Return the landing sequence of a mission on board, to which the vehicle returns; empty if it has none.
+
+    It is everything from the first marker of such a sequence on. PX4 needs no marker before a landing.
+    """
+    if known.parameters.get("RTL_AUTOLAND") == 0.0:  # it is not armed with one
+        return ()
+    marked = next((at for at, item in enumerate(found) if item.command in _STARTS), None)
+    if marked is None and not _dialect(known).marks_landing:
+        marked = next((at for at, item in enumerate(found) if item.command in _LANDINGS), None)
+    return () if marked is None else found[marked:]
+
+
+def landing_now(known: Telemetry, on_board: OnBoard) -> bool:
+    """Tell whether a vehicle flies the landing sequence by which it returns, in the mode of a mission."""
+    profile, found = known.profile, on_board.get(MissionType.MISSION)
+    asked = known.parameters.get("RTL_AUTOLAND") in RETURNS_BY_LANDING
+    if profile is None or not asked or known.mode != profile.auto or known.current is None or found is None:
+        return False
+    tail = landing(found, known)
+    return bool(tail) and known.current >= len(found) - len(tail)
+
+
+def jumps_out(found: Items, known: Telemetry) -> int | None:
+    """Return the item outside of the landing sequence on board to which it jumps, if it does."""
+    tail = landing(found, known)
+    first = len(found) - len(tail)
+    targets = (item.parameters[0] for item in tail if item.command == Cmd.DO_JUMP)
+    return next((_whole(to) for to in targets if not first <= to < len(found)), None)
+
+
+def _renumbered(tail: Items, before: int, ahead: int) -> Items:
+    """Return a landing sequence, the last of `before` items, as it follows `ahead` others: jumps keep their aims."""
+    shift = ahead - (before - len(tail))
+    return tuple(_shifted(item, shift) if item.command == Cmd.DO_JUMP else item for item in tail)
+
+
+def _shifted(jump: Item, shift: int) -> Item:
+    first, *rest = jump.parameters
+    parameters = (first + shift, rest[0], rest[1], rest[2])
+    return replace(jump, parameters=parameters) if shift else jump
+
+
+def _whole(number: float) -> int:
+    return round(number) if abs(number) <= MAX_ITEMS else -1
+
+
+def _dialect(known: Telemetry) -> Dialect:
+    return ARDUPILOT_DIALECT if known.profile is None else known.profile.dialect

@@ -1,0 +1,159 @@
+"""Read what is on board: missions, fences and rally points, before the first command and again and again.
+
+Anybody may change it at any time, on the ground and in the air, and a vehicle tells only the one who does. So nothing
+is believed to be on board but what was read back since the last moment at which somebody may have changed it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+from adapters.mavlink import download as reading
+from adapters.mavlink.constants import MissionType
+from adapters.mavlink.items import Items
+from adapters.mavlink.message import Message
+
+SILENT: Final = 8.0
+"""Seconds without an answer after which a reading is given up."""
+
+RETRY: Final = 5.0
+"""Seconds before it is tried again."""
+
+PER_ITEM: Final = 0.2
+"""Seconds for each item by which the next reading is later: a long mission takes long to read."""
+
+ANSWERS: Final = frozenset({"MISSION_COUNT", "MISSION_ITEM_INT", "MISSION_ACK"})
+
+ALL_KINDS: Final = 255
+"""MAV_MISSION_TYPE_ALL."""
+
+_WRITES: Final = frozenset(
+    {
+        "MISSION_CLEAR_ALL",
+        "MISSION_COUNT",
+        "MISSION_ITEM",
+        "MISSION_ITEM_INT",
+        "MISSION_WRITE_PARTIAL_LIST",
+    }
+)
+"""What a station says when it writes."""
+
+_ASKS: Final = frozenset({"MISSION_ACK", "MISSION_REQUEST", "MISSION_REQUEST_INT"})
+"""What a vehicle says to the one who writes."""
+
+_POINTS: Final = {"FENCE_POINT": MissionType.FENCE, "RALLY_POINT": MissionType.RALLY}
+"""The messages of older protocols."""
+
+NEVER: Final = float("-inf")
+"""Before any time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """The reading of what is on board.
+
+    Attributes:
+        reading: The one under way.
+        progress: When it last got an answer.
+        read: When each kind was read last.
+        found: What was read last of each kind; it may have changed since.
+        given_up: When a reading of each kind was last given up.
+    """
+
+    reading: reading.Download | None = None
+    progress: float = 0.0
+    read: Mapping[MissionType, float] = field(default_factory=dict)
+    found: Mapping[MissionType, Items] = field(default_factory=dict)
+    given_up: Mapping[MissionType, float] = field(default_factory=dict)
+
+    @property
+    def settled(self) -> bool:
+        """Whether each kind was read, or was asked for in vain."""
+        return all(kind in self.found or kind in self.given_up for kind in MissionType)
+
+
+Step = tuple[Survey, tuple[Message, ...]]
+
+
+def tick(
+    survey: Survey,
+    every: Mapping[MissionType, float],
+    certain: Collection[MissionType],
+    system: int,
+    now: float,
+) -> Step:
+    """Go on with a reading, or begin the next: first of what is not certain, then of what was read `every` so often."""
+    if survey.reading is not None and now - survey.progress > SILENT:
+        survey = replace(survey, reading=None, given_up={**survey.given_up, survey.reading.kind: now})
+    if survey.reading is None:
+        kind = _next(survey, every, certain, now)
+        if kind is None:
+            return survey, ()
+        survey = replace(survey, reading=reading.Download(kind, system), progress=now)
+    assert survey.reading is not None
+    going, sent = reading.tick(survey.reading, now)
+    return replace(survey, reading=going), sent
+
+
+def hear(
+    survey: Survey, message: Message, now: float
+) -> tuple[Survey, tuple[Message, ...], MissionType | None]:
+    """Take an answer of the vehicle; return the kind that is read now, if one is."""
+    before = survey.reading
+    if before is None:
+        return survey, (), None
+    going, sent = reading.hear(before, message, now)
+    if going == before:
+        return survey, sent, None
+    if not going.over:
+        return replace(survey, reading=going, progress=now), sent, None
+    return settle(replace(survey, reading=None), going.kind, going.items, now), sent, going.kind
+
+
+def settle(survey: Survey, kind: MissionType, items: Items, now: float) -> Survey:
+    """Note what was found on board."""
+    found = {**survey.found, kind: items}
+    return replace(survey, read={**survey.read, kind: now}, found=found)
+
+
+def doubt(survey: Survey, kinds: Collection[MissionType]) -> Survey:
+    """End a reading of what may have changed meanwhile, and read these kinds as soon as possible."""
+    given_up = {kind: at for kind, at in survey.given_up.items() if kind not in kinds}
+    given_up |= {kind: NEVER for kind in survey.given_up if kind in kinds}
+    if survey.reading is not None and survey.reading.kind in kinds:
+        survey = replace(survey, reading=None)
+    return replace(survey, given_up=given_up, read={**survey.read, **dict.fromkeys(kinds, NEVER)})
+
+
+def soon(survey: Survey, kind: MissionType) -> Survey:
+    """Read a kind as soon as possible, and believe what was read until then."""
+    return replace(survey, read={**survey.read, kind: NEVER})
+
+
+def changed_by(message: Message, vehicle: int) -> tuple[MissionType, ...]:
+    """Return what on board a message between a vehicle, of this system id, and another station may change."""
+    if message.name in _POINTS:
+        return (_POINTS[message.name],)
+    if message.name not in (_ASKS if message.system == vehicle else _WRITES):
+        return ()
+    said = message.fields.get("mission_type", 0)
+    return tuple(MissionType) if said == ALL_KINDS else tuple(kind for kind in MissionType if kind == said)
+
+
+def _next(
+    survey: Survey, every: Mapping[MissionType, float], certain: Collection[MissionType], now: float
+) -> MissionType | None:
+    """Return the kind to be read next."""
+    due = [
+        (kind in certain, max(survey.read.get(kind, NEVER), survey.given_up.get(kind, NEVER)), kind)
+        for kind, seconds in every.items()
+        if now - survey.given_up.get(kind, NEVER) > RETRY
+        and (kind not in certain or now - survey.read.get(kind, NEVER) >= _period(survey, kind, seconds))
+    ]
+    return min(due)[2] if due else None
+
+
+def _period(survey: Survey, kind: MissionType, seconds: float) -> float:
+    return seconds + PER_ITEM * len(survey.found.get(kind, ()))

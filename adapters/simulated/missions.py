@@ -1,0 +1,128 @@
+"""How a simulated vehicle flies its mission, lands by it, and chooses where it returns to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from adapters.mavlink.constants import Cmd, MissionType
+from adapters.mavlink.items import Item, Items
+from adapters.mavlink.refuges import missing_items
+from adapters.mavlink.telemetry import Telemetry
+from adapters.simulated.body import Target, metres_to
+
+if TYPE_CHECKING:
+    from adapters.simulated.vehicle import Vehicle
+
+WARNING: Final = 4
+INFO: Final = 6
+
+NAMES: Final[dict[int, str]] = {
+    Cmd.TAKEOFF: "Takeoff",
+    Cmd.WAYPOINT: "WP",
+    Cmd.LOITER_UNLIMITED: "LoitUnlim",
+    Cmd.LAND: "Land",
+}
+"""What ArduPilot calls the items of a mission when it begins them."""
+
+_FLOWN: Final = frozenset(NAMES)
+"""The items that lead somewhere; all others are over as soon as they are begun."""
+
+IMMEDIATELY: Final = 2.0
+AT_HOME: Final = 1.0
+"""RTL_AUTOLAND with which it goes straight to its landing sequence, or first to where it returns to."""
+
+
+def follow(vehicle: Vehicle, seconds: float) -> None:
+    """Fly the mission for a while."""
+    items = vehicle.store.mission
+    first = int(vehicle.kind.profile.dialect.home_is_item)
+    if len(items) <= first:
+        return
+    vehicle.current = max(first, min(vehicle.current, len(items) - 1))
+    item = items[vehicle.current]
+    if vehicle.told != vehicle.current:
+        vehicle.told = vehicle.current
+        vehicle.words.append((INFO, f"Mission: {vehicle.current} {NAMES.get(item.command, item.command)}"))
+    _fly(vehicle, item, seconds)
+    if _done(vehicle, item) and vehicle.current < len(items) - 1:
+        _next(vehicle, item)
+
+
+def _fly(vehicle: Vehicle, item: Item, seconds: float) -> None:
+    if item.command == Cmd.TAKEOFF:
+        vehicle.take_off(_height(vehicle, item), seconds)
+    elif item.command in _FLOWN:
+        stays = item.command == Cmd.LOITER_UNLIMITED
+        circle = vehicle.circle if stays and vehicle.kind.limits.must_move else 0.0
+        vehicle.go(Target(item.x / 1e7, item.y / 1e7, _height(vehicle, item), circle), seconds)
+        low = (
+            vehicle.body.height <= _height(vehicle, item) + 1.0
+            and _away(vehicle, item) <= vehicle.kind.radius
+        )
+        if item.command == Cmd.LAND and low:
+            vehicle.arm(armed=False)
+
+
+def _done(vehicle: Vehicle, item: Item) -> bool:
+    if item.command == Cmd.TAKEOFF:
+        return vehicle.body.height >= _height(vehicle, item) - 1.0
+    if item.command not in _FLOWN:
+        return True
+    return item.command == Cmd.WAYPOINT and _away(vehicle, item) <= vehicle.kind.radius
+
+
+def _next(vehicle: Vehicle, item: Item) -> None:
+    vehicle.reached.append(vehicle.current)
+    if item.command == Cmd.WAYPOINT:
+        words = f"Reached waypoint #{vehicle.current} dist {_away(vehicle, item):.0f}m"
+        vehicle.words.append((INFO, words))
+    jumps = item.command == Cmd.DO_JUMP
+    vehicle.current = round(item.parameters[0]) if jumps else vehicle.current + 1
+
+
+def _height(vehicle: Vehicle, item: Item) -> float:
+    """Return an item's height above home."""
+    return vehicle.height_in(item.z, item.frame)
+
+
+def _away(vehicle: Vehicle, item: Item) -> float:
+    return metres_to(vehicle.body, item.x / 1e7, item.y / 1e7)[0]
+
+
+def refuge(vehicle: Vehicle) -> tuple[float, float]:
+    """Return where it returns to: the nearest rally point, or home if that is meant or none is near enough."""
+    rally = [(item.x / 1e7, item.y / 1e7) for item in vehicle.store.items.get(MissionType.RALLY, ())]
+    home, limit = vehicle.home[:2], 1000.0 * vehicle.parameters.get("RALLY_LIMIT_KM", 0.0)
+    near = [at for at in rally if not limit or metres_to(vehicle.body, *at)[0] <= limit]
+    both = vehicle.kind.profile.dialect.unites or vehicle.parameters.get("RALLY_INCL_HOME")
+    return min([*near, *([home] if both or not near else [])], key=lambda at: metres_to(vehicle.body, *at)[0])
+
+
+def may_land(vehicle: Vehicle) -> bool:
+    """Tell whether it is time to look for a landing sequence."""
+    asked = vehicle.parameters.get("RTL_AUTOLAND")
+    if asked != AT_HOME or vehicle.refuge is None:
+        return asked == IMMEDIATELY
+    return metres_to(vehicle.body, *vehicle.refuge)[0] <= 1.5 * vehicle.home_circle
+
+
+def land(vehicle: Vehicle) -> bool:
+    """Begin the landing sequence of the mission on board; tell whether it has one."""
+    start = _landing(vehicle.store.mission)
+    if start is None:
+        vehicle.words.append((WARNING, "Unable to start landing sequence"))
+        return False
+    vehicle.mode, vehicle.current = vehicle.kind.profile.auto, start
+    return True
+
+
+def _landing(items: Items) -> int | None:
+    return next((at for at, item in enumerate(items) if item.command == Cmd.DO_LAND_START), None)
+
+
+def missing(vehicle: Vehicle) -> str:
+    """Return which item it needs on board before it is armed, or an empty text."""
+    if not vehicle.parameters.get("ARMING_MIS_ITEMS"):
+        return ""
+    known = Telemetry(parameters=vehicle.parameters)
+    return next(missing_items(vehicle.store.mission, known, vehicle.store.items), "")
