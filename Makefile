@@ -10,7 +10,7 @@ PARTS  := $(PAGE)/parts/LICENSES.txt
 SMOKE  := $(addprefix tests/,missions paper semantics/state/test_cells.py \
 	$(addprefix bigactors/test_,big.py cli.py engines.py missions.py public_names.py run.py))
 
-.PHONY: parts demo live-demo test test-long lint types test-wheel wheel constraints storm fuzz bounds bench bench-bigraphs bench-cluster bench-time time-oracle docs pictures clean
+.PHONY: parts demo live-demo test test-long lint types test-wheel wheel constraints storm fuzz mutants bounds bench bench-bigraphs bench-cluster bench-time time-oracle docs pictures clean
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -72,6 +72,12 @@ storm: $(STAMP)  ## the model checker Storm, for `big check --storm` and its tes
 fuzz: $(STAMP)  ## the long tests whole, 100,000 mutated missions, a million mutated packets and sentences (nightly: an hour or more)
 	BIGACTORS_FUZZ=100000 BIGACTORS_FUZZ_PACKETS=1000000 $(BIN)/python -m pytest -n 2 -q -m "fuzz or hypothesis"
 
+mutants: $(STAMP)  ## change semantics/ and the reductions one operator at a time: which changes does no test notice? (nightly; MUTANTS=semantics.control* for a part)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'mutmut>=3.8'
+	-timeout --signal=INT $(or $(TIME),150m) $(BIN)/python -m mutmut run --max-children 2 $(MUTANTS) | tr '\r' '\n' | tail -n 1
+	$(BIN)/python -m mutmut results | grep -E ': (survived|timeout|suspicious)' || true
+	$(BIN)/python -m mutmut export-cicd-stats && cat mutants/mutmut-cicd-stats.json
+
 bounds: $(STAMP)  ## the compiled loops with checks of bounds over all missions, cut and gone on with at many sizes (nightly: some 40 minutes)
 	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q -m bounds
 	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q $(COMPILED)
@@ -113,4 +119,4 @@ pictures: $(STAMP) $(PARTS)  ## draw the README's pictures again; the page of a 
 	$(BIN)/python tests/console_picture.py .pictures/flight/run.mcap docs/pictures/console.png
 
 clean:
-	rm -rf $(VENV) $(WHEEL) $(PAGE)/node_modules $(PAGE)/parts .pictures .numba-bounds demo live-demo dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(WHEEL) mutants $(PAGE)/node_modules $(PAGE)/parts .pictures .numba-bounds demo live-demo dist site .pytest_cache .mypy_cache .ruff_cache .hypothesis

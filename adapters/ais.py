@@ -20,10 +20,12 @@ from adapters.plugin import Aged, World
 from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError, PhysicalProperty, contains, open_file
-from physical.ais_receiver import Ear, hear
+from physical.ais_receiver import TAKEN, Ear, hear
 from physical.ais_reports import AisError, PositionReport
-from physical.ais_world import TIME_TO_LIVE, physical_property
+from physical.ais_world import COARSE, TIME_TO_LIVE, Finest, physical_property
 from physical.mmsi import KINDS, digits
+from physical.nmea import Reason
+from physical.tally import Counting
 
 MAX_REMOTES: Final = 64
 FUTURE: Final = 1.0
@@ -33,6 +35,7 @@ PACE: Final = 100.0
 """Lines a second from a recording whose lines have no times."""
 
 REPORT: Final = 1.0
+_REASONS: Final = frozenset(reason.value for reason in Reason)
 
 
 class AisFeed(Feed):
@@ -73,6 +76,8 @@ class AisFeed(Feed):
         self._time_to_live = time_to_live
         self._streams: OrderedDict[Remote, tuple[Lines, Ear]] = OrderedDict()
         self._troubles = Troubles(name)
+        self._finest = Finest(time_to_live)
+        self._counting = Counting()
         self._world: World | None = None
         self._port: Port | None = None
         self.played = asyncio.Event()
@@ -93,6 +98,7 @@ class AisFeed(Feed):
             async with open_port(self._address, self._receive) as self._port:
                 await self._reporting(world)
         finally:
+            self._tell_unread()
             self._troubles.report(world, now=True)
             self._world = self._port = None
 
@@ -123,10 +129,24 @@ class AisFeed(Feed):
         heard = hear(ear, line, None if shift else now)
         for reason in heard.reasons:
             self._troubles.note(reason.value, repr(line[:100]))
+        for piece in heard.pieces:
+            if piece not in TAKEN and piece not in _REASONS:
+                self._leave(piece)
         for report in heard.reports:
             if isinstance(report, PositionReport):
                 self._position(_shifted(report, shift, now), now)
         return heard.ear
+
+    def _leave(self, kind: str) -> None:
+        """Count what brings no position though nothing is wrong with it; it is reported once, and at the end."""
+        if kind not in self._counting.left_out:
+            self._troubles.note(f"{kind}: such are not read", "how many there were is told at the end")
+        self._counting.leave(kind)
+
+    def _tell_unread(self) -> None:
+        for kind, count in sorted(self._counting.left_out.items()):
+            self._troubles.note(f"{kind}, not read in all", "", count)
+        self._counting = Counting()
 
     def _position(self, report: PositionReport, now: float) -> None:
         assert self._world is not None
@@ -139,6 +159,9 @@ class AisFeed(Feed):
             self._troubles.note(
                 "time stamp too old", f"{digits(report.mmsi)}, {now - report.time:.0f} s behind"
             )
+            return
+        if self._finest.supersedes(report, min(report.time, now)):
+            self._leave(COARSE)
             return
         known = physical_property(report if report.time <= now else replace(report, time=now))
         if self._wanted(known):

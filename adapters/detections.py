@@ -22,6 +22,7 @@ from adapters.slices import in_slices
 from adapters.troubles import Troubles
 from adapters.web import MAX_BODY, Listen, serve
 from physical import PhysicalError, PhysicalProperty, legible, open_file, reading_geojson
+from physical.tally import Counting
 
 EVERY: Final = 1.0
 MAX_FILES: Final = 1_000
@@ -63,6 +64,7 @@ class Detections(Feed):
         self._time_to_live = time_to_live
         self._seen: dict[Path, int] = {}
         self._troubles = Troubles(name)
+        self._unread: set[str] = set()
         self._world: World | None = None
         self._taking = asyncio.Lock()
         self._known: OrderedDict[str, None] = OrderedDict()
@@ -108,7 +110,9 @@ class Detections(Feed):
         """Publish all features of a collection, or none; one collection at a time, without blocking the event loop."""
         assert self._world is not None
         async with self._taking:
-            found = [feature async for feature in in_slices(reading_geojson(body))]
+            counting = Counting()
+            found = [feature async for feature in in_slices(reading_geojson(body, counting))]
+            self._tell_unread(counting)
             for feature in found:
                 self._check(feature)
             async for feature in in_slices(found):
@@ -119,6 +123,13 @@ class Detections(Feed):
                 if len(self._known) > MAX_KNOWN:
                     self._known.popitem(last=False)
         return len(found)
+
+    def _tell_unread(self, counting: Counting) -> None:
+        """Report what is not read of features, each kind once: a vision system says the same every second."""
+        for kind, count in sorted(counting.asides.items()):
+            if kind not in self._unread:
+                self._unread.add(kind)
+                self._troubles.note(kind, "it is not told again", count)
 
     def _check(self, feature: PhysicalProperty) -> None:
         if self._kinds is not None and feature.kind not in self._kinds:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-MAX_LINE: Final = 1_024
+MAX_LINE: Final = 8_192
 """Bytes of a line beyond which it is handed on as it is, for its reader to refuse."""
 
 

@@ -12,9 +12,9 @@ from __future__ import annotations
 import errno
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Final, Protocol, runtime_checkable
 
-from physical import Band, Geometry, PhysicalError, PhysicalProperty
+from physical import Band, Geometry, PhysicalError, PhysicalProperty, Surroundings
 
 # --- what a plugin publishes ------------------------------------------------------------------------
 
@@ -55,6 +55,9 @@ def entity_of(published: Published) -> str:
     return published.property.entity if isinstance(published, Aged) else published.entity
 
 
+NOWHERE_ELSE: Final = Surroundings()
+"""No places beside the one in which a vehicle is to stay."""
+
 # --- what a plugin is told --------------------------------------------------------------------------
 
 
@@ -67,9 +70,12 @@ class GoTo:
     Attributes:
         request: Names the request in reports; unique in a run.
         entity: Who shall go.
-        place: The polygon (or point) as it is now; the waypoint is `physical.waypoint(place)`.
+        place: The polygon (or point) as it is now. The waypoint is the point nearest its centroid around which the
+            vehicle keeps to its surroundings (`physical.standing`).
         altitude: The band to be in, in metres above sea level; the vehicle's own choice if None.
         name: The place's name, for messages.
+        around: What to stay in, and out of, beside the place.
+        shape: The vehicle's extent; None for a point.
     """
 
     request: str
@@ -77,6 +83,8 @@ class GoTo:
     place: Geometry
     altitude: Band | None = None
     name: str = ""
+    around: Surroundings = NOWHERE_ELSE
+    shape: Geometry | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,9 +97,12 @@ class Follow:
     Attributes:
         request: Names the request in reports; unique in a run.
         entity: Who shall go.
-        path: The polygons (or points) as they are now; the waypoint of each is `physical.waypoint(place)`.
+        path: The polygons (or points) as they are now; the waypoint of each is `physical.waypoint(place)`, of the last
+            as in GoTo.
         altitude: The band to be in, in metres above sea level; the vehicle's own choice if None.
         name: The last place's name, for messages.
+        around: What to stay in, and out of, in the last place.
+        shape: The vehicle's extent; None for a point.
     """
 
     request: str
@@ -99,6 +110,8 @@ class Follow:
     path: tuple[Geometry, ...]
     altitude: Band | None = None
     name: str = ""
+    around: Surroundings = NOWHERE_ELSE
+    shape: Geometry | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,8 +180,8 @@ class Refused(Exception):  # an answer, not an error
 
 
 @dataclass(frozen=True, slots=True)
-class Accepted:
-    """The vehicle's own state shows that it follows the request: mode, arming, target or mission."""
+class Sent:
+    """A plugin has taken on a command, and tells the vehicle; the vehicle has shown nothing yet."""
 
     request: str
     entity: str
@@ -176,16 +189,38 @@ class Accepted:
 
 
 @dataclass(frozen=True, slots=True)
-class Arrived:
-    """The vehicle's position, or for a hand-over its authority, shows that the request is done.
+class Accepted:
+    """The vehicle's own state shows that it follows the request: mode, arming, target or mission.
 
-    For a path it means that the vehicle has passed all of it, which no position shows. This report does not complete
-    the request in logical space: the rules decide that from positions published after it was accepted.
+    Attributes:
+        request: The request.
+        entity: The vehicle.
+        time: When it was shown.
+        place: The last place of the command that it follows, which may have moved since; None if that is not told.
+        waypoint: Around which point it will stay; None if that is not told.
     """
 
     request: str
     entity: str
     time: float
+    place: Geometry | None = None
+    waypoint: Geometry | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Arrived:
+    """The vehicle's position, or for a hand-over its authority, shows that the request is done.
+
+    For a path it means that the vehicle has passed all of it, which no position shows. This report does not complete
+    the request in logical space: the rules decide that from positions published after it was accepted. `place` and
+    `waypoint` are as in `Accepted`.
+    """
+
+    request: str
+    entity: str
+    time: float
+    place: Geometry | None = None
+    waypoint: Geometry | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -386,6 +421,7 @@ class Status:
         height: Metres above its home.
         home: Its home, in degrees.
         returning: Whether it is in the mode in which it flies home.
+        lacks: Why it has no position that counts; empty if it has one.
     """
 
     entity: str
@@ -400,6 +436,7 @@ class Status:
     height: float | None = None
     home: tuple[float, float] | None = None
     returning: bool | None = None
+    lacks: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -426,7 +463,8 @@ Seen = Status | StatusText | Presence
 """Reports for people alone: a run records them, and does nothing by them."""
 
 Report = (
-    Accepted
+    Sent
+    | Accepted
     | Arrived
     | Rejected
     | Doubted
@@ -466,7 +504,8 @@ class Plugin(Protocol):
     cancelled, and then closes everything. `command` may be called from then on, also before the vehicle is heard. It
     returns as soon as the command is accepted, and raises Refused if it never can be. Reports follow: any number of
     Accepted, then one Arrived or Rejected, unless another command replaces it. A rejected request is refused from then
-    on: to repeat it, make a new request.
+    on: to repeat it, make a new request. Hold and Return are owed until they are confirmed: the same request may come
+    again after it was rejected, and begins anew.
     """
 
     @property
@@ -508,8 +547,8 @@ class Preflight(Protocol):
         """Return messages to the operator."""
         ...
 
-    def objection(self, entity: str, place: Geometry, name: str) -> str | None:
-        """Return why a vehicle can't stay at a place; None if it can."""
+    def objection(self, entity: str, place: Geometry, name: str, around: Surroundings) -> str | None:
+        """Return why a vehicle can't stay at a place and keep to its surroundings; None if it can."""
         ...
 
     def bar(self, entity: str, place: Geometry, name: str) -> str | None:
@@ -524,6 +563,7 @@ def preflights(plugins: Iterable[Plugin]) -> tuple[Preflight, ...]:
 
 
 __all__ = [
+    "NOWHERE_ELSE",
     "Accepted",
     "Aged",
     "Arrived",
@@ -553,6 +593,7 @@ __all__ = [
     "Report",
     "Return",
     "Seen",
+    "Sent",
     "Status",
     "StatusText",
     "TakenOver",

@@ -9,7 +9,8 @@ from typing import Final
 from adapters.feed import Feed
 from adapters.plugin import Gone, World
 from adapters.troubles import Troubles
-from physical import PhysicalError, PhysicalProperty, open_file, read_places
+from physical import PhysicalError, PhysicalProperty, open_file
+from physical.place_files import read_place_file
 
 EVERY: Final = 1.0
 """Seconds between two checks of the file."""
@@ -20,7 +21,8 @@ MAX_BYTES: Final = 10_000_000
 class StaticPlaces(Feed):
     """A plugin for the places of a file: GeoJSON, or by its ending `.waypoints` or `.plan` (waypoint0, waypoint1, ...).
 
-    A file that becomes unreadable is reported, and its last places stay.
+    A file that becomes unreadable is reported, and its last places stay. What is not taken of a file is reported by
+    kind.
     """
 
     def __init__(self, name: str, path: Path) -> None:
@@ -49,7 +51,10 @@ class StaticPlaces(Feed):
         if stamp == self._seen:
             return
         self._seen = stamp
-        places = {place.entity: place for place in read_places(self._path.suffix, _read(self._path))}
+        found = read_place_file(self._path.suffix, _read(self._path))
+        for row in found.missing():
+            self._troubles.note(f"{self._path.name}: {row}")
+        places = {place.entity: place for place in found.properties}
         for name in sorted(self._known.keys() - places.keys()):
             world.publish(Gone(name, world.now(), self._name))
         for name, place in places.items():

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
+import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager, suppress
 from typing import Any, Final, Protocol
@@ -30,7 +31,10 @@ MAX_AT_ONCE: Final = 8
 """How many datagrams are read at once, up to `CHUNK` bytes: about a millisecond's work, then the loop serves others."""
 
 MAX_PEERS: Final = 64
-"""Connections accepted by one port."""
+"""Connections of one port; where there are more, the one that was silent for longest is closed."""
+
+BACKLOG: Final = 16
+"""Connections that are accepted at once."""
 
 Remote = tuple[str, int]
 Receive = Callable[[Remote, bytes], None]
@@ -148,22 +152,28 @@ class _Streams:
     def __init__(self, receive: Receive) -> None:
         self._receive = receive
         self._writers: dict[Remote, asyncio.StreamWriter] = {}
+        self._heard: dict[Remote, float] = {}
         self.local: Remote = ("", 0)
 
     async def carry(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, remote: Remote) -> None:
-        """Read a connection to its end."""
+        """Read a connection to its end; where there are too many, the one that was silent for longest is closed."""
         if len(self._writers) >= MAX_PEERS:
-            writer.close()
-            return
-        self._writers[remote] = writer
+            self._drop(min(self._heard, key=self._heard.__getitem__))
+        self._writers[remote], self._heard[remote] = writer, time.monotonic()
         try:
             while data := await reader.read(CHUNK):
+                self._heard[remote] = time.monotonic()
                 self._receive(remote, data)
         except OSError:
             pass  # it broke: the same as its end
         finally:
-            self._writers.pop(remote, None)
+            if self._writers.get(remote) is writer:
+                self._drop(remote)
             writer.close()
+
+    def _drop(self, remote: Remote) -> None:
+        del self._heard[remote]
+        self._writers.pop(remote).transport.abort()
 
     def send(self, data: bytes, remote: Remote | None = None) -> None:
         writer = self._writers.get(remote) if remote else next(iter(self._writers.values()), None)
@@ -183,7 +193,7 @@ async def _listening(address: Address, receive: Receive) -> AsyncIterator[Port]:
         peer = writer.get_extra_info("peername")
         await streams.carry(reader, writer, (peer[0], peer[1]))
 
-    server = await asyncio.start_server(accept, address.host, address.port)
+    server = await asyncio.start_server(accept, address.host, address.port, backlog=BACKLOG)
     name = server.sockets[0].getsockname()
     streams.local = (name[0], name[1])
     try:

@@ -19,11 +19,11 @@ class Troubles:
         self._found: dict[str, tuple[str, int]] = {}
         self._reported: float | None = None
 
-    def note(self, what: str, detail: str = "") -> None:
-        """Count one; the first detail of its kind is kept."""
+    def note(self, what: str, detail: str = "", count: int = 1) -> None:
+        """Count one, or several; the first detail of its kind is kept."""
         kind = what if what in self._found or len(self._found) < MAX_KINDS else "other troubles"
-        first, count = self._found.get(kind, (detail, 0))
-        self._found[kind] = (first, count + 1)
+        first, before = self._found.get(kind, (detail, 0))
+        self._found[kind] = (first, before + count)
 
     def report(self, world: World, *, now: bool = False) -> None:
         """Report all troubles, if a second has passed since the last report, or at once."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import re
 from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager, suppress
+from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from ipaddress import IPv4Address, IPv6Address, ip_address
@@ -19,6 +20,16 @@ MAX_BODY: Final = 1_000_000
 """Bytes of a request or answer."""
 
 TIMEOUT: Final = 10.0
+
+MOST_CONNECTIONS: Final = 64
+"""Connections of all clients; the one that has been sending its request for longest makes room for another."""
+
+BACKLOG: Final = 16
+"""Connections that are accepted at once, before those that are too many are closed: each takes a descriptor."""
+
+IN_TIME: Final = 15.0
+"""Seconds in which a request comes, as a whole. Each has a connection of its own."""
+
 JSON: Final = ("application/json", "application/geo+json")
 
 Handler = Callable[[str, str, bytes], Awaitable[tuple[int, str]]]
@@ -42,29 +53,99 @@ async def serve(handler: Handler, where: Listen) -> AsyncIterator[int]:
     """Serve HTTP until the context is left, and say at which port.
 
     Only JSON is accepted, and only requests to this machine's address, so that no web page in a browser here can post
-    (DNS rebinding). Raises OSError if it can't listen there.
+    (DNS rebinding). Connections are bounded in number, and in how long a request may take to come. Raises OSError if it
+    can't listen there.
     """
     web = library().web
+    door: Door | None = None
 
     async def answer(request: Any) -> Any:
         refused = _refusal(request, where)
         body = None if refused else await _read(request)
+        assert door is not None
+        door.has_come(request.transport)
         if body is None:
             status, text = refused or (400, "what is sent is not what its headers say")
         else:
             status, text = await handler(request.method, request.path, body)
-        return web.Response(status=status, text=text + "\n")
+        response = web.Response(status=status, text=text + "\n")
+        response.force_close()
+        return response
 
     application = web.Application(client_max_size=MAX_BODY)
     application.router.add_route("*", "/{path:.*}", answer)
     runner = web.AppRunner(application, access_log=None, logger=quiet_log())
     await runner.setup()
-    try:
-        site = web.TCPSite(runner, where.host, where.port)
-        await site.start()
-        yield runner.addresses[0][1]
-    finally:
-        await runner.cleanup()
+    async with AsyncExitStack() as stack:
+        stack.push_async_callback(runner.cleanup)
+        door = Door(runner.server, MOST_CONNECTIONS, IN_TIME)
+        loop = asyncio.get_running_loop()
+        server = await loop.create_server(
+            door.opened, where.host, where.port, backlog=BACKLOG, reuse_address=True
+        )
+        stack.callback(server.close)
+        yield server.sockets[0].getsockname()[1]
+
+
+class Door:
+    """Lets so many connections in, and gives each so long to send its request.
+
+    Arguments:
+        http: aiohttp's server.
+        most: The most connections at once.
+        seconds: The time in which a request has to have come; None for no bound.
+    """
+
+    def __init__(self, http: Any, most: int, seconds: float | None = None) -> None:
+        self._http = http
+        self._most = most
+        self._seconds = seconds
+        self._coming: dict[asyncio.Transport, asyncio.TimerHandle] = {}
+
+    def opened(self) -> asyncio.Protocol:
+        """Return the protocol of a connection that is about to be made."""
+        return _Entering(self)
+
+    def enter(self, transport: asyncio.Transport) -> None:
+        """Hand a connection to the HTTP server, or close it where there are too many."""
+        if len(self._http.connections) >= self._most and not self._makes_room():
+            transport.abort()
+            return
+        if self._seconds is not None:
+            loop = asyncio.get_running_loop()
+            self._coming[transport] = loop.call_later(self._seconds, self._too_late, transport)
+        handler = self._http()
+        transport.set_protocol(handler)
+        handler.connection_made(transport)
+
+    def has_come(self, transport: asyncio.Transport | None) -> None:
+        """Note that the request of a connection has come, or comes no more."""
+        timer = None if transport is None else self._coming.pop(transport, None)
+        if timer is not None:
+            timer.cancel()
+
+    def _makes_room(self) -> bool:
+        """Cut off who has been sending a request for longest; tell whether somebody was."""
+        for transport in [each for each in self._coming if each.is_closing()]:
+            self.has_come(transport)
+        oldest = next(iter(self._coming), None)
+        self.has_come(oldest)
+        if oldest is not None:
+            oldest.abort()
+        return oldest is not None
+
+    def _too_late(self, transport: asyncio.Transport) -> None:
+        self._coming.pop(transport, None)
+        transport.abort()
+
+
+class _Entering(asyncio.Protocol):
+    def __init__(self, door: Door) -> None:
+        self._door = door
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        assert isinstance(transport, asyncio.Transport)
+        self._door.enter(transport)
 
 
 def _refusal(request: Any, where: Listen) -> tuple[int, str] | None:

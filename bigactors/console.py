@@ -56,7 +56,8 @@ def rules_of(run: Mapping[str, Any]) -> Rules:
     except Mistake as mistake:
         raise Unreplayable(f"its mission cannot be read: {mistake}") from mistake
     first = mission.initial if parting is None else parted(mission.initial, parting)
-    return Rules(first, mission.fixed, mission.precautions.limits, remembering())
+    live = mission.precautions
+    return Rules(first, mission.fixed, live.limits, live.on_broken, remembering())
 
 
 def remembering() -> Callable[[Configuration, Any], tuple[Label, Configuration]]:

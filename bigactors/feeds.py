@@ -21,8 +21,9 @@ from bigactors.files import read_bytes
 from bigactors.installed_plugins import FEEDS as INSTALLED
 from bigactors.installed_plugins import make_feed, require_known
 from bigactors.mistakes import Mistake
+from bigactors.worlds import area_within
 from bigraphs.notation.spelling import did_you_mean
-from physical import Geometry, box
+from physical import Geometry
 from specs.elaboration import ElaboratedMission
 
 LONGEST_TOKEN = 1_000
@@ -52,7 +53,7 @@ def feeds_of(options: Namespace, mission: ElaboratedMission, naming: NamingServi
     hearing = Hearing(
         naming,
         {"detections": _expected(mission)} | _told(options, mission),
-        None if options.within is None else box(options.within[:2], options.within[2:]),
+        None if options.within is None else area_within(options.within),
         None if options.token is None else _token(options.token),
         LIVING | dict(options.time_to_live),
     )

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from adapters.live.core import started, watch
 from adapters.live.state import Batch, Finding, Heard, Plan
 from adapters.mavlink.fleet import Craft
-from adapters.mavlink.tlog import positions_of, read_tlog
+from adapters.mavlink.tlog import THINGS, positions_of, read_tlog
 from adapters.naming import NamingService
 from bigactors.mistakes import Mistake
 from checker import Step, Trace
 from physical import PhysicalError, PhysicalProperty
 from physical.ais_recording import read_recording
-from physical.ais_world import physical_property
+from physical.ais_world import COARSE, Finest, dated, physical_property
 from physical.mmsi import digits
+from physical.tally import Counting, Tally
 from semantics.contingencies import Fallback, Precautions
 from specs.elaboration import ElaboratedMission
 
@@ -33,20 +34,23 @@ class Shown:
         times: The time of each step.
         findings: Events that the mission's environment section does not allow.
         positions: The number of positions.
+        tallies: The accounts of what was in the recording.
     """
 
     trace: Trace
     times: tuple[float, ...]
     findings: tuple[Finding, ...]
     positions: int
+    tallies: tuple[Tally, ...] = ()
 
 
 def watched(path: str, mission: ElaboratedMission, names: dict[str, str]) -> Shown:
-    """Return what a recording shows of a mission's world; raises Mistake for one that cannot be read."""
+    """Return what a recording shows of a mission's world; raises Mistake if it can't be read or shows no position."""
     plan = Plan(mission.initial, precautions=Precautions(Fallback.CONTINUE))
     state, steps, times, findings, count = started(plan), list[Step](), list[float](), list[Finding](), 0
+    accounts: list[Tally] = []
     try:
-        for time, heard in feed(path, mission, names):
+        for time, heard in feed(path, mission, names, accounts):
             turn = watch(plan, state, Batch((heard,)), time)
             state, count = turn.state, count + 1
             for each in turn.steps:
@@ -57,18 +61,30 @@ def watched(path: str, mission: ElaboratedMission, names: dict[str, str]) -> Sho
         raise Mistake(error.message, error.hint, path) from error
     except OSError as error:
         raise Mistake(error.strerror or str(error), place=path) from error
-    return Shown(Trace(mission.initial, tuple(steps)), tuple(times), tuple(findings), count)
+    if not count:
+        raise _nothing_shown(path, accounts)
+    return Shown(Trace(mission.initial, tuple(steps)), tuple(times), tuple(findings), count, tuple(accounts))
 
 
-def feed(path: str, mission: ElaboratedMission, names: dict[str, str]) -> Iterator[tuple[float, Heard]]:
-    """Yield the positions of a recording with their times."""
-    found = _telemetry(path, mission, names) if path.endswith(TELEMETRY) else _ais(path, names)
+def _nothing_shown(path: str, accounts: Iterable[Tally]) -> Mistake:
+    """Return the mistake of a recording without a position that counts: what was in it instead."""
+    rows = [row for tally in accounts for row in tally.summary()]
+    message = "; ".join(["it shows no position", *rows])
+    return Mistake(message, "give a recording with positions, and name its vehicles with --name", path)
+
+
+def feed(
+    path: str, mission: ElaboratedMission, names: dict[str, str], accounts: list[Tally] | None = None
+) -> Iterator[tuple[float, Heard]]:
+    """Yield the positions of a recording with their times; at its end, its accounts are added to those given."""
+    told = [] if accounts is None else accounts
+    found = _telemetry(path, mission, names, told) if path.endswith(TELEMETRY) else _ais(path, names, told)
     for time, said in found:
         yield time, Heard("recording", said)
 
 
 def _telemetry(
-    path: str, mission: ElaboratedMission, names: dict[str, str]
+    path: str, mission: ElaboratedMission, names: dict[str, str], accounts: list[Tally]
 ) -> Iterator[tuple[float, PhysicalProperty]]:
     """Yield the positions of the vehicles that the table names by system id; of all as UAVs if it names none."""
     kinds = mission.setting.kinds
@@ -81,13 +97,22 @@ def _telemetry(
     crafts = {system: Craft(name, kinds.get(name, "UAV"), system) for system, name in table.items()}
     if not crafts:
         crafts = {system: Craft(f"mavlink{system}", "UAV", system) for system in range(1, 256)}
-    for time, said in positions_of(read_tlog(path), crafts):
+    counting = Counting()
+    for time, said in positions_of(read_tlog(path, counting), crafts, counting):
         yield time, replace(said, time=time)
+    accounts.append(counting.tally(counting.total, *THINGS))
 
 
-def _ais(path: str, names: dict[str, str]) -> Iterator[tuple[float, PhysicalProperty]]:
-    naming = NamingService(names)
-    for number, report in enumerate(read_recording(Path(path)).positions):
+def _ais(path: str, names: dict[str, str], accounts: list[Tally]) -> Iterator[tuple[float, PhysicalProperty]]:
+    naming, finest, counting = NamingService(names), Finest(), Counting()
+    recording = read_recording(Path(path))
+    positions = dated(recording.positions)
+    for number, report in enumerate(positions):
+        time = float(number) if report.time is None else report.time
+        if finest.supersedes(report, time):
+            counting.leave(COARSE)
+            continue
+        counting.take("position")
         said = physical_property(report)
-        time = float(number) if said.time is None else said.time
         yield time, replace(said, entity=naming.name(f"mmsi:{digits(report.mmsi)}"), time=time)
+    accounts += (recording.tally, counting.tally(len(positions), "position"))

@@ -24,7 +24,7 @@ from adapters.camera.feed import CameraFeed
 from adapters.camera.libraries import opencv
 from adapters.camera.view import Lens, Pose
 from adapters.live.loop import Ending
-from adapters.live.operator_socket import is_taken
+from adapters.live.socket_file import is_taken
 from adapters.mavlink.autopilot import Autopilot
 from adapters.simulated import Kind, Simulator, Vehicle
 from adapters.simulated import run as run_simulated
@@ -38,7 +38,7 @@ from bigactors.exits import Exit
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.pages import Story
 from bigactors.recordings import open_recording, trace_of
-from bigactors.terminal import say, tell
+from bigactors.terminal import flying_output, say, tell
 from bigactors.watchers import Terminal
 from physical import circle
 from physical.messages import counted
@@ -107,7 +107,7 @@ def _demonstrated(asked: Namespace) -> int:
 
 def _prepare(folder: Path) -> None:
     """Make the folder, and take out the flight before, unless one flies there now."""
-    if asyncio.run(is_taken(folder / SOCKET)):
+    if is_taken(folder / SOCKET):
         raise Mistake(
             "a demonstration flies into this folder", "wait for its end, or name another", str(folder)
         )
@@ -143,7 +143,7 @@ def _fly(options: Namespace, speed: float | None) -> tuple[Ending, bool]:
     flight = replace(prepare(options), rate=speed)
     folder = Path(options.record).parent
     terminal = Terminal(flight.resting, tuple(flight.plan.vehicles))
-    with record(flight) as tape:
+    with record(flight) as tape, flying_output():
         ending = run_simulated(_flying(flight, terminal, tape, folder), speed)
         terminal.ends()
         say(f"{ending.reason} after {ending.state.number} steps")

@@ -12,7 +12,8 @@ from contextlib import suppress
 from itertools import islice, product
 
 from adapters.live.orders import is_authority
-from adapters.plugin import Plugin, preflights
+from adapters.live.surroundings import spots
+from adapters.plugin import Plugin, Preflight, preflights
 from bigactors.fences import placements_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import tell
@@ -50,17 +51,36 @@ def check_places(mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> Non
 
     def objection(reaction: Reaction) -> str:
         reasons = (
-            judge(str(vehicle), geometry, str(node))
+            reason
             for vehicle, place in reaction.moves
             for plugin in pilots
-            if plugin.owns(str(vehicle))
-            for node, judge in (*((via, plugin.bar) for via in reaction.via), (place, plugin.objection))
-            if isinstance(node, str)
-            for geometry in placements_of(node, mission)
+            if isinstance(vehicle, str) and plugin.owns(vehicle)
+            for reason in (
+                *_bars(plugin, vehicle, reaction, mission),
+                *_objections(plugin, vehicle, place, mission),
+            )
         )
         return next((f"it cannot: {reason}" for reason in reasons if reason), "")
 
     _judge(mission, objection)
+
+
+def _bars(
+    plugin: Preflight, vehicle: Name, reaction: Reaction, mission: ElaboratedMission
+) -> Iterator[str | None]:
+    """Yield why a vehicle can't pass the places of its way, if it can't."""
+    for via in (each for each in reaction.via if isinstance(each, str)):
+        yield from (plugin.bar(vehicle, geometry, via) for geometry in placements_of(via, mission))
+
+
+def _objections(
+    plugin: Preflight, vehicle: Name, place: PlaceTerm, mission: ElaboratedMission
+) -> Iterator[str | None]:
+    """Yield why a vehicle can't stay in its destination, wherever this is and whatever else is there, if it can't."""
+    if not isinstance(place, str):
+        return
+    for geometry, around in spots(mission.initial, vehicle, place):
+        yield plugin.objection(vehicle, geometry, place, around)
 
 
 async def get_to_know(plugins: tuple[Plugin, ...], vehicles: Iterable[Name]) -> None:

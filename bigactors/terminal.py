@@ -12,6 +12,7 @@ from contextvars import ContextVar
 from typing import Final, TextIO
 
 from bigactors.mistakes import Mistake
+from bigactors.printing import printing_aside, put
 
 COLOUR: ContextVar[str] = ContextVar("COLOUR", default="auto")
 """When there are colours: what `--color` says."""
@@ -122,17 +123,38 @@ def is_terminal(stream: TextIO) -> bool:
 
 
 def write(stream: TextIO, text: str, *, flush: bool = False) -> None:
-    """Write a text, and discard it after a closed pipe; raises Mistake for any other error."""
+    """Write a text, and discard it after a closed pipe; raises Mistake for any other error.
+
+    During a flight a thread writes it (`flying_output`).
+    """
+    if put(stream, text):
+        return
     try:
         stream.write(text)
         if flush:
             stream.flush()
     except OSError as error:
-        gone = isinstance(error, BrokenPipeError) or _was_terminal(stream, error)
-        _discard(stream)
-        if gone:
-            return
-        raise Mistake(f"cannot write the output: {error.strerror or error}") from error
+        if not _discarded(stream, error):
+            raise Mistake(f"cannot write the output: {error.strerror or error}") from error
+
+
+@contextmanager
+def flying_output() -> Iterator[None]:
+    """Let nobody wait for the terminal: a stopped one stops no flight, and one that fails is reported."""
+
+    def failed(stream: TextIO, error: OSError) -> None:
+        if not _discarded(stream, error):
+            tell(f"cannot write the output: {error.strerror or error}")
+
+    with printing_aside(failed, _discard):
+        yield
+
+
+def _discarded(stream: TextIO, error: OSError) -> bool:
+    """Discard what is printed from now on; tell whether that is because nobody is there to read it."""
+    gone = isinstance(error, BrokenPipeError) or _was_terminal(stream, error)
+    _discard(stream)
+    return gone
 
 
 def _was_terminal(stream: TextIO, error: OSError) -> bool:

@@ -36,6 +36,13 @@ def vehicle_line(name: Name, state: LiveState, said: Status | None, now: float) 
     return f"{name} {', '.join((*_does(name, state, now), *_tells(said), *_heard(name, state, said, now)))}"
 
 
+def standing(state: LiveState) -> str:
+    """Return whom the mission does not command, and who owes a stop, to be put behind how a run ended."""
+    words = {name: f"was taken over: {how}" for name, how in state.taken.items() if name not in state.bidden}
+    words |= {name: each.reason for name, each in (*state.owing.items(), *state.bidden.items())}
+    return "".join(f"; {name} {each}" for name, each in sorted(words.items()))
+
+
 def situation(plan: Plan, state: LiveState, said: Mapping[Name, Status], now: float) -> str:
     """Return how a run stands: its vehicles, what is asked and not done yet, and what may be said."""
     c = state.configuration
@@ -64,6 +71,8 @@ def _request(request: Request, state: LiveState, now: float) -> str:
 def _does(name: Name, state: LiveState, now: float) -> Iterator[str]:
     if name in state.taken:
         yield state.taken[name]
+    elif name in state.owing:
+        yield state.owing[name].reason
     order, seen = state.orders.get(name), state.seen.get(name)
     if order is None or not isinstance(order.command, GoTo | Follow):
         yield f"is in {_place(name, state)}"
@@ -106,6 +115,8 @@ def _tells(said: Status | None) -> Iterator[str]:
         return
     if said.mode is not None:
         yield f"{said.mode}{'' if said.armed else ', disarmed'}"
+    if said.lacks:
+        yield said.lacks.removeprefix("it ")
     battery = said.battery
     if battery is not None and battery.percent is not None:
         yield f"battery {battery.percent} %"

@@ -48,14 +48,14 @@ class Terminal:
         resting: The verdicts that depend on a finding's assumption.
         vehicles: The vehicles of the run.
         broken: Whether an assumption broke, or the recording or a plugin failed.
-        taken: The vehicles that were taken over, and how.
+        state: The state after the last turn.
     """
 
     resting: Resting
     vehicles: Sequence[str] = ()
     broken: bool = field(default=False)
     began: float | None = None
-    taken: Mapping[str, str] = field(default_factory=dict)
+    state: LiveState | None = None
     _said: dict[str, Status] = field(default_factory=dict)
     _line: Watch = field(default_factory=lambda: Watch("", sys.stderr))
     _spoke: float = -math.inf
@@ -63,7 +63,7 @@ class Terminal:
 
     def goes_on(self, broken: Sequence[Finding], taken: Mapping[str, str]) -> None:
         """Say what broke in the run that this one goes on from, and who is taken over."""
-        self.broken, self.taken = any(map(_breaks, broken)), taken
+        self.broken = any(map(_breaks, broken))
         told = tuple(dict.fromkeys((finding.kind, finding.message, finding.fallback) for finding in broken))
         for kind, message, fallback in told[:MOST_BREACHES]:
             back = f"; {DONE[fallback]}, as the mission says" if fallback in DONE else ""
@@ -90,7 +90,7 @@ class Terminal:
         """Print the result of a turn."""
         if self.began is None:
             self.began = self._spoke = now
-        self.taken = turn.state.taken
+        self.state = turn.state
         lines = [line for step in turn.steps for line in self._told(step)]
         if lines or turn.findings:
             self.ends()

@@ -1,17 +1,20 @@
 """Worlds without a mission: files as a configuration without agents."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from bigactors.files import read_bytes
 from bigactors.mistakes import Mistake
-from physical import GeoJSONError, PhysicalError, PhysicalProperty, box, check_places, contains, read_places
-from physical.ais_recording import Counts, read_recording
-from physical.ais_world import world_at
+from physical import GeoJSONError, Geometry, PhysicalError, PhysicalProperty, box, check_places, contains
+from physical.ais_recording import has_sentences, read_recording
+from physical.ais_reports import AisError
+from physical.ais_world import check_time, seen_at
 from physical.geojson import MAX_BYTES
-from physical.place_files import PLACES
+from physical.long_edges import check_width
+from physical.place_files import PLACES, read_place_file
+from physical.tally import Read, Tally
 from semantics.behaviours.program import Program
 from semantics.state.configuration import Configuration
 from semantics.state.initial import initial
@@ -26,13 +29,15 @@ class World:
 
     Attributes:
         properties: Of each entity, sorted by name.
-        accounts: For each recording, what it had and what of it could not be used.
+        accounts: For each file, what it had and what of it was not taken.
         left_out: How many entities were read and not kept.
+        doubts: What is probably not as it was meant.
     """
 
     properties: tuple[PhysicalProperty, ...]
-    accounts: tuple[tuple[str, Counts], ...] = ()
+    accounts: tuple[tuple[str, Tally], ...] = ()
     left_out: int = 0
+    doubts: tuple[str, ...] = ()
 
     @property
     def conflicts(self) -> tuple[str, ...]:
@@ -42,7 +47,7 @@ class World:
 
 
 def read_world(
-    paths: Iterable[str],
+    paths: Sequence[str],
     time: float | None = None,
     within: tuple[float, float, float, float] | None = None,
     kinds: Iterable[str] = (),
@@ -57,31 +62,27 @@ def read_world(
     """
     origins: dict[str, str] = {}
     found: dict[str, PhysicalProperty] = {}
-    accounts: list[tuple[str, Counts]] = []
+    accounts: list[tuple[str, Tally]] = []
+    doubts: list[str] = []
     for path in paths:
-        for each in _read(path, time, accounts):
+        for each in _read(path, time, accounts, doubts):
             if each.entity in found:
                 raise Mistake(f"{each.entity} is in {origins[each.entity]} too", "names are unique", path)
             found[each.entity], origins[each.entity] = each, path
-    if time is not None and not accounts:
+    if time is not None and all(Path(path).suffix.lower() in PLACES for path in paths):
         raise Mistake("--at is a time of a recording", "files of places have no times: leave it out")
     kept = tuple(_kept(found, within, frozenset(kinds)))
-    return World(tuple(sorted(kept, key=lambda each: each.entity)), tuple(accounts), len(found) - len(kept))
+    listed = tuple(sorted(kept, key=lambda each: each.entity))
+    return World(listed, tuple(accounts), len(found) - len(kept), tuple(doubts))
 
 
-def _read(path: str, time: float | None, accounts: list[tuple[str, Counts]]) -> tuple[PhysicalProperty, ...]:
+def _read(
+    path: str, time: float | None, accounts: list[tuple[str, Tally]], doubts: list[str]
+) -> tuple[PhysicalProperty, ...]:
     try:
-        suffix = Path(path).suffix.lower()
-        if suffix in PLACES:
-            return read_places(suffix, read_bytes(path, MAX_BYTES))
-        recording = read_recording(path)
-        if recording.counts.lines and not recording.counts.sentences:
-            found = f"none of its {recording.counts.lines:,} lines is an AIS sentence"
-            raise Mistake(
-                found, f"give an AIS recording, or places in a file called {', '.join(PLACES)}", path
-            )
-        accounts.append((path, recording.counts))
-        return world_at(recording, time)
+        found = _found(path, time, doubts)
+        accounts += ((path, tally) for tally in found.tallies)
+        return found.properties
     except GeoJSONError as error:
         said = "\n".join(_said(problem) for problem in error.problems)
         raise Mistake(
@@ -90,6 +91,23 @@ def _read(path: str, time: float | None, accounts: list[tuple[str, Counts]]) -> 
     except PhysicalError as error:
         where = f"{path}: {error.where}" if error.where else path
         raise Mistake(error.message, error.hint, where) from error
+
+
+def _found(path: str, time: float | None, doubts: list[str]) -> Read:
+    suffix = Path(path).suffix.lower()
+    if suffix in PLACES:
+        return read_place_file(suffix, read_bytes(path, MAX_BYTES))
+    recording = read_recording(path)
+    if recording.tally.total and not has_sentences(recording.tally):
+        found = (
+            f"none of its {recording.tally.total:,} lines is an AIS sentence, or has one in it (!AIVDM,...)"
+        )
+        raise Mistake(found, f"give an AIS recording, or places in a file called {', '.join(PLACES)}", path)
+    try:
+        check_time(recording, time)
+    except AisError as doubt:
+        doubts.append(f"{path}: {doubt.message}")
+    return seen_at(recording, time)
 
 
 def _said(problem: PhysicalError) -> str:
@@ -107,12 +125,20 @@ def _kept(
     if unknown:
         raise Mistake(f"nothing is of kind '{unknown[0]:.60}'", f"the kinds are {', '.join(known)}")
     try:
-        area = box(within[:2], within[2:]) if within else None
+        area = area_within(within) if within else None
     except PhysicalError as error:
         raise Mistake(f"--within: {error.message}", error.hint) from error
     for each in found.values():
         if (not kinds or each.kind in kinds) and (area is None or contains(area, each.geometry)):
             yield each
+
+
+def area_within(within: Sequence[float]) -> Geometry:
+    """Return the box from the south and the west to the north and the east; raises PhysicalError."""
+    south, west, north, east = within
+    area = box((south, west), (north, east))
+    check_width(west, east)
+    return area
 
 
 def configuration_of(world: World) -> Configuration:

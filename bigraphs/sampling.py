@@ -1,11 +1,11 @@
 """Many runs of a system: when its predicates become true, and how surely that is known.
 
-The run of a seed is the one that `simulate` yields for it. What can happen in a state is remembered for other runs.
+A run of a seed is the one that `simulate` yields for both numbers. What can happen in a state is remembered for
+other runs.
 """
 
 from __future__ import annotations
 
-import random
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 from bigraphs.engine.machine import Machine
 from bigraphs.engine.occurrences import Spot
 from bigraphs.engine.state import Key
-from bigraphs.simulation import Bounds, Draw, ordered_steps
+from bigraphs.simulation import Bounds, Draw, chances, ordered_steps
 from bigraphs.system import System
 
 MOST_REMEMBERED: Final = 50_000
@@ -34,13 +34,13 @@ class End(Enum):
 
 
 class Sample(NamedTuple):
-    """One run.
+    """One run, `number` among those of its seed.
 
     `first` is for each predicate the time at which it was first true, None if it never was; `time` is the number of
     steps, in an SBRS the time that passed until the end.
     """
 
-    seed: int
+    number: int
     first: tuple[float | None, ...]
     steps: int
     time: float
@@ -60,16 +60,16 @@ class _Place:
 
 
 class Sampler:
-    """Takes runs of one system, all within the same bounds."""
+    """Takes runs of one system, all of one seed and within the same bounds."""
 
-    def __init__(self, system: System, bounds: Bounds) -> None:
-        self.machine, self.bounds = Machine(system), bounds
+    def __init__(self, system: System, bounds: Bounds, seed: int = 0) -> None:
+        self.machine, self.bounds, self.seed = Machine(system), bounds, seed
         self.start, _ = self.machine.start()
         self.places: dict[Key, _Place] = {}
 
-    def run(self, seed: int) -> Sample:
-        """Take the run of a seed."""
-        chance, time, steps = random.Random(seed), 0.0, 0
+    def run(self, number: int) -> Sample:
+        """Take one of the runs of the seed."""
+        chance, time, steps = chances(self.seed, number), 0.0, 0
         first: list[float | None] = [None] * len(self.machine.system.predicates)
         place = self.place(self.start)
         while True:
@@ -77,15 +77,15 @@ class Sampler:
                 if first[predicate] is None:
                     first[predicate] = time
             if steps == self.bounds.steps:
-                return Sample(seed, tuple(first), steps, time, End.STEPS)
+                return Sample(number, tuple(first), steps, time, End.STEPS)
             draw = self.draw(place)
             if not place.targets:
-                return Sample(seed, tuple(first), steps, time, End.STUCK)
-            number = draw.one(chance)
+                return Sample(number, tuple(first), steps, time, End.STUCK)
+            chosen = draw.one(chance)
             time += draw.delay(chance)
             if self.bounds.time is not None and time > self.bounds.time:
-                return Sample(seed, tuple(first), steps, self.bounds.time, End.TIME)
-            place, steps = place.targets[number], steps + 1
+                return Sample(number, tuple(first), steps, self.bounds.time, End.TIME)
+            place, steps = place.targets[chosen], steps + 1
 
     def place(self, spot: Spot) -> _Place:
         """Return the place of a state; the same for the same state as long as it is remembered."""
@@ -138,7 +138,7 @@ class FirstTimes:
         time: When it first was, of those runs; None without any.
         least: The earliest.
         most: The latest.
-        seed: The seed of the run in which it was true earliest.
+        first_run: The number of the run in which it was true earliest.
     """
 
     label: str
@@ -147,21 +147,21 @@ class FirstTimes:
     time: Estimate | None = None
     least: float = 0.0
     most: float = 0.0
-    seed: int | None = None
+    first_run: int | None = None
 
 
 def first_times(system: System, samples: Sequence[Sample]) -> list[FirstTimes]:
     """Return what some runs say of each predicate of a system."""
     found = []
     for number, predicate in enumerate(system.predicates):
-        times = [(time, each.seed) for each in samples if (time := each.first[number]) is not None]
+        times = [(time, each.number) for each in samples if (time := each.first[number]) is not None]
         chance = share(len(times), len(samples))
         if not times:
             found.append(FirstTimes(predicate.label, 0, chance))
             continue
-        (least, seed), (most, _) = min(times), max(times)
+        (least, first), (most, _) = min(times), max(times)
         estimate = mean([time for time, _ in times])
-        found.append(FirstTimes(predicate.label, len(times), chance, estimate, least, most, seed))
+        found.append(FirstTimes(predicate.label, len(times), chance, estimate, least, most, first))
     return found
 
 

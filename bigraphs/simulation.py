@@ -41,14 +41,29 @@ class Bounds:
     time: float | None = None
 
 
-def simulate(system: System, seed: int, bounds: Bounds) -> Iterator[Stage]:
+def chances(seed: int, run: int | None = None) -> random.Random:
+    """Return the random numbers of a seed; `run` is which of many runs of it they are for.
+
+    Each run has a stream of its own that is independent of the others (numpy's SeedSequence); those of neighbouring
+    seeds need not be.
+    """
+    if run is None:
+        return random.Random(seed)
+    from numpy.random import SeedSequence  # noqa: PLC0415 - one run needs no numpy
+
+    return random.Random(SeedSequence(seed, spawn_key=(run,)).generate_state(8).tobytes())
+
+
+def simulate(system: System, seed: int, bounds: Bounds, *, run: int | None = None) -> Iterator[Stage]:
     """Yield the states of one run, the same for the same seed, however terms are written.
+
+    With `run` it is that one of the runs of the seed which `bigactors big sim --runs` takes.
 
     In a BRS each occurrence is as likely as any other; in a PBRS by its weight; in an SBRS by its rate, after a
     delay that is exponentially distributed (Gillespie's direct method); in an NBRS first an action is drawn, then
     an occurrence by its weight. The run ends where nothing can happen, or at its bounds.
     """
-    machine, chance = Machine(system), random.Random(seed)
+    machine, chance = Machine(system), chances(seed, run)
     spot, _ = machine.start()
     yield _stage(machine, spot, None, 0.0, ())
     time = 0.0

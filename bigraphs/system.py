@@ -101,10 +101,11 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class PriorityClass:
-    """Rules of one priority; those of an instantaneous class fire without a state between."""
+    """Rules of one priority; those of an instantaneous class fire without a state between, the first that can first."""
 
     rules: tuple[Rule, ...]
     instantaneous: bool = False
+    position: Position | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,6 +42,11 @@ from .shape import overlaps as overlaps
 from .shape import point as point
 from .shape import polygon as polygon
 from .shape import share_interior as share_interior
+from .standing import Surroundings as Surroundings
+from .standing import leads_straight as leads_straight
+from .standing import standing as standing
+from .standing import surroundings_of as surroundings_of
+from .standing import widest as widest
 from .untrusted_text import is_text as is_text
 from .untrusted_text import is_word as is_word
 from .untrusted_text import legible as legible

@@ -8,12 +8,14 @@ from collections.abc import Callable
 from functools import cache
 from typing import Protocol, cast
 
-from physical.ais_reports import AisError, PositionReport, Report, StaticReport
+from physical.ais_reports import HIGHEST_ALTITUDE, AisError, PositionReport, Report, StaticReport
 from physical.messages import install_extra
 from physical.nmea import Part, Reason
 
 POSITIONS = frozenset({1, 2, 3, 4, 9, 11, 17, 18, 19, 21, 27})
 """The messages that tell where their sender is."""
+
+AIRCRAFT_POSITION = 9
 
 STATICS = frozenset({5, 19, 21, 24})
 """The messages that tell what their sender is."""
@@ -85,7 +87,15 @@ def _position(message: _Message, time: float | None) -> tuple[PositionReport, ..
     if abs(lat) > 90 or abs(lon) > 180:  # 91 and 181 mean "not available", what lies beyond means nothing
         return ()
     sog, cog, heading = _motion(message)
-    return (PositionReport(time, message.msg_type, message.mmsi, lat, lon, sog, cog, heading),)
+    return (
+        PositionReport(time, message.msg_type, message.mmsi, lat, lon, sog, cog, heading, _altitude(message)),
+    )
+
+
+def _altitude(message: _Message) -> float | None:
+    """Read the altitude that aircraft report; 4095 means "not available"."""
+    altitude = getattr(message, "alt", None) if message.msg_type == AIRCRAFT_POSITION else None
+    return None if altitude is None or altitude > HIGHEST_ALTITUDE else float(altitude)
 
 
 def _coordinates(message: _Message) -> tuple[float, float]:

@@ -22,12 +22,16 @@ Key = tuple[str, bytes, bytes, int, str | None]
 
 @dataclass(frozen=True, slots=True)
 class Incomplete:
-    """A message some of whose parts are missing: `time` is its first part's, `heard` that part's number."""
+    """A message some of whose parts are missing: `time` is its first part's, `heard` that part's number.
+
+    `sentences` is how many sentences brought its parts: one may be repeated.
+    """
 
     key: Key
     parts: tuple[Part, ...]
     time: float | None
     heard: int
+    sentences: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,11 +47,11 @@ EMPTY = Fragments()
 
 @dataclass(frozen=True, slots=True)
 class Joined:
-    """What one part led to: the new table, the message it completed, if any, and how many were given up."""
+    """What one part led to: the new table, the message it completed, if any, and those that were given up."""
 
     fragments: Fragments
     complete: Incomplete | None
-    lost: int
+    lost: tuple[Incomplete, ...]
 
 
 def join(fragments: Fragments, part: Part, time: float | None, group: str | None = None) -> Joined:
@@ -60,7 +64,8 @@ def join(fragments: Fragments, part: Part, time: float | None, group: str | None
     done = len(grown.parts) == part.total
     waiting = others if done else (*others, grown)[-FRAGMENT_TABLE:]
     # each message ends once: completed, still waiting, or lost
-    lost = len(fragments.waiting) + (mine is None) - len(waiting) - done
+    kept = {id(entry) for entry in waiting}
+    lost = tuple(entry for entry in fragments.waiting if entry is not mine and id(entry) not in kept)
     return Joined(Fragments(waiting, fragments.heard + 1), grown if done else None, lost)
 
 
@@ -72,6 +77,7 @@ def _together(entry: Incomplete, part: Part, time: float | None) -> bool:
 
 
 def _with(entry: Incomplete, part: Part) -> Incomplete:
+    entry = replace(entry, sentences=entry.sentences + 1)
     if any(part.number == other.number for other in entry.parts):
         return entry
     return replace(entry, parts=tuple(sorted((*entry.parts, part), key=lambda one: one.number)))

@@ -6,10 +6,11 @@ times of groups of lines. It is bounded for any input.
 """
 
 from dataclasses import dataclass, replace
+from typing import Final
 
 from physical.ais_decode import decode, type_of
 from physical.ais_fragments import EMPTY, Fragments, join
-from physical.ais_reports import Report
+from physical.ais_reports import PositionReport, Report
 from physical.nmea import (
     MAX_LINE,
     Part,
@@ -17,14 +18,30 @@ from physical.nmea import (
     TagBlock,
     address,
     clock_of,
+    is_clock,
     parse_sentence,
-    parse_tag_block,
     part_of,
-    split_tag_block,
 )
+from physical.nmea_lines import Framed, framed_in
 
 GROUP_TABLE = 64
 """How many groups of lines are remembered."""
+
+POSITION: Final = "position"
+STATIC: Final = "message with a name or a type of ship"
+PART: Final = "part of a message"
+TIME: Final = "time"
+COMMENT: Final = "comment"
+TAKEN: Final = frozenset({POSITION, STATIC, PART, TIME, COMMENT})
+"""The kinds of pieces of which something is taken."""
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """The first line of a group of lines, and the number of its last line so far."""
+
+    first: TagBlock
+    last: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,29 +50,34 @@ class Ear:
 
     clock: float | None = None
     fragments: Fragments = EMPTY
-    groups: tuple[tuple[str, TagBlock], ...] = ()
+    groups: tuple[Group, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Heard:
     """What one line brought: the new state, reports, and what went wrong.
 
-    `msg_type` is the type of the message that the line completed, `sentence` whether the line was a
-    sound AIS sentence.
+    Attributes:
+        ear: The new state.
+        reports: What was reported.
+        reasons: What went wrong, one for each mistake.
+        pieces: What each sentence of the line is, or the line where it has none: of `TAKEN`, or why nothing is
+            taken of it.
+        given_up: How many parts, heard before and now or earlier counted as such, belong to no message any more.
     """
 
     ear: Ear
     reports: tuple[Report, ...] = ()
-    msg_type: int | None = None
     reasons: tuple[Reason, ...] = ()
-    sentence: bool = False
+    pieces: tuple[str, ...] = ()
+    given_up: int = 0
 
 
 def hear(ear: Ear, line: bytes, now: float | None = None) -> Heard:
     r"""Hear one line, received at `now` (seconds since 1970; None for a recording).
 
-    A message's time is that of its tag block, else one appended to the sentence, else `now`, else what the
-    latest `$PGHP` or `$..RMC` line said. Blank lines, comments (`#`) and other sentences
+    A message's time is that of its tag blocks, else one that its logger wrote beside it, else `now`, else what the
+    latest `$PGHP`, `$..RMC` or `$..ZDA` line said. Blank lines, comments (`#`) and other sentences
     bring nothing. Raises AisError where pyais is missing.
 
     >>> heard = hear(Ear(), rb"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61")
@@ -63,70 +85,130 @@ def hear(ear: Ear, line: bytes, now: float | None = None) -> Heard:
     (376427000, 37.346935)
     """
     if len(line) > MAX_LINE:
-        return Heard(ear, reasons=(Reason.OVERLONG,))
-    block, text = split_tag_block(line.strip())
-    if block is None:
-        return _sentence(ear, text, now, None)
-    tag = parse_tag_block(block)
-    if isinstance(tag, Reason):
-        heard = _sentence(ear, text, now, None)
-        return replace(heard, reasons=(tag, *heard.reasons))
-    ear, tag = _grouped(ear, tag)
-    return _sentence(ear, text, now, tag)
+        return _failed(ear, Reason.OVERLONG)
+    text = line.strip()
+    if not text:
+        return Heard(ear)
+    if text.startswith(b"#"):
+        return Heard(ear, pieces=(COMMENT,))
+    frames = framed_in(text)
+    if not frames:
+        return _failed(ear, Reason.NO_SENTENCE)
+    heard = Heard(ear)
+    for framed in frames:
+        heard = _after(heard, _framed(heard.ear, framed, now))
+    return heard
+
+
+def _after(before: Heard, here: Heard) -> Heard:
+    """Return what two pieces of a line brought together."""
+    if not before.pieces:
+        return here
+    return Heard(
+        here.ear,
+        before.reports + here.reports,
+        before.reasons + here.reasons,
+        before.pieces + here.pieces,
+        before.given_up + here.given_up,
+    )
+
+
+def _failed(ear: Ear, reason: Reason) -> Heard:
+    return Heard(ear, reasons=(reason,), pieces=(reason.value,))
+
+
+def _framed(ear: Ear, framed: Framed, now: float | None) -> Heard:
+    tag = framed.tag
+    if tag is not None:
+        ear, tag = _grouped(ear, tag)
+    heard = _sentence(ear, framed, now, tag)
+    return replace(heard, reasons=framed.reasons + heard.reasons) if framed.reasons else heard
 
 
 def _grouped(ear: Ear, tag: TagBlock) -> tuple[Ear, TagBlock]:
-    """Complete a tag block by what the first line of its group said, or remember it as such."""
+    """Complete a tag block by what the first line of its group said, or remember it as the first.
+
+    A line whose number does not follow begins another group: numbers of groups come again.
+    """
     if tag.group is None:
         return ear, tag
-    for group, first in ear.groups:
-        if group == tag.group and tag.source in (None, first.source):
-            return ear, TagBlock(first.time if tag.time is None else tag.time, first.source, tag.group)
-    others = tuple(entry for entry in ear.groups if entry[0] != tag.group)
-    return replace(ear, groups=(*others, (tag.group, tag))[-GROUP_TABLE:]), tag
+    known = next((entry for entry in reversed(ear.groups) if _follows(tag, entry)), None)
+    others = tuple(
+        entry
+        for entry in ear.groups
+        if entry is not known and (entry.first.group != tag.group or not _of_one_source(tag, entry.first))
+    )
+    if known is not None:
+        first = known.first
+        time = first.time if tag.time is None else tag.time
+        tag = replace(tag, time=time, source=first.source or tag.source)
+    first = tag if known is None else known.first
+    if tag.number >= tag.total:  # nothing of it is still to come
+        return replace(ear, groups=others), tag
+    return replace(ear, groups=(*others, Group(first, tag.number))[-GROUP_TABLE:]), tag
 
 
-def _sentence(ear: Ear, text: bytes, now: float | None, tag: TagBlock | None) -> Heard:
-    kind = address(text)
+def _follows(tag: TagBlock, group: Group) -> bool:
+    """Whether a line goes on with a group: it comes after the group's last line, and is of as many."""
+    first = group.first
+    return (
+        first.group == tag.group
+        and _of_one_source(tag, first)
+        and first.total == tag.total
+        and group.last < tag.number
+    )
+
+
+def _of_one_source(one: TagBlock, other: TagBlock) -> bool:
+    return one.source is None or other.source is None or one.source == other.source
+
+
+def _sentence(ear: Ear, framed: Framed, now: float | None, tag: TagBlock | None) -> Heard:
+    kind = address(framed.sentence)
     if kind[2:] in ("VDM", "VDO"):
-        return _ais(ear, text, now, tag)
-    if kind == "PGHP" or kind[2:] == "RMC":
-        return _clock(ear, text)
-    if kind or not text or text.startswith(b"#"):
-        return Heard(ear)
-    return Heard(ear, reasons=(Reason.MALFORMED,))
+        return _ais(ear, framed, now, tag)
+    if is_clock(kind):
+        return _clock(ear, framed.sentence)
+    return Heard(ear, pieces=(f"sentence {kind}" if kind else "tag block without a sentence",))
 
 
 def _clock(ear: Ear, text: bytes) -> Heard:
     sentence = parse_sentence(text)
     clock = sentence if isinstance(sentence, Reason) else clock_of(sentence)
     if isinstance(clock, Reason):
-        return Heard(ear, reasons=(clock,))
-    return Heard(Ear(clock, ear.fragments, ear.groups))
+        return _failed(ear, clock)
+    return Heard(Ear(clock, ear.fragments, ear.groups), pieces=(TIME,))
 
 
-def _ais(ear: Ear, text: bytes, now: float | None, tag: TagBlock | None) -> Heard:
-    sentence = parse_sentence(text)
+def _ais(ear: Ear, framed: Framed, now: float | None, tag: TagBlock | None) -> Heard:
+    sentence = parse_sentence(framed.sentence)
     if isinstance(sentence, Reason):
-        return Heard(ear, reasons=(sentence,))
+        return _failed(ear, sentence)
     part = part_of(sentence)
     if isinstance(part, Reason):
-        return Heard(ear, reasons=(part,))
-    time = _first(tag.time if tag else None, sentence.time, now, ear.clock)
+        return _failed(ear, part)
+    time = _first(tag.time if tag else None, framed.time, now, ear.clock)
     if part.total == 1:
         return _message(ear, (part,), time)
     joined = join(ear.fragments, part, time, None if tag is None else tag.group)
     ear = replace(ear, fragments=joined.fragments)
-    lost = (Reason.INCOMPLETE,) * joined.lost
+    lost, given_up = (Reason.INCOMPLETE,) * len(joined.lost), sum(each.sentences for each in joined.lost)
     if joined.complete is None:
-        return Heard(ear, reasons=lost, sentence=True)
-    return _message(ear, joined.complete.parts, joined.complete.time, lost)
+        return Heard(ear, reasons=lost, pieces=(PART,), given_up=given_up)
+    heard = _message(ear, joined.complete.parts, joined.complete.time)
+    return replace(heard, reasons=lost + heard.reasons, given_up=given_up)
 
 
 def _first(*times: float | None) -> float | None:
     return next((time for time in times if time is not None), None)
 
 
-def _message(ear: Ear, parts: tuple[Part, ...], time: float | None, lost: tuple[Reason, ...] = ()) -> Heard:
+def _message(ear: Ear, parts: tuple[Part, ...], time: float | None) -> Heard:
     reports, reason = decode(parts, time)
-    return Heard(ear, reports, type_of(parts), lost if reason is None else (*lost, reason), sentence=True)
+    if any(isinstance(report, PositionReport) for report in reports):
+        piece = POSITION
+    elif reason is not None:
+        piece = reason.value
+    else:
+        piece = STATIC if reports else f"message of type {type_of(parts)}, which has no position"
+    return Heard(ear, reports, () if reason is None else (reason,), (piece,))

@@ -1,49 +1,32 @@
-"""Read AIS recordings: files of NMEA lines, lazily and within bounds, with a count of unusable lines."""
+"""Read AIS recordings: files of NMEA lines, lazily and within bounds, with an account of what was in them."""
 
-from collections import Counter
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from io import BytesIO
 from os import PathLike
-from typing import IO
+from typing import IO, Final
 
-from physical.ais_receiver import Ear, hear
+from physical.ais_receiver import PART, POSITION, STATIC, TAKEN, Ear, Heard, hear
 from physical.ais_reports import AisError, PositionReport, Report, StaticReport
 from physical.files import open_file
 from physical.nmea import MAX_LINE, Reason
+from physical.tally import Counting, Tally
+
+CHUNK: Final = 65_536
+NOTHING: Final = Tally()
+_END: Final = re.compile(rb"[\r\n]+")
 
 MAX_RECORDING = 256 * 2**20
 """The most bytes read of a recording, unless told otherwise; an hour of a busy coast is about 40 MB."""
 
 
 @dataclass(frozen=True, slots=True)
-class Counts:
-    """The account of a recording: what it had, and how often which reason kept something out.
-
-    `messages` counts complete messages by type, `reasons` by reason; both are sorted.
-    """
-
-    lines: int
-    sentences: int
-    messages: tuple[tuple[int, int], ...]
-    reasons: tuple[tuple[Reason, int], ...]
-
-    def __str__(self) -> str:
-        return "\n".join(self.rows())
-
-    def rows(self) -> tuple[str, ...]:
-        """Describe the account, a line each: the totals, then every reason."""
-        decoded = sum(number for _, number in self.messages)
-        total = f"{self.lines} lines, {self.sentences} AIS sentences, {decoded} messages"
-        return (total, *(f"{number} x {reason}" for reason, number in self.reasons))
-
-
-@dataclass(frozen=True, slots=True)
 class Recording:
-    """The reports of a recording, in order of arrival, and the account of its lines."""
+    """The reports of a recording, in order of arrival, and the account of its sentences and other lines."""
 
     reports: tuple[Report, ...]
-    counts: Counts
+    tally: Tally = NOTHING
 
     @property
     def positions(self) -> tuple[PositionReport, ...]:
@@ -78,31 +61,68 @@ def read_recording(
 
 def record(lines: Iterable[bytes]) -> Recording:
     """Fold `hear` over lines."""
-    ear, reports = Ear(), list[Report]()
-    messages, reasons = Counter[int](), Counter[Reason]()
-    count = sentences = 0
+    ear, reports, counting, total = Ear(), list[Report](), Counting(), 0
     for line in lines:
         heard = hear(ear, line)
         ear = heard.ear
         reports.extend(heard.reports)
-        count += 1
-        sentences += heard.sentence
-        if heard.msg_type is not None:
-            messages[heard.msg_type] += 1
-        if heard.reasons:
-            reasons.update(heard.reasons)
-    reasons[Reason.INCOMPLETE] += len(ear.fragments.waiting)
-    found = tuple(sorted((reason, number) for reason, number in reasons.items() if number))
-    return Recording(tuple(reports), Counts(count, sentences, tuple(sorted(messages.items())), found))
+        total += len(heard.pieces)
+        count(counting, heard)
+    _give_up(counting, sum(each.sentences for each in ear.fragments.waiting))
+    return Recording(tuple(reports), counting.tally(total, *PIECES))
+
+
+PIECES: Final = ("sentence or other line", "sentences and other lines")
+"""What the things in a recording are called: a line may hold no sentence, one, or several."""
+
+INCOMPLETE: Final = "part of an incomplete message"
+
+
+def count(counting: Counting, heard: Heard) -> None:
+    """Count what a line brought."""
+    for piece in heard.pieces:
+        (counting.take if piece in TAKEN else counting.leave)(piece)
+    if Reason.TAG_BLOCK in heard.reasons:
+        counting.note(Reason.TAG_BLOCK.value, heard.reasons.count(Reason.TAG_BLOCK))
+    _give_up(counting, heard.given_up)
+
+
+def _give_up(counting: Counting, parts: int) -> None:
+    """Count parts, taken so far, as those of messages that are not complete."""
+    if parts:
+        counting.take(PART, -parts)
+        counting.leave(INCOMPLETE, parts)
+
+
+def has_sentences(tally: Tally) -> bool:
+    """Tell whether anything in a recording is a sentence of AIS."""
+    return any(kind in (POSITION, STATIC, PART) for kind, _ in tally.taken) or any(
+        kind == INCOMPLETE or kind.startswith("message") or kind in _IN_SENTENCES
+        for kind, _ in tally.left_out
+    )
+
+
+_IN_SENTENCES: Final = frozenset(
+    {Reason.NOT_AVAILABLE, Reason.UNKNOWN, Reason.TRUNCATED, Reason.UNDECODABLE, Reason.EMPTY, Reason.ARMOUR}
+)
 
 
 def _lines(file: IO[bytes], limit: int) -> Iterator[bytes]:
-    """Read lines of bounded length; what an overlong one has beyond that is passed over."""
-    begins = True
-    for chunk in _bounded(iter(lambda: file.readline(MAX_LINE + 1), b""), limit):
-        if begins:
-            yield chunk
-        begins = chunk.endswith(b"\n")
+    r"""Read lines of bounded length, ended by \n or \r; what an overlong one has beyond that is passed over."""
+    rest, skipping = b"", False
+    for chunk in _bounded(iter(lambda: file.read(CHUNK), b""), limit):
+        *lines, rest = _END.split(rest + chunk)
+        for line in lines:
+            if not skipping:
+                yield line
+            skipping = False
+        if skipping:
+            rest = b""
+        elif len(rest) > MAX_LINE:
+            yield rest[: MAX_LINE + 1]
+            rest, skipping = b"", True
+    if rest:
+        yield rest
 
 
 def _bounded(chunks: Iterable[bytes], limit: int) -> Iterator[bytes]:

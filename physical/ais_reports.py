@@ -8,6 +8,9 @@ from dataclasses import dataclass
 
 from physical.errors import PhysicalError
 
+HIGHEST_ALTITUDE = 4094.0
+"""How message 9 says 4,094 metres *or more*."""
+
 _TENTH_OF_A_MINUTE = (17, 27)
 
 
@@ -17,7 +20,10 @@ class AisError(PhysicalError):
 
 @dataclass(frozen=True, slots=True)
 class PositionReport:
-    """Where one station was: WGS 84 degrees; speed over ground in knots; course, heading in degrees true."""
+    """Where one station was: WGS 84 degrees; speed over ground in knots; course, heading in degrees true.
+
+    `altitude` is in metres, of aircraft only; `HIGHEST_ALTITUDE` stands for all above it, too.
+    """
 
     time: float | None
     msg_type: int
@@ -27,6 +33,7 @@ class PositionReport:
     sog_kn: float | None = None
     cog_deg: float | None = None
     heading_deg: float | None = None
+    altitude: float | None = None
 
     @property
     def coarse(self) -> bool:

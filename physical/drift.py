@@ -5,6 +5,9 @@ erosions by the mover (for a convex polygon); within one *cell* of this arrangem
 the same. Two cells are adjacent where they share a border of positive length; the borders themselves are
 left out.
 
+A mover may carry others. They stand or fly where it is, in shapes of their own and among places of their own, so the
+borders of those places, eroded by those shapes, cut the drift as well (`Aboard`).
+
 **Cells with equal relations.** Two cells apart from each other may stand in the same relations, such as the
 two sides of a channel. To make them one would let the mover hop across the channel without being seen in
 it: sound for safety, but not exact. They are one here only where no sequence of moves tells them apart
@@ -26,7 +29,7 @@ from physical.containment import PlaceIndex
 from physical.errors import GeometryError
 from physical.frame import E7, METRES_PER_DEGREE, TURN, PositionE7, local_frame, rounded
 from physical.measure import centroid, deep_spot
-from physical.placement import is_convex, outline, placed, room, template
+from physical.placement import is_convex, outline, placed, room, still, template, translate_to
 from physical.shape import Geometry, beside, contains, intern, planar
 
 GRID: Final = 0.02
@@ -36,19 +39,37 @@ CLEARANCE: Final = 0.05
 """Metres that the representative of a face keeps from borders; what has no room for that is a sliver."""
 
 
+Places = Mapping[str, Geometry]
+"""Places by name."""
+
+Aboard = Mapping[Geometry, Places]
+"""Shapes that may stand where the mover's centroid is, each with the places that may contain it."""
+
+
+NOTHING_ABOARD: Final[Aboard] = {}
+
+Relations = tuple[tuple[str, ...], ...]
+"""Of each shape that stands where the mover is, the mover first, the places that contain it."""
+
+
 @dataclass(frozen=True, slots=True)
 class Face:
     """Placements that nothing tells apart, by a representative.
 
     Attributes:
         representative: The mover, placed well inside.
-        inside: The names of the places that contain it, sorted.
+        relations: The names of the places that contain it, sorted; then those of each other shape aboard.
         adjacent: The faces into which it may drift from here, by index, ascending.
     """
 
     representative: Geometry
-    inside: tuple[str, ...]
+    relations: Relations
     adjacent: tuple[int, ...]
+
+    @property
+    def inside(self) -> tuple[str, ...]:
+        """The names of the places that contain the mover, sorted."""
+        return self.relations[0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +78,7 @@ class Cell:
 
     shape: shapely.Polygon
     representative: Geometry
-    inside: tuple[str, ...]
+    relations: Relations
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,50 +90,77 @@ class Quotient:
     faces: tuple[Face, ...]
 
 
-def drift_faces(mover: Geometry, within: Geometry, places: Mapping[str, Geometry]) -> tuple[Face, ...]:
+def drift_faces(
+    mover: Geometry, within: Geometry, places: Places, aboard: Aboard = NOTHING_ABOARD
+) -> tuple[Face, ...]:
     """Return the faces of a mover's drift within a place, by representative; none where it doesn't fit.
 
     Exact for one mover among polygons that stand still. Faces narrower than 10 cm are left out.
 
     Raises:
-        GeometryError: The mover is a polygon that is not convex, or `within` is a point.
+        GeometryError: The mover or a shape aboard is a polygon that is not convex, or `within` is a point.
     """
-    return quotient(mover, within, places).faces
+    return quotient(mover, within, places, aboard).faces
 
 
-def face_at(mover: Geometry, within: Geometry, places: Mapping[str, Geometry]) -> int | None:
+def face_at(mover: Geometry, within: Geometry, places: Places, aboard: Aboard = NOTHING_ABOARD) -> int | None:
     """Return the index of the face in which a mover is now; None where it isn't within the place.
 
     On a border it counts to the nearest face with its relations.
     """
     if not contains(within, mover):
         return None
-    found = quotient(mover, within, places)
-    here = shapely.Point(plane_of(mover, within).spot(mover))
-    inside = tuple(sorted(name for name, place in places.items() if contains(place, mover)))
-    alike = [i for i, cell in enumerate(found.cells) if cell.inside == inside]
+    found = quotient(mover, within, places, aboard)
+    shapes = _shapes(mover, places, aboard)
+    here, relations = shapely.Point(_plane(within, shapes).spot(mover)), _relations(mover, _indexed(shapes))
+    alike = [i for i, cell in enumerate(found.cells) if cell.relations == relations]
     if not alike:
         return None
     return found.face_of[min(alike, key=lambda i: (found.cells[i].shape.distance(here), i))]
 
 
-def quotient(mover: Geometry, within: Geometry, places: Mapping[str, Geometry]) -> Quotient:
+def quotient(mover: Geometry, within: Geometry, places: Places, aboard: Aboard = NOTHING_ABOARD) -> Quotient:
     """Return the cells and the faces of a drift; where the mover is now doesn't matter."""
-    _check(mover, within)
-    still = intern(((0, 0),)) if mover.is_point else template(mover)
-    return _quotient(still, within, tuple(sorted(places.items())))
+    _check(mover, within, aboard)
+    return _quotient(within, _shapes(mover, places, aboard))
+
+
+Shapes = tuple[tuple[Geometry, tuple[tuple[str, Geometry], ...]], ...]
+"""The mover, then each other shape aboard, as first given, with the polygons that may contain it."""
+
+
+def _shapes(mover: Geometry, places: Places, aboard: Aboard) -> Shapes:
+    own, among = still(mover), dict[Geometry, dict[str, Geometry]]()
+    for shape, containers in ((mover, places), *aboard.items()):
+        polygons = {name: place for name, place in containers.items() if not place.is_point}
+        among.setdefault(still(shape), {}).update(polygons)
+    return tuple(
+        (shape, tuple(sorted(among[shape].items()))) for shape in (own, *sorted(among.keys() - {own}))
+    )
+
+
+Indexed = tuple[tuple[Geometry, PlaceIndex], ...]
+
+
+def _indexed(shapes: Shapes) -> Indexed:
+    return tuple((shape, PlaceIndex(dict(places))) for shape, places in shapes)
+
+
+def _relations(mover: Geometry, shapes: Indexed) -> Relations:
+    """Return what contains the mover, and what each shape aboard with its centroid where the mover's is."""
+    (_, own), *aboard = shapes
+    put = [(translate_to(shape, centroid(mover)), among) for shape, among in aboard]
+    return tuple(tuple(sorted(among.containers(at))) for at, among in [(mover, own), *put])
 
 
 @lru_cache(maxsize=1 << 8)
-def _quotient(mover: Geometry, within: Geometry, places: tuple[tuple[str, Geometry], ...]) -> Quotient:
-    plane = plane_of(mover, within)
-    polygons = {name: place for name, place in places if not place.is_point}
-    pieces = _pieces(plane, within, list(polygons.values()))
+def _quotient(within: Geometry, shapes: Shapes) -> Quotient:
+    plane, indexed = _plane(within, shapes), _indexed(shapes)
+    pieces = _pieces(plane, within, shapes)
     spots = {i: deep_spot(piece, CLEARANCE) for i, piece in enumerate(pieces)}
     put = {i: plane.put(*spot) for i, spot in spots.items() if spot is not None}
-    index = PlaceIndex(polygons)
     cells = {
-        i: Cell(pieces[i], representative, tuple(sorted(index.containers(representative))))
+        i: Cell(pieces[i], representative, _relations(representative, indexed))
         for i, representative in put.items()
         if contains(within, representative)
     }
@@ -121,13 +169,13 @@ def _quotient(mover: Geometry, within: Geometry, places: tuple[tuple[str, Geomet
     return _merged(cells, links | _across(slivers, cells, links))
 
 
-def _check(mover: Geometry, within: Geometry) -> None:
+def _check(mover: Geometry, within: Geometry, aboard: Aboard) -> None:
     if within.is_point:
         raise GeometryError("drift", f"nothing can drift within {within!r}", "drift within a polygon")
-    if not mover.is_point and not is_convex(outline(template(mover))):
+    if not all(shape.is_point or is_convex(outline(template(shape))) for shape in (mover, *aboard)):
         raise GeometryError(
             "not-convex",
-            "a polygon that is not convex cannot drift within a place: faces are known for convex ones only",
+            "what drifts within a place, and what it carries, is a point or convex: faces are known for those only",
             "list its placements (drifts among), or give its convex hull",
         )
 
@@ -140,29 +188,38 @@ class Plane:
     """Where an arrangement is computed, in metres.
 
     Attributes:
-        room: Where the mover's centroid may be for it to be inside a place.
+        room: Where a shape's centroid may be for it to be inside a place.
         put: The mover with its centroid there.
         spot: Where a geometry's centroid is.
     """
 
-    room: Callable[[Geometry], shapely.Geometry]
+    room: Callable[[Geometry, Geometry], shapely.Geometry]
     put: Callable[[float, float], Geometry]
     spot: Callable[[Geometry], tuple[float, float]]
 
 
-def plane_of(mover: Geometry, within: Geometry) -> Plane:
-    """Return the plane for a mover.
+def plane_of(mover: Geometry, within: Geometry, aboard: Aboard = NOTHING_ABOARD) -> Plane:
+    """Return the plane of a drift."""
+    return _plane(within, _shapes(mover, {}, aboard))
 
-    For a polygon the metric frame in which it moves rigidly; for a point a plane affine to latitude and
-    longitude, about metric, in which edges stay as straight as they are.
+
+def _plane(within: Geometry, shapes: Shapes) -> Plane:
+    """Return the plane for a mover and the shapes aboard.
+
+    With a polygon among them the metric frame in which it moves rigidly; for points alone a plane affine to latitude
+    and longitude, about metric, in which edges stay as straight as they are.
     """
-    if mover.is_point:
+    mover = shapes[0][0]
+    if all(shape.is_point for shape, _ in shapes):
         return _affine(centroid(within).ring[0], planar(within))
     frame = local_frame(centroid(within).ring[0])
+
+    def room_of(place: Geometry, shape: Geometry) -> shapely.Geometry:
+        space = frame.project(planar(place))
+        return space if shape.is_point else room(space, shape)
+
     return Plane(
-        lambda place: room(frame.project(planar(place)), mover),
-        lambda x, y: placed(mover, frame, x, y),
-        lambda at: frame.metres(centroid(at).ring[0]),
+        room_of, lambda x, y: placed(mover, frame, x, y), lambda at: frame.metres(centroid(at).ring[0])
     )
 
 
@@ -176,18 +233,19 @@ def _affine(centre: PositionE7, near: shapely.Geometry) -> Plane:
         return shapely.transform(beside(near, planar(place)), lambda at: (at - (east, north)) * (across, up))
 
     return Plane(
-        flat,
+        lambda place, _: flat(place),
         lambda x, y: intern((rounded((north + y / up) / E7, (east + x / across) / E7),)),
         lambda at: flat(centroid(at)).coords[0],
     )
 
 
-def _pieces(plane: Plane, within: Geometry, places: Sequence[Geometry]) -> list[shapely.Polygon]:
+def _pieces(plane: Plane, within: Geometry, shapes: Shapes) -> list[shapely.Polygon]:
     """Return the polygons into which all borders cut the plane, as far as they meet the place drifted in."""
-    space = plane.room(within)
-    rooms = [found for found in map(plane.room, places) if found.intersects(space)]
-    borders = shapely.union_all([shape.boundary for shape in (space, *rooms)], grid_size=GRID)
-    return [piece for piece in shapely.get_parts(shapely.polygonize([borders])) if piece.intersects(space)]
+    space = plane.room(within, shapes[0][0])
+    rooms = [plane.room(place, shape) for shape, places in shapes for _, place in places]
+    borders = [shape.boundary for shape in (space, *rooms) if shape.intersects(space)]
+    cut = shapely.union_all(borders, grid_size=GRID)
+    return [piece for piece in shapely.get_parts(shapely.polygonize([cut])) if piece.intersects(space)]
 
 
 # --- adjacency ------------------------------------------------------------------------------------
@@ -238,13 +296,13 @@ def _merged(cells: Mapping[int, Cell], links: Links) -> Quotient:
 
 
 def _face(cell: Cell, adjacent: set[int]) -> Face:
-    return Face(cell.representative, cell.inside, tuple(sorted(adjacent)))
+    return Face(cell.representative, cell.relations, tuple(sorted(adjacent)))
 
 
 def _bisimilar(cells: Mapping[int, Cell], near: Mapping[int, frozenset[int]]) -> dict[int, int]:
     """Return the class of each cell: equal relations, and moves into the same classes."""
     classes: dict[int, int] = {}
-    signatures: dict[int, object] = {i: cells[i].inside for i in cells}
+    signatures: dict[int, object] = {i: cells[i].relations for i in cells}
     while len(set(signatures.values())) > len(set(classes.values())):
         numbers: dict[object, int] = {}
         classes = {i: numbers.setdefault(signatures[i], len(numbers)) for i in sorted(cells)}

@@ -2,8 +2,8 @@
 
 `properties.name` and `properties.kind` say what a feature is; `altitude` ([low, high], metres), `channels`,
 `carried_by`, of a Point `radius_m` (which makes it a circle) and of a LineString `width_m` (which makes it a
-corridor) may be there. A Multi geometry of one part is that part. Other members are left alone;
-a position's third number is no band of altitudes and is ignored. Edges are straight in longitude and
+corridor) may be there. A Multi geometry of one part is that part. Other members are left alone, and
+a position's third number is no band of altitudes; what is not read is counted. Edges are straight in longitude and
 latitude, as here (§3.1.1). What crosses the antimeridian is written cut (§3.1.9) and joined again when read.
 A moved polygon is written as its vertices: what it is a placement of is not.
 """
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from typing import Final, NoReturn
 
 import shapely
@@ -22,13 +22,18 @@ from physical.altitude import Band
 from physical.corridor import corridor
 from physical.errors import PhysicalError
 from physical.frame import E7, TURN, PositionE7
+from physical.long_edges import check_edges, goes_around
 from physical.physical_property import PhysicalProperty
 from physical.shape import Geometry, canonical, circle, planar, point, polygon
+from physical.tally import Counting, Read
 from physical.untrusted_text import is_word, legible, read_json
 
 MAX_BYTES: Final = 10_000_000
 MAX_FEATURES: Final = 10_000
 MAX_VERTICES: Final = 100_000
+
+READ: Final = ("name", "kind", "altitude", "channels", "carried_by", "radius_m", "width_m")
+"""The properties of a feature that are read."""
 
 MULTI: Final = {"MultiPoint": "Point", "MultiLineString": "LineString", "MultiPolygon": "Polygon"}
 """What each Multi geometry is made of."""
@@ -59,17 +64,34 @@ def read_geojson(text: str | bytes) -> tuple[PhysicalProperty, ...]:
     return tuple(reading_geojson(text))
 
 
-def reading_geojson(text: str | bytes) -> Iterator[PhysicalProperty]:
-    """Yield the properties one by one, for whoever does something else in between; problems are told at the end.
+def read_features(text: str | bytes) -> Read:
+    """Return the physical properties of a feature collection, with the account of its features.
 
     Raises:
         GeoJSONError: With all problems of all features.
     """
+    counting = Counting()
+    found = tuple(reading_geojson(text, counting))
+    counting.take("feature", len(found))
+    return Read(found, (counting.tally(len(found), "feature"),))
+
+
+def reading_geojson(
+    text: str | bytes, counting: Counting | None = None
+) -> Generator[PhysicalProperty, None, None]:
+    """Yield the properties one by one, for whoever does something else in between; problems are told at the end.
+
+    What is not taken of a feature is counted as an aside.
+
+    Raises:
+        GeoJSONError: With all problems of all features.
+    """
+    counting = counting or Counting()
     found: list[PhysicalProperty] = []
     problems: list[PhysicalError] = []
     for index, feature in enumerate(_features(_parsed(text)), 1):
         try:
-            found.append(_property(feature))
+            found.append(_property(feature, counting))
         except PhysicalError as problem:
             where = f"feature {index}{_label(feature)}"
             hint = _ORDER if problem.code in ("latitude", "longitude") else problem.hint
@@ -137,15 +159,20 @@ def _check_crs(crs: object) -> None:
 
 def _count(feature: object) -> int:
     """Count the positions of a feature without trusting its shape."""
-    open_lists = [feature.get("geometry")] if isinstance(feature, dict) else []
-    open_lists = [part.get("coordinates") for part in open_lists if isinstance(part, dict)]
-    count = 0
+    geometry = feature.get("geometry") if isinstance(feature, dict) else None
+    coordinates = geometry.get("coordinates") if isinstance(geometry, dict) else None
+    return sum(1 for _ in _positions(coordinates))
+
+
+def _positions(coordinates: object) -> Iterator[list[object]]:
+    """Yield the innermost lists of coordinates, whatever their shape."""
+    open_lists = [coordinates]
     while open_lists:
         part = open_lists.pop()
         if isinstance(part, list):
-            count += not isinstance(part[0] if part else None, list)
+            if not isinstance(part[0] if part else None, list):
+                yield part
             open_lists += [inner for inner in part if isinstance(inner, list)]
-    return count
 
 
 def _label(feature: object) -> str:
@@ -163,7 +190,7 @@ def _repeated(found: Sequence[PhysicalProperty]) -> list[PhysicalError]:
     ]
 
 
-def _property(feature: object) -> PhysicalProperty:
+def _property(feature: object, counting: Counting) -> PhysicalProperty:
     if not isinstance(feature, dict) or feature.get("type") != "Feature":
         _fail(
             "feature", "this is no Feature", 'write {"type": "Feature", "geometry": ..., "properties": ...}'
@@ -171,14 +198,24 @@ def _property(feature: object) -> PhysicalProperty:
     properties = feature.get("properties")
     if not isinstance(properties, dict):
         _fail("properties", "the feature has no properties", 'write at least "name" and "kind"')
+    _note_unread(feature.get("geometry"), properties, counting)
     return PhysicalProperty(
         entity=_word(properties, "name"),
         kind=_word(properties, "kind"),
-        geometry=_geometry(feature.get("geometry"), properties),
+        geometry=_geometry(feature.get("geometry"), properties, counting),
         altitude=_altitude(properties.get("altitude")),
         channels=_channels(properties.get("channels")),
         carried_by=None if properties.get("carried_by") is None else _word(properties, "carried_by"),
     )
+
+
+def _note_unread(geometry: object, properties: Json, counting: Counting) -> None:
+    """Count what is passed over: other properties, and heights in coordinates, which are no band of altitudes."""
+    if others := len(properties.keys() - READ):
+        counting.note(f"property of a feature with another name than {', '.join(READ)}", others)
+    coordinates = geometry.get("coordinates") if isinstance(geometry, dict) else None
+    if heights := sum(len(position) == 3 for position in _positions(coordinates)):
+        counting.note('height in a coordinate, which is not read: write "altitude": [low, high]', heights)
 
 
 def _word(properties: Json, member: str) -> str:
@@ -206,7 +243,7 @@ def _channels(value: object) -> tuple[str, ...]:
     return tuple(_word({"channel": channel}, "channel") for channel in value)
 
 
-def _geometry(geometry: object, properties: Json) -> Geometry:
+def _geometry(geometry: object, properties: Json, counting: Counting) -> Geometry:
     kind, coordinates = _single(geometry)
     radius, width = properties.get("radius_m"), properties.get("width_m")
     if radius is not None and kind != "Point":
@@ -224,7 +261,7 @@ def _geometry(geometry: object, properties: Json) -> Geometry:
         case "LineString":
             return _corridor(coordinates, width)
         case "Polygon":
-            return polygon(_ring(coordinates))
+            return _polygon(_ring(coordinates), counting)
         case "MultiPolygon":
             return _joined(_list(coordinates))
         case None:
@@ -248,6 +285,15 @@ def _single(geometry: object) -> tuple[object, object]:
     if isinstance(kind, str) and kind in MULTI and isinstance(coordinates, list) and len(coordinates) == 1:
         return MULTI[kind], coordinates[0]
     return kind, coordinates
+
+
+def _polygon(ring: list[tuple[float, float]], counting: Counting) -> Geometry:
+    """Return the polygon of a ring that may cross the antimeridian without being cut there."""
+    found = polygon(ring)
+    check_edges(ring)
+    if goes_around(ring):
+        counting.note("ring with an edge over most of the earth: it is read as one across the antimeridian")
+    return found
 
 
 def _corridor(coordinates: object, width: object) -> Geometry:
@@ -289,7 +335,10 @@ def _ring(value: object) -> list[tuple[float, float]]:
 
 def _joined(parts: Sequence[object]) -> Geometry:
     """Return the polygon that was cut along the antimeridian (RFC 7946 §3.1.9)."""
-    found = [planar(polygon(_ring(part))) for part in parts]
+    rings = [_ring(part) for part in parts]
+    found = [planar(polygon(ring)) for ring in rings]
+    for ring in rings:
+        check_edges(ring)
     west = [_turned_east(shape) for shape in found]
     whole = shapely.union_all(west) if _cut(west) else None
     if whole is None or whole.geom_type != "Polygon" or whole.interiors:

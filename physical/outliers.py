@@ -28,7 +28,10 @@ WIDEST: Final = 5.0
 
 ON_DRY_LAND: Final = "stands on land"
 ON_LAND: Final = 0.02
-"""Degrees around a position that are all land where nothing can float."""
+"""Degrees around a position that are all land where nothing floats on a sea or a lake."""
+
+RIVER: Final = 1.0
+"""Degrees around a position that are all land where a harbour on a river is unlikely: some 100 km."""
 
 FAR_OUT: Final = 1.0
 """Degrees of latitude to the nearest coast that few missions are away: some 100 km."""
@@ -75,8 +78,9 @@ def is_swapped(geometry: Geometry, rest: Iterable[Geometry], metres: float) -> b
 def all_swapped(geometries: Iterable[Geometry], afloat: Iterable[Geometry]) -> str:
     """Return why all latitudes and longitudes of a small world seem to be exchanged, nothing where they do not.
 
-    They do where everything that floats stands on dry land, and exchanged would be on water; and where everything is
-    far from any coast, and exchanged would be near one. What is known of coasts is good to a kilometre.
+    They do where everything that floats stands on land, 100 km from any water, and exchanged would be on water and
+    not far out; and where everything is far from any coast, and exchanged would be near one. What is known of coasts
+    and lakes is good to a kilometre; of rivers and canals nothing is known.
     """
     spots = [vertex for geometry in geometries for vertex in geometry.vertices]
     floating = [geometry.vertices[0] for geometry in islice(afloat, MOST)]
@@ -84,13 +88,19 @@ def all_swapped(geometries: Iterable[Geometry], afloat: Iterable[Geometry]) -> s
         return ""
     exchanged = [(longitude, latitude) for latitude, longitude in spots]
     if floating and all(_share([spot], ON_LAND) == 1 for spot in floating):
-        return ON_DRY_LAND if all(_share([spot[::-1]], ON_LAND) < 1 for spot in floating) else ""
+        inland = all(_share([spot], RIVER) == 1 for spot in floating)
+        return ON_DRY_LAND if inland and all(_is_coastal(spot[::-1]) for spot in floating) else ""
     at_sea = _share(spots, FAR_OUT) == 0
     return (
         f"is more than {FAR_OUT * 100:.0f} km from any coast"
         if at_sea and _share(exchanged, NEAR) > 0
         else ""
     )
+
+
+def _is_coastal(spot: Position) -> bool:
+    """Tell whether a position is on water, and not far out."""
+    return _share([spot], ON_LAND) < 1 and _share([spot], FAR_OUT) > 0
 
 
 def _extent(spots: list[Position]) -> float:

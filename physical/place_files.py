@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Final
 
-from physical.geojson import read_geojson
+from physical.geojson import read_features
 from physical.physical_property import PhysicalProperty
-from physical.qgc_plan import read_plan
-from physical.waypoints import read_waypoints, waypoint_places
+from physical.qgc_plan import read_plan_places
+from physical.tally import Read
+from physical.waypoints import read_mission, read_waypoints
 
 GEOJSON: Final = (".geojson", ".json")
 WAYPOINTS: Final = ".waypoints"
@@ -21,12 +22,17 @@ def read_places(suffix: str, data: bytes) -> tuple[PhysicalProperty, ...]:
 
     Raises PhysicalError with the place of the first mistake (GeoJSONError with all).
     """
+    return read_place_file(suffix, data).properties
+
+
+def read_place_file(suffix: str, data: bytes) -> Read:
+    """Return the places of a file with the account of what was in it; raises as `read_places` does."""
     match suffix.lower():
         case ".waypoints":
-            return waypoint_places(read_waypoints(_text(data)))
+            return read_mission(read_waypoints(_text(data)))
         case ".plan":
-            return waypoint_places(read_plan(_text(data)))
-    return read_geojson(data)
+            return read_plan_places(_text(data))
+    return read_features(data)
 
 
 def _text(data: bytes) -> str:

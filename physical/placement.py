@@ -75,11 +75,15 @@ def nearest_placement(mover: Geometry, target: Geometry, holes: Sequence[Geometr
     """
     if target.is_point:
         return None
-    return _nearest(template(mover) if not mover.is_point else _ANY_POINT, target, tuple(sorted(set(holes))))
+    return _nearest(still(mover), target, tuple(sorted(set(holes))))
 
 
 _ANY_POINT: Final = intern(((0, 0),))
-"""Stands for every point: where a point was doesn't matter to where it can be."""
+
+
+def still(mover: Geometry) -> Geometry:
+    """Return a mover as it was first given; of points one stands for all: where a point was doesn't matter."""
+    return _ANY_POINT if mover.is_point else template(mover)
 
 
 @lru_cache(maxsize=1 << 14)
@@ -90,7 +94,7 @@ def _nearest(mover: Geometry, target: Geometry, holes: tuple[Geometry, ...]) -> 
         return central
     free = _free(mover, frame, target, holes)
     for margin in MARGINS:
-        spot = _nearest_spot(free.buffer(-margin))
+        spot = nearest_spot(free.buffer(-margin))
         if spot is None:
             return None
         found = _tried(mover, frame, spot)
@@ -133,7 +137,7 @@ def _reach(space: shapely.Polygon, taken: Sequence[shapely.Polygon], offsets: Se
     """
     radius = max(math.hypot(*offset) for offset in offsets) + 2 * MARGINS[-1]
     roomy = space.buffer(-radius).difference(shapely.union_all([hole.buffer(radius) for hole in taken]))
-    spot = _nearest_spot(roomy)
+    spot = nearest_spot(roomy)
     return math.inf if spot is None else 1.01 * math.hypot(*spot) + 2 * MARGINS[-1]
 
 
@@ -170,7 +174,7 @@ def is_convex(offsets: Sequence[Offset]) -> bool:
     return all(bool(hull.distance(shapely.Point(offset)) <= CONVEXITY) for offset in offsets)
 
 
-def _nearest_spot(free: shapely.Geometry) -> Offset | None:
+def nearest_spot(free: shapely.Geometry) -> Offset | None:
     """Return the point of a planar shape nearest to the origin; among equals (to 1 cm) the northern-most."""
     if free.is_empty:
         return None

@@ -1,20 +1,33 @@
 """QGroundControl plans (`.plan`): JSON with a mission, a fence and rally points; the mission is read and written.
 
-Its items become those of waypoint files, so that both are read as places in one way. Surveys and other complex items
-hold the simple items that they stand for; those are taken.
+Its items become those of waypoint files, so that both are read as places in one way. Surveys and corridor scans
+hold the simple items that they stand for; those are taken. A landing pattern stands for the items that it is flown
+as. Other complex items, fences and rally points are counted.
 """
 
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Final
+from typing import Any, Final, TypeGuard
 
 from physical.altitude import Band
 from physical.errors import PhysicalError
 from physical.shape import Geometry, point
-from physical.untrusted_text import read_json
-from physical.waypoints import MAX_CHARACTERS, MAX_ITEMS, AltitudeFrame, Command, MissionItem
+from physical.tally import Read
+from physical.untrusted_text import legible, read_json
+from physical.waypoints import (
+    MAX_CHARACTERS,
+    MAX_ITEMS,
+    AltitudeFrame,
+    Command,
+    MissionItem,
+    Stop,
+    goes_to,
+    read_mission,
+    stops_of,
+)
 
 FILE_TYPE: Final = "Plan"
 MAX_DEPTH: Final = 8
@@ -29,30 +42,54 @@ def read_plan(text: str) -> tuple[MissionItem, ...]:
     Raises:
         PhysicalError: With the item of the first mistake.
     """
-    mission = _member(_document(text), "mission")
-    home = _home(mission.get("plannedHomePosition"))
-    items = [home]
-    for index, raw in enumerate(_simple(mission.get("items"), MAX_DEPTH), 1):
+    return _items(_document(text), Counter())
+
+
+def read_plan_places(text: str) -> Read:
+    """Return the places of a plan's mission, with the account of the items, the fence and the rally points.
+
+    Raises:
+        PhysicalError: With the item of the first mistake.
+    """
+    document, lost = _document(text), Counter[str]()
+    items = _items(document, lost)
+    lost.update(_fence(document.get("geoFence")))
+    if points := len(_listed(document.get("rallyPoints"), "points")):
+        lost["rally point"] += points
+    return read_mission(items, lost)
+
+
+def _items(document: Mapping[str, Any], lost: Counter[str]) -> tuple[MissionItem, ...]:
+    """Return the items of the mission; counts the complex items that are not read."""
+    mission = _member(document, "mission")
+    items = [_home(mission.get("plannedHomePosition"))]
+    for index, raw in enumerate(_simple(mission.get("items"), MAX_DEPTH, lost), 1):
         if index > MAX_ITEMS:
             raise PhysicalError("too-large", f"the plan has over {MAX_ITEMS:,} items")
         items.append(_item(raw, index))
     return tuple(items)
 
 
-def write_plan(points: Sequence[Geometry], altitude: float, home: Geometry | None = None) -> str:
-    """Return a plan that visits points at an altitude in metres above home; home is the first unless given."""
-    stops = [home or points[0], *points] if points else []
-    if not stops or not all(stop.is_point for stop in stops):
-        raise PhysicalError("plan", "a plan visits points", "take the waypoints of polygons")
-    height = Band(altitude, altitude).low  # a finite number
+def write_plan(
+    points: Sequence[Geometry],
+    altitude: float,
+    home: Geometry | None = None,
+    bands: Sequence[Band | None] = (),
+    home_altitude: float = 0.0,
+) -> str:
+    """Return a plan that visits points at an altitude in metres above home; home is the first unless given.
+
+    A point with a band of altitudes above sea level is visited within it instead.
+    """
+    start, *stops = stops_of(points, altitude, home, bands, home_altitude)
     mission = {
         "version": 2,
         "firmwareType": _ARDUPILOT,
         "vehicleType": _PLANE,
         "cruiseSpeed": 15,
         "hoverSpeed": 5,
-        "plannedHomePosition": [*stops[0].vertices[0], 0],
-        "items": [_written(index, stop, height) for index, stop in enumerate(stops[1:], 1)],
+        "plannedHomePosition": [*start.point.vertices[0], start.altitude],
+        "items": [_written(index, stop) for index, stop in enumerate(stops, 1)],
     }
     plan = {
         "fileType": FILE_TYPE,
@@ -65,14 +102,14 @@ def write_plan(points: Sequence[Geometry], altitude: float, home: Geometry | Non
     return json.dumps(plan, indent=1) + "\n"
 
 
-def _written(index: int, at: Geometry, height: float) -> Mapping[str, object]:
+def _written(index: int, stop: Stop) -> Mapping[str, object]:
     return {
         "type": "SimpleItem",
         "doJumpId": index,
         "command": int(Command.WAYPOINT),
-        "frame": int(AltitudeFrame.HOME),
+        "frame": int(stop.frame),
         "autoContinue": True,
-        "params": [0, 0, 0, None, *at.vertices[0], height],
+        "params": [0, 0, 0, None, *stop.point.vertices[0], stop.altitude],
     }
 
 
@@ -94,8 +131,11 @@ def _member(document: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     return member
 
 
-def _simple(items: object, depth: int) -> Iterator[Mapping[str, Any]]:
-    """Yield the simple items, those that complex ones stand for too."""
+# --- items ----------------------------------------------------------------------------------------
+
+
+def _simple(items: object, depth: int, lost: Counter[str]) -> Iterator[Mapping[str, Any]]:
+    """Yield the simple items, those that complex ones stand for too; count complex ones that are not read."""
     if not isinstance(items, list) or depth == 0:
         raise _fail("the mission has no list of items", "save it anew")
     for item in items:
@@ -105,21 +145,53 @@ def _simple(items: object, depth: int) -> Iterator[Mapping[str, Any]]:
             yield item
             continue
         inner = next((value["Items"] for value in (item, *item.values()) if _is_complex(value)), None)
-        if inner is None:
+        if inner is not None:
+            yield from _simple(inner, depth - 1, lost)
+            continue
+        if item.get("type") != "ComplexItem":
             raise _fail(f"an item of type {item.get('type')!r:.60} is not known", "plan it by waypoints")
-        yield from _simple(inner, depth - 1)
+        landing = _landing(item)
+        if not landing:
+            lost[f"complex item {legible(str(item.get('complexItemType', 'without a type')), 60)}"] += 1
+        yield from landing
 
 
 def _is_complex(value: object) -> bool:
     return isinstance(value, dict) and isinstance(value.get("Items"), list)
 
 
+def _landing(item: Mapping[str, Any]) -> tuple[Mapping[str, Any], ...]:
+    """Return the items that a landing pattern is flown as: its start, the approach, the landing; none of another."""
+    land = _LANDINGS.get(str(item.get("complexItemType")))
+    names = ("landingApproachCoordinate", "loiterCoordinate")
+    approach = next((item[name] for name in names if name in item), None)
+    touchdown = item.get("landCoordinate")
+    if land is None or not _is_coordinate(approach) or not _is_coordinate(touchdown):
+        return ()
+    relative = item.get("altitudesAreRelative", item.get("loiterAltitudeRelative", True))
+    frame = AltitudeFrame.HOME if relative else AltitudeFrame.SEA_LEVEL
+    towards = Command.LOITER_TO_ALT if item.get("useLoiterToAlt", True) else Command.WAYPOINT
+    begun = {"command": _LAND_START, "frame": _NO_FRAME, "params": [0] * 7}
+    legs = ((towards, approach), (land, touchdown))
+    return (
+        begun,
+        *({"command": int(to), "frame": int(frame), "params": [0, 0, 0, None, *at]} for to, at in legs),
+    )
+
+
+_LANDINGS: Final = {"fwLandingPattern": Command.LAND, "vtolLandingPattern": Command.VTOL_LAND}
+_LAND_START: Final = 189
+_NO_FRAME: Final = 2
+
+
+def _is_coordinate(value: object) -> TypeGuard[list[Any]]:
+    return isinstance(value, list) and len(value) == 3
+
+
 def _home(home: object) -> MissionItem:
-    if not isinstance(home, list) or len(home) != 3:
+    if not _is_coordinate(home):
         raise _fail("the plan has no planned home position", 'write "plannedHomePosition": [lat, lon, alt]')
-    latitude, longitude, altitude = (_number(value, "home") for value in home)
-    at = _point(latitude, longitude, "home")
-    return MissionItem(0, AltitudeFrame.SEA_LEVEL, Command.WAYPOINT, (0.0, 0.0, 0.0, 0.0), at, altitude)
+    return _made(0, AltitudeFrame.SEA_LEVEL, Command.WAYPOINT, [0, 0, 0, 0, *home], "home")
 
 
 def _item(raw: Mapping[str, Any], index: int) -> MissionItem:
@@ -133,10 +205,42 @@ def _item(raw: Mapping[str, Any], index: int) -> MissionItem:
         or type(frame) is not int
     ):
         raise _fail("the item has not a command, a frame and seven params", "save the plan anew", where)
-    p1, p2, p3, p4, latitude, longitude, altitude = (_number(value, where) for value in parameters)
-    goes = command in set(Command) and (latitude, longitude) != (0.0, 0.0)
+    return _made(index, frame, command, parameters, where)
+
+
+def _made(index: int, frame: int, command: int, parameters: Sequence[object], where: str) -> MissionItem:
+    """Return an item; null means *the vehicle's own*: no position, and no altitude that is known."""
+    p1, p2, p3, p4, latitude, longitude, height = (_number(value, where) for value in parameters)
+    said = parameters[4] is not None and parameters[5] is not None
+    goes = said and goes_to(index, frame, command, latitude, longitude)
     at = _point(latitude, longitude, where) if goes else None
-    return MissionItem(index, frame, command, (p1, p2, p3, p4), at, _altitude(altitude, where))
+    altitude = None if parameters[6] is None else _altitude(height, where)
+    return MissionItem(index, frame, command, (p1, p2, p3, p4), at, altitude)
+
+
+# --- fences ---------------------------------------------------------------------------------------
+
+
+def _fence(fence: object) -> Iterator[str]:
+    """Yield what each part of a fence is."""
+    for circle in _listed(fence, "circles"):
+        yield f"fence circle ({_side(circle)})"
+    for polygon in _listed(fence, "polygons"):
+        yield f"fence polygon ({_side(polygon)})"
+    if _listed(fence, "polygon"):  # the first version had one
+        yield f"fence polygon ({_side(None)})"
+    if _listed(fence, "breachReturn"):
+        yield "fence return point"
+
+
+def _listed(member: object, name: str) -> list[object]:
+    value = member.get(name) if isinstance(member, dict) else None
+    return value if isinstance(value, list) else []
+
+
+def _side(part: object) -> str:
+    outside = isinstance(part, dict) and part.get("inclusion") is False
+    return "to stay out" if outside else "to stay in"
 
 
 def _number(value: object, where: str) -> float:

@@ -24,6 +24,7 @@ from shapely.affinity import translate
 
 from physical.errors import GeometryError
 from physical.frame import E7, TURN, Position, PositionE7, geod, normal_longitude, rounded
+from physical.long_edges import check_edges
 
 MAX_VERTICES: Final = 10_000
 CIRCLE_VERTICES: Final = 64
@@ -145,6 +146,7 @@ def polygon(vertices: Iterable[Sequence[float]]) -> Geometry:
 def box(corner: Sequence[float], opposite: Sequence[float]) -> Geometry:
     """Return the box along parallels and meridians between opposite corners (paper, Example 1: NE and SW)."""
     (south, west), (north, east) = _position(*_pair(corner)), _position(*_pair(opposite))
+    check_edges((corner, opposite), closed=False)
     if south == north or west == east:
         raise GeometryError(
             "zero-area", "the box has no area: its corners lie on one line", "give two opposite corners"

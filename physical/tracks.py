@@ -6,12 +6,10 @@ import json
 from collections.abc import Iterable, Iterator, Sequence
 from datetime import UTC, datetime
 from itertools import pairwise
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 from physical.frame import E7, TURN, PositionE7
-
-LATEST: Final = 2.0**32
-"""Times are before this, in seconds since 1970 UTC: what a sender says may be any number."""
+from physical.written_times import LATEST
 
 
 class Fix(NamedTuple):

@@ -17,8 +17,8 @@ MAX_WORD: Final = 200
 MAX_TEXT: Final = 2_000
 """Characters of a message or of a reason."""
 
-MAX_DIGITS: Final = 400
-"""Digits of a whole number in JSON: more than any that is written here has, and few enough to be read at once."""
+MAX_DIGITS: Final = 300
+"""Digits of a whole number in JSON: each such number is a float, too, and is read at once."""
 
 _SURROGATE: Final = re.compile(rb"\\u[dD][89a-fA-F]|\xed[\xa0-\xbf]")
 """How JSON writes half of a surrogate pair: with an escape, or in bytes that are no UTF-8."""
@@ -60,7 +60,7 @@ def read_json(text: str | bytes, most: int) -> object:
     """Return what a JSON text says; all of it can be written again.
 
     Raises PhysicalError where it is longer than `most` bytes or characters, is no UTF-8 or no JSON, is nested too
-    deeply, says a key of an object twice, or has a number that is infinite, none or of more than 400 digits, or half
+    deeply, says a key of an object twice, or has a number that is infinite, none or of more than 300 digits, or half
     of a surrogate pair.
     """
     if len(text) > most:
@@ -92,7 +92,7 @@ def _each_once(pairs: list[tuple[str, object]]) -> dict[str, object]:
 
 
 def _whole(digits: str) -> int:
-    return int(digits) if len(digits) <= MAX_DIGITS else _too_long(digits)
+    return int(digits) if len(digits.removeprefix("-")) <= MAX_DIGITS else _too_long(digits)
 
 
 def _too_long(digits: str) -> NoReturn:

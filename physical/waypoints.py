@@ -1,26 +1,30 @@
 """Waypoint files: `QGC WPL 110`, plain text of tab-separated columns (paper, Example 1).
 
 A line is: index, current, frame, command, four parameters, latitude, longitude, altitude, autocontinue; the
-numbers are those of MAVLink. Item 0 is the home position.
+numbers are those of MAVLink. Item 0 is the home position, if it is a position above sea level.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Final
+from types import MappingProxyType
+from typing import Final, NamedTuple
 
 from physical.altitude import Band
+from physical.command_names import POSITIONS, command_name
 from physical.errors import PhysicalError
 from physical.mobility_commands import MobilityCommand, Waypoint
 from physical.physical_property import PhysicalProperty
 from physical.shape import Geometry, point
+from physical.tally import Counting, Read
 
 HEADER: Final = "QGC WPL 110"
 MAX_CHARACTERS: Final = 1_000_000
 MAX_ITEMS: Final = 10_000
 COLUMNS: Final = 12
+EMPTY: Final[Mapping[str, int]] = MappingProxyType({})
 
 
 class AltitudeFrame(IntEnum):
@@ -43,7 +47,26 @@ class Command(IntEnum):
     LOITER_TIME = 19
     LAND = 21
     TAKEOFF = 22
+    LOITER_TO_ALT = 31
+    DO_ORBIT = 34
+    DO_FIGURE_EIGHT = 35
+    ARC_WAYPOINT = 36
     SPLINE_WAYPOINT = 82
+    VTOL_TAKEOFF = 84
+    VTOL_LAND = 85
+    PAYLOAD_PLACE = 94
+    DO_REPOSITION = 192
+
+
+_USERS: Final = range(31000, 31005)
+"""Waypoints that a user defines (MAV_CMD_WAYPOINT_USER_1 to 5)."""
+
+_GOING: Final = frozenset({*map(int, Command), *_USERS})
+_ABOVE_SEA: Final = frozenset({AltitudeFrame.SEA_LEVEL, AltitudeFrame.SEA_LEVEL_INT})
+_ABOVE_HOME: Final = frozenset({AltitudeFrame.HOME, AltitudeFrame.HOME_INT})
+_GLOBAL: Final = frozenset(map(int, AltitudeFrame))
+_HOMES: Final = (Command.WAYPOINT, 0)
+"""How home is written: as a waypoint, or without a command."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +79,7 @@ class MissionItem:
         command: What to do (MAV_CMD).
         parameters: The command's four parameters.
         point: Where, if the command goes somewhere.
-        altitude: Metres in its frame.
+        altitude: Metres in its frame, if the file says any.
     """
 
     index: int
@@ -64,7 +87,14 @@ class MissionItem:
     command: int
     parameters: tuple[float, float, float, float]
     point: Geometry | None
-    altitude: float
+    altitude: float | None
+
+    @property
+    def is_home(self) -> bool:
+        """Whether this is where the vehicle starts: item 0, if it is a position above sea level."""
+        return (
+            self.index == 0 and self.command in _HOMES and self.frame in _ABOVE_SEA and self.point is not None
+        )
 
 
 def read_waypoints(text: str) -> tuple[MissionItem, ...]:
@@ -94,12 +124,23 @@ def read_waypoints(text: str) -> tuple[MissionItem, ...]:
     return items
 
 
+def goes_to(index: int, frame: int, command: int, latitude: float, longitude: float) -> bool:
+    """Tell whether an item of a mission is a position that the vehicle goes to, or home.
+
+    Latitude 0 and longitude 0 mean *where it is*, or that nothing was said; of frames that are not global the numbers
+    are metres.
+    """
+    there = frame in _GLOBAL and (latitude, longitude) != (0.0, 0.0)
+    return there and (command in _GOING or (index == 0 and command in _HOMES and frame in _ABOVE_SEA))
+
+
 def waypoint_places(items: Sequence[MissionItem], prefix: str = "waypoint") -> tuple[PhysicalProperty, ...]:
     """Return the positions that a mission goes to as places named by their index; home is `<prefix>0`.
 
-    Altitudes above home are made altitudes above sea level; those above terrain are not known.
+    Altitudes above home are made altitudes above sea level where the file says that of home; those above terrain are
+    not known.
     """
-    home = items[0].altitude if items else 0.0
+    home = next((item.altitude for item in items if item.is_home), None)
     return tuple(
         PhysicalProperty(f"{prefix}{item.index}", "Waypoint", item.point, _band(item, home), source=HEADER)
         for item in items
@@ -107,20 +148,99 @@ def waypoint_places(items: Sequence[MissionItem], prefix: str = "waypoint") -> t
     )
 
 
-def write_waypoints(points: Sequence[Geometry], altitude: float, home: Geometry | None = None) -> str:
+def read_mission(items: Sequence[MissionItem], beside: Mapping[str, int] = EMPTY) -> Read:
+    """Return the places of a mission with the account of its items, and of what is in the file beside them."""
+    places, counting = waypoint_places(items), Counting()
+    for item in items:
+        if item.point is None:
+            counting.leave(_nowhere(item))
+        else:
+            counting.take("home" if item.is_home else "waypoint")
+    for kind, count in beside.items():
+        counting.leave(kind, count)
+    unknown = sum(place.altitude is None for place in places)
+    above_terrain = sum(item.point is not None and _is_above_terrain(item) for item in items)
+    if above_terrain:
+        counting.note("altitude above the terrain: it is not known above the sea", above_terrain)
+    if unknown > above_terrain:
+        counting.note(
+            "altitude above a home of which the file says none: it is not known", unknown - above_terrain
+        )
+    return Read(places, (counting.tally(len(items) + sum(beside.values()), "item"),))
+
+
+def _is_above_terrain(item: MissionItem) -> bool:
+    return item.frame in (AltitudeFrame.TERRAIN, AltitudeFrame.TERRAIN_INT)
+
+
+def _nowhere(item: MissionItem) -> str:
+    """Say what an item is that is no place."""
+    name = command_name(item.command)
+    if item.command in POSITIONS or item.command not in _GOING:
+        home = item.index == 0 and item.command in _HOMES
+        return "home at latitude 0 and longitude 0" if home else name
+    if item.frame not in _GLOBAL:
+        return f"{name} in frame {item.frame}, which has no latitude and longitude"
+    return "home at latitude 0 and longitude 0" if item.index == 0 else f"{name} without a position"
+
+
+def write_waypoints(
+    points: Sequence[Geometry],
+    altitude: float,
+    home: Geometry | None = None,
+    bands: Sequence[Band | None] = (),
+    home_altitude: float = 0.0,
+) -> str:
     """Return a waypoint file that visits points at an altitude in metres above home.
 
-    Home, the first point unless given, is written as item 0 at altitude 0.
+    A point with a band of altitudes above sea level is visited within it instead. Home, the first point unless given,
+    is written as item 0.
     """
-    stops = [home or points[0], *points] if points else []
-    if not stops or not all(stop.is_point for stop in stops):
+    stops = stops_of(points, altitude, home, bands, home_altitude)
+    return "".join(f"{line}\n" for line in (HEADER, *(_line(i, stop) for i, stop in enumerate(stops))))
+
+
+class Stop(NamedTuple):
+    """A point that a written mission visits: an altitude in metres, and what it is above."""
+
+    point: Geometry
+    frame: AltitudeFrame
+    altitude: float
+
+
+def stops_of(
+    points: Sequence[Geometry],
+    altitude: float,
+    home: Geometry | None,
+    bands: Sequence[Band | None],
+    home_altitude: float,
+) -> tuple[Stop, ...]:
+    """Return home and the points that are visited, each with its altitude; raises PhysicalError."""
+    at = [home or points[0], *points] if points else []
+    if not at or not all(each.is_point for each in at):
         raise PhysicalError(
             "waypoint-file", "a waypoint file visits points", "take the waypoints of polygons"
         )
-    Band(altitude, altitude)  # a finite number
-    lines = [HEADER, _line(0, AltitudeFrame.SEA_LEVEL, stops[0], 0.0)]
-    lines += [_line(i, AltitudeFrame.HOME, stop, altitude) for i, stop in enumerate(stops[1:], 1)]
-    return "".join(f"{line}\n" for line in lines)
+    above_home = Band(altitude, altitude).low  # a finite number
+    heights = [*bands, *[None] * (len(points) - len(bands))]
+    start, *stops = map(_beside_zero, at)
+    return (
+        Stop(start, AltitudeFrame.SEA_LEVEL, Band(home_altitude, home_altitude).low),
+        *(_stop(each, band, above_home) for each, band in zip(stops, heights, strict=True)),
+    )
+
+
+def _beside_zero(at: Geometry) -> Geometry:
+    """Return a point as it is written: latitude 0 and longitude 0 would mean *where the vehicle is*; so 1 cm beside."""
+    return point(1e-7, 0.0) if at is point(0.0, 0.0) else at
+
+
+def _stop(at: Geometry, band: Band | None, above_home: float) -> Stop:
+    if band is None:
+        return Stop(at, AltitudeFrame.HOME, above_home)
+    middle = (band.low + band.high) / 2
+    rounded = round(middle, 2)
+    return Stop(at, AltitudeFrame.SEA_LEVEL, rounded if band.low <= rounded <= band.high else middle)
 
 
 def visited(commands: Iterable[MobilityCommand], entity: str) -> tuple[Geometry, ...]:
@@ -130,17 +250,12 @@ def visited(commands: Iterable[MobilityCommand], entity: str) -> tuple[Geometry,
     )
 
 
-def _line(index: int, frame: AltitudeFrame, at: Geometry, altitude: float) -> str:
-    ((latitude, longitude),) = at.vertices
-    numbers = [0.0, 0.0, 0.0, 0.0, latitude, longitude, altitude]
-    columns = [
-        index,
-        int(index == 0),
-        int(frame),
-        int(Command.WAYPOINT),
-        *(f"{value:.7f}" for value in numbers),
-        1,
-    ]
+def _line(index: int, stop: Stop) -> str:
+    ((latitude, longitude),) = stop.point.vertices
+    numbers = [f"{value:.7f}" for value in (0.0, 0.0, 0.0, 0.0, latitude, longitude)]
+    altitude = f"{stop.altitude:.7f}"
+    exact = altitude if float(altitude) == stop.altitude else repr(stop.altitude)
+    columns = [index, int(index == 0), int(stop.frame), int(Command.WAYPOINT), *numbers, exact, 1]
     return "\t".join(map(str, columns))
 
 
@@ -154,17 +269,18 @@ def _item(columns: Sequence[str], where: str) -> MissionItem:
     except ValueError:
         raise PhysicalError("waypoint-file", "a column is not a number", "", where) from None
     try:
-        goes = index == 0 or (command in set(Command) and (latitude, longitude) != (0.0, 0.0))
-        at = point(latitude, longitude) if goes else None
+        at = point(latitude, longitude) if goes_to(index, frame, command, latitude, longitude) else None
         altitude = Band(altitude, altitude).low
     except PhysicalError as problem:
         raise PhysicalError(problem.code, problem.message, problem.hint, where) from None
     return MissionItem(index, frame, command, (p1, p2, p3, p4), at, altitude)
 
 
-def _band(item: MissionItem, home: float) -> Band | None:
-    if item.frame in (AltitudeFrame.SEA_LEVEL, AltitudeFrame.SEA_LEVEL_INT):
+def _band(item: MissionItem, home: float | None) -> Band | None:
+    if item.altitude is None:
+        return None
+    if item.frame in _ABOVE_SEA:
         return Band(item.altitude, item.altitude)
-    if item.frame in (AltitudeFrame.HOME, AltitudeFrame.HOME_INT):
+    if item.frame in _ABOVE_HOME and home is not None:
         return Band(home + item.altitude, home + item.altitude)
     return None

@@ -106,10 +106,13 @@ def is_consistent(c: Configuration, request: CTR | FLY, match: Match) -> bool:
 
 
 def is_under_way(c: Configuration, request: CTR | FLY, match: Match) -> bool:
-    """Tell whether P has all nodes of m(R), and what travels is in transit or carried by what is."""
+    """Tell whether P has all nodes of m(R), and what travels is on its way to where m(R′) has it, or carried.
+
+    What has vanished and appeared since is on no way, or on that of another flight.
+    """
     physical, nodes = c.structure.physical, match.nodes(request.reaction.redex)
-    travelling = (node for node, _ in moved(request.reaction, match) if physical.carrier(node) is None)
-    return c.structure.consistent((), nodes) and all(map(physical.transit, travelling))
+    travelling = ((node, to) for node, to in moved(request.reaction, match) if physical.carrier(node) is None)
+    return c.structure.consistent((), nodes) and all(physical.going_to(node) == to for node, to in travelling)
 
 
 def still_matches(c: Configuration, request: CTR | FLY, match: Match) -> bool:
@@ -142,7 +145,7 @@ PREMISES: Final[Mapping[type[CTR | FLY], tuple[Premise, ...]]] = {
         Premise("S locally consistent w.r.t. m(R)", is_consistent, Obstacle.INCONSISTENT),
     ),
     FLY: (
-        Premise("m(R) in P, what travels in transit", is_under_way, Obstacle.INCONSISTENT),
+        Premise("m(R) in P, what travels in transit there", is_under_way, Obstacle.INCONSISTENT),
         Premise("R still matches, but for where the moved node is now", still_matches, Obstacle.UNMATCHED),
         _FOREST,
         Premise("its unmoved part is consistent", is_unmoved_consistent, Obstacle.INCONSISTENT),

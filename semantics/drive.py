@@ -29,7 +29,7 @@ Reach = Callable[[PhysicalModel, Name, Name], Placement | None]
 
 
 def drive(
-    cells: Cells, setting: "Setting", reaction: Reaction, match: Match, reach: Reach | None = None
+    cells: Cells, setting: "Setting", reaction: Reaction, match: Match, observed: Reach | None = None
 ) -> Driven | None:
     """Return the P' in which m(R') is true, None where there is none.
 
@@ -37,9 +37,9 @@ def drive(
     A(P') gives exactly that parent; what it carries goes along; a node put into a carrier is carried; what a carrier
     holds may be put where the carrier is, at once. A node that changed links has its channels changed.
 
-    Where `reach` is given, what travels is placed by it: live, P' is what was observed.
+    Where `observed` is given, what travels is placed by it: live, P' is what was observed.
     """
-    travel = reach or _reach
+    travel = observed or reach
     changes: Changes = {}
     flying: list[tuple[Name, Name]] = []
     for node, place in moved(reaction, match):
@@ -89,7 +89,7 @@ def unloaded(carried: Carried, here: Placed) -> Placed:
     return Placed(translate_to(shape.geometry, centroid(here.geometry)), shape.altitude)
 
 
-def _reach(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carried | None:
+def reach(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carried | None:
     """Bring what can be driven into a place, or aboard what carries it."""
     setting = physical.sorting
     origin, target = physical.position(node), None if place == REGION else physical.position(place)

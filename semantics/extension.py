@@ -5,9 +5,15 @@ Written like the seven rules.
 
 from collections.abc import Iterator
 
-from semantics.behaviours.computation import bind_parameters, enter_case, first_fitting
+from semantics.behaviours.computation import (
+    Tried,
+    bind_parameters,
+    enter_case,
+    first_fitting,
+    give_up,
+    look_into,
+)
 from semantics.behaviours.expressions import Fault, evaluated, name_in
-from semantics.behaviours.patterns import looks_into
 from semantics.behaviours.statements import Case, Migrate, React, Send, Spawn
 from semantics.behaviours.stepping import (
     continuing,
@@ -94,18 +100,14 @@ def rcv_msg(c: Configuration, a: Name) -> Iterator[Transition]:
     if not isinstance(statement, React):  # premise: a is at a react
         return
     watch = c.alpha.watch(a)
-    looked_into = any(looks_into(case.pattern) for case in statement.cases)
+    looked_into = look_into(statement.cases)
     for position, message in enumerate(c.alpha.mailbox(a)):  # premise: m ∈ mailbox(a)
         rests_on = watch.mailbox[position] if watch else NOTHING
         process = process_of(c, a)
-        passed = deciding(rests_on if looked_into else told_because(rests_on))
-        here = process.leave() | passed
-        goes_on = statement.after is not None
-        process.passing(NOTHING if goes_on else passed)  # what follows waits for the message
-        if not enter_case(
-            process, statement.cases, message, rests_on, here, goes_on=goes_on
-        ):  # premise: a case for it
-            continue
+        asked = deciding(rests_on if looked_into else told_because(rests_on))
+        otherwise = None if statement.after is None else statement.after.body
+        if not enter_case(process, statement.cases, message, rests_on, asked, otherwise):
+            continue  # premise: a case for it
         taken = c.with_(c.alpha.taking(a, position))
         target = taken.with_(continuing(taken, process))
         yield Transition(Label("rcv_msg", a, f"react({show(message, frozenset())})"), target)
@@ -126,13 +128,13 @@ def timeout(c: Configuration, a: Name) -> Iterator[Transition]:
     if refused is None:  # premise: no case takes anything
         return
     process = process_of(c, a)
-    process.enter(statement.after.body, process.leave() | refused)
+    give_up(process, statement.cases, statement.after, refused)
     yield Transition(Label("timeout", a, str(statement.after)), c.with_(continuing(c, process)))
 
 
-def _refused(c: Configuration, a: Name, cases: tuple[Case, ...]) -> Provenance | None:
+def _refused(c: Configuration, a: Name, cases: tuple[Case, ...]) -> Tried | None:
     """Return the guards that refuse all that an agent may receive; None where a case takes some of it, or fails."""
-    watch, tests = c.alpha.watch(a), NOTHING
+    watch, tests = c.alpha.watch(a), list[tuple[int, Provenance]]()
     mailbox = c.alpha.mailbox(a)
     posted = zip(mailbox, watch.mailbox if watch else (NOTHING,) * len(mailbox), strict=True)
     ready = ((p.request.observation, p.rests_on) for p in c.eta.ready(a) if isinstance(p.request, READY))
@@ -143,8 +145,8 @@ def _refused(c: Configuration, a: Name, cases: tuple[Case, ...]) -> Provenance |
             return None
         if rank is not None:
             return None
-        tests |= tried
-    return tests
+        tests += tried
+    return tuple(tests)
 
 
 def req_mgr(c: Configuration, a: Name) -> Iterator[Transition]:

@@ -15,7 +15,7 @@ from semantics.behaviours.stepping import continuing, next_statement, process_of
 from semantics.control import Realisation, commits, realisations
 from semantics.drive import Reach
 from semantics.environment import Clause, Observed, Says
-from semantics.races.provenance import NOTHING, Dependency, deciding, held
+from semantics.races.provenance import NOTHING, Dependency, computed, deciding, held, told_because
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.requests import CTR, FLY, OBS, READY, Received
 from semantics.state.setting import Control
@@ -50,7 +50,7 @@ def req_obs(c: Configuration, a: Name) -> Iterator[Transition]:
         return
     process = process_of(c, a)
     query = query_of(statement.query, process.scope)
-    rests_on = resting_on(process, process.scope.used)
+    rests_on = resting_on(process, computed(process.scope.used))
     process.leave()
     label = Label("req_obs", a, f"observe({query})")
     yield Transition(label, c.with_(continuing(c, process), c.eta.adding(OBS(a, query), rests_on)))
@@ -89,10 +89,12 @@ def rcv_obs(c: Configuration, a: Name) -> Iterator[Transition]:
     for pending in c.eta.ready(a):  # premise: READY(a, q, L_q) ∈ η, in line
         assert isinstance(pending.request, READY)
         process = process_of(c, a)
-        here = process.leave()
-        seen = pending.request.observation
-        goes_on = statement.after is not None
-        if not enter_case(process, statement.cases, seen, pending.rests_on, here, goes_on=goes_on):
+        seen, rests_on = pending.request.observation, pending.rests_on
+        asked = deciding(told_because(rests_on))  # the tests that led to the request
+        otherwise = None if statement.after is None else statement.after.body
+        if not enter_case(
+            process, statement.cases, seen, rests_on - told_because(rests_on), asked, otherwise
+        ):
             continue  # premise: a case for it
         target = c.with_(continuing(c, process), c.eta.removing(pending))
         yield Transition(Label("rcv_obs", a, Received(seen)), target)
@@ -162,7 +164,7 @@ def command(c: Configuration, a: Name) -> Iterator[Transition]:
 def commit(c: Configuration, a: Name, reach: Reach | None = None) -> Iterator[Transition]:
     """Arrive (`control timed`): the destination is where it is now, and R must still match.
 
-    FLY(a, m, R′) ∈ η, in line      m(R) in P, what travels in transit
+    FLY(a, m, R′) ∈ η, in line      m(R) in P, what travels in transit there
     R still matches, but for where the moved node is now      L[m(R) ↦ m(R′)] a forest
     its unmoved part is consistent      drive(P, m(R′)) = P′
     ──────────────────────────────────────────────────────────────────────────────  ⟨commit : FLY(a, m, R′)⟩

@@ -547,8 +547,9 @@ class Code(Enum):
         "LS705",
         "probably all swapped",
         """All of a world seems to have latitude and longitude exchanged: whatever floats (a Vessel, a Boat) stands on
-        land, or everything is far out at sea, and exchanged it would not be. Missions use (latitude, longitude),
-        GeoJSON uses [longitude, latitude]. Coasts and lakes are known to a kilometre, rivers are not.""",
+        land, 100 km from any water, or everything is far out at sea, and exchanged it would be near a coast. Missions
+        use (latitude, longitude), GeoJSON uses [longitude, latitude]. Coasts and lakes are known to a kilometre, rivers
+        and canals are not: nearer to a coast, boats on land are taken to be on one.""",
     )
 
     BOUNDS_NOTHING = (

@@ -25,6 +25,12 @@ def crossed(names, variations):
     return lambda test: pytest.mark.fuzz(pytest.mark.parametrize(("name", "variation"), pairs)(test))
 
 
+def seeds(most, part):
+    """Decorate a test of generated cases by their number: `make fuzz` takes all, `make test` the first few."""
+    numbers = range(most if IS_WHOLE else part)
+    return lambda test: pytest.mark.fuzz(pytest.mark.parametrize("seed", numbers)(test))
+
+
 def soak(test):
     """Mark a test that only `make fuzz` runs: of what a shorter one tells, over a long time."""
     return pytest.mark.fuzz(pytest.mark.skipif(not IS_WHOLE, reason="a long run: `make fuzz`")(test))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from adapters.console.alerts import vanity
 from adapters.console.draft import Draft
 from adapters.console.parsing import text, texts
 from adapters.console.ticks import tick
@@ -17,7 +18,7 @@ def take_saying(draft: Draft, time: float, data: Any) -> None:
     """Take in a message that someone said to an agent: it is in the mailbox, or was refused."""
     match data:
         case {"agent": str(agent), "message": str(message)}:
-            _act(draft, time, data, f'say "{text(message)}"', text(agent))
+            _act(draft, time, data, f'say "{text(message)}"', text(agent), vain=vanity(draft, text(agent)))
 
 
 def take_giving_back(draft: Draft, time: float, data: Any) -> None:
@@ -47,8 +48,10 @@ def take_order(draft: Draft, time: float, data: Any) -> None:
                 draft.bidden[vehicle] = f"{'held' if order == 'hold' else 'sent home'} by {by}"
 
 
-def _act(draft: Draft, time: float, data: Any, what: str, about: str, *awaits: str) -> None:
-    """Note an action; what it awaits are the requests that are to be confirmed."""
+def _act(
+    draft: Draft, time: float, data: Any, what: str, about: str, *awaits: str, vain: str | None = None
+) -> None:
+    """Note an action: the requests that are to be confirmed, and why nothing comes of what was said."""
     draft.acted += 1
     why = text(data.get("refusal"))
     state = "refused" if why else "sent" if awaits else "confirmed"
@@ -61,6 +64,7 @@ def _act(draft: Draft, time: float, data: Any, what: str, about: str, *awaits: s
         "why": why,
         "left_out": _left_out(data.get("left_out")),
         "notes": texts(data.get("notes")),
+        "vain": None if why else vain,
         "answered": None if state == "sent" else time,
     }
     draft.actions.bounded(MOST)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, Final
 
+from adapters.console.alerts import vanity
 from adapters.console.draft import Draft
 from adapters.console.facts import Facts
 from adapters.console.parsing import number, text
@@ -102,7 +103,10 @@ def _part(pattern: Pattern) -> str:
 
 def sayings(facts: Facts) -> Mapping[str, Json]:
     """Return the section `sayings`: what the mission lets someone say to the agents that run here."""
-    return {} if facts.standing is None else _sayings(facts.standing.configuration)
+    if facts.standing is None:
+        return {}
+    known = _sayings(facts.standing.configuration)
+    return {key: {**each, "vain": vanity(facts, each["agent"])} for key, each in known.items()}
 
 
 @lru_cache(maxsize=1 << 10)

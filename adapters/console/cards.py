@@ -8,12 +8,13 @@ from operator import attrgetter
 from typing import Final, NamedTuple
 
 from adapters.console.agents import agents
-from adapters.console.alerts import ALL
+from adapters.console.alerts import ALL, fallen_back, grounded
 from adapters.console.facts import Authority, Facts, Link, Order, Position
 from adapters.console.flights import concerned
 from adapters.console.parsing import text
+from adapters.console.returns import of_return
 from adapters.console.view import Json
-from adapters.console.whereabouts import UNKNOWN, Whereabouts, is_under_way, known_whereabouts
+from adapters.console.whereabouts import UNKNOWN, Whereabouts, destination, known_whereabouts
 from adapters.live.state import Waiting
 from semantics.behaviours.durations import duration_text
 from semantics.contingencies import Fallback, TimeLimit
@@ -22,6 +23,12 @@ from semantics.state.signature import Name
 
 WELL, WATCHED, WRONG, LOST = range(4)
 """How much a vehicle needs an operator."""
+
+WORDS: Final = ("well", "watch", "wrong", "lost")
+"""How a vehicle is, by its level, where its reason has no word of its own."""
+
+UNKNOWN_NOW: Final = "unknown"
+"""How a vehicle is of which nothing is known."""
 
 OLD: Final = 5.0
 """Seconds after which a link is watched."""
@@ -40,28 +47,43 @@ class Asked(NamedTuple):
     given_up: bool
 
 
-def vehicles(facts: Facts, now: float) -> dict[str, Json]:
-    """Return the section `vehicles`."""
+class Reason(NamedTuple):
+    """Why a vehicle needs an operator: how much, why, and how it is; the word of its level where that is empty."""
+
+    level: int
+    why: str
+    word: str = ""
+
+
+def vehicles(facts: Facts, now: float, broken_off: str = "") -> dict[str, Json]:
+    """Return the section `vehicles`; `broken_off` says why nothing more is known after what is shown."""
     if facts.run is None:
         return {}
     asked, where = _asked(facts), known_whereabouts(facts)
-    return {
-        name: _card(facts, name, now, asked.get(name), where.get(name, UNKNOWN))
-        for name in sorted(facts.run.vehicles)
-    }
+    silent = (
+        [Reason(LOST, f"nothing is known of it any more: {broken_off}", UNKNOWN_NOW)] if broken_off else []
+    )
+    found = {}
+    for name in sorted(facts.run.vehicles):
+        there = where.get(name, UNKNOWN)
+        reasons = [*silent, *_reasons(facts, name, now, asked.get(name), there)]
+        found[name] = _card(facts, name, asked.get(name), there, reasons)
+    return found
 
 
-def _card(facts: Facts, name: Name, now: float, asked: Asked | None, where: Whereabouts) -> Json:
+def _card(facts: Facts, name: Name, asked: Asked | None, where: Whereabouts, said: list[Reason]) -> Json:
     """Return a vehicle's card, which doesn't change with each of the positions that it sends ten times a second."""
     seen, status = facts.seen.get(name), facts.status.get(name, {})
     order, link = _order(facts, name), facts.links.get(name, Link())
-    reasons = sorted(_reasons(facts, name, now, asked, where), key=lambda reason: -reason[0])
+    reasons = sorted(said, key=lambda reason: -reason.level)
+    worst = reasons[0] if reasons else Reason(WELL, "")
     heading, authority = status.get("heading"), facts.authority.get(name, UNTOLD)
     return {
         "kind": _kind(facts, name),
         "believed": where.believed,
         "actual": where.actual,
         "differs": where.differs,
+        "going": destination(facts, name),
         "request": None if asked is None else _request_json(asked),
         "flight": facts.flights.get(name),
         "order": None if order is None else _order_json(order, _way(facts, name)),
@@ -78,8 +100,10 @@ def _card(facts: Facts, name: Name, now: float, asked: Asked | None, where: Wher
         "handed": authority.handed,
         "said": facts.words.get(name),
         "taken": facts.taken.get(name) or facts.bidden.get(name),
-        "level": max((level for level, _ in reasons), default=WELL),
-        "why": "; ".join(why for _, why in reasons),
+        "on_return": of_return(facts, name),
+        "level": worst.level,
+        "word": worst.word or WORDS[worst.level],
+        "why": "; ".join(each.why for each in reasons),
     }
 
 
@@ -161,17 +185,17 @@ def limit_of(request: Request, limits: tuple[TimeLimit, ...]) -> TimeLimit | Non
 
 def _reasons(
     facts: Facts, name: Name, now: float, asked: Asked | None, where: Whereabouts
-) -> Iterator[tuple[int, str]]:
+) -> Iterator[Reason]:
     """Yield why a vehicle needs an operator, and how much."""
     yield from _of_link(facts.links.get(name, Link()), now)
     if name in facts.taken:
-        yield LOST, f"taken over: {facts.taken[name]}"
+        yield Reason(LOST, f"taken over: {facts.taken[name]}", "taken over")
     elif name in facts.bidden:
-        yield WATCHED, facts.bidden[name]
+        yield Reason(WATCHED, facts.bidden[name])
     yield from _of_assumptions(facts, name)
     for station in facts.authority.get(name, UNTOLD).stations:
         if facts.stations.get(station, {}).get("reached") is False:
-            yield WRONG, f"{station}, which it obeys, is not reached"
+            yield Reason(WRONG, f"{station}, which it obeys, is not reached")
     away = name in facts.taken or name in facts.bidden
     yield from _of_request(asked, now, idle=away)
     yield from _of_falling_back(facts, asked)
@@ -179,22 +203,24 @@ def _reasons(
         yield from _of_idleness(facts)
     for order in (facts.orders.get(name), facts.handing.get(name)):
         if order is not None and order.state == "refused":
-            yield WRONG, f"it refuses {order.command}{f': {order.why}' if order.why else ''}"
+            yield Reason(WRONG, f"it refuses {order.command}{f': {order.why}' if order.why else ''}")
     battery = facts.status.get(name, {}).get("battery")
     if battery is not None and battery["percent"] is not None and battery["percent"] < LOW:
-        yield WRONG, f"its battery has less than {LOW} %"
-    if where.differs and not _is_flying(facts, name):
-        yield WATCHED, "where it is believed to be and where it is differ"
+        yield Reason(WRONG, f"its battery has less than {LOW} %")
+    if where.differs and destination(facts, name) is None:
+        yield Reason(WATCHED, "where it is believed to be and where it is differ")
 
 
-def _of_link(link: Link, now: float) -> Iterator[tuple[int, str]]:
+def _of_link(link: Link, now: float) -> Iterator[Reason]:
     if link.lost:
-        yield LOST, "the link is lost"
-    elif link.heard is not None and now - link.heard > OLD:
-        yield WATCHED, f"nothing was heard of it for more than {OLD:g} s"
+        yield Reason(LOST, "the link is lost")
+    elif link.heard is None:
+        yield Reason(WATCHED, "nothing was heard of it yet", UNKNOWN_NOW)
+    elif now - link.heard > OLD:
+        yield Reason(WATCHED, f"nothing was heard of it for more than {OLD:g} s")
 
 
-def _of_assumptions(facts: Facts, name: Name) -> Iterator[tuple[int, str]]:
+def _of_assumptions(facts: Facts, name: Name) -> Iterator[Reason]:
     """Yield the newest broken assumption about a vehicle that nobody has acknowledged, and how many more there are."""
     broken = [
         alert["message"]
@@ -203,36 +229,36 @@ def _of_assumptions(facts: Facts, name: Name) -> Iterator[tuple[int, str]]:
     ]
     if broken:
         more = f" (and {len(broken) - 1} more)" if len(broken) > 1 else ""
-        yield LOST, f"broken assumption: {broken[-1]}{more}"
+        yield Reason(LOST, f"broken assumption: {broken[-1]}{more}", "broken")
 
 
-def _of_request(asked: Asked | None, now: float, *, idle: bool) -> Iterator[tuple[int, str]]:
+def _of_request(asked: Asked | None, now: float, *, idle: bool) -> Iterator[Reason]:
     """Yield what its request's limit calls for; `idle`: the mission does not command the vehicle."""
     if asked is None or asked.limit is None:
         return
     stood, limit = now - asked.waiting.since, asked.limit.seconds
     if stood >= limit:
-        yield WRONG, f"its request stands for longer than {duration_text(limit)}"
+        yield Reason(WRONG, f"its request stands for longer than {duration_text(limit)}")
     elif stood > limit / 2:
-        yield WATCHED, f"its request stands for more than half of {duration_text(limit)}"
+        yield Reason(WATCHED, f"its request stands for more than half of {duration_text(limit)}")
     if idle and stood < limit and not asked.given_up:
-        then = "" if asked.limit.fallback is Fallback.CONTINUE else f"; then {_grounded(asked)}"
-        yield WATCHED, f"the {duration_text(limit)} of its request run on meanwhile{then}"
+        then = (
+            ""
+            if asked.limit.fallback is Fallback.CONTINUE
+            else f"; then {grounded(asked.waiting.request.agent)}"
+        )
+        yield Reason(WATCHED, f"the {duration_text(limit)} of its request run on meanwhile{then}")
 
 
-def _of_falling_back(facts: Facts, asked: Asked | None) -> Iterator[tuple[int, str]]:
+def _of_falling_back(facts: Facts, asked: Asked | None) -> Iterator[Reason]:
     """Yield that the mission does not command a vehicle again, even one that is given back."""
-    if ALL in facts.stopped:
-        yield WRONG, f"the mission commands nothing any more: all vehicles were told to {facts.stopped[ALL]}"
+    if whole := fallen_back(facts):
+        yield Reason(WRONG, whole)
     elif asked is not None and asked.given_up:
-        yield WRONG, _grounded(asked)
+        yield Reason(WRONG, grounded(asked.waiting.request.agent))
 
 
-def _grounded(asked: Asked) -> str:
-    return f"nothing that {asked.waiting.request.agent} orders is carried out any more"
-
-
-def _of_idleness(facts: Facts) -> Iterator[tuple[int, str]]:
+def _of_idleness(facts: Facts) -> Iterator[Reason]:
     """Yield for whom a vehicle waits of which nothing is asked: who would ask waits itself, or has ended."""
     if ALL in facts.stopped:
         return
@@ -243,10 +269,6 @@ def _of_idleness(facts: Facts) -> Iterator[tuple[int, str]]:
         f"{name} {each['state']}" for name, each in states.items() if each["state"].startswith("waits")
     ]
     if waiting:
-        yield WELL, f"nothing is asked of it: {waiting[0]}"
+        yield Reason(WELL, f"nothing is asked of it: {waiting[0]}")
     elif states:
-        yield WATCHED, "nothing will be asked of it any more: every bigActor of the mission has ended"
-
-
-def _is_flying(facts: Facts, name: Name) -> bool:
-    return facts.standing is not None and is_under_way(facts.standing.configuration, name)
+        yield Reason(WATCHED, "nothing will be asked of it any more: every bigActor of the mission has ended")

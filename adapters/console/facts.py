@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from adapters.console.view import Json, Section
 from adapters.live.state import Waiting
-from semantics.contingencies import TimeLimit
+from semantics.contingencies import Fallback, TimeLimit
 from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name
 
@@ -28,12 +28,14 @@ class Rules:
         initial: The first configuration.
         fixed: The entities whose place never changes.
         limits: How long requests may take.
+        on_broken: What is done when an assumption breaks.
         follow: Takes a recorded step again; raises Unreplayable where it is not allowed.
     """
 
     initial: Configuration
     fixed: frozenset[Name]
     limits: tuple[TimeLimit, ...]
+    on_broken: Fallback
     follow: Callable[[Configuration, Any], tuple[Label, Configuration]]
 
 

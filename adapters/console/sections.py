@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from adapters.console.agents import agents, sayings
+from adapters.console.alerts import alarms, fallen_back
 from adapters.console.arrivals import tracks
 from adapters.console.cards import vehicles
 from adapters.console.facts import Facts
@@ -18,13 +19,15 @@ from semantics.state.configuration import Configuration
 def view_of(facts: Facts, now: float, head: Facts, picture: Section, before: View) -> View:
     """Return what is shown of facts at a time; what is as it was in the view before is the same object.
 
-    `head` are the newest facts of the recording, and `picture` is the newest picture of L.
+    `head` are the newest facts of the recording, and `picture` is the newest picture of L. What is wrong now is shown
+    beside each earlier moment of a run that goes on.
     """
     if facts.run is None:
         return before
-    cards, shown = vehicles(facts, now), places(facts)
+    ends = head.broken_off and facts.time >= head.time
+    cards, shown = vehicles(facts, now, (head.ended or "") if ends else ""), places(facts)
     sections: dict[str, Section] = {
-        "mission": facts.run.mission,
+        "mission": {**facts.run.mission, "fallen_back": fallen_back(facts) or None},
         "clock": _clock(facts, head),
         "places": shown,
         "fences": facts.run.fences,
@@ -36,6 +39,7 @@ def view_of(facts: Facts, now: float, head: Facts, picture: Section, before: Vie
         "ticks": head.ticks,
         "bigraph": _bigraph(facts, picture),
         "alerts": facts.alerts,
+        "alarms": alarms(facts if head.ended is not None else head),
         "sayings": sayings(facts),
         "actions": facts.actions,
         "stations": stations(facts, cards),

@@ -23,7 +23,7 @@ from adapters.console.coast import coast, window_of
 from adapters.console.looker import EVERY, STALLED, Console, Looker
 from adapters.console.requests import MOST_BYTES, PROTOCOL, Hello, Unreadable, read_request
 from adapters.recording.mcap_files import RecordingError
-from adapters.web import is_meant, library, quiet_log
+from adapters.web import BACKLOG, Door, is_meant, library, quiet_log
 from physical import open_file
 
 PAGE: Final = Path(__file__).with_name("page")
@@ -120,29 +120,14 @@ async def serving(console: Console, site: Site) -> AsyncIterator[int]:
 async def _listening(http: Any, site: Site) -> asyncio.Server:
     """Listen for as many connections as there may be."""
     return await asyncio.get_running_loop().create_server(
-        lambda: _Door(http),
+        Door(http, MOST_CONNECTIONS).opened,
         site.host,
         site.port,
         ssl=site.tls,
         ssl_handshake_timeout=None if site.tls is None else PATIENCE,
+        backlog=BACKLOG,
         reuse_address=True,
     )
-
-
-class _Door(asyncio.Protocol):
-    """Hands a new connection to the HTTP server, or closes it where there are too many."""
-
-    def __init__(self, http: Any) -> None:
-        self._http = http
-
-    def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        assert isinstance(transport, asyncio.Transport)
-        if len(self._http.connections) >= MOST_CONNECTIONS:
-            transport.abort()
-            return
-        handler = self._http()
-        transport.set_protocol(handler)
-        handler.connection_made(transport)
 
 
 class Service:

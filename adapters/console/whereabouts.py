@@ -212,6 +212,8 @@ def _positions(c: Configuration) -> Mapping[Name, tuple[str, Position]]:
     return found
 
 
-def is_under_way(c: Configuration, name: Name) -> bool:
-    """Tell whether something is under a command to go elsewhere: L has it where it was, as the rules say."""
-    return isinstance(c.structure.physical.placement(name), InTransit)
+def destination(facts: Facts, name: Name) -> Name | None:
+    """Return where something is on its way to, by whichever station's order: until then L has it where it was."""
+    physical = None if facts.standing is None else facts.standing.configuration.structure.physical
+    placement = None if physical is None else physical.placement(name)
+    return placement.to if isinstance(placement, InTransit) else None

@@ -6,6 +6,7 @@ the loop call the same.
 
 from __future__ import annotations
 
+from adapters.live.fates import tell_again
 from adapters.live.flying import remember
 from adapters.live.ingest import take_in
 from adapters.live.limits import check_limits
@@ -34,6 +35,7 @@ def advance(plan: Plan, state: LiveState, batch: Batch, now: float, most: int = 
     turning = _taken_in(plan, state, batch, now)
     for said in batch.sayings:
         answer(turning, said)
+    tell_again(turning)
     turning.go_on(most)
     check_limits(turning)
     turning.check_times()
@@ -70,12 +72,12 @@ def obeying(plan: Plan, state: LiveState) -> frozenset[Name]:
 
 
 def is_over(state: LiveState) -> bool:
-    """Tell whether the run is over: all agents have ended, and none of their requests is pending.
+    """Tell whether the run is over: all agents have ended, no request of theirs is pending, no vehicle owes a stop.
 
     With several stations this is never known: the others may still send something.
     """
     c = state.configuration
-    if is_parted(c):
+    if is_parted(c) or state.owing:
         return False
     if any(map(c.alpha.code, c.alpha.names())):
         return False

@@ -8,10 +8,11 @@ from adapters.live.orders import hand_overs, journey, renewed
 from adapters.live.scheduling import in_turn
 from adapters.live.state import Order
 from adapters.live.turn import Turning
-from adapters.plugin import Follow, HandOver
+from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver
+from physical import leads_straight, standing
 from semantics.control import commits, realisations
 from semantics.observed_steps import Sight, arriving
-from semantics.state.physical_model import placement_cell
+from semantics.state.physical_model import Placed, placement_cell
 from semantics.state.requests import CTR, FLY, Request
 from semantics.state.signature import Name
 
@@ -20,7 +21,8 @@ def arrive(turning: Turning, entity: Name) -> bool:
     """Commit the flight of a vehicle if it and all that fly with it were seen at their destinations.
 
     A vehicle may cross its destination for other reasons, such as a return to its home. So it must show that it follows
-    its command. A vehicle on a path must have reported the end of the path.
+    its command. A vehicle on a path must have reported the end of the path. The way on to its waypoint must lead
+    straight: what has arrived crosses no border any more.
     """
     transit, order = turning.c.structure.physical.transit(entity), turning.orders.get(entity)
     at = turning.where_seen(entity)
@@ -33,6 +35,8 @@ def arrive(turning: Turning, entity: Name) -> bool:
     together = sorted(other for other, told in turning.orders.items() if told.agent == order.agent)
     if not all(turning.flies(other) and turning.orders[other].obeyed for other in together):
         return False
+    if not all(_is_there(turning, other) for other in together):
+        return False
     sight = Sight(
         f"{entity} arrives", {placement_cell(other): turning.where_seen(other) for other in together}
     )
@@ -43,12 +47,31 @@ def arrive(turning: Turning, entity: Name) -> bool:
     return True
 
 
-def obey(turning: Turning, entity: Name, request: str, *, through: bool) -> None:
-    """Note that a vehicle shows that it follows the command of a request; `through`: that it has completed it."""
+def _is_there(turning: Turning, entity: Name) -> bool:
+    """Tell whether the way from where a vehicle was seen to its waypoint keeps to its surroundings."""
+    order, at = turning.orders[entity], turning.where_seen(entity)
+    if not isinstance(at, Placed) or not isinstance(order.command, GoTo | Follow):
+        return True
+    assert order.goal is not None
+    around = replace(order.command.around, inside=(order.goal, *order.command.around.inside))
+    to = order.waypoint or standing(at.geometry, order.goal, around, 0.0)
+    return order.goal.is_point or (to is not None and leads_straight(at.geometry, at.geometry, to, around))
+
+
+def obey(turning: Turning, entity: Name, report: Accepted | Arrived) -> None:
+    """Note that a vehicle shows that it follows the command of a request, or has completed it.
+
+    What it reports of a place that has moved since counts for nothing: it is told of that.
+    """
     order = turning.orders.get(entity)
-    if order is not None and order.command.request == request:
-        turning.orders[entity] = replace(order, obeyed=True, through=order.through or through)
-        arrive(turning, entity)
+    if order is None or order.command.request != report.request:
+        return
+    if report.place is not None and report.place != order.goal:
+        return
+    through = order.through or isinstance(report, Arrived)
+    waypoint = report.waypoint or order.waypoint
+    turning.orders[entity] = replace(order, obeyed=True, through=through, waypoint=waypoint)
+    arrive(turning, entity)
 
 
 def doubt(turning: Turning, entity: Name) -> None:
@@ -73,32 +96,31 @@ def ask_anew(turning: Turning, entity: Name) -> None:
     fly = None if order is None else _flight(turning, order)
     if order is None or fly is None or isinstance(order.command, HandOver) or turning.stops(order.agent):
         return
-    told = renewed(turning.c, fly, order.command) or order.command
+    told = renewed(turning.c, fly, order.command, turning.plan.first) or order.command
     command = replace(told, request=turning.request_of(order.agent))
     turning.orders[entity] = Order(command, order.agent, order.since)
     turning.commands.append(command)
 
 
 def renew(turning: Turning, place: Name) -> None:
-    """Redirect vehicles when a place on their path has moved, and commit the flights of those that it has reached."""
-    physical = turning.c.structure.physical
+    """Redirect vehicles when a place on their path, or one that they must keep out of, has moved.
+
+    A place that has moved over a vehicle is reached when the vehicle shows that it goes to where the place is now.
+    """
     for entity, order in sorted(turning.orders.items()):
-        transit = physical.transit(entity)
-        if transit is None or not turning.flies(entity):
-            continue
-        if transit.to != place or not arrive(turning, entity):
+        if turning.c.structure.physical.transit(entity) is not None and turning.flies(entity):
             _send_on(turning, entity, order, place)
 
 
 def _send_on(turning: Turning, entity: Name, order: Order, place: Name) -> None:
     fly, transit = _flight(turning, order), turning.c.structure.physical.transit(entity)
-    if fly is None or isinstance(order.command, HandOver):
+    if fly is None or transit is None or isinstance(order.command, HandOver):
         return
-    if transit is None or place not in (transit.to, *fly.reaction.via):
-        return
-    command = renewed(turning.c, fly, order.command)
+    if place not in (transit.to, *fly.reaction.via) and isinstance(order.command, Follow):
+        return  # it would fly all of its way again
+    command = renewed(turning.c, fly, order.command, turning.plan.first)
     if command is not None:
-        turning.orders[entity] = replace(order, command=command, through=False)
+        turning.orders[entity] = Order(command, order.agent, order.since)
         turning.commands.append(command)
 
 
@@ -123,6 +145,6 @@ def _remember_flight(turning: Turning, fly: FLY) -> None:
     found = commits(turning.c, fly)
     for node, place in found.flying if found is not None else ():
         assert found is not None
-        going = journey(turning.c, found, node, place, turning.request_of(fly.agent))
+        going = journey(turning.c, found, node, place, turning.request_of(fly.agent), turning.plan.first)
         if going is not None:
             turning.orders[node] = Order(going, fly.agent, turning.now)

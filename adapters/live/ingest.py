@@ -7,12 +7,13 @@ from collections.abc import Iterable
 from typing import assert_never
 
 from adapters.live.assumptions import STRAYED, broken_by_place, clause_of_leaving, relations
+from adapters.live.fates import confirm, refused, sent
 from adapters.live.flying import arrive, doubt, obey, refuse, renew
 from adapters.live.orders import is_authority
 from adapters.live.other_stations import hear_of
-from adapters.live.sayings import confirm, is_bidden
 from adapters.live.sightings import Refusal, placement_seen, sighting_of
 from adapters.live.state import Batch, Heard
+from adapters.live.surroundings import told_apart
 from adapters.live.turn import Turning
 from adapters.live.unannounced import comes_in, place_strangers, remove_strangers
 from adapters.plugin import (
@@ -29,6 +30,7 @@ from adapters.plugin import (
     Presence,
     Rejected,
     Report,
+    Sent,
     Status,
     StatusText,
     TakenOver,
@@ -106,6 +108,20 @@ def _place(turning: Turning, entity: Name) -> None:
         return
     if not _same_place(turning, entity, here, seen):
         _move(turning, entity, here, seen)
+    elif entity in turning.plan.vehicles and entity not in turning.taken:
+        _check_covered(turning, entity, here, seen)
+
+
+def _check_covered(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> None:
+    """Report a vehicle that stands where something may come over it that cannot come over its point in P."""
+    if turning.suspended or not isinstance(here, Placed) or not isinstance(seen, Placed):
+        return
+    place = told_apart(turning.c, entity, here, seen, turning.plan.first)
+    if place:
+        only = f"{place}, where the mission lists it, holds {entity} at one of the two points only"
+        turning.breaks(
+            f"{entity} is seen at {seen.geometry!r}, the mission has it at {here.geometry!r}: {only}", entity
+        )
 
 
 def _same_place(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> bool:
@@ -241,8 +257,10 @@ def note(turning: Turning, report: Report) -> None:
     """Take in a plugin's report; a report alone commits nothing."""
     match report:
         case Accepted(request, entity) | Arrived(request, entity):
-            obey(turning, entity, request, through=isinstance(report, Arrived))
+            obey(turning, entity, report)
             confirm(turning, entity, request)
+        case Sent(request, entity):
+            sent(turning, entity, request)
         case Delivered() | Underway() | Hosts() | Believes() | Broken():
             hear_of(turning, report)
         case Rejected():
@@ -252,6 +270,7 @@ def note(turning: Turning, report: Report) -> None:
         case TakenOver(entity, _, reason):
             turning.taken[entity] = reason
             turning.bidden.pop(entity, None)
+            turning.owed.pop(entity, None)
             back = f"it gets no commands until `bigactors give-back {entity}`"
             turning.find("taken over", entity, f"{entity} was taken over: {reason}; {back}")
         case LinkLost(entity, _, since):
@@ -272,9 +291,9 @@ def note(turning: Turning, report: Report) -> None:
 def _refuse(turning: Turning, rejected: Rejected) -> None:
     request, entity, reason = rejected.request, rejected.entity, rejected.reason
     refuse(turning, entity, request)
-    if is_bidden(turning, entity, request):
-        turning.find("refused", entity, f"{entity} refuses the operator's order {request}: {reason}")
-    elif entity not in turning.taken:  # else that is what was said
+    if refused(turning, entity, request, reason):
+        return
+    if entity not in turning.taken:  # else that is what was said
         message = f"{entity} refuses {request}: {reason}; the request stays pending"
         turning.find("refused", entity, message)
 

@@ -12,7 +12,7 @@ import asyncio
 import gc
 import time
 from collections import OrderedDict
-from collections.abc import Callable, Container, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from adapters.listening import Listening
@@ -26,12 +26,15 @@ from adapters.plugin import (
     Follow,
     GoTo,
     HandOver,
+    Hold,
     Plugin,
     Published,
     Refused,
     Rejected,
     Report,
+    Return,
     Seen,
+    Sent,
     Status,
     entity_of,
 )
@@ -81,15 +84,23 @@ class NotAsAssumed(Exception):
 
 
 class NotHeard(Exception):
-    """Vehicles of the mission were not heard before the start of the run.
+    """Vehicles of the mission were not heard before the start of the run, or have no position.
 
     Attributes:
         vehicles: Which.
+        heard: Whether all of them were heard at all.
     """
 
-    def __init__(self, vehicles: Sequence[str]) -> None:
-        super().__init__(f"nothing was heard of {', '.join(vehicles)}")
+    def __init__(self, vehicles: Sequence[str], said: Mapping[str, Status] | None = None) -> None:
+        lacking = {name: said[name].lacks for name in vehicles if name in said} if said else {}
+        silent = [name for name in vehicles if name not in lacking]
+        words = [f"nothing was heard of {', '.join(silent)}"] if silent else []
+        words += [
+            f"{name} is heard, and {why or 'does not tell yet what it is'}" for name, why in lacking.items()
+        ]
+        super().__init__("; ".join(words))
         self.vehicles = tuple(vehicles)
+        self.heard = not silent
 
 
 class PluginFailed(Exception):
@@ -269,7 +280,7 @@ class LiveRun:
         until = self._listening.look(self.clock()) + patience
         while missing := sorted(set(self.plan.vehicles) - set(self.state.seen)):
             if self._listening.look(self.clock()) >= until:
-                raise NotHeard(missing)
+                raise NotHeard(missing, self.inbox.said)
             await self._next(0.1)
             batch, answers = self.inbox.take(self._missed())
             turn = watch(self.plan, self.state, batch, self.clock())
@@ -282,7 +293,9 @@ class LiveRun:
                 raise PluginFailed(f"{failed.source}: {failed.reason}")
         self._begun = True
         if forced:
-            self.state = self.state.with_(suspended=False)  # an unverified run has reported the differences
+            self.state = self.state.with_(
+                suspended=False, owed={}
+            )  # an unverified run has reported the differences
         for order in (*self.state.orders.values(), *self.state.handing.values()):
             if order.command.entity not in self.state.taken:  # a resumed run has compared it
                 self._orders.put_nowait(order.command)
@@ -398,6 +411,8 @@ class LiveRun:
                 if owner is None:
                     raise Refused(f"no vehicle takes commands as {command.entity}")
                 await owner.command(command)
+                if isinstance(command, Hold | Return):
+                    self.inbox.report(Sent(command.request, command.entity, self.clock()))
             except Refused as refused:
                 reason = f"{refused.reason}{f' ({refused.hint})' if refused.hint else ''}"
                 self.inbox.report(Rejected(command.request, command.entity, self.clock(), reason))

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import asyncio
-import errno
 import json
-import os
-import stat
-from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
-from contextlib import asynccontextmanager, suppress
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Mapping
+from contextlib import asynccontextmanager, contextmanager, suppress
 from pathlib import Path
+from socket import socket
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
+from adapters.live.socket_file import Reserve, bound
 from adapters.live.state import Acknowledging, Answer, GivingBack, Ordering, Said, Saying
 from physical import PhysicalError, is_text, is_word, read_json
 from semantics.contingencies import Fallback
@@ -20,9 +19,14 @@ from semantics.contingencies import Fallback
 MOST_BYTES: Final = 16_384
 MOST_ANSWER: Final = 2**20
 PATIENCE: Final = 5.0
+MOST_SERVED: Final = 32
+"""Connections at once: each asks one thing, in a few seconds."""
 
 ASKED: Final = b'{"status": true}\n'
 """The line that asks how a run stands."""
+
+ASKED_FATES: Final = b'{"fates": true}\n'
+"""The line that asks what has become of operators' orders."""
 
 EXPECTED: Final = (
     "an object with 'agent' and 'message', 'give_back', 'order' (hold or return) and 'vehicle', or 'acknowledge', "
@@ -32,55 +36,81 @@ EXPECTED: Final = (
 Listener = Callable[[Said], Awaitable[Answer]]
 """Takes a message, and returns the answer to it."""
 
+Fates = Mapping[str, tuple[str, str]]
+"""What has become of the operator's order to each vehicle, and in words."""
+
 
 class NobodyListens(Exception):
     """No mission runs there, or it does not answer; the message says which."""
 
 
 @asynccontextmanager
-async def listening(path: Path, listener: Listener, describe: Callable[[], str] = str) -> AsyncIterator[None]:
+async def listening(
+    path: Path, listener: Listener, describe: Callable[[], str] = str, fates: Callable[[], Fates] = dict
+) -> AsyncIterator[None]:
     """Listen at a path that only its user may open; raises OSError if that is impossible.
 
-    `describe` says how the run stands, to who asks.
-    The socket of a killed run is replaced; that of a live run is not.
+    `describe` says how the run stands, and `fates` what has become of orders, to who asks.
+    The socket of a killed run is replaced; that of a live run is not, be it stopped.
     """
-    if await is_taken(path):
-        raise FileExistsError(errno.EEXIST, "another run listens there", str(path))
-    if path.exists() and stat.S_ISSOCK(path.lstat().st_mode):
-        path.unlink()
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         with suppress(OSError, ValueError, TimeoutError, asyncio.IncompleteReadError):
             async with asyncio.timeout(PATIENCE):
                 line = await reader.readuntil()
-            writer.write(json.dumps(await _answer(line, listener, describe)).encode() + b"\n")
+            writer.write(json.dumps(await _answer(line, listener, describe, fates)).encode() + b"\n")
             await writer.drain()
         writer.close()
+        with suppress(OSError):
+            await writer.wait_closed()
 
-    mask = os.umask(0o177)
+    with bound(path) as server, _accepting(server, serve):
+        yield
+
+
+Serve = Callable[[asyncio.StreamReader, asyncio.StreamWriter], Awaitable[None]]
+
+
+@contextmanager
+def _accepting(server: socket, serve: Serve) -> Iterator[None]:
+    """Serve who connects, also where the process has no descriptor left: some are kept in reserve."""
+    loop, reserve, serving = asyncio.get_running_loop(), Reserve(), set[asyncio.Task[None]]()
+
+    async def carry(connection: socket) -> None:
+        reader = asyncio.StreamReader(limit=MOST_BYTES)
+        protocol = asyncio.StreamReaderProtocol(reader)
+        transport, _ = await loop.connect_accepted_socket(lambda: protocol, connection)
+        await serve(reader, asyncio.StreamWriter(transport, protocol, reader, loop))
+
+    def accept() -> None:
+        connection = reserve.accepted(server)
+        if connection is None:
+            return
+        if len(serving) >= MOST_SERVED:
+            connection.close()
+            return
+        task = loop.create_task(carry(connection))
+        serving.add(task)
+        task.add_done_callback(serving.discard)
+        task.add_done_callback(lambda _: reserve.fill())
+
+    loop.add_reader(server, accept)
     try:
-        server = await asyncio.start_unix_server(serve, path, limit=MOST_BYTES)
+        yield
     finally:
-        os.umask(mask)
-    try:
-        async with server:
-            yield
-    finally:
-        path.unlink(missing_ok=True)
+        loop.remove_reader(server)
+        for task in serving:
+            task.cancel()
+        reserve.close()
 
 
-async def is_taken(path: Path) -> bool:
-    """Tell whether a run listens at a path."""
-    try:
-        await _exchange(path, b"{}\n")
-    except NobodyListens:
-        return False
-    return True
-
-
-async def _answer(line: bytes, listener: Listener, describe: Callable[[], str]) -> dict[str, object]:
+async def _answer(
+    line: bytes, listener: Listener, describe: Callable[[], str], fates: Callable[[], Fates]
+) -> dict[str, object]:
     if line == ASKED:
         return {"refusal": "", "status": describe()}
+    if line == ASKED_FATES:
+        return {"refusal": "", "fates": dict(fates())}
     said = _said(line)
     if said is None:
         return {"refusal": f"this is no saying: {EXPECTED}, was expected"}
@@ -157,6 +187,17 @@ async def status(path: Path) -> str:
         case {"status": str(text)}:
             return text
     raise NobodyListens(f"the run at {path} is of a version that does not tell how it stands")
+
+
+async def fates(path: Path) -> Fates:
+    """Return what has become of operators' orders in the run that listens at a path; raises NobodyListens."""
+    match await _asked(path, ASKED_FATES):
+        case {"fates": dict(found)}:
+            pairs = (
+                (name, each) for name, each in found.items() if isinstance(each, list) and len(each) == 2
+            )
+            return {name: (str(fate), str(words)) for name, (fate, words) in pairs}
+    raise NobodyListens(f"the run at {path} is of a version that does not tell what becomes of orders")
 
 
 def _outcome(answer: dict[str, Any]) -> Outcome:

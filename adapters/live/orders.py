@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from adapters.live.surroundings import surroundings
 from adapters.plugin import Follow, GoTo, HandOver, Hold, Return
-from physical import waypoint
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, moved, relinked
 from semantics.brr_driver import passed
 from semantics.contingencies import Fallback
@@ -15,20 +15,23 @@ from semantics.state.signature import Name
 
 
 def journey(
-    c: Configuration, found: Realisation, node: Name, place: Name, request: str
+    c: Configuration, found: Realisation, node: Name, place: Name, request: str, first: Configuration
 ) -> GoTo | Follow | None:
-    """Return the command to go into a place by way of others, at their current positions."""
-    going = destination(c, found, node, place, request)
+    """Return the command to go into a place by way of others, at their current positions; `first` is the mission's."""
+    going = destination(c, found, node, place, request, first)
     if going is None or not found.via:
         return going
-    return Follow(request, node, (*passed(c, found), going.place), going.altitude, place)
+    path = (*passed(c, found), going.place)
+    return Follow(request, node, path, going.altitude, place, going.around, going.shape)
 
 
-def destination(c: Configuration, found: Realisation, node: Name, place: Name, request: str) -> GoTo | None:
+def destination(
+    c: Configuration, found: Realisation, node: Name, place: Name, request: str, first: Configuration
+) -> GoTo | None:
     """Return the command to go into a place at its current position, or to the node's future carrier.
 
-    The waypoint of a place is its centroid. If an inner place there would contain the vehicle, the waypoint is the
-    point that `drive` found.
+    The vehicle has to keep to the surroundings of the point that `drive` found: so nothing that the rules know of tells
+    where it is from where P has it.
     """
     spot = found.physical.get(placement_cell(node))
     target = c.structure.physical.position(place)
@@ -37,17 +40,18 @@ def destination(c: Configuration, found: Realisation, node: Name, place: Name, r
     if isinstance(spot, Carried):
         return GoTo(request, node, target.geometry, None, place)
     assert isinstance(spot, Placed)
-    central = spot.geometry.is_point and spot.geometry == waypoint(target.geometry)
-    return GoTo(request, node, target.geometry if central else waypoint(spot.geometry), spot.altitude, place)
+    around = surroundings(c, node, spot, target.geometry, first)
+    shape = None if spot.geometry.is_point else spot.geometry
+    return GoTo(request, node, target.geometry, spot.altitude, place, around, shape)
 
 
-def renewed(c: Configuration, fly: FLY, told: GoTo | Follow) -> GoTo | Follow | None:
+def renewed(c: Configuration, fly: FLY, told: GoTo | Follow, first: Configuration) -> GoTo | Follow | None:
     """Return the command with its places' current positions, None if it is the same or they are unknown."""
     found = commits(c, fly)
     transit = c.structure.physical.placement(told.entity)
     if found is None or not isinstance(transit, InTransit):
         return None
-    command = journey(c, found, told.entity, transit.to, told.request)
+    command = journey(c, found, told.entity, transit.to, told.request, first)
     return command if command != told else None
 
 

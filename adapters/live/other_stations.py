@@ -77,7 +77,11 @@ def _fly(turning: Turning, entity: Name, to: Name) -> None:
     here = turning.c.structure.physical.placement(entity)
     if entity in turning.orders or entity not in turning.plan.vehicles:
         return
-    if to in turning.c.setting.kinds and isinstance(here, Placed | InTransit):
+    if to and turning.answers_for(entity):
+        message = f"another station says that it has sent {entity} to {to}, but {entity} obeys this one"
+        turning.find("trouble", entity, message, once=True)
+        return
+    if _may_hold(turning, to, entity) and isinstance(here, Placed | InTransit):
         going = InTransit(here if isinstance(here, Placed) else here.origin, to)
         sight = Sight(f"{entity} is sent to {to}", {placement_cell(entity): going})
     elif not to and isinstance(here, InTransit):
@@ -87,3 +91,9 @@ def _fly(turning: Turning, entity: Name, to: Name) -> None:
     else:
         return
     turning.observe(sight, happening(turning.c, sight))
+
+
+def _may_hold(turning: Turning, place: Name, entity: Name) -> bool:
+    setting = turning.c.setting
+    known = place in setting.kinds
+    return known and setting.signature[setting.kind(place)].may_contain(setting.kind(entity))

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 from ipaddress import ip_address
 
 from adapters.live.flying import ask_anew
@@ -136,25 +135,11 @@ def _bid(turning: Turning, entity: Name, said: Ordering) -> str:
     if _is_foreign(turning, entity):
         turning.commands.append(GiveBack(turning.request_of("operator"), entity))
     command = stopping(said.fallback, turning.request_of("operator"), entity)
+    turning.owed.pop(entity, None)
     turning.bidden[entity] = Bidden(command, said.by)
     turning.taken[entity] = turning.bidden[entity].reason
     turning.commands.append(command)
     return command.request
-
-
-def confirm(turning: Turning, entity: Name, request: str) -> None:
-    """Report, once, that a vehicle does what an operator ordered."""
-    bidden = turning.bidden.get(entity)
-    if bidden is None or bidden.command.request != request or bidden.confirmed:
-        return
-    turning.bidden[entity] = replace(bidden, confirmed=True)
-    turning.find("confirmed", entity, f"{entity} {bidden.does}, as {operator(bidden.by)} ordered")
-
-
-def is_bidden(turning: Turning, entity: Name, request: str) -> bool:
-    """Tell whether a request is the operator's order that stands for a vehicle."""
-    bidden = turning.bidden.get(entity)
-    return bidden is not None and bidden.command.request == request
 
 
 # --- vehicles given back
@@ -176,7 +161,8 @@ def _give_back(turning: Turning, said: GivingBack) -> Answer:
     """Command a vehicle again that was taken over or has refused."""
     entity = said.vehicle
     told = (turning.orders.get(entity), turning.handing.get(entity))
-    refused = any(order.refused for order in told if order is not None)
+    owed = turning.owed.pop(entity, None)
+    refused = any(order.refused for order in told if order is not None) or (owed is not None and owed.owed)
     if entity not in turning.taken and not refused:
         return Answer(said, f"{entity} was not taken over here, and has refused nothing")
     turning.taken.pop(entity, None)

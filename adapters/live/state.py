@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 
 from adapters.live.timing import Timers
 from adapters.plugin import Command, Follow, GoTo, HandOver, Hold, Published, Report, Return
-from physical import PhysicalProperty
+from physical import Geometry, PhysicalProperty
 from semantics.contingencies import Fallback, Precautions
 from semantics.observed_steps import Sight
 from semantics.state.cells import Cell
 from semantics.state.configuration import Configuration, Transition
-from semantics.state.partition import Elsewhere, Parcel
+from semantics.state.parcels import Parcel
+from semantics.state.partition import Elsewhere
 from semantics.state.requests import Request
 from semantics.state.signature import Name
 
@@ -57,6 +59,7 @@ class Order:
         obeyed: Whether the vehicle has shown that it follows the command, and has shown nothing else since.
         through: Whether the vehicle has reported the end of its path.
         refused: Whether it was refused.
+        waypoint: Around which point the vehicle will stay, as far as it has told.
     """
 
     command: GoTo | Follow | HandOver
@@ -65,32 +68,71 @@ class Order:
     obeyed: bool = False
     through: bool = False
     refused: bool = False
+    waypoint: Geometry | None = None
+
+    @property
+    def goal(self) -> Geometry | None:
+        """The last place of the command, as it was when it was told."""
+        match self.command:
+            case GoTo(place=place):
+                return place
+            case Follow(path=path):
+                return path[-1]
+        return None
+
+
+class Fate(StrEnum):
+    """What has become of an order to hold or to return."""
+
+    ASKED = "asked"
+    SENT = "sent"
+    CONFIRMED = "confirmed"
+    REFUSED = "refused"
 
 
 @dataclass(frozen=True, slots=True)
 class Bidden:
-    """An operator's order to a vehicle, which stands until the vehicle is given back or taken over.
+    """An order to hold or to return, which a vehicle owes until it has shown that it does it.
+
+    It stands until the vehicle is given back or taken over.
 
     Attributes:
         command: What it was told.
-        by: Who said so, empty if unknown.
-        confirmed: Whether the vehicle has shown that it does it.
+        by: The operator who said so, empty if unknown; None for the mission, which falls back.
+        fate: What has become of it.
+        refusal: Why it was refused last; empty if it was not.
+        again: When it is told again what it has refused.
     """
 
     command: Hold | Return
-    by: str = ""
-    confirmed: bool = False
+    by: str | None = ""
+    fate: Fate = Fate.ASKED
+    refusal: str = ""
+    again: float = math.inf
+
+    @property
+    def owed(self) -> bool:
+        """Whether the vehicle has not shown yet that it does it."""
+        return self.fate is not Fate.CONFIRMED
+
+    @property
+    def orderer(self) -> str:
+        """Who ordered it, for people."""
+        return "the mission" if self.by is None else operator(self.by)
+
+    @property
+    def what(self) -> str:
+        """What was ordered."""
+        return "hold" if isinstance(self.command, Hold) else "return"
 
     @property
     def reason(self) -> str:
-        """Why the mission does not command the vehicle."""
-        how = "held" if isinstance(self.command, Hold) else "sent home"
-        return f"{how} by {operator(self.by)}"
-
-    @property
-    def does(self) -> str:
-        """What the vehicle does then."""
-        return "holds" if isinstance(self.command, Hold) else "returns"
+        """What stands between the vehicle and the mission's commands, as far as it is known to be so."""
+        if not self.owed:
+            return f"{'held' if self.what == 'hold' else 'sent home'} by {self.orderer}"
+        if self.refusal:  # also while it is told again
+            return f"refuses to {self.what}, as {self.orderer} ordered: {self.refusal}"
+        return f"told to {self.what} by {self.orderer}, not confirmed yet"
 
 
 def operator(by: str) -> str:
@@ -133,6 +175,7 @@ class LiveState:
         taken: Vehicles that were taken over, also by an operator's order, and how: they get no commands until an
             operator gives them back.
         bidden: The operator's order that stands for each vehicle; all of them are taken.
+        owed: The fall-back that the mission has ordered of each vehicle.
         idle: Agents without own steps: they wait for an observation, a message, or for ever.
         due: When each agent at a `react` with an `after` branch stops waiting.
         quiet: The configuration in which nothing more could be served, None if that is not known.
@@ -160,6 +203,7 @@ class LiveState:
     lost: frozenset[Name] = frozenset()
     taken: Mapping[Name, str] = field(default_factory=dict)
     bidden: Mapping[Name, Bidden] = field(default_factory=dict)
+    owed: Mapping[Name, Bidden] = field(default_factory=dict)
     idle: frozenset[Name] = frozenset()
     due: Mapping[Name, float] = field(default_factory=dict)
     quiet: Configuration | None = None
@@ -181,6 +225,16 @@ class LiveState:
     def with_(self, **changes: object) -> LiveState:
         """Return the state with some of its attributes changed."""
         return replace(self, **changes)  # type: ignore[arg-type]  # names are checked by replace itself
+
+    @property
+    def owing(self) -> Mapping[Name, Bidden]:
+        """The orders to hold or to return that vehicles have not confirmed."""
+        return {name: each for name, each in (*self.owed.items(), *self.bidden.items()) if each.owed}
+
+    @property
+    def fates(self) -> Mapping[Name, tuple[str, str]]:
+        """What has become of each operator's order, and in words."""
+        return {name: (each.fate.value, each.reason) for name, each in self.bidden.items()}
 
     def later(self, seconds: float) -> LiveState:
         """Return the state with all ages and waiting times shifted by a time without listening."""
@@ -320,7 +374,7 @@ class Finding:
     """A message to the operator.
 
     Attributes:
-        kind: `broken assumption`, `refused`, `taken over`, `given back`, `ordered`, `confirmed` (an operator's order),
+        kind: `broken assumption`, `refused`, `taken over`, `given back`, `ordered`, `confirmed` (an order),
             `lost link`, `link restored`, `late`, `blocked`, `failed` (a computation, the recording, a plugin),
             `trouble`.
         about: The entity or agent.

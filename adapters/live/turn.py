@@ -10,7 +10,18 @@ from dataclasses import replace
 from adapters.live.orders import hand_overs, is_authority, is_done, journey, stopping, unshown
 from adapters.live.scheduling import PATIENCE, STEPS_PER_SECOND, own_steps, refilled, served, to_serve
 from adapters.live.sightings import Fences, placement_seen
-from adapters.live.state import Answer, Finding, LiveState, LiveStep, Order, Outgoing, Pace, Plan, Turn
+from adapters.live.state import (
+    Answer,
+    Bidden,
+    Finding,
+    LiveState,
+    LiveStep,
+    Order,
+    Outgoing,
+    Pace,
+    Plan,
+    Turn,
+)
 from adapters.live.timing import next_end, stepped, too_late, too_soon
 from adapters.plugin import Command, HandOver
 from semantics.behaviours.expressions import Fault
@@ -56,6 +67,7 @@ class Turning:
         self.lost = set(state.lost)
         self.taken = dict(state.taken)
         self.bidden = dict(state.bidden)
+        self.owed = dict(state.owed)
         self.idle = set(state.idle)
         self.due = dict(state.due)
         self.heads = dict(state.heads)
@@ -94,6 +106,7 @@ class Turning:
             frozenset(self.lost),
             self.taken,
             self.bidden,
+            self.owed,
             frozenset(self.idle),
             self.due,
             self.quiet,
@@ -322,7 +335,7 @@ class Turning:
                 return (), False
         if way.flying:
             for node, place in way.flying:
-                going = journey(self.c, way, node, place, self.request_of(request.agent))
+                going = journey(self.c, way, node, place, self.request_of(request.agent), self.plan.first)
                 if going is None:
                     return (), False
                 self.orders[node] = Order(going, request.agent, self.now)
@@ -405,11 +418,16 @@ class Turning:
                 self.find("trouble", entity, what, once=True)
                 continue
             if entity in self.taken:
-                why = "it was taken over" if entity not in self.bidden else f"it is {self.taken[entity]}"
+                bidden = self.bidden.get(entity)
+                why = (
+                    "it was taken over" if bidden is None else f"{bidden.orderer} ordered it to {bidden.what}"
+                )
                 what = f"{entity} is not told to {fallback.value}: {why}"
                 self.find("taken over", entity, what, once=True)
                 continue
-            self.commands.append(stopping(fallback, self.request_of("fallback"), entity))
+            command = stopping(fallback, self.request_of("fallback"), entity)
+            self.owed[entity] = Bidden(command, by=None)
+            self.commands.append(command)
             if self.handing.pop(entity, None) is not None:  # that ends it; who is served still tells it again
                 self.quiet = None
 

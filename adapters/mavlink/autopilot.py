@@ -23,6 +23,7 @@ from adapters.mavlink.pilot import Outcome, Pilot
 from adapters.mavlink.roster import Roster
 from adapters.mavlink.signing import Verdict
 from adapters.plugin import (
+    NOWHERE_ELSE,
     Aged,
     Command,
     Failed,
@@ -38,7 +39,7 @@ from adapters.plugin import (
 from adapters.ration import Ration
 from adapters.transport import Port, Remote, open_port
 from adapters.troubles import Troubles
-from physical import Geometry, PhysicalError
+from physical import Geometry, PhysicalError, Surroundings
 
 TICK: Final = 0.2
 """Seconds between two looks of a pilot at the clock."""
@@ -136,10 +137,13 @@ class Autopilot:
         crafts = (pilot.craft for pilot in self._pilots.values())
         return {craft.entity: craft.fence for craft in crafts if craft.fence is not None}
 
-    def objection(self, entity: str, place: Geometry, name: str) -> str | None:
+    def objection(
+        self, entity: str, place: Geometry, name: str, around: Surroundings = NOWHERE_ELSE
+    ) -> str | None:
         """Return why a vehicle can't stay at a place, as far as its kind is known; None if it can."""
         pilot = self._pilots[entity]
-        return unfit(GoTo("", entity, place, name=name), pilot.craft, pilot.known, pilot.on_board)
+        command = GoTo("", entity, place, name=name, around=around)
+        return unfit(command, pilot.craft, pilot.known, pilot.on_board)
 
     def bar(self, entity: str, place: Geometry, name: str) -> str | None:
         """Return why a vehicle can't pass a place; None if it can."""

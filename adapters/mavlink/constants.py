@@ -59,6 +59,18 @@ class Frame(IntEnum):
     HOME_INT = 6
 
 
+class Estimate(IntFlag):
+    """EKF_STATUS_FLAGS, and with the same numbers ESTIMATOR_STATUS_FLAGS, as far as we use them."""
+
+    POS_HORIZ_REL = 8
+    POS_HORIZ_ABS = 16
+    CONST_POS_MODE = 128
+    UNINITIALIZED = 1024
+
+
+KNOWN_FLAGS: Final = sum(Estimate)
+
+
 class Landed(IntEnum):
     """MAV_LANDED_STATE."""
 
@@ -142,6 +154,7 @@ class Cmd(IntEnum):
     VTOL_LAND = 85
     DO_SET_MODE = 176
     DO_JUMP = 177
+    DO_SET_HOME = 179
     DO_RETURN_PATH_START = 188
     DO_LAND_START = 189
     REPOSITION = 192
@@ -167,9 +180,11 @@ STREAMS: Final = {
     "POSITION_TARGET_GLOBAL_INT": (87, 1.0),
     "HOME_POSITION": (242, 5.0),
     "EXTENDED_SYS_STATE": (245, 1.0),
+    "EKF_STATUS_REPORT": (193, 1.0),
+    "ESTIMATOR_STATUS": (230, 1.0),
     "ATTITUDE": (30, 0.2),
 }
 """The messages that a vehicle may be asked to send regularly: number, and every how many seconds."""
 
-REGULAR: Final = tuple(name for name in STREAMS if name != "ATTITUDE")
-"""Those that each vehicle is asked for; its attitude only who has to know how its camera lies."""
+REGULAR: Final = tuple(name for name in STREAMS if name not in ("ATTITUDE", "ESTIMATOR_STATUS"))
+"""Those that a vehicle of unknown kind is asked for; its attitude only who has to know how its camera lies."""

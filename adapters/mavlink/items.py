@@ -41,15 +41,24 @@ def e7(at: Geometry) -> tuple[int, int]:
 
 
 @lru_cache(maxsize=256)
-def route(path: tuple[Geometry, ...], height: float, *, takeoff: bool, home: bool = True) -> Items:
+def route(
+    path: tuple[Geometry, ...],
+    height: float,
+    *,
+    takeoff: bool,
+    home: bool = True,
+    above: float | None = None,
+) -> Items:
     """Return the mission that visits points at a height above home and stays at the last.
 
-    Where `home` is an item, it is item 0, which the vehicle overwrites.
+    Where `home` is an item, it is item 0, which the vehicle overwrites. Where the altitude of home is given, heights
+    are `above` that, whatever becomes of the vehicle's home.
     """
-    ways = [Item(Cmd.WAYPOINT, *e7(at), height) for at in path[:-1]]
-    stay = Item(Cmd.LOITER_UNLIMITED, *e7(path[-1]), height)
+    z, frame = (height, Frame.HOME) if above is None else (round(height + above, 2), Frame.SEA_LEVEL)
+    ways = [Item(Cmd.WAYPOINT, *e7(at), z, frame) for at in path[:-1]]
+    stay = Item(Cmd.LOITER_UNLIMITED, *e7(path[-1]), z, frame)
     first = (
-        [Item(Cmd.TAKEOFF, *e7(path[0]), height, parameters=(TAKEOFF_PITCH, 0.0, 0.0, 0.0))]
+        [Item(Cmd.TAKEOFF, *e7(path[0]), z, frame, parameters=(TAKEOFF_PITCH, 0.0, 0.0, 0.0))]
         if takeoff
         else []
     )
@@ -76,9 +85,13 @@ def fence(polygon: Geometry) -> Items:
 
 def same(ours: Items, theirs: Items, kind: MissionType) -> bool:
     """Tell whether the items on board are those wanted: all of a fence, all but home of a mission."""
-    # Of a mission, only home is above sea level.
-    first = 1 if kind is MissionType.MISSION and ours and ours[0].frame == Frame.SEA_LEVEL else 0
+    first = int(kind is MissionType.MISSION and bool(ours) and _is_home(ours[0]))
     return len(ours) == len(theirs) and all(map(_alike, ours[first:], theirs[first:]))
+
+
+def _is_home(item: Item) -> bool:
+    """Tell whether a first item is that for home: of what is flown, nothing is at sea level."""
+    return (item.command, item.z, item.frame) == (Cmd.WAYPOINT, 0.0, Frame.SEA_LEVEL)
 
 
 def _alike(a: Item, b: Item) -> bool:

@@ -1,10 +1,12 @@
-"""The room that a vehicle needs to stay at a place: the circle that it flies, and the effect of wind."""
+"""Where a vehicle stays at a place, and the room that it needs: the circle that it flies, and the effect of wind."""
 
 from __future__ import annotations
 
 from adapters.mavlink.fleet import Craft
 from adapters.mavlink.profiles import Profile
 from adapters.mavlink.telemetry import Telemetry
+from adapters.plugin import Follow, GoTo
+from physical import Geometry, Surroundings, point, standing, waypoint, widest
 
 
 def circle(craft: Craft, profile: Profile, known: Telemetry) -> float:
@@ -32,3 +34,34 @@ def described(craft: Craft, profile: Profile, known: Telemetry) -> str:
     name = profile.dialect.circle
     whose = f" ({name})" if craft.circle is None and name in known.parameters else ""
     return f"a circle of {needed:g} m: it circles at {radius:g} m{whose}, and wind carries it farther out"
+
+
+def goal(command: GoTo | Follow) -> Geometry:
+    """Return the last place of a command."""
+    return command.place if isinstance(command, GoTo) else command.path[-1]
+
+
+def stay(command: GoTo | Follow, radius: float) -> Geometry | None:
+    """Return the point around which a vehicle stays in its last place, None where a circle does not fit.
+
+    The centroid if a circle around it keeps to the surroundings, else the nearest such point.
+    """
+    at = standing(command.shape or point(0, 0), goal(command), command.around, radius)
+    return None if at is None else waypoint(at)
+
+
+def cramped(command: GoTo | Follow, craft: Craft, profile: Profile, known: Telemetry) -> str | None:
+    """Return why a vehicle has no room in its last place, with the figures; None if it has."""
+    place, name = goal(command), command.name or "the place"
+    if stay(command, room(craft, profile, known)) is not None:
+        return None
+    needed, mover = described(craft, profile, known), command.shape or point(0, 0)
+    alone = widest(mover, place, Surroundings())
+    if alone < room(craft, profile, known):
+        small = f"{name} is too small: its widest circle has {alone:.0f} m"
+        return f"{small}, and to stay in it the {profile.kind} needs {needed}"
+    clear = widest(mover, place, command.around)
+    return (
+        f"{name} leaves too little room beside what reaches into it: the widest circle that crosses no border has "
+        f"{clear:.0f} m, and to stay there the {profile.kind} needs {needed}"
+    )

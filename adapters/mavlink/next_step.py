@@ -6,11 +6,12 @@ cases: the next action is the first whose effect the state does not show.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from adapters.mavlink import command as to
 from adapters.mavlink.constants import AUTHORITY_PARAMETERS, Cmd, Fence, Frame, MissionType
 from adapters.mavlink.items import Items, e7, fence, route
+from adapters.mavlink.loiter_radius import goal, stay
 from adapters.mavlink.merging import OnBoard, is_on_board, landing_now, merged
 from adapters.mavlink.message import Message
 from adapters.mavlink.profiles import Profile, TakeOff
@@ -20,7 +21,7 @@ from adapters.plugin import Command, Follow, GiveBack, GoTo, HandOver, Hold, Reb
 from physical import Band, Geometry, contains, distance, point, waypoint
 
 TARGET_METRES = 5.0
-"""Metres by which the vehicle's reported target may differ from the commanded one."""
+"""Metres by which the vehicle's reported target may differ from the commanded one, along and in height."""
 
 CLIMBING = 0.2
 """Metres a second."""
@@ -57,9 +58,15 @@ class Load:
 
 @dataclass(frozen=True, slots=True)
 class Underway:
-    """The state shows that the vehicle follows its command; `done` that it has completed it."""
+    """The state shows that the vehicle follows its command; `done` that it has completed it.
+
+    Attributes:
+        done: Whether it has.
+        waypoint: Around which point it will stay, if it is going anywhere.
+    """
 
     done: bool
+    waypoint: Geometry | None = field(default=None, compare=False)
 
 
 Step = Wait | Tell | Load | Underway
@@ -76,7 +83,9 @@ class Vehicle:
         on_board: The missions, fences and rally points that were read back and have not changed since.
         fence: The polygon that it must stay in.
         circle: The radius in metres at which it circles where it stays.
-        height: Metres above home at which the command is carried out.
+        room: The radius in metres within which its circles stay, in wind too.
+        height: Metres above the mission's home at which the command is carried out.
+        above: Metres above sea level of that home, if heights are told above sea level; None for above home.
         begun: Whether its mission was seen to begin since the command.
         resumes: Whether the mission continues with the current item.
         passed: How many places of its path it was seen in.
@@ -84,6 +93,7 @@ class Vehicle:
         home_circle: The radius in metres at which it circles its home when it returns.
         speaker: The system id of messages to it, that of its authority.
         deaf: Why it seems not to hear us, if so.
+        lacks: Why it has no position, if so.
     """
 
     system: int
@@ -95,11 +105,14 @@ class Vehicle:
     height: float
     begun: bool
     resumes: bool = False
+    above: float | None = None
     passed: int = 0
     furthest: int = 0
     home_circle: float = 0.0
+    room: float = 0.0
     speaker: int = 0
     deaf: str = ""
+    lacks: str = ""
 
 
 def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
@@ -128,7 +141,7 @@ def _prepared(vehicle: Vehicle, mission: Items | None = None) -> Step | None:
     A vehicle that is ready only with certain items on board gets its `mission` first.
     """
     if vehicle.known.position is None:
-        return Wait("it has no position yet")
+        return Wait(vehicle.lacks or "it has no position yet")
     dialect = vehicle.profile.dialect
     if dialect.above_sea and vehicle.known.ground is None:
         return Wait("it has no home yet")
@@ -163,12 +176,17 @@ def _loaded(vehicle: Vehicle, ours: Items, kind: MissionType) -> Step | None:
 
 
 def _go(command: GoTo, vehicle: Vehicle) -> Step:
-    at = waypoint(command.place)
+    at = _stay(command, vehicle)
     return (
         _off_the_ground(vehicle, at)
         or _sent(vehicle, at)
-        or Underway(done=_reached(command.place, at, vehicle))
+        or Underway(done=_reached(command.place, at, vehicle), waypoint=at)
     )
+
+
+def _stay(command: GoTo | Follow, vehicle: Vehicle) -> Geometry:
+    """Return around which point it will stay; commands without room for its circle were refused."""
+    return stay(command, vehicle.room) or waypoint(goal(command))
 
 
 def _off_the_ground(vehicle: Vehicle, at: Geometry) -> Step | None:
@@ -187,7 +205,9 @@ def _copter_takeoff(vehicle: Vehicle) -> Step | None:
     if not vehicle.known.flying:
         return _told_to_take_off(vehicle)
     position = _position(vehicle)
-    low = position.height < 0.8 * vehicle.profile.rise
+    datum = vehicle.known.datum
+    height = position.height if datum is None else position.altitude - datum
+    low = height < 0.8 * vehicle.profile.rise
     return Wait("it climbs") if low and position.climb > CLIMBING else None
 
 
@@ -204,18 +224,25 @@ def _told_to_take_off(vehicle: Vehicle) -> Step:
 
 
 def _height(vehicle: Vehicle, height: float) -> tuple[float, Frame]:
-    """Return a height above home as the vehicle takes it in commands."""
+    """Return a height above home as the vehicle takes it when it takes off."""
     if not vehicle.profile.dialect.above_sea:
         return height, Frame.HOME
     assert vehicle.known.ground is not None, "plans begin with a home"
     return round(height + vehicle.known.ground, 1), Frame.SEA_LEVEL
 
 
+def _travel_height(vehicle: Vehicle) -> tuple[float, Frame]:
+    """Return the height of the command as the vehicle takes it on its way."""
+    if vehicle.above is None:
+        return _height(vehicle, vehicle.height)
+    return round(vehicle.height + vehicle.above, 1), Frame.SEA_LEVEL
+
+
 def _takeoff_items(command: GoTo, vehicle: Vehicle) -> Items | None:
     """Return the mission by which a vehicle takes off, if it takes one."""
     if vehicle.profile.takeoff is not TakeOff.MISSION or vehicle.known.flying:
         return None
-    return route((waypoint(command.place),), vehicle.height, takeoff=True)
+    return route((_stay(command, vehicle),), vehicle.height, takeoff=True, above=vehicle.above)
 
 
 def _mission_takeoff(vehicle: Vehicle, at: Geometry) -> Step | None:
@@ -224,7 +251,7 @@ def _mission_takeoff(vehicle: Vehicle, at: Geometry) -> Step | None:
         climbing = known.mode == auto and (known.current or 0) <= 1 and _may_take_off(vehicle)
         return Wait("it climbs") if climbing else None
     return (
-        _loaded(vehicle, route((at,), vehicle.height, takeoff=True), MissionType.MISSION)
+        _loaded(vehicle, route((at,), vehicle.height, takeoff=True, above=vehicle.above), MissionType.MISSION)
         or _begun(vehicle, 1)
         or _in_mode(vehicle, auto)
         or _armed(vehicle)
@@ -244,11 +271,22 @@ def _sent(vehicle: Vehicle, at: Geometry) -> Step | None:
     """
     known, (x, y) = vehicle.known, e7(at)
     enters = known.mode != vehicle.profile.guided
+    why = "to go there"
     if not enters and _targets(known, at):
-        return None
+        if not _aims_elsewhere(vehicle):
+            return None
+        why = f"to go there at another height: its target is {known.aim:.0f} m above sea level"
     enters = enters or vehicle.profile.dialect.enters
-    height = _height(vehicle, vehicle.height)
-    return Tell("to go there", to.reposition(vehicle.system, x, y, height, vehicle.circle, enters=enters))
+    height = _travel_height(vehicle)
+    return Tell(why, to.reposition(vehicle.system, x, y, height, vehicle.circle, enters=enters))
+
+
+def _aims_elsewhere(vehicle: Vehicle) -> bool:
+    """Tell whether its target is at another height than the command's, as far as both are known."""
+    known = vehicle.known
+    if known.aim is None or known.datum is None or vehicle.profile.takeoff is TakeOff.NONE:
+        return False
+    return abs(known.aim - vehicle.height - known.datum) > TARGET_METRES
 
 
 def _stopped(vehicle: Vehicle) -> Step | None:
@@ -266,8 +304,9 @@ def _targets(known: Telemetry, at: Geometry) -> bool:
 
 
 def _path_items(command: Follow, vehicle: Vehicle) -> Items:
-    profile, path = vehicle.profile, tuple(map(waypoint, command.path))
-    return route(path, vehicle.height, takeoff=_by_item(profile), home=profile.dialect.home_is_item)
+    profile, path = vehicle.profile, (*map(waypoint, command.path[:-1]), _stay(command, vehicle))
+    home = profile.dialect.home_is_item
+    return route(path, vehicle.height, takeoff=_by_item(profile), home=home, above=vehicle.above)
 
 
 def _by_item(profile: Profile) -> bool:
@@ -281,7 +320,7 @@ def _lead(profile: Profile) -> int:
 
 
 def _follow(command: Follow, vehicle: Vehicle) -> Step:
-    profile, items = vehicle.profile, _path_items(command, vehicle)
+    profile, last, items = vehicle.profile, _stay(command, vehicle), _path_items(command, vehicle)
     # A flying vehicle need not take off again: it begins with the point after the take-off.
     first = _lead(profile) - (_by_item(profile) and not vehicle.known.flying)
     if vehicle.resumes:
@@ -294,7 +333,7 @@ def _follow(command: Follow, vehicle: Vehicle) -> Step:
         or _in_mode(vehicle, profile.auto)
         or _armed(vehicle)
         or _in_turn(vehicle)
-        or Underway(done=_at_the_end(command, items, vehicle))
+        or Underway(done=_at_the_end(command, last, items, vehicle), waypoint=last)
     )
 
 
@@ -317,9 +356,9 @@ def _in_turn(vehicle: Vehicle) -> Step | None:
     return Tell(why, to.begin_with(vehicle.system, due, by_command=by_command))
 
 
-def _at_the_end(command: Follow, items: Items, vehicle: Vehicle) -> bool:
-    last, passed_all = command.path[-1], vehicle.passed >= len(command.path) - 1
-    return passed_all and vehicle.known.current == len(items) - 1 and _reached(last, waypoint(last), vehicle)
+def _at_the_end(command: Follow, at: Geometry, items: Items, vehicle: Vehicle) -> bool:
+    passed_all = vehicle.passed >= len(command.path) - 1
+    return passed_all and vehicle.known.current == len(items) - 1 and _reached(command.path[-1], at, vehicle)
 
 
 def _hand_over(station: int, vehicle: Vehicle) -> Step:
@@ -368,11 +407,14 @@ def _reached(place: Geometry, at: Geometry, vehicle: Vehicle) -> bool:
     return contains(place, spot)
 
 
-def height_of(band: Band | None, profile: Profile, position: Position, otherwise: float) -> float:
-    """Return the height above home of the middle of a band; the vehicle's own if there is none."""
+def height_of(
+    band: Band | None, profile: Profile, known: Telemetry, position: Position, otherwise: float
+) -> float:
+    """Return the height above the mission's home of the middle of a band; the vehicle's own if there is none."""
     if band is None or profile.takeoff is TakeOff.NONE:
         return otherwise
-    return round((band.low + band.high) / 2 - (position.altitude - position.height), 2)
+    home = position.altitude - position.height if known.datum is None else known.datum
+    return round((band.low + band.high) / 2 - home, 2)
 
 
 def _position(vehicle: Vehicle) -> Position:

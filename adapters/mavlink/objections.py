@@ -19,7 +19,7 @@ from adapters.mavlink.fencing import (
 )
 from adapters.mavlink.fleet import Craft, Stations
 from adapters.mavlink.items import route
-from adapters.mavlink.loiter_radius import described, home_circle, room
+from adapters.mavlink.loiter_radius import cramped, goal, home_circle, room, stay
 from adapters.mavlink.merging import OnBoard, jumps_out, merged
 from adapters.mavlink.next_step import height_of
 from adapters.mavlink.profiles import Profile, TakeOff
@@ -165,7 +165,7 @@ def _of_fence(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]
     why = keeps_no_polygon(known)
     if why:
         yield why
-    points = tuple(map(waypoint, _path(command)))
+    points = _points(command, craft, known)
     radius = 0.0 if known.profile is None else room(craft, known.profile, known)
     outside = [at for at in points if not contains(craft.fence, at)]
     if outside:
@@ -174,15 +174,21 @@ def _of_fence(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]
         yield f"a circle of {radius:g} m around {points[-1]!r} leaves the fence"
 
 
+def _points(command: GoTo | Follow, craft: Craft, known: Telemetry) -> tuple[Geometry, ...]:
+    """Return the waypoints of a command, as far as the kind of vehicle is known."""
+    around = 0.0 if known.profile is None else room(craft, known.profile, known)
+    passed = () if isinstance(command, GoTo) else command.path[:-1]
+    return (*map(waypoint, passed), stay(command, around) or waypoint(goal(command)))
+
+
 def _path(command: GoTo | Follow) -> tuple[Geometry, ...]:
     return (command.place,) if isinstance(command, GoTo) else command.path
 
 
 def _of_size(command: GoTo | Follow, craft: Craft, profile: Profile, known: Telemetry) -> Iterator[str]:
-    if not holds_circle(_path(command)[-1], room(craft, profile, known)):
-        name = command.name or "the place"
-        needed = described(craft, profile, known)
-        yield f"{name} is too small: to stay around its centre the {profile.kind} needs {needed}"
+    reason = cramped(command, craft, profile, known)
+    if reason is not None:
+        yield reason
 
 
 def _of_own_fences(command: GoTo | Follow, craft: Craft, profile: Profile, known: Telemetry) -> Iterator[str]:
@@ -191,9 +197,9 @@ def _of_own_fences(command: GoTo | Follow, craft: Craft, profile: Profile, known
     around = room(craft, profile, known) if profile.drift > 1.0 else 0.0
     height = None
     if known.position is not None:
-        height = height_of(command.altitude, profile, known.position, craft.height_of(profile))
+        height = height_of(command.altitude, profile, known, known.position, craft.height_of(profile))
     name = command.name or "the place"
-    *passed, last = map(waypoint, _path(command))
+    *passed, last = _points(command, craft, known)
     for at in passed:
         yield from beyond(own, known, at, 0.0, None, "a point of its way")
     yield from beyond(own, known, last, around, height, name)
@@ -207,7 +213,7 @@ def _of_zones(
         yield from widened(craft.fence, known, on_board)
         yield from beyond_fence(craft.fence, known, on_board)
     around = room(craft, profile, known) if profile.drift > 1.0 else 0.0
-    *passed, last = map(waypoint, _path(command))
+    *passed, last = _points(command, craft, known)
     stops = [*((at, 0.0, "a point of its way") for at in passed), (last, around, command.name or "the place")]
     for zone in zones_beside(craft.fence, known, on_board):
         yield from filter(None, (barred(zone, *stop) for stop in stops))
@@ -215,7 +221,7 @@ def _of_zones(
 
 def _of_legs(command: GoTo | Follow, craft: Craft, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
     """Object to straight ways through zones to stay out of, from where the vehicle is now."""
-    points = [waypoint(place) for place in _path(command)]
+    points = [*_points(command, craft, known)]
     if known.position is not None:
         points = [point(known.position.latitude, known.position.longitude), *points]
     name = command.name or "the place"
@@ -256,10 +262,8 @@ def _of_items(command: GoTo | Follow, profile: Profile, known: Telemetry, on_boa
     if known.flying:
         return
     takes = isinstance(command, Follow) or profile.takeoff is TakeOff.MISSION
-    path, by_item = (
-        tuple(map(waypoint, _path(command))),
-        profile.takeoff in (TakeOff.MISSION, TakeOff.COMMAND),
-    )
+    path = tuple(map(waypoint, _path(command)))
+    by_item = profile.takeoff in (TakeOff.MISSION, TakeOff.COMMAND)
     ours = route(path, 0.0, takeoff=by_item, home=profile.dialect.home_is_item)
     mission = merged(ours, found, MissionType.MISSION, known) if takes else found
     yield from missing_items(mission, known, on_board)

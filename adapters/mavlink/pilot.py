@@ -15,14 +15,15 @@ from adapters.mavlink import survey as surveys
 from adapters.mavlink import task as tasks
 from adapters.mavlink.changed import changed
 from adapters.mavlink.command import long, read_parameter
+from adapters.mavlink.condition import Condition, look
 from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, REGULAR, Cmd
 from adapters.mavlink.fleet import CONTROL, Craft, Stations
 from adapters.mavlink.link import Link, watch
-from adapters.mavlink.loiter_radius import circle, home_circle
+from adapters.mavlink.loiter_radius import circle, home_circle, room
 from adapters.mavlink.merging import OnBoard
 from adapters.mavlink.message import Message
 from adapters.mavlink.objections import not_ours, objection
-from adapters.mavlink.profiles import Profile, unknown_kind
+from adapters.mavlink.profiles import Profile, TakeOff, unknown_kind
 from adapters.mavlink.streams import Streams
 from adapters.mavlink.survey import Survey
 from adapters.mavlink.sync import Sync
@@ -30,7 +31,6 @@ from adapters.mavlink.takeover import Helm
 from adapters.mavlink.task import Progress, Task
 from adapters.mavlink.telemetry import Position, Telemetry, absorb, property_of, waited
 from adapters.plugin import (
-    Accepted,
     Aged,
     Command,
     Doubted,
@@ -102,6 +102,7 @@ class Pilot:
         since: Since when it has a position.
         shown: What the last publication depended on.
         status: What was last reported of what it says of itself.
+        condition: What of its position and its home was reported.
     """
 
     craft: Craft
@@ -122,6 +123,7 @@ class Pilot:
     since: float | None = None
     shown: Shown = (None, None, False)
     status: Status | None = None
+    condition: Condition = field(default_factory=Condition)
 
 
 @dataclass(frozen=True)  # no slots: `changed`
@@ -143,6 +145,8 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     if pilot.helm.taken:
         raise Refused(f"it was taken over: {pilot.helm.taken}", "an operator may give it back")
     reason = objection(told, pilot.craft, pilot.stations, pilot.known, pilot.on_board)
+    if reason and isinstance(told, Hold | Return):
+        return _stops_in_vain(pilot, told, reason, now)
     if reason:
         raise Refused(reason)
     _check_not_rejected(pilot.moving, told)
@@ -161,8 +165,20 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     return Outcome(changed(pilot, moving=_continued(pilot.moving, task)), reports=outside)
 
 
+def _stops_in_vain(pilot: Pilot, told: Hold | Return, reason: str, now: float) -> Outcome:
+    """Reject an order to stop; what it was to end does not go on, should the vehicle obey us again."""
+    ended = tasks.rejected(Task(told, since=now, boots=pilot.known.boots), reason, now)
+    reports = () if ended.report is None else (ended.report,)
+    return Outcome(changed(pilot, moving=ended.task, handing=None), reports=reports)
+
+
 def _check_not_rejected(before: Task | None, told: Command) -> None:
-    """Refuse a rejected request again: a moving place must not take a vehicle back from its pilot."""
+    """Refuse a rejected request again: a moving place must not take a vehicle back from its pilot.
+
+    An order to stop is owed until it is done.
+    """
+    if isinstance(told, Hold | Return):
+        return
     if before is not None and before.rejection and before.command.request == told.request:
         raise Refused(f"the request was rejected: {before.rejection}", "request it again")
 
@@ -182,6 +198,7 @@ def _continued(before: Task | None, task: Task) -> Task:
     return replace(
         task,
         height=before.height,
+        above=before.above,
         begun=before.begun and not follows,
         resumes=before.resumes or (before.begun and follows),
         passed=before.passed,
@@ -200,7 +217,7 @@ def _heard(pilot: Pilot, message: Message, now: float) -> Outcome:
     pilot = changed(pilot, streams=streams.hear(pilot.streams, message, now))
     pilot, answered = inventory.read_on(pilot, message, now)
     if known.position is not before.position:
-        pilot = _with_passed(pilot)
+        pilot = _with_passed(pilot, now)
     if message.name in _ANSWERS and pilot.moving is not None and not pilot.moving.over:
         heard = tasks.hear(pilot.moving, message, now)
         pilot, answered = changed(pilot, moving=heard.task), (*answered, *heard.sent)
@@ -211,12 +228,12 @@ def _heard(pilot: Pilot, message: Message, now: float) -> Outcome:
     return changed(outcome, sent=_spoken(pilot, (*answered, *outcome.sent)))
 
 
-def _with_passed(pilot: Pilot) -> Pilot:
+def _with_passed(pilot: Pilot, now: float) -> Pilot:
     """Note which place of its path a vehicle is in."""
     task, profile = pilot.moving, pilot.known.profile
     if task is None or profile is None or not pilot.helm.held or not isinstance(task.command, Follow):
         return pilot
-    return changed(pilot, moving=tasks.seen(task, _vehicle(pilot, task, profile)))
+    return changed(pilot, moving=tasks.seen(task, _vehicle(pilot, task, profile, now)))
 
 
 def tick(pilot: Pilot, now: float) -> Outcome:
@@ -237,8 +254,10 @@ def _ticked(pilot: Pilot, now: float) -> Outcome:
         if _authority(pilot) is not None and _is_ours(pilot):
             pilot, more = inventory.surveyed(pilot, now)
             questions = (*questions, *more)
+    condition, noticed = look(pilot.condition, pilot.craft.entity, pilot.known, now, lost=link.lost)
+    pilot = changed(pilot, condition=condition)
     outcome = _advance(pilot, now)
-    reports = outcome.reports if change is None else (change, *outcome.reports)
+    reports = (*(() if change is None else (change,)), *noticed, *outcome.reports)
     if before < UNANSWERED <= pilot.unanswered and pilot.known.signs and not pilot.signs:
         reports = (*reports, Trouble(pilot.craft.entity, now, "no answer", _deaf(pilot)))
     return changed(outcome, sent=_spoken(pilot, (*questions, *outcome.sent)), reports=reports)
@@ -276,6 +295,7 @@ def _status(pilot: Pilot, now: float) -> Status:
         height=None if known.position is None else known.position.height,
         home=known.home,
         returning=None if profile is None else known.mode == profile.home,
+        lacks=known.lacks(now),
     )
 
 
@@ -358,7 +378,8 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
         pilot = inventory.unsure(pilot) if pilot.on_board or known.polygon else pilot
         return changed(pilot, helm=Helm(boots=known.boots)), ()
     command = None if pilot.moving is None else pilot.moving.command
-    helm = takeover.watch(pilot.helm, known, profile, command, _undone(pilot, profile), pilot.on_board)
+    undone = _undone(pilot, profile, now)
+    helm = takeover.watch(pilot.helm, known, profile, command, undone, pilot.on_board)
     before, pilot = pilot.helm, changed(pilot, helm=helm)
     if helm.taken and not before.taken:
         return _taken_over(pilot, now)
@@ -373,15 +394,15 @@ def _changes(pilot: Pilot, before: Helm, now: float) -> Iterator[Report]:
     if before.held and not pilot.helm.held:
         yield Doubted(entity, now)
     elif pilot.helm.held and not before.held and task is not None and task.accepted:
-        yield Accepted(task.command.request, entity, now)
+        yield tasks.accepted(task, now)
 
 
-def _undone(pilot: Pilot, profile: Profile) -> str:
+def _undone(pilot: Pilot, profile: Profile, now: float) -> str:
     """Return the part of its completed commands that the vehicle no longer does."""
     task = pilot.moving
     if task is None or not task.accepted:
         return ""
-    step = next_step.next_step(task.command, task.station, _vehicle(pilot, task, profile))
+    step = next_step.next_step(task.command, task.station, _vehicle(pilot, task, profile, now))
     return tasks.undone(task, step, pilot.known.boots)
 
 
@@ -429,12 +450,12 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
     if foreign and isinstance(task.doing, Sync):  # a task that was begun can't be ended here
         return tasks.rejected(task, foreign, now)
     task = _with_height(pilot, task)
-    vehicle = _vehicle(pilot, task, profile)
+    vehicle = _vehicle(pilot, task, profile, now)
     step = next_step.next_step(task.command, task.station, vehicle)
     return tasks.advance(task, step, vehicle, lost=pilot.link.lost, now=now)
 
 
-def _vehicle(pilot: Pilot, task: Task, profile: Profile) -> next_step.Vehicle:
+def _vehicle(pilot: Pilot, task: Task, profile: Profile, now: float) -> next_step.Vehicle:
     return next_step.Vehicle(
         system=pilot.system,
         known=pilot.known,
@@ -443,7 +464,10 @@ def _vehicle(pilot: Pilot, task: Task, profile: Profile) -> next_step.Vehicle:
         fence=pilot.craft.fence,
         circle=circle(pilot.craft, profile, pilot.known),
         home_circle=home_circle(pilot.craft, profile, pilot.known),
+        room=room(pilot.craft, profile, pilot.known),
         height=task.height or 0.0,
+        above=task.above,
+        lacks=pilot.known.lacks(now),
         begun=task.begun,
         resumes=task.resumes,
         passed=task.passed,
@@ -470,12 +494,17 @@ def _unknown(pilot: Pilot, task: Task, now: float) -> Progress:
 
 
 def _with_height(pilot: Pilot, task: Task) -> Task:
-    """Fix the height of a task as soon as the vehicle's own position allows."""
-    profile, position = pilot.known.profile, pilot.known.position
+    """Fix the height of a task as soon as the vehicle's own position allows.
+
+    A band is above sea level, and so is what the vehicle is told then; and always if its home has been moved.
+    """
+    known, profile, position = pilot.known, pilot.known.profile, pilot.known.position
     if task.height is not None or profile is None or position is None:
         return task
     band = task.command.altitude if isinstance(task.command, GoTo | Follow) else None
-    return replace(task, height=next_step.height_of(band, profile, position, pilot.craft.height_of(profile)))
+    height = next_step.height_of(band, profile, known, position, pilot.craft.height_of(profile))
+    fixed = (band is not None or known.home_moved) and profile.takeoff is not TakeOff.NONE
+    return replace(task, height=height, above=known.datum if fixed else None)
 
 
 def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Aged, ...], tuple[Report, ...]]:

@@ -117,6 +117,7 @@ PX4_DIALECT: Final = Dialect(
     enters=True,
     lands_by_state=True,
     typed=True,
+    streams=(*(name for name in REGULAR if name != "EKF_STATUS_REPORT"), "ESTIMATOR_STATUS"),
     unites=True,
     marks_landing=False,
 )

@@ -10,9 +10,11 @@ from adapters.mavlink import command as telling
 from adapters.mavlink import sync as syncing
 from adapters.mavlink.constants import Cmd, MissionType, Result
 from adapters.mavlink.items import Items
+from adapters.mavlink.loiter_radius import goal
 from adapters.mavlink.message import Message
 from adapters.mavlink.next_step import Load, Step, Tell, Underway, Vehicle, Wait, passing
-from adapters.plugin import Accepted, Arrived, Command, Follow, Rejected, Report, Trouble
+from adapters.plugin import Accepted, Arrived, Command, Follow, GoTo, Rejected, Report, Trouble
+from physical import Geometry
 
 PATIENCE: Final = 45.0
 """Seconds, while the vehicle is heard, for one step, and for an upload without progress."""
@@ -28,7 +30,8 @@ class Task:
     Attributes:
         command: The command.
         station: For a HandOver, the system id of the station that gets the authority.
-        height: Metres above home at which it is carried out, once known.
+        height: Metres above the mission's home at which it is carried out, once known.
+        above: Metres above sea level of that home, if heights are told above sea level.
         step: The current step.
         since: Since when: the start of the step, the vehicle's return to the link, or an upload's last progress.
         reached: The progress of an upload.
@@ -44,11 +47,13 @@ class Task:
         checked: Whether it is possible for this kind of vehicle.
         surveyed: Whether it is possible with what is on board.
         complained: Whether a delay of this step was reported.
+        waypoint: Around which point the vehicle will stay.
     """
 
     command: Command
     station: int = 0
     height: float | None = None
+    above: float | None = None
     step: Step | None = None
     since: float = 0.0
     reached: tuple[int, int, int] = (0, 0, 0)
@@ -64,6 +69,7 @@ class Task:
     checked: bool = False
     surveyed: bool = False
     complained: bool = False
+    waypoint: Geometry | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,14 +192,25 @@ def _begins(task: Task, vehicle: Vehicle) -> bool:
 
 
 def _underway(task: Task, step: Underway, now: float) -> Progress:
-    request, entity = task.command.request, task.command.entity
     if (task.step, task.doing) != (step, None):
-        task = replace(task, step=step, doing=None)
+        task = replace(task, step=step, doing=None, waypoint=step.waypoint)
     if step.done and not task.over:
-        return Progress(replace(task, accepted=True, over=True), report=Arrived(request, entity, now))
+        return Progress(replace(task, accepted=True, over=True), report=Arrived(*_shown(task, now)))
     if not task.accepted:
-        return Progress(replace(task, accepted=True), report=Accepted(request, entity, now))
+        return Progress(replace(task, accepted=True), report=accepted(task, now))
     return Progress(task)
+
+
+def accepted(task: Task, now: float) -> Accepted:
+    """Return the report that the vehicle shows that it follows a command."""
+    return Accepted(*_shown(task, now))
+
+
+def _shown(task: Task, now: float) -> tuple[str, str, float, Geometry | None, Geometry | None]:
+    """Return what a report says of what a vehicle follows."""
+    command = task.command
+    place = goal(command) if isinstance(command, GoTo | Follow) else None
+    return command.request, command.entity, now, place, task.waypoint
 
 
 def _exchange(step: Step, vehicle: Vehicle) -> telling.Telling | syncing.Sync | None:

@@ -21,8 +21,10 @@ from adapters.mavlink.constants import (
     FIX_3D,
     GEOFENCE,
     INTEGERS,
+    KNOWN_FLAGS,
     PREARM_HEALTHY,
     Cmd,
+    Estimate,
     Landed,
     ModeFlag,
     Result,
@@ -32,10 +34,14 @@ from adapters.mavlink.message import Message
 from adapters.mavlink.profiles import Profile, profile_of
 from adapters.mavlink.texts import Chunks, Joined, Text, give_up, join
 from adapters.plugin import Battery
-from physical import Band, PhysicalProperty, Velocity, point
+from physical import Band, PhysicalProperty, Velocity, distance, point
 
 FIX_SECONDS: Final = 10.0
-"""How long a fix is believed: GPS_RAW_INT comes once a second, and may be lost."""
+"""How long a fix, or an estimate, is believed: it comes once a second, and may be lost."""
+
+HOME_METRES: Final = 30.0
+HOME_RISE: Final = 10.0
+"""Metres along and up by which a home must have moved: arming sets it anew, to where it stands."""
 
 BACKWARDS: Final = 5_000
 """Milliseconds by which the vehicle's clock must go back to mean a reboot: less is a late packet."""
@@ -85,14 +91,17 @@ class Telemetry:
         armed: Whether its motors may turn.
         active: Whether it reports that it flies (or drives).
         position: Its position, if it has a fix.
-        fix_time: When it last reported a fix.
+        fixes: What each receiver last reported of its fix (GPS_FIX_TYPE), and when.
+        estimate: Whether its own filter says that its position is good, and when it last said so.
         healthy: Whether it could be armed, and accepts missions.
         current: The number of its current mission item.
         total: How many items its mission has, as it counts them; None if it does not say.
         numbers: What changes with its mission, its fence and its rally points; None where it does not say.
         target: Its target in degrees.
+        aim: Its target's altitude in metres above sea level.
         home: Its home in degrees.
         ground: Its home's altitude in metres above sea level.
+        base: Its home when it was last seen disarmed, else the first: heights of the mission are above it.
         fenced: Whether a fence is active, its own or ours.
         polygon: Whether it has reported that the polygon is active.
         authority: The system id of the station that it obeys.
@@ -119,14 +128,17 @@ class Telemetry:
     armed: bool | None = None
     active: bool | None = None
     position: Position | None = None
-    fix_time: float | None = None
+    fixes: Mapping[int, tuple[int, float]] = field(default_factory=dict)
+    estimate: tuple[bool, float] | None = None
     healthy: bool | None = None
     current: int | None = None
     total: int | None = None
     numbers: tuple[int, ...] | None = None
     target: tuple[float, float] | None = None
+    aim: float | None = None
     home: tuple[float, float] | None = None
     ground: float | None = None
+    base: tuple[float, float, float] | None = None
     fenced: bool | None = None
     polygon: bool = False
     authority: int | None = None
@@ -149,6 +161,37 @@ class Telemetry:
     def flying(self) -> bool:
         """Whether it reports that it is off the ground."""
         return bool(self.armed and self.active)
+
+    def is_placed(self, now: float) -> bool:
+        """Tell whether its position counts: by its own filter, else by the fix of any receiver."""
+        if self.estimate is not None and now - self.estimate[1] <= FIX_SECONDS:
+            return self.estimate[0]
+        return any(fix >= FIX_3D and now - time <= FIX_SECONDS for fix, time in self.fixes.values())
+
+    def lacks(self, now: float) -> str:
+        """Return why it has no position; an empty text if it has one."""
+        if self.is_placed(now):
+            return ""
+        said = [
+            f"GPS{f' {number}' if number > 1 else ''} fix {fix if now - time <= FIX_SECONDS else 'not told any more'}"
+            for number, (fix, time) in sorted(self.fixes.items())
+        ]
+        own = [] if self.estimate is None else ["its own estimate is not good"]
+        return f"it has no position: {', '.join([*said, *own]) or 'it tells of no GPS'}"
+
+    @property
+    def datum(self) -> float | None:
+        """The altitude in metres above sea level from which heights of the mission count."""
+        return None if self.base is None else self.base[2]
+
+    @property
+    def home_moved(self) -> str:
+        """How its home was moved since it was armed, in words; empty if it was not."""
+        if self.base is None or self.home is None or self.ground is None:
+            return ""
+        away, up = distance(point(*self.base[:2]), point(*self.home)), self.ground - self.base[2]
+        moved = away > HOME_METRES or abs(up) > HOME_RISE
+        return f"its home was moved by {away:.0f} m and {up:+.0f} m in height" if moved else ""
 
     def last_words(self, now: float) -> str:
         """Return its recent warnings as a suffix of a reason, or an empty text."""
@@ -209,14 +252,23 @@ def _landed(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry
 
 
 def _fix(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
-    return changed(known, fix_time=now if said["fix_type"] >= FIX_3D else None)
+    return changed(known, fixes={**known.fixes, 1: (said["fix_type"], now)})
+
+
+def _second_fix(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
+    return changed(known, fixes={**known.fixes, 2: (said["fix_type"], now)})
+
+
+def _estimate(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
+    flags = Estimate(said["flags"] & KNOWN_FLAGS)
+    good = Estimate.POS_HORIZ_ABS in flags and not flags & (Estimate.CONST_POS_MODE | Estimate.UNINITIALIZED)
+    return changed(known, estimate=(good, now))
 
 
 def _position(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
     heading = None if said["hdg"] == UNKNOWN else said["hdg"] / 100
     late = known.placed is not None and said["time_boot_ms"] < known.placed
-    fixed = known.fix_time is not None and now - known.fix_time <= FIX_SECONDS
-    if late or not fixed or not _somewhere(said["lat"] / 1e7, said["lon"] / 1e7):
+    if late or not known.is_placed(now) or not _somewhere(said["lat"] / 1e7, said["lon"] / 1e7):
         return changed(known, heading=heading)
     north, east = said["vx"] / 100, said["vy"] / 100
     position = Position(
@@ -262,7 +314,11 @@ def _charged(known: Telemetry, percent: int, millivolts: int) -> Telemetry:
 
 def _home(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
     at = said["latitude"] / 1e7, said["longitude"] / 1e7
-    return changed(known, home=at, ground=said["altitude"] / 1000) if _somewhere(*at) else known
+    if not _somewhere(*at):
+        return known
+    ground = said["altitude"] / 1000
+    base = (*at, ground) if known.base is None or not known.armed else known.base
+    return changed(known, home=at, ground=ground, base=base)
 
 
 def _current(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
@@ -278,7 +334,7 @@ def _current(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetr
 def _target(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
     if known.clock is not None and said["time_boot_ms"] < known.clock - 1000:
         return known
-    return changed(known, target=(said["lat_int"] / 1e7, said["lon_int"] / 1e7))
+    return changed(known, target=(said["lat_int"] / 1e7, said["lon_int"] / 1e7), aim=said["alt"])
 
 
 def _parameter(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
@@ -323,6 +379,9 @@ _READERS: Final[Mapping[str, Callable[[Telemetry, Mapping[str, Any], float], Tel
         "HEARTBEAT": _heartbeat,
         "EXTENDED_SYS_STATE": _landed,
         "GPS_RAW_INT": _fix,
+        "GPS2_RAW": _second_fix,
+        "EKF_STATUS_REPORT": _estimate,
+        "ESTIMATOR_STATUS": _estimate,
         "GLOBAL_POSITION_INT": _position,
         "SYS_STATUS": _status,
         "BATTERY_STATUS": _battery,

@@ -68,12 +68,12 @@ def step_json(step: LiveStep) -> dict[str, Any]:
 
 def command_json(command: Command) -> dict[str, Any]:
     """Return what a vehicle is told as plain data."""
-    return {"command": type(command).__name__, **_fields(command)}
+    return {"command": type(command).__name__, **_fields(command, "around", "shape")}
 
 
 def report_json(report: Report) -> dict[str, Any]:
     """Return what a plugin reported as plain data."""
-    return {"report": type(report).__name__, **_fields(report)}
+    return {"report": type(report).__name__, **_fields(report, "place")}
 
 
 def seen_json(seen: Seen) -> tuple[str, dict[str, Any]]:
@@ -127,11 +127,9 @@ def finding_json(finding: Finding, verdicts: tuple[str, ...] = ()) -> dict[str, 
     return {**_fields(finding), **({"verdicts": verdicts} if verdicts else {})}
 
 
-def _fields(value: Any) -> dict[str, Any]:
-    named = (
-        ("ring" if each.name == "place" else each.name, getattr(value, each.name)) for each in fields(value)
-    )
-    return {name: _plain(part) for name, part in named if part is not None}
+def _fields(value: Any, *left_out: str) -> dict[str, Any]:
+    named = ((each.name, getattr(value, each.name)) for each in fields(value) if each.name not in left_out)
+    return {"ring" if name == "place" else name: _plain(part) for name, part in named if part is not None}
 
 
 def _plain(value: Any) -> Any:

@@ -198,6 +198,7 @@ COMMAND: Final = _object(
 
 REPORTS: Final = (
     *(
+        "Sent",
         "Accepted",
         "Arrived",
         "Rejected",
@@ -218,6 +219,7 @@ REPORT: Final = _object(
     report={"type": "string", "enum": [*REPORTS]},
     request=_TEXT,
     entity=_TEXT,
+    waypoint={**_RING, "description": "Around which point the vehicle will stay."},
     reason=_TEXT,
     what=_TEXT,
     detail=_TEXT,
@@ -301,6 +303,7 @@ STATUS: Final = _object(
         "maxItems": 2,
         "description": "The latitude and longitude of its home, in degrees.",
     },
+    lacks={**_TEXT, "description": "Why it has no position that counts; empty if it has one."},
     returning={
         "type": ["boolean", "null"],
         "description": "Whether it is in the mode in which it flies home.",

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from adapters.plugin import Follow, GoTo
-from physical import Geometry, contains, distance, waypoint
+from physical import Geometry, contains, distance, point, standing, waypoint
 
 NEARER: Final = 10.0
 """Metres by which a robot must have come nearer, to be believed to be on its way: more than a receiver errs."""
@@ -45,8 +45,9 @@ class Errand:
 
 def waypoints(order: GoTo | Follow) -> tuple[tuple[float, float], ...]:
     """Return the latitude and longitude of each waypoint."""
-    places = order.path if isinstance(order, Follow) else (order.place,)
-    return tuple(waypoint(place).vertices[0] for place in places)
+    passed, last = (order.path[:-1], order.path[-1]) if isinstance(order, Follow) else ((), order.place)
+    stays = standing(order.shape or point(0, 0), last, order.around, 0.0) or last
+    return tuple(waypoint(place).vertices[0] for place in (*passed, stays))
 
 
 def seen(errand: Errand, at: Geometry) -> Errand:

@@ -48,19 +48,22 @@ def follow(vehicle: State, seconds: float) -> None:
 
 def _fly(vehicle: State, item: Item, seconds: float) -> None:
     if item.command == Cmd.TAKEOFF:
-        vehicle.take_off(item.z, seconds)
+        vehicle.take_off(_height(vehicle, item), seconds)
     elif item.command in _FLOWN:
         stays = item.command == Cmd.LOITER_UNLIMITED
         circle = vehicle.circle if stays and vehicle.kind.limits.must_move else 0.0
-        vehicle.go(Target(item.x / 1e7, item.y / 1e7, item.z, circle), seconds)
-        low = vehicle.body.height <= item.z + 1.0 and _away(vehicle, item) <= vehicle.kind.radius
+        vehicle.go(Target(item.x / 1e7, item.y / 1e7, _height(vehicle, item), circle), seconds)
+        low = (
+            vehicle.body.height <= _height(vehicle, item) + 1.0
+            and _away(vehicle, item) <= vehicle.kind.radius
+        )
         if item.command == Cmd.LAND and low:
             vehicle.arm(armed=False)
 
 
 def _done(vehicle: State, item: Item) -> bool:
     if item.command == Cmd.TAKEOFF:
-        return vehicle.body.height >= item.z - 1.0
+        return vehicle.body.height >= _height(vehicle, item) - 1.0
     if item.command not in _FLOWN:
         return True
     return item.command == Cmd.WAYPOINT and _away(vehicle, item) <= vehicle.kind.radius
@@ -73,6 +76,11 @@ def _next(vehicle: State, item: Item) -> None:
         vehicle.words.append((INFO, words))
     jumps = item.command == Cmd.DO_JUMP
     vehicle.current = round(item.parameters[0]) if jumps else vehicle.current + 1
+
+
+def _height(vehicle: State, item: Item) -> float:
+    """Return an item's height above home."""
+    return vehicle.height_in(item.z, item.frame)
 
 
 def _away(vehicle: State, item: Item) -> float:

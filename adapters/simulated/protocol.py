@@ -164,7 +164,8 @@ def _reposition(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Resu
     if message.name != "COMMAND_INT" or not vehicle.armed:
         return Result.DENIED
     latitude, longitude = message["x"] / 1e7, message["y"] / 1e7
-    height, flags, circle = message["z"], message["param2"], message["param3"] or vehicle.circle
+    height = vehicle.height_in(message["z"], message["frame"])
+    flags, circle = message["param2"], message["param3"] or vehicle.circle
     far = metres_to(vehicle.body, latitude, longitude)[0] > FARTHEST
     if far or not abs(height) <= HIGHEST or not 0 < circle <= FARTHEST or not 0 <= flags <= FLAGS:
         return Result.DENIED
@@ -174,6 +175,19 @@ def _reposition(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Resu
         return Result.DENIED if profile.takeoff is TakeOff.MISSION else Result.FAILED
     vehicle.mode = profile.guided
     vehicle.target = Target(latitude, longitude, height, circle)
+    return Result.ACCEPTED
+
+
+def _set_home(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+    """Move its home to a place, or to where it is; it tells that at once."""
+    here = vehicle.body.latitude, vehicle.body.longitude, vehicle.home[2] + vehicle.body.height
+    if message["param1"] == 1:
+        vehicle.set_home(*here)
+    elif message.name != "COMMAND_INT" or not abs(message["z"]) <= HIGHEST:
+        return Result.FAILED
+    else:
+        vehicle.set_home(message["x"] / 1e7, message["y"] / 1e7, message["z"])
+    reporter.once("HOME_POSITION")
     return Result.ACCEPTED
 
 
@@ -225,6 +239,7 @@ def _set_interval(_vehicle: Vehicle, reporter: Reporter, message: Message) -> Re
 _COMMANDS: Final[Mapping[Cmd, Callable[[Vehicle, Reporter, Message], Result]]] = MappingProxyType(
     {
         Cmd.ARM_DISARM: _arm,
+        Cmd.DO_SET_HOME: _set_home,
         Cmd.DO_SET_MODE: _set_mode,
         Cmd.FENCE_ENABLE: _keep_fence,
         Cmd.MISSION_START: _start_mission,
@@ -302,6 +317,7 @@ def _px4_reposition(vehicle: Vehicle, reporter: Reporter, message: Message) -> R
 _PX4_COMMANDS: Final[Mapping[Cmd, Callable[[Vehicle, Reporter, Message], Result]]] = MappingProxyType(
     {
         Cmd.ARM_DISARM: _px4_arm,
+        Cmd.DO_SET_HOME: _set_home,
         Cmd.DO_SET_MODE: _px4_set_mode,
         Cmd.MISSION_START: _start_mission,
         Cmd.REPOSITION: _px4_reposition,

@@ -26,6 +26,10 @@ DEFAULT: Final = {
 WHOLE: Final = ("COM_LOW_BAT_ACT", "GF_ACTION", "MIS_TKO_LAND_REQ")
 """PX4's parameters that are integers: their four bytes are sent as if they were a float's."""
 
+GOOD: Final = 831
+NO_POSITION: Final = 165
+"""EKF_STATUS_FLAGS as ArduPilot has them with a position, and without."""
+
 SHORTEST: Final = 0.05
 CAPABILITIES: Final = 2 | 4 | 8 | 8192 | 16384
 """MAV_PROTOCOL_CAPABILITY: float parameters, MISSION_INT, COMMAND_INT, MAVLink 2, fences by the mission protocol."""
@@ -69,6 +73,8 @@ class Reporter:
         texts = [message for severity, text in words for message in self._chunks(severity, text.encode())]
         reached = [say("MISSION_ITEM_REACHED", seq=index) for index in vehicle.reached]
         names += self._once
+        if vehicle.second is not None and self._is_due("GPS2_RAW", 1.0, vehicle.uptime):
+            names.append("GPS2_RAW")
         self._texts.clear()
         self._once.clear()
         vehicle.reached.clear()
@@ -156,19 +162,55 @@ def _status(vehicle: Vehicle) -> Message:
 
 
 def _gps(vehicle: Vehicle) -> Message:
-    fix = vehicle.has_fix
+    return say("GPS_RAW_INT", **_receiver(vehicle, fix=vehicle.fixed and vehicle.has_fix))
+
+
+def _second_gps(vehicle: Vehicle) -> Message:
+    fix = bool(vehicle.second) and vehicle.has_fix
+    return say("GPS2_RAW", **_receiver(vehicle, fix=fix), dgps_numch=0, dgps_age=0)
+
+
+def _receiver(vehicle: Vehicle, *, fix: bool) -> dict[str, Any]:
+    """Return what a receiver tells."""
+    return {
+        "time_usec": int(vehicle.uptime * 1e6),
+        "fix_type": 6 if fix else int(vehicle.uptime > 6),
+        "lat": _e7(vehicle.body.latitude) if fix else 0,
+        "lon": _e7(vehicle.body.longitude) if fix else 0,
+        "alt": _altitude(vehicle) if fix else 0,
+        "eph": 120 if fix else 65_535,
+        "epv": 200 if fix else 65_535,
+        "vel": round(vehicle.body.speed * 100),
+        "cog": round(vehicle.body.course * 100) % 36_000,
+        "satellites_visible": 10 if fix else 0,
+    }
+
+
+def _estimate(vehicle: Vehicle) -> int:
+    """Return what its filter says of its estimates: all good, or only of its attitude, without a position."""
+    return GOOD if vehicle.has_fix else NO_POSITION
+
+
+def _filter(vehicle: Vehicle) -> Message:
+    kinds = ("velocity", "pos_horiz", "pos_vert", "compass", "terrain_alt")
     return say(
-        "GPS_RAW_INT",
+        "EKF_STATUS_REPORT",
+        flags=_estimate(vehicle),
+        **{f"{kind}_variance": 0.0 for kind in kinds},
+    )
+
+
+def _estimator(vehicle: Vehicle) -> Message:
+    ratios = dict.fromkeys(
+        [f"{each}_ratio" for each in ("vel", "pos_horiz", "pos_vert", "mag", "hagl", "tas")], 0.0
+    )
+    return say(
+        "ESTIMATOR_STATUS",
         time_usec=int(vehicle.uptime * 1e6),
-        fix_type=6 if fix else int(vehicle.uptime > 6),
-        lat=_e7(vehicle.body.latitude) if fix else 0,
-        lon=_e7(vehicle.body.longitude) if fix else 0,
-        alt=_altitude(vehicle) if fix else 0,
-        eph=120 if fix else 65_535,
-        epv=200 if fix else 65_535,
-        vel=round(vehicle.body.speed * 100),
-        cog=round(vehicle.body.course * 100) % 36_000,
-        satellites_visible=10 if fix else 0,
+        flags=_estimate(vehicle),
+        **ratios,
+        pos_horiz_accuracy=1.0,
+        pos_vert_accuracy=1.0,
     )
 
 
@@ -216,7 +258,7 @@ def _target(vehicle: Vehicle) -> Message:
         type_mask=65_016,
         lat_int=_e7(at.latitude) if at else 0,
         lon_int=_e7(at.longitude) if at else 0,
-        alt=at.height if at else 0.0,
+        alt=vehicle.home[2] + at.height if at else 0.0,
         **nothing,
     )
 
@@ -261,6 +303,9 @@ _MESSAGES: Final[Mapping[str, Callable[[Vehicle], Message]]] = MappingProxyType(
         "HEARTBEAT": _heartbeat,
         "SYS_STATUS": _status,
         "GPS_RAW_INT": _gps,
+        "GPS2_RAW": _second_gps,
+        "EKF_STATUS_REPORT": _filter,
+        "ESTIMATOR_STATUS": _estimator,
         "GLOBAL_POSITION_INT": _position,
         "SYSTEM_TIME": _time,
         "MISSION_CURRENT": _current,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Final
 
-from adapters.mavlink.constants import Fence, FenceAction, MissionType
+from adapters.mavlink.constants import Fence, FenceAction, Frame, MissionType
 from adapters.mavlink.profiles import BOAT, COPTER, PLANE, PX4_COPTER, PX4_PLANE, ROVER, Profile, TakeOff
 from adapters.mavlink.signing import Signing
 from adapters.mavlink.zones import Zone, zones
@@ -119,6 +119,7 @@ class State:
         enforce: Whether it obeys only the station that has the authority (SYSID_ENFORCE).
         accept_unsigned: Whether unsigned packets are obeyed although it has a key, as on ArduPilot's first link.
         fixed: Whether its receiver has satellites.
+        second: Whether its second receiver has satellites; None if it has no second one.
         fences: Which of its fences are on.
         version: Of its firmware: before 4.6 all fences were switched at once.
         slowed: What part of its kind's speed it makes over the ground, as against a head wind.
@@ -129,6 +130,7 @@ class State:
         low: Since when it is low.
         failed_safe: Whether the fail-safe has acted since it booted.
         words: What it has to say, with its severity.
+        ground: The altitude of the ground, in metres above sea level: its first home's.
         told: The item of its mission that it has said it begins.
         breached: Whether it was outside a fence when it last looked.
         refuge: Where it returns to, since it does.
@@ -142,6 +144,7 @@ class State:
     enforce: bool = True
     accept_unsigned: bool = False
     fixed: bool = True
+    second: bool | None = None
     booted: float = 0.0
     time: float = 0.0
     armed: bool = False
@@ -155,6 +158,7 @@ class State:
     parameters: dict[str, float] = field(default_factory=dict)
     signing: Signing | None = None
     serial: bytes = b""
+    ground: float = field(init=False)
     body: Body = field(init=False)
     store: Store = field(init=False)
     reached: list[int] = field(default_factory=list)
@@ -170,6 +174,7 @@ class State:
 
     def __post_init__(self) -> None:
         latitude, longitude, altitude = self.home
+        self.ground = altitude
         dialect = self.kind.profile.dialect
         defaults = OF_PX4 if dialect.typed else PARAMETERS | OF_KINDS[self.kind.profile.takeoff]
         authority = {self.authority_parameter: 255.0} if dialect.authority else {}
@@ -256,7 +261,8 @@ class State:
     @property
     def flies(self) -> bool:
         """Whether it is off the ground; for what does not fly, whether it is armed."""
-        return self.armed and (self.kind.profile.takeoff is TakeOff.NONE or self.body.height > 1.0)
+        above_ground = self.home[2] + self.body.height - self.ground
+        return self.armed and (self.kind.profile.takeoff is TakeOff.NONE or above_ground > 1.0)
 
     @property
     def uptime(self) -> float:
@@ -266,7 +272,7 @@ class State:
     @property
     def has_fix(self) -> bool:
         """Whether it knows where it is."""
-        return self.fixed and self.uptime >= FIX_AFTER
+        return (self.fixed or bool(self.second)) and self.uptime >= FIX_AFTER
 
     @property
     def tilt(self) -> tuple[float, float]:
@@ -281,6 +287,17 @@ class State:
     def up(self) -> bool:
         """Whether it takes missions."""
         return self.uptime >= UP_AFTER
+
+    def set_home(self, latitude: float, longitude: float, altitude: float) -> None:
+        """Move its home; it stays where it is, and so does its target."""
+        rise = altitude - self.home[2]
+        self.home = (latitude, longitude, altitude)
+        self.body = replace(self.body, height=self.body.height - rise)
+        self.target = self.target and replace(self.target, height=self.target.height - rise)
+
+    def height_in(self, height: float, frame: int) -> float:
+        """Return a height in a frame as a height above home."""
+        return height - self.home[2] if frame in (Frame.SEA_LEVEL, Frame.SEA_LEVEL_INT) else height
 
     def stay(self) -> None:
         """Hold where it is."""

@@ -47,7 +47,7 @@ class Vehicle(State):
     def restart(self) -> None:
         """Reboot on the ground at home, like a simulator that was killed in flight and restarted."""
         self.reboot()
-        self.body = Body(*self.home[:2])
+        self.body = Body(*self.home[:2], self.ground - self.home[2])
 
     # --- moving -----------------------------------------------------------------------------------
 

@@ -3,6 +3,7 @@
 No message of a vehicle says since when it obeys a station. A vehicle may answer only that station, and the network
 between stations may be faster than a link. So a change counts at once where it was commanded, and where our own link is
 lost. Any other *change* that a link shows counts once it has lasted for another reading, if no command came in between.
+While our own link shows that a vehicle obeys us, no other station's word on it counts.
 A link that never showed an authority has not lost it: after a hand-over to us it has as long to read it.
 """
 
@@ -63,6 +64,14 @@ class Authority:
         if self._counts(entity, shown, believed, now - missed, lost=lost):
             return shown, max(now, known.since + A_MOMENT)
         return believed
+
+    def keeps(self, entity: str) -> bool:
+        """Tell whether our own link shows that a vehicle obeys us, and we have not handed it over.
+
+        Then nobody else's word on it counts: another station that has taken it shows on our link, too.
+        """
+        ours = f"{CONTROL_AUTHORITY}:{self.station}"
+        return ours in self.shown.get(entity, ()) and entity not in self.handing
 
     def lags(self, entity: str, known: Said | None) -> bool:
         """Tell whether a vehicle obeys us and our link has not read it yet: the link would refuse commands."""

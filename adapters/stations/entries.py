@@ -234,23 +234,23 @@ def entry_of(station: str, data: Any) -> Entry:
             return Entry(station, number, Took(_word(data, "took"), _whole(data, "index")))
         case {"sent": str(), "to": str(to)}:
             goal = _word(data, "to") if to else ""
-            return Entry(station, number, Sent(_word(data, "sent"), goal, _time(data.get("time"))))
+            return Entry(station, number, Sent(_word(data, "sent"), goal, seconds(data.get("time"))))
         case {"hosted": str()}:
-            home = Hosted(_word(data, "hosted"), _word(data, "host"), _time(data.get("time")))
+            home = Hosted(_word(data, "hosted"), _word(data, "host"), seconds(data.get("time")))
             return Entry(station, number, home)
         case {"believed": str(), "slot": "parent" | "links" as slot, "names": names}:
-            node, time = _word(data, "believed"), _time(data.get("time"))
+            node, time = _word(data, "believed"), seconds(data.get("time"))
             return Entry(station, number, Believed(node, slot, _channels(names), time))
         case {"broke": str(assumption)} if len(assumption) <= MOST_WORDS and assumption.isprintable():
-            return Entry(station, number, Broke(assumption, _time(data.get("time"))))
+            return Entry(station, number, Broke(assumption, seconds(data.get("time"))))
         case {"to": str(), "parcel": parcel}:
             knows = _knows(data.get("knows", {}))
-            left = _time(data["time"]) if "time" in data else None
+            left = seconds(data["time"]) if "time" in data else None
             return Entry(
                 station, number, Posted(_word(data, "to"), _whole(data, "index"), parcel, knows, left)
             )
         case {"entity": str(), "since": since, "owned": bool(owned)}:
-            return Entry(station, number, Said(_published(station, data), _time(since), owned))
+            return Entry(station, number, Said(_published(station, data), seconds(since), owned))
     raise ValueError("an entry says or does none of what stations do")
 
 
@@ -275,7 +275,7 @@ def _published_json(published: Published) -> dict[str, Any]:
 
 
 def _published(station: str, data: dict[str, Any]) -> Published:
-    entity, time = _word(data, "entity"), _time(data.get("time"))
+    entity, time = _word(data, "entity"), seconds(data.get("time"))
     if data.get("gone") is True:
         return Gone(entity, time, station)
     said = PhysicalProperty(
@@ -291,7 +291,7 @@ def _published(station: str, data: dict[str, Any]) -> Published:
     )
     if "ttl" not in data:
         return said
-    return Aged(said, _time(data["ttl"]), _whole(data, "clock") if "clock" in data else None)
+    return Aged(said, seconds(data["ttl"]), _whole(data, "clock") if "clock" in data else None)
 
 
 def _knows(data: Any) -> tuple[tuple[str, int], ...]:
@@ -311,7 +311,7 @@ def _velocity(data: Any) -> Velocity | None:
         case None:
             return None
         case [int() | float() as speed, int() | float() as course]:
-            return Velocity(_time(speed), _time(course))
+            return Velocity(seconds(speed), seconds(course))
     raise ValueError(f"{data!r:.60} is no speed and course")
 
 
@@ -329,7 +329,15 @@ def _whole(data: dict[str, Any], name: str) -> int:
     return value
 
 
-def _time(value: Any) -> float:
+def count(value: Any) -> int:
+    """Return a whole number from 0 on; raises ValueError."""
+    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= LARGEST:
+        raise ValueError(f"{value!r:.60} is no whole number from 0 on")
+    return value
+
+
+def seconds(value: Any) -> float:
+    """Return a number of seconds, or another number; raises ValueError."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST:
         raise ValueError(f"{value!r:.60} is no number of seconds")
     return float(value)

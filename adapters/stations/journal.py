@@ -13,7 +13,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
-from adapters.stations.entries import MOST_BYTES, Content, Entry, Posted, Took, entry_of, entry_text
+from adapters.stations.entries import MOST_BYTES, Content, Entry, Posted, Took, count, entry_of, entry_text
 from adapters.written_files import open_private, writing
 from physical import PhysicalError, read_json
 
@@ -186,9 +186,9 @@ class Journal:
 
     def _take(self, data: Any) -> None:
         match data:
-            case {"last": int(last), "sent": dict(sent)}:
-                self.last = max(self.last, last)
-                self._sent |= {str(to): int(index) for to, index in sent.items()}
+            case {"last": last, "sent": dict(sent)}:
+                self.last = max(self.last, count(last))
+                self._sent |= {str(to): count(index) for to, index in sent.items()}
             case _:
                 self._keep(entry_of(self.station, data))
 

@@ -102,6 +102,11 @@ class Merge:
         """Return the state of an entity at a time, None if no word counts yet."""
         return holding(self.words.get(entity, {}), now)
 
+    def own(self, entity: str, station: str, now: float) -> Said | None:
+        """Return the word of one station on an entity, None if it has none that counts still."""
+        entry = self.words.get(entity, {}).get(station)
+        return None if entry is None or not _counts(entry.content, now) else holding({station: entry}, now)
+
     def ahead(self, now: float) -> list[Entry]:
         """Return the words whose time stamps lie too far in the future to count."""
         return [

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
-from adapters.stations.entries import Entry, entry_text
+from adapters.stations.entries import Entry, count, entry_text, seconds
 from physical import read_json
 
 MOST_ENTRIES: Final = 500
@@ -71,11 +71,11 @@ def read(said: bytes) -> Message:
     match read_json(said, MOST_BYTES):
         case {
             "mission": str(mission),
-            "time": int() | float() as time,
-            "after": int(after),
-            "upto": int(upto),
-            "last": int(last),
+            "time": time,
+            "after": after,
+            "upto": upto,
+            "last": last,
             "entries": [*entries],
         } if len(entries) <= 2 * MOST_ENTRIES:
-            return Message(mission, float(time), after, upto, last, entries)
+            return Message(mission, seconds(time), count(after), count(upto), count(last), entries)
     raise ValueError("this is no message of a station")

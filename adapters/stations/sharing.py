@@ -11,6 +11,7 @@ import asyncio
 import json
 from collections.abc import Container, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any, Final
 
 from adapters.listening import Listening
@@ -22,6 +23,7 @@ from adapters.plugin import (
     Command,
     Delivered,
     Failed,
+    Gone,
     HandOver,
     Hosts,
     Plugin,
@@ -45,11 +47,12 @@ from adapters.stations.entries import (
     Said,
     Sent,
     Took,
+    count,
     entry_of,
     stamped,
 )
 from adapters.stations.journal import Journal
-from adapters.stations.merge import MOST_ENTITIES, Merge, channels_of, on
+from adapters.stations.merge import ABREAST, MOST_ENTITIES, Merge, channels_of, on
 from adapters.stations.messages import MOST_BYTES, MOST_ENTRIES, Message, fitting, read, written
 from adapters.stations.outgoing import believed, entered, moved, told
 from adapters.stations.peers import Peers
@@ -202,7 +205,7 @@ class Sharing:
             return
         said = Said(published, world.now(), owned)
         if owned:
-            known = self.merge.holds(entity, world.now())
+            known = self._holds(entity, world.now())
             if known is None and self._vehicles.get(entity) and is_silent(channels_of(published)):
                 return  # its authority is unknown: it may answer only another station's link
             now = world.now()
@@ -233,7 +236,7 @@ class Sharing:
     def lags(self, entity: str) -> bool:
         """Tell whether a vehicle obeys us, and our link does not know it yet."""
         now = 0.0 if self._world is None else self._world.now()
-        return self._authority.lags(entity, self.merge.holds(entity, now))
+        return self._authority.lags(entity, self._holds(entity, now))
 
     def commanded(self, command: Command) -> None:
         """Take note of a hand-over command to one of our vehicles."""
@@ -278,10 +281,10 @@ class Sharing:
     def _answer(self, _key: str, question: bytes) -> bytes:
         """Answer with the entries after a number."""
         after = 0
-        with suppress(PhysicalError):
+        with suppress(PhysicalError, ValueError):
             match read_json(question, MOST_BYTES):
-                case {"after": int(number)}:
-                    after = number
+                case {"after": number}:
+                    after = count(number)
         texts, upto = fitting(*self._journal.after(after, MOST_ENTRIES))
         return self._message(texts, upto, after)
 
@@ -404,8 +407,18 @@ class Sharing:
             self._troubles.note("time stamp in the future", detail)
         return True
 
+    def _holds(self, entity: str, now: float) -> Said | None:
+        """Return the state of an entity; a vehicle that our own link shows to obey us is as that link has it."""
+        own = self.merge.own(entity, self._journal.station, now) if self._authority.keeps(entity) else None
+        found = self.merge.holds(entity, now)
+        if own is None or found is None or isinstance(own.published, Gone):
+            return found
+        if now - own.time <= ABREAST or isinstance(found.published, Gone):
+            return own
+        return replace(found, published=on(found.published, channels_of(own.published)), since=own.since)
+
     def _show(self, world: World, entity: str) -> None:
-        said = self.merge.holds(entity, world.now())
+        said = self._holds(entity, world.now())
         if said is not None:
             world.publish(said.published)
 

@@ -106,7 +106,13 @@ def _sim(task: Parser) -> None:
         "--runs",
         metavar="N",
         type=at_least_one,
-        help="take the runs of N seeds, from --seed on, and say in how many each predicate was true, and when first",
+        help="take N runs of the seed, 0 to N-1, and say in how many each predicate was true, and when first",
+    )
+    task.add_argument(
+        "--run",
+        metavar="N",
+        type=at_least_zero,
+        help="take run N of those that --runs takes, step by step",
     )
     task.add_argument(
         "--plot",

@@ -21,7 +21,8 @@ ORDER = """\
 It is told at once, and the mission commands it no more until `bigactors give-back VEHICLE`: what agents ask of it
 stays pending, all else goes on, and nothing that it does is an arrival. A vehicle that a pilot or a fail-safe has taken
 over is overruled only by its own name. One that is not heard is told as soon as it is; one that obeys another station
-is ordered there. The run says when the vehicle shows that it does it."""
+is ordered there. The answer of the vehicle is awaited for 10 s: the exit code is 0 once it shows that it does it, 1 if
+it refuses, and 3 if neither is known. What is refused is told again until it is done, and the run says when."""
 
 COMMAND = Command(
     "hold",

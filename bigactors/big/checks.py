@@ -7,12 +7,12 @@ from itertools import islice, pairwise
 from math import isfinite
 from typing import Any, Final
 
+from bigactors.big.states import state_text
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import paint
 from bigraphs import NotationError
 from bigraphs.exports.json import bigraph_json
-from bigraphs.notation import write_big
 from bigraphs.system import System
 from bigraphs.transitions import TransitionSystem
 from bigraphs.verdicts import (
@@ -126,10 +126,10 @@ def decided_lines(found: TransitionSystem, decided: Decided) -> Iterator[str]:
 
 
 def _run_lines(found: TransitionSystem, run: Run) -> Iterator[str]:
-    yield f"        0: {write_big(found.state(0))}"
+    yield f"        0: {state_text(found.state(0))}"
     ends = len(run.steps) if run.loop is None else len(run.steps) - 1
     for step in run.steps[:ends]:
-        yield f"        {step.state}: --{_rules(step)}--> {write_big(found.state(step.state))}"
+        yield f"        {step.state}: --{_rules(step)}--> {state_text(found.state(step.state))}"
     for step in run.steps[ends:]:
         if step.rules:
             yield f"        and again from state {step.state}, by --{_rules(step)}-->"

@@ -71,12 +71,12 @@ def check_outputs(options: Namespace) -> None:
 
 def sampled(options: Namespace, system: System) -> list[Sample]:
     """Take the runs, progress shown on a terminal; Ctrl-C ends them with those that were taken."""
-    sampler = Sampler(system, Bounds(options.steps, options.until))
+    sampler = Sampler(system, Bounds(options.steps, options.until), options.seed)
     samples: list[Sample] = []
     with watching(Path(options.file).name) as watch:
         begun = looked = time.monotonic()
-        for seed in range(options.seed, options.seed + options.runs):
-            samples.append(sampler.run(seed))
+        for number in range(options.runs):
+            samples.append(sampler.run(number))
             now = time.monotonic()
             if now - looked < LOOK_EVERY:
                 continue
@@ -96,8 +96,8 @@ def lines(
     options: Namespace, samples: Sequence[Sample], found: Sequence[FirstTimes], seconds: float
 ) -> Iterator[str]:
     """Yield what is printed."""
-    seeds = f"seeds {options.seed} to {samples[-1].seed}"
-    yield f"{Path(options.file).name}: {counted(len(samples), 'run')}, {seeds}, {seconds:.2f} s"
+    runs = f"{counted(len(samples), 'run')} of seed {options.seed}"
+    yield f"{Path(options.file).name}: {runs}, {seconds:.2f} s"
     if len(samples) < options.runs:
         yield f"  interrupted: {options.runs - len(samples):,} more were wanted"
     ends = Counter(each.end for each in samples)
@@ -127,7 +127,7 @@ def _told(found: FirstTimes) -> str:
         return f"{share}, from the start"
     return (
         f"{share}, first at {_estimated(found.time)} on average, "
-        f"{found.least:.4g} at the earliest (--seed {found.seed}), {found.most:.4g} at the latest"
+        f"{found.least:.4g} at the earliest (--run {found.first_run}), {found.most:.4g} at the latest"
     )
 
 
@@ -159,13 +159,18 @@ def as_data(
                 "share": _estimate_data(each.share),
                 "first": None
                 if each.time is None
-                else {**_estimate_data(each.time), "least": each.least, "most": each.most, "seed": each.seed},
+                else {
+                    **_estimate_data(each.time),
+                    "least": each.least,
+                    "most": each.most,
+                    "run": each.first_run,
+                },
             }
             for each in found
         ],
         "samples": [
             {
-                "seed": each.seed,
+                "run": each.number,
                 "steps": each.steps,
                 "time": each.time,
                 "end": each.end.name.lower(),

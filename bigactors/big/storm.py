@@ -99,12 +99,32 @@ def check_queries(queries: Sequence[str], system: System) -> None:
 
 
 def answers(found: TransitionSystem, queries: Sequence[str]) -> Iterator[Decided]:
-    """Yield what Storm says of each query about an explored system."""
+    """Yield what Storm says of each query about an explored system; one without an answer takes no other's."""
     texts = [translated(each, found.system) for each in queries]
-    replies = _replies(texts, storm_files(found))
-    for text, reply in zip(queries, replies, strict=True):
-        _refuse(text, reply)
-        yield answer(found, f"storm {' '.join(text.split())}", reply)
+    for text, reply in zip(texts, _each_reply(texts, storm_files(found)), strict=True):
+        claim = f"storm {' '.join(text.split())}"
+        if "error" in reply:
+            yield Decided(claim, Outcome.INCOMPLETE, note=_without_answer(text, reply["error"], found.system))
+        else:
+            yield answer(found, claim, reply)
+
+
+def _each_reply(texts: list[str], files: dict[str, str]) -> list[dict[str, Any]]:
+    """Return Storm's replies; where it fails as a whole, each formula is asked by itself."""
+    try:
+        return _replies(texts, files)
+    except Mistake as failed:
+        if len(texts) == 1:
+            return [{"error": failed.message}]
+        return [reply for text in texts for reply in _each_reply([text], files)]
+
+
+def _without_answer(text: str, error: str, system: System) -> str:
+    """Return why there is no answer, and what to do."""
+    rewarded = any(each.reward for each in (*system.predicates, *system.actions))
+    if text.lstrip().startswith("R") and not rewarded:
+        return "no answer: the system has no rewards; give a predicate one, as in preds = { p[2] }"
+    return f"no answer: {_said(error)}"
 
 
 def answer(found: TransitionSystem, claim: str, reply: dict[str, Any]) -> Decided:
@@ -159,6 +179,11 @@ def _replies(texts: list[str], files: dict[str, str] | None = None) -> list[dict
 def _refuse(text: str, reply: dict[str, Any]) -> None:
     if "error" not in reply:
         return
-    said = re.sub(r"\b\w+Exception:\s*", "", reply["error"]).split("\nNote that")[0]
+    raise Mistake(f"Storm cannot answer '{' '.join(text.split())}': {_said(reply['error'])}", EXAMPLES)
+
+
+def _said(error: str) -> str:
+    """Return Storm's message in one line, without the names of its classes."""
+    said = re.sub(r"\b\w+Exception:\s*", "", error).split("\nNote that")[0]
     said = re.sub(r"Parsing error at [\d:]+:\s*|\s*\^\s*$", "", " ".join(said.split()))
-    raise Mistake(f"Storm cannot answer '{' '.join(text.split())}': {said:.400}", EXAMPLES)
+    return f"{said:.400}"

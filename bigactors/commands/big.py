@@ -9,16 +9,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from bigactors.big.output import check_outputs, write_data, write_outputs
+from bigactors.big.states import state_line, state_text
 from bigactors.exits import Exit, worst
 from bigactors.mistakes import Mistake
 from bigactors.progress import Watch, watching
 from bigactors.terminal import is_terminal, say, tell
-from bigraphs import Bigraph, BigraphError, NotationError
+from bigraphs import BigraphError, NotationError
+from bigraphs.confluence import MOST_REACTIONS, Divergence, compare_orders
 from bigraphs.engine.machine import Machine
 from bigraphs.examples import example_names, example_text
 from bigraphs.exploration import Progress, explore
 from bigraphs.exports.json import bigraph_json
-from bigraphs.notation import load_system, read_system, write_big
+from bigraphs.notation import load_system, read_system
 from bigraphs.system import System, SystemKind
 from bigraphs.transitions import TransitionSystem
 from bigraphs.workers import cores
@@ -26,9 +28,6 @@ from physical.messages import counted
 
 if TYPE_CHECKING:
     from bigraphs.simulation import Stage
-
-LONG_STATE: Final = 300
-"""From how many characters on a state is not printed where it isn't what was asked for."""
 
 
 def run(options: Namespace) -> Exit:
@@ -69,6 +68,34 @@ def explored(options: Namespace, system: System) -> TransitionSystem:
         )
 
 
+def warn_of_orders(options: Namespace, system: System) -> None:
+    """Say of instantaneous rules whose order matters what two orders come to."""
+    orders = compare_orders(system)
+    if orders.divergence is not None:
+        for line in _divergence_lines(options.file, orders.divergence):
+            tell(line)
+    elif not orders.complete:
+        tell(
+            f"warning: {options.file}: the order of the instantaneous rules may matter: of all orders "
+            f"{MOST_REACTIONS:,} reactions were tried, and none had another outcome"
+        )
+
+
+def _divergence_lines(file: str, found: Divergence) -> Iterator[str]:
+    """Yield what is said of a class that is not confluent."""
+    place = f"{file}:{found.rules.position}" if found.rules.position else file
+    names = _instances(rule.name for rule in found.rules.rules)
+    yield f"warning: {place}: the instantaneous class ({names}) is not confluent: the order of its rules matters"
+    yield f"  of {state_line(found.state)}"
+    yield f"  {found.taken.rule} makes in the end {state_line(found.taken.outcome)}"
+    where = f"{found.other.rule} elsewhere" if found.other.rule == found.taken.rule else found.other.rule
+    yield f"  {where} makes in the end {state_line(found.other.outcome)}"
+    hint = f"a run takes the first rule of the class that applies, again and again, here {found.taken.rule}"
+    if found.other.rule == found.taken.rule:
+        hint += ", and of its places the one whose result is least in a canonical order"
+    yield f"hint: {hint}; let the rules exclude each other where that is not meant"
+
+
 def _show_progress(watch: Watch, name: str, progress: Progress) -> None:
     if watch.interrupted:
         raise KeyboardInterrupt
@@ -80,7 +107,9 @@ def _show_progress(watch: Watch, name: str, progress: Progress) -> None:
 def full(options: Namespace) -> Exit:
     """Explore every state, and write what was asked for."""
     check_outputs(options)
-    found = explored(options, read_file(options))
+    system = read_file(options)
+    warn_of_orders(options, system)
+    found = explored(options, system)
     if options.json != "-":
         say(summary(options.file, found))
         for line in _occurrence_lines(found):
@@ -120,6 +149,9 @@ def sim(options: Namespace) -> Exit:
     system = read_file(options)
     if options.until is not None and system.kind is not SystemKind.SBRS:
         raise Mistake("--until is a time, and only an sbrs has times", "give --steps", options.file)
+    warn_of_orders(options, system)
+    if options.runs is not None and options.run is not None:
+        raise Mistake("--runs takes many runs, --run one of them", "leave one of the two out", options.file)
     if options.runs is not None:
         from bigactors.big.many_runs import many_runs  # noqa: PLC0415 - one run needs no statistics
 
@@ -129,13 +161,20 @@ def sim(options: Namespace) -> Exit:
     from bigraphs.simulation import Bounds, simulate  # noqa: PLC0415 - only this task takes chances
 
     stages = []
-    for number, stage in enumerate(simulate(system, options.seed, Bounds(options.steps, options.until))):
+    bounds = Bounds(options.steps, options.until)
+    for number, stage in enumerate(simulate(system, options.seed, bounds, run=options.run)):
         stages.append(stage)
         if options.json != "-":
             say(stage_line(system, number, stage))
     if options.json:
         write_data(
-            options.json, {"file": options.file, "seed": options.seed, "run": list(map(stage_json, stages))}
+            options.json,
+            {
+                "file": options.file,
+                "seed": options.seed,
+                "number": options.run,
+                "run": list(map(stage_json, stages)),
+            },
         )
     return Exit.HOLDS
 
@@ -145,7 +184,7 @@ def stage_line(system: System, number: int, stage: Stage) -> str:
     time = f" {stage.time:.6g}" if system.kind is SystemKind.SBRS else ""
     how = f" --{stage.action + ': ' if stage.action else ''}{stage.rule}-->" if stage.rule else ""
     labels = f"  [{', '.join(stage.labels)}]" if stage.labels else ""
-    return f"{number}{time}{how} {write_big(stage.bigraph)}{labels}"
+    return f"{number}{time}{how} {state_text(stage.bigraph)}{labels}"
 
 
 def stage_json(stage: Stage) -> dict[str, Any]:
@@ -173,6 +212,7 @@ def check(options: Namespace) -> Exit:
             options.file,
         )
     checks.check_formulas(options, system)
+    warn_of_orders(options, system)
     found = explored(options, system)
     decided = list(checks.verdicts_on(options, found))
     if options.json != "-":
@@ -191,10 +231,11 @@ def validate(options: Namespace) -> Exit:
     machine = Machine(system)
     kind = f"{'a' if system.kind in (SystemKind.BRS, SystemKind.PBRS) else 'an'} {system.kind.value}"
     say(f"{Path(options.file).name}: {kind} of {counted(len(machine.reactions), 'rule')}")
-    say(f"  initial state: {_state_line(system.initial)}")
+    say(f"  initial state: {state_line(system.initial)}")
     for each in system.classes:
         how = "at once" if each.instantaneous else "one at a time"
         say(f"  a class, {how}: {_instances(rule.name for rule in each.rules) or 'no rule'}")
+    warn_of_orders(options, system)
     for what, named in (
         ("actions", system.actions),
         ("predicates", system.predicates),
@@ -203,17 +244,6 @@ def validate(options: Namespace) -> Exit:
         if named:
             say(f"  {what}: {_instances(each.name for each in named)}")
     return Exit.HOLDS
-
-
-def _state_line(bigraph: Bigraph) -> str:
-    """Return a state as it is written if that is short, else how large it is."""
-    written = write_big(bigraph)
-    if len(written) <= LONG_STATE:
-        return written
-    kinds = len({node.control for node in bigraph.nodes})
-    nodes = f"{counted(len(bigraph.nodes), 'node')} of {counted(kinds, 'control')}"
-    links = f"{counted(bigraph.edges, 'edge')}, {counted(len(bigraph.outer_names), 'name')}"
-    return f"{nodes} in {counted(bigraph.regions, 'region')}, {links}; 'bigactors big show' prints it"
 
 
 def _instances(names: Iterable[str]) -> str:
@@ -229,7 +259,7 @@ def show(options: Namespace) -> Exit:
     if options.state >= len(found):
         raise Mistake(f"there is no state {options.state}: there are {len(found)}", "", options.file)
     bigraph = found.state(options.state)
-    say(f"state {options.state} = {write_big(bigraph)}")
+    say(f"state {options.state} = {state_text(bigraph)}")
     say(draw_text(bigraph))
     if options.output:
         save_bigraph(bigraph, options.output, title=f"{Path(options.file).name}, state {options.state}")

@@ -13,7 +13,10 @@ from bigraphs import Bigraph, BigraphError
 from bigraphs.examples import example_names, example_text
 from bigraphs.exchange.xmi_reading import read_xmi
 from bigraphs.exchange.xmi_writing import write_xmi
-from bigraphs.notation import read_bgm, read_system, write_system
+from bigraphs.notation import read_bgm, read_system
+from bigraphs.notation.big.parser import parse_model
+from bigraphs.notation.big.portable import portable, unportable
+from bigraphs.notation.big.writer import checked_text, model_of
 from bigraphs.notation.files import read_text
 from bigraphs.system import System, SystemKind, Value
 
@@ -32,7 +35,11 @@ def convert(options: Namespace) -> Exit:
     system = _read(text, source, dict(options.const))
     for warning in system.warnings:
         tell(f"warning: {warning.render(options.file)}")
-    written = write_system(system) if target == "big" else _as_xmi(system, options.initial)
+    written = (
+        _as_xmi(system, options.initial)
+        if target == "xmi"
+        else _as_big(text, source, system, dict(options.const))
+    )
     if options.output == "-":
         say_text(written)
     else:
@@ -65,6 +72,14 @@ def _state(bigraph: Bigraph) -> System:
         hint = "fill its sites and close its inner names there, or read it in Python: read_xmi takes both"
         raise BigraphError("ground", f"a state has no sites and inner names, and this one has {what}", hint)
     return System(SystemKind.BRS, bigraph.signature, bigraph)
+
+
+def _as_big(text: str, source: str, system: System, constants: dict[str, Value]) -> str:
+    """Write a `.big` file: one that was read with its declarations, another's content with its own."""
+    model = portable(parse_model(text), system, constants) if source == "big" else model_of(system)
+    if lost := unportable(model):
+        tell(f"warning: BigraphER does not read {', '.join(lost)}")
+    return checked_text(model)
 
 
 def _as_xmi(system: System, initial_only: bool) -> str:

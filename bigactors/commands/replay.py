@@ -87,7 +87,15 @@ def show_foreign(options: Namespace) -> Exit:
     say(indent(draw_text(as_it_is(shown.trace.configurations[-1]).structure.logical.bigraph()), "  "))
     changes = counted(len(shown.trace), "change")
     say(f"{options.trace}: {counted(shown.positions, 'position')}, {changes} of the bigraph")
+    _account_for(options.trace, shown)
     return Exit.HOLDS
+
+
+def _account_for(path: str, shown: Shown) -> None:
+    """Say what was in a recording of others, and what of it does not count."""
+    for tally in shown.tallies:
+        for row in tally.summary():
+            say(f"{path}: {row}")
 
 
 def _watched(

@@ -6,7 +6,7 @@ import asyncio
 import sys
 import time
 from argparse import Namespace
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import AsyncExitStack, ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,8 +32,8 @@ from bigactors.recordings import Resumed, resume
 from bigactors.signatures import load_trusted
 from bigactors.sockets import socket_of
 from bigactors.stations import Company, company_of, parting_json
-from bigactors.terminal import paint, say, tell
-from bigactors.vehicle_lines import situation
+from bigactors.terminal import flying_output, paint, say, tell
+from bigactors.vehicle_lines import situation, standing
 from bigactors.verdict_files import Licence, find_verdict, licence_for
 from bigactors.watchers import Log, Tape, Terminal
 from physical import PhysicalError
@@ -77,7 +77,11 @@ class Flight:
 
 def run(options: Namespace) -> Exit:
     """Fly a mission, if there is a verdict that everything holds."""
-    flight = prepare(options)
+    with flying_output():
+        return _run(prepare(options), options)
+
+
+def _run(flight: Flight, options: Namespace) -> Exit:
     terminal = Terminal(flight.resting, tuple(flight.plan.vehicles))
     if flight.resumed is not None:
         terminal.goes_on(flight.resumed.broken, flight.resumed.taken)
@@ -98,7 +102,7 @@ def run(options: Namespace) -> Exit:
     except (NotAsAssumed, NotHeard, PluginFailed) as error:
         return _not_begun(error)
     except KeyboardInterrupt:
-        tell(f"interrupted: vehicles go on as they were told last{_taken_over(terminal.taken)}")
+        tell(f"interrupted: vehicles go on as they were told last{standing(terminal.state or flight.state)}")
         return Exit.INCOMPLETE
     return conclude(ending, broken=terminal.broken)
 
@@ -106,16 +110,12 @@ def run(options: Namespace) -> Exit:
 def conclude(ending: Ending, *, broken: bool) -> Exit:
     """Say how a run ended, and return its exit code."""
     breach = "; not all was as the mission says" if broken else ""
-    say(f"{ending.reason} after {ending.state.number} steps{breach}{_taken_over(ending.state.taken)}")
+    say(f"{ending.reason} after {ending.state.number} steps{breach}{standing(ending.state)}")
     if broken:
         return Exit.VIOLATED
-    done = ending.reason == "the mission has ended" and not ending.state.taken
+    state = ending.state
+    done = ending.reason == "the mission has ended" and not state.taken and not state.owing
     return Exit.HOLDS if done else Exit.INCOMPLETE
-
-
-def _taken_over(taken: Mapping[str, str]) -> str:
-    """Return who was taken over and not given back, to be put behind how a run ended."""
-    return "".join(f"; {vehicle} was taken over: {how}" for vehicle, how in sorted(taken.items()))
 
 
 def prepare(options: Namespace) -> Flight:
@@ -267,7 +267,9 @@ async def fly(flight: Flight, watchers: Sequence[Watcher]) -> Ending:
 
         path = socket_of(flight.mission.name, options.socket)
         try:
-            await stack.enter_async_context(listening(path, live.inbox.say, describe))
+            await stack.enter_async_context(
+                listening(path, live.inbox.say, describe, lambda: live.state.fates)
+            )
         except OSError as error:
             raise Mistake(error.strerror or str(error), "give another with --socket", str(path)) from error
         await live.begin(options.wait, forced=options.unverified)
@@ -284,5 +286,6 @@ def _not_begun(error: Exception) -> Exit:
             tell(finding.message, "not as the mission says:")
         tell("the run has not begun: put the world or the mission right, or give --unverified")
         return Exit.VIOLATED
-    hint = "is the address right, and the vehicle switched on?" if isinstance(error, NotHeard) else ""
+    silent = isinstance(error, NotHeard) and not error.heard
+    hint = "is the address right, and the vehicle switched on?" if silent else ""
     raise Mistake(str(error), hint) from error

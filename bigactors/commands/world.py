@@ -11,6 +11,7 @@ from bigactors.worlds import census, configuration_of, read_world
 from bigraphs import draw_text
 from physical import write_geojson
 from physical.messages import counted
+from physical.place_files import PLACES
 
 GEOJSON = (".geojson", ".json")
 
@@ -22,9 +23,11 @@ def run(options: Namespace) -> Exit:
     configuration = configuration_of(world)
     say(draw_text(configuration.structure.logical.bigraph()))
     say(census(world))
-    for path, counts in world.accounts:
-        for row in counts.rows():
+    for path, tally in world.accounts:
+        for row in tally.rows() if tally.missing() or Path(path).suffix.lower() not in PLACES else ():
             say(f"{path}: {row}")
+    for doubt in world.doubts:
+        tell(f"warning: {doubt}")
     for conflict in world.conflicts:
         tell(
             f"warning: {conflict}; what is in both is put into the smaller one, and a mission would refuse them"

@@ -89,7 +89,11 @@ class Machine:
 
     def start(self) -> tuple[Spot, int]:
         """Return the initial state after the instantaneous rules, and how many of their reactions that took."""
-        return self.settle(Spot(make_state(self.world, self.initial), self.index))
+        return self.settle(self.first())
+
+    def first(self) -> Spot:
+        """Return the initial state as it was given, before the instantaneous rules."""
+        return Spot(make_state(self.world, self.initial), self.index)
 
     def holding(self, state: State) -> set[int]:
         """Return the numbers of the predicates that occur in a state."""
@@ -110,20 +114,25 @@ class Machine:
 
     def steps(self, spot: Spot) -> Iterator[Step]:
         """Yield all that can happen: every occurrence in the first class of priority that has any."""
+        enabled = self.enabled(spot)
+        settled: set[Key] = set()
+        for reaction, found in enabled:
+            result = spot.after(reaction.apply(spot.state, found)[0])
+            target, count = self.settle(result)
+            if count and len(enabled) > 1:
+                count = self._counted(result, count, settled)
+            yield Step(reaction, found, target, 1 + count)
+
+    def enabled(self, spot: Spot) -> list[tuple[Reaction, Occurrence]]:
+        """Return every occurrence in the first ordinary class of priority that has any."""
         askable = spot.askable()
         for rules, instant in self.classes:
             if instant or not rules & askable:
                 continue
-            enabled = [(reaction, found) for reaction, live in spot.enabled(rules) for found in live]
-            settled: set[Key] = set()
-            for reaction, found in enabled:
-                result = spot.after(reaction.apply(spot.state, found)[0])
-                target, count = self.settle(result)
-                if count and len(enabled) > 1:
-                    count = self._counted(result, count, settled)
-                yield Step(reaction, found, target, 1 + count)
-            if enabled:
-                return
+            found = [(reaction, one) for reaction, live in spot.enabled(rules) for one in live]
+            if found:
+                return found
+        return []
 
     def _counted(self, result: Spot, count: int, settled: set[Key]) -> int:
         """Return a number of instantaneous reactions, 0 where those that follow an equal result are counted already."""
@@ -136,44 +145,39 @@ class Machine:
     def settle(self, spot: Spot) -> tuple[Spot, int]:
         """Apply instantaneous rules until none can be applied, or an ordinary class above them is enabled.
 
-        Each instantaneous class is run to its end before higher ones are asked again. Raises BigraphError if that
-        does not end.
+        Of a class the first rule that can be applied is, again and again. Each class is run to its end before higher
+        ones are asked again. Raises BigraphError if that does not end.
         """
         count = 0
         seen: set[Key] = set()
-        while self.instantaneous:
-            found = self._settle_once(spot, seen, count)
-            if found is None:
-                break
-            spot, count = found
-        return spot, count
-
-    def _settle_once(self, spot: Spot, seen: set[Key], count: int) -> tuple[Spot, int] | None:
-        """Run the first instantaneous class that is enabled to its end; None if there is none."""
-        askable = spot.askable()
-        for rules, instant in self.classes:
-            if not rules & askable:
-                continue
-            if not instant:
-                if any(True for _ in spot.enabled(rules)):
-                    return None
-                continue
-            before = count
-            while (target := self._instant(spot, rules)) is not None:
+        while self.instantaneous and (urgent := self.urgent(spot)) is not None:
+            rules = self.classes[urgent][0]
+            while (target := self.instant(spot, rules)) is not None:
                 spot, count = target, count + 1
                 self._check_progress(spot, seen, count)
-            if count > before:
-                return spot, count
+        return spot, count
+
+    def urgent(self, spot: Spot) -> int | None:
+        """Return which instantaneous class acts now; None if an ordinary one goes first, or none can act."""
+        askable = spot.askable()
+        for number, (rules, instant) in enumerate(self.classes):
+            if rules & askable and any(True for _ in spot.enabled(rules)):
+                return number if instant else None
         return None
 
-    def _instant(self, spot: Spot, rules: int) -> Spot | None:
+    def instant(self, spot: Spot, rules: int) -> Spot | None:
         """Apply the first rule that can be; of its results the one with the least canonical form."""
         for reaction, live in spot.enabled(rules):
-            targets = [spot.after(reaction.apply(spot.state, found)[0]) for found in live]
-            for target in targets:
-                target.lost |= spot.lost
+            targets = self.results(spot, reaction, live)
             return targets[self.outlines.least([target.state for target in targets])]
         return None
+
+    def results(self, spot: Spot, reaction: Reaction, live: list[Occurrence]) -> list[Spot]:
+        """Return what a rule makes of each of some occurrences."""
+        targets = [spot.after(reaction.apply(spot.state, found)[0]) for found in live]
+        for target in targets:
+            target.lost |= spot.lost
+        return targets
 
     def _check_progress(self, spot: Spot, seen: set[Key], count: int) -> None:
         self.pause()

@@ -11,7 +11,7 @@ from semantics.control import applicable
 from semantics.races.monitor import CONTROLS, slots_used, stale_tests
 from semantics.races.provenance import EVERYTHING, Dependency
 from semantics.rules import TIMED_RULES, actuate
-from semantics.state.cells import MONITOR
+from semantics.state.cells import MONITOR, VOYAGE
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.eta import Pending
 from semantics.state.requests import CTR, FLY, Request
@@ -91,10 +91,13 @@ def conflict(one: Control, other: Control) -> str | None:
 
 
 def different_ends(c: Configuration, one: Control, other: Control) -> str | None:
-    """Return in words that the two orders end differently, None where they don't; η's order aside."""
+    """Return in words that the two orders end differently, None where they don't.
+
+    Aside are η's order, and what is only remembered beside α, S and η: by the race monitor, and of flights.
+    """
     ends = [_ends(one, _request(other[0])), _ends(other, _request(one[0]))]
     cells = sorted({cell for end in ends for after in end for cell in after.state.changed(c.state)})
-    counted = [cell for cell in cells if cell[0] != MONITOR]
+    counted = [cell for cell in cells if cell[0] not in (MONITOR, VOYAGE)]
     if len({frozenset(tuple(map(after.read, counted)) for after in end) for end in ends}) == 1:
         return None
     return f"{_request(one[0])} and {_request(other[0])} end differently in the two orders"

@@ -75,6 +75,13 @@ class Command:
         redex, reactum = self.sides(host, *operands)
         return Reaction(self.write(operands, via), redex.beside(via), reactum.beside(via), via)
 
+    def made_from(self, reaction: Reaction, host: Name) -> tuple[Name, ...] | None:  # noqa: ARG002 - a rule needs it
+        """Return the host and the operands of a reaction; None where another command or rule has made it."""
+        given = tuple(node for node in reaction.redex.nodes if isinstance(node, str))
+        if len(given) <= len(self.operands):
+            return None
+        return given if self(*given) == reaction else None
+
     def write(self, operands: Iterable[str], via: Iterable[str] = ()) -> str:
         """Return the command as it is written with these operands."""
         left = iter(operands)

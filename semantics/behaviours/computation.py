@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Final
 
+from semantics.behaviours.endings import assigned, ends, migrates
 from semantics.behaviours.expressions import (
     Expression,
     Fault,
@@ -18,9 +19,10 @@ from semantics.behaviours.expressions import (
     members_asked,
     truth,
 )
-from semantics.behaviours.patterns import bind
+from semantics.behaviours.patterns import bind, looks_into
 from semantics.behaviours.program import Behaviour, Program
 from semantics.behaviours.statements import (
+    After,
     Assign,
     Block,
     Call,
@@ -46,10 +48,6 @@ MOST_STEPS: Final = 10_000
 """Internal steps after which a computation that reached no command is said to diverge."""
 
 
-LOOPS: Final = (Loop, While, ForEach)
-"""Statements that come again: what one turn had to pass says nothing of the next, which looks anew."""
-
-
 Passage = tuple[int, int]
 """A statement and which of its branches was taken, `STEPPED` for the statement itself."""
 
@@ -69,6 +67,8 @@ class Process:
         passed: What it and its forks have stepped over, and which branches they took: for coverage alone, and in no
             configuration.
         left: The statement that it has left last.
+        begun: Of the loops that it is in, how many statements stand behind each: what one turn had to pass says nothing
+            of the next, which looks anew.
     """
 
     program: Program
@@ -78,6 +78,7 @@ class Process:
     shown: list[str] = field(default_factory=list)
     passed: list[Passage] = field(default_factory=list)
     left: int = -1
+    begun: frozenset[int] = frozenset()
 
     @property
     def next(self) -> Statement | None:
@@ -88,6 +89,7 @@ class Process:
         """Drop the first statement and return what got the agent there."""
         here, self.rests_on = self.rests_on[0], self.rests_on[1:]
         self.left, self.code = self.code[0], self.code[1:]
+        self.begun -= {len(self.code)}
         return here
 
     def took(self, branch: int) -> None:
@@ -99,12 +101,35 @@ class Process:
         self.code = block + self.code
         self.rests_on = (rests_on,) * len(block) + self.rests_on
 
+    def turn(self, body: Block, here: Provenance) -> None:
+        """Put the body of the loop that comes next before it: from now on it is one that has begun."""
+        self.begun |= {len(self.code) - 1}
+        self.enter(body, here)
+
     def passing(self, tests: Provenance) -> None:
-        """Let the rest of the program depend on the tests that led there; the next iteration of a loop does not."""
+        """Let the rest of the program depend on the tests that led there; the next turn of a loop does not."""
         if tests:
-            turns = (isinstance(self.program.statements[number], LOOPS) for number in self.code)
-            kept = zip(self.rests_on, turns, strict=True)
-            self.rests_on = tuple(each if turn else each | tests for each, turn in kept)
+            behind = range(len(self.code) - 1, -1, -1)
+            kept = zip(self.rests_on, behind, strict=True)
+            self.rests_on = tuple(each if rank in self.begun else each | tests for each, rank in kept)
+
+    def might(self, ways: Iterable[Block], tests: Provenance, *, waits: bool = False) -> None:
+        """Let what follows rest on tests as far as another answer would have led another of these ways.
+
+        Where one of them may not come to its end, or the agent waits, all that is left rests on the tests. Else only
+        what one of them may change does: variables, and the host.
+        """
+        if not tests:
+            return
+        blocks = tuple(ways)
+        if waits or not all(ends(self.program, block) for block in blocks):
+            self.passing(tests)
+        scope = self.scope
+        for name in frozenset[str]().union(*(assigned(self.program, block) for block in blocks)):
+            if name in scope.store:
+                scope.rests_on[name] = scope.rests_on.get(name, NOTHING) | tests
+        if any(migrates(self.program, block) for block in blocks):
+            scope.placed |= tests
 
     def unroll(self) -> None:
         """Take the jumps of loops that come next.
@@ -114,8 +139,7 @@ class Process:
         """
         jumps = 0
         while isinstance(loop := self.next, Loop):
-            number, here = self.code[0], self.leave()
-            self.enter((*loop.body, number), here)
+            self.turn(loop.body, self.rests_on[0])
             jumps += 1
             if jumps > MOST_STEPS or not loop.body:
                 raise Fault("a loop without a command runs for ever", diverges=True)
@@ -143,7 +167,7 @@ class Process:
         """Return an independent copy."""
         scope = self.scope
         copy = replace(scope, store=dict(scope.store), rests_on=dict(scope.rests_on), used=NOTHING)
-        return Process(self.program, self.code, self.rests_on, copy, list(self.shown), self.passed, self.left)
+        return replace(self, scope=copy, shown=list(self.shown))
 
 
 def compute(process: Process) -> Iterator[Process]:
@@ -213,22 +237,25 @@ def _step(process: Process, statement: Internal) -> None:
             process.leave()
         case If(test, then, otherwise):
             value, rests_on = process.evaluate(test)
-            chosen = truth(value)
-            process.enter(then if chosen else otherwise, process.leave() | deciding(rests_on))
+            chosen, tests = truth(value), deciding(rests_on)
+            here = process.leave()
+            process.might((otherwise if chosen else then,), tests)
+            process.enter(then if chosen else otherwise, here | tests)
             process.took(0 if chosen else 1)
         case While(test, body):
             _step_while(process, test, body)
         case For(members, rest, each):
             found, rests_on = process.members(members)
-            here = process.leave()
+            here, tests = process.leave(), deciding(rests_on)
+            process.might(((each,),), tests)
             process.scope.binding({rest: found}, here | rests_on)
-            process.enter((each,), here | deciding(rests_on))
+            process.enter((each,), here | tests)
         case ForEach(variable, rest, body):
             _step_for(process, variable, rest, body)
         case Match(expression, cases):
             value, rests_on = process.evaluate(expression)
-            here = process.leave() | deciding(rests_on)
-            if not enter_case(process, cases, value, rests_on, here):
+            asked = deciding(rests_on) if look_into(cases) else NOTHING
+            if not enter_case(process, cases, value, rests_on, asked, () if _takes_all(cases) else None):
                 raise Fault(f"no case of 'match' takes {show(value)}")
         case Call(behaviour, arguments):
             called = process.program.behaviours[behaviour]
@@ -242,10 +269,10 @@ def _step_while(process: Process, test: Expression, body: Block) -> None:
     here = process.rests_on[0]
     if truth(value):
         process.passed.append((process.code[0], 0))
-        process.enter(body, here | deciding(rests_on))
+        process.turn(body, here | deciding(rests_on))
         return
     process.leave()
-    process.passing(deciding(rests_on))  # what follows runs only because the test failed
+    process.might((body,), deciding(rests_on), waits=True)  # what follows runs only because the test failed
 
 
 def _step_for(process: Process, variable: str, rest: str, body: Block) -> None:
@@ -258,7 +285,7 @@ def _step_for(process: Process, variable: str, rest: str, body: Block) -> None:
         {variable: members[0], rest: members[1:]}, here | process.scope.rests_on.get(rest, NOTHING)
     )
     process.passed.append((process.code[0], 0))
-    process.enter(body, here)
+    process.turn(body, here)
 
 
 def enter_case(
@@ -266,33 +293,74 @@ def enter_case(
     cases: tuple[Case, ...],
     value: Value,
     rests_on: Provenance,
-    here: Provenance,
-    *,
-    goes_on: bool = False,
+    asked: Provenance,
+    otherwise: Block | None,
 ) -> bool:
-    """Enter the body of the first case whose pattern and guard take a value; False where none does.
+    """Leave a `match` or `react` for the first case whose pattern and guard take a value; False where none does.
 
-    The body rests on the guards that were tried; what the pattern binds, on what the value rests on. What follows rests
-    on the guards too, unless it `goes_on` without them.
+    The body rests on what was `asked` of the value or made it come, and on the guards that were tried; what the pattern
+    binds, on what the value rests on. What follows rests on each of these where another answer would have led elsewhere
+    (`Process.might`): to another case or, where no case takes it, to `otherwise`; without that the agent waits.
     """
-    rank, tests = first_fitting(process, cases, value, rests_on)
+    rank, tried = first_fitting(process, cases, value, rests_on)
     if rank is None:
         return False
+    there = process.leave()
+    here = there.union(asked, *(tests for _, tests in tried))
     process.scope.binding(bind(cases[rank].pattern, value) or {}, rests_on)
-    if not goes_on and not any(
-        each.guard is None and bind(each.pattern, value) is not None for each in cases
-    ):
-        process.passing(tests - here)
-    process.enter(cases[rank].body, here | tests)
+    rest = () if otherwise is None else (otherwise,)
+    others = [case.body for case in cases if case is not cases[rank]] if look_into(cases) else []
+    process.might((*others, *rest), asked - there, waits=otherwise is None)  # else it would not be there
+    for each, tests in tried:
+        if each == rank:
+            after = _fitting(cases[rank + 1 :], value)
+            waits = otherwise is None and all(case.guard is not None for case in after)
+            process.might((*(case.body for case in after), *rest), tests, waits=waits)
+        else:
+            process.might((cases[each].body,), tests)
+    process.enter(cases[rank].body, here)
     process.took(rank)
     return True
 
 
+def look_into(cases: tuple[Case, ...]) -> bool:
+    """Tell whether which case is taken depends on what a value is, apart from guards."""
+    return any(looks_into(case.pattern) for case in cases)
+
+
+def _takes_all(cases: tuple[Case, ...]) -> bool:
+    return any(case.guard is None and not looks_into(case.pattern) for case in cases)
+
+
+def _fitting(cases: tuple[Case, ...], value: Value) -> list[Case]:
+    """Return the cases that may take a value, down to the first that surely does."""
+    found: list[Case] = []
+    for case in cases:
+        if bind(case.pattern, value) is not None:
+            found.append(case)
+            if case.guard is None:
+                break
+    return found
+
+
+Tried = tuple[tuple[int, Provenance], ...]
+"""The guards that were tried: the rank of each case, and what its guard rests on."""
+
+
+def give_up(process: Process, cases: tuple[Case, ...], after: After, refused: Tried) -> None:
+    """Leave a `react` for its `after` branch, given the guards that refused what is there."""
+    here = process.leave()
+    for rank, tests in refused:
+        process.might((cases[rank].body,), tests)
+        here |= tests
+    process.enter(after.body, here)
+
+
 def first_fitting(
     process: Process, cases: tuple[Case, ...], value: Value, rests_on: Provenance
-) -> tuple[int | None, Provenance]:
+) -> tuple[int | None, Tried]:
     """Return the rank of the first case whose pattern and guard take a value, and the guards that were tried."""
-    tests = NOTHING
+    tried: list[tuple[int, Provenance]] = []
     for rank, case in enumerate(cases):
         binding = bind(case.pattern, value)
         if binding is None:
@@ -301,11 +369,11 @@ def first_fitting(
             trial = process.fork()
             trial.scope.binding(binding, rests_on)
             verdict, guard = trial.evaluate(case.guard)
-            tests |= deciding(guard)
+            tried.append((rank, deciding(guard)))
             if not truth(verdict):
                 continue
-        return rank, tests
-    return None, tests
+        return rank, tuple(tried)
+    return None, tuple(tried)
 
 
 def bind_parameters(

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from semantics.behaviours.expressions import Expression, QueryOf, free
 from semantics.behaviours.patterns import variables
@@ -70,6 +70,21 @@ class VariableOf:
         return f"{self.agent}.{written(self.variables[0])}"
 
 
+class ReactionMaker(Protocol):
+    """A command or a rule of a mission."""
+
+    def __call__(self, host: Name, *arguments: Name) -> "Reaction":
+        """Return R ⇒ R'."""
+
+    def made_from(self, reaction: "Reaction", host: Name) -> tuple[Name, ...] | None:
+        """Return the host and the arguments of which a reaction was made; None where it was made by another.
+
+        Args:
+            reaction: The reaction.
+            host: The host, where the reaction does not depend on it.
+        """
+
+
 @dataclass(frozen=True, eq=False)
 class Program:
     """All statements of a mission, by number.
@@ -77,22 +92,24 @@ class Program:
     Attributes:
         statements: The statements.
         behaviours: The parametrised behaviours.
-        reactions: Commands and named rules: from the host and the arguments to a `Reaction`.
+        reactions: Commands and named rules: from the host and the arguments to a `Reaction`, and back.
         lines: The line of the mission's text that each statement stands in (from 1), as far as there is one.
         branch_lines: The same of cases and alternatives, by statement and rank.
         declared: The line in which each rule and behaviour is declared, by sort (`rule`, `behaviour`) and name.
         bodies: What each bigActor of the text begins with.
+        homes: Where each bigActor of the text is hosted at first.
         copies: Of the statements of a family's members after the first, which one of the first's each repeats.
         watched: The variables that properties name: they are kept to the end of the run.
     """
 
     statements: tuple[Statement, ...] = ()
     behaviours: Mapping[str, Behaviour] = field(default_factory=dict)
-    reactions: Mapping[str, "Callable[..., Reaction]"] = field(default_factory=dict)
+    reactions: Mapping[str, "ReactionMaker"] = field(default_factory=dict)
     lines: tuple[int, ...] = ()
     branch_lines: Mapping[tuple[int, int], int] = field(default_factory=dict)
     declared: Mapping[tuple[str, str], int] = field(default_factory=dict)
     bodies: Mapping[Name, Block] = field(default_factory=dict)
+    homes: Mapping[Name, Name] = field(default_factory=dict)
     copies: Mapping[int, int] = field(default_factory=dict)
     watched: frozenset[VariableOf] = frozenset()
 

@@ -43,7 +43,9 @@ def process_of(c: Configuration, a: Name) -> Process:
     kept = {name: each for (name, _), each in zip(store, rests_on, strict=True)}
     scope = scope_of(c.setting, a, agents.host(a), dict(store), kept)
     scope.placed = watch.host if watch else NOTHING
-    return Process(c.setting.program, code, watch.code if watch else (NOTHING,) * len(code), scope)
+    process = Process(c.setting.program, code, watch.code if watch else (NOTHING,) * len(code), scope)
+    process.begun = frozenset(watch.begun if watch else ())
+    return process
 
 
 def continuing(c: Configuration, process: Process) -> Changes:
@@ -68,7 +70,8 @@ def _variables(process: Process) -> tuple[Store, tuple[Provenance, ...]]:
 
 def _watch(process: Process, store: tuple[Provenance, ...], mailbox: tuple[Provenance, ...] = ()) -> Watch:
     code, variables = (tuple(_held(process, each) for each in part) for part in (process.rests_on, store))
-    return Watch(code, variables, mailbox, placed(process, process.scope.placed))
+    begun = tuple(sorted(process.begun))
+    return Watch(code, variables, mailbox, placed(process, process.scope.placed), begun)
 
 
 def _held(process: Process, provenance: Provenance) -> Provenance:

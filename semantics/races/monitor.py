@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import cache, partial
 from typing import NamedTuple
 
+from semantics.behaviours.endings import begun_loops
 from semantics.behaviours.observations import QueryOperator, Step, Steps
 from semantics.behaviours.queries import answers, denoted
 from semantics.races.provenance import (
@@ -243,8 +244,10 @@ def _mark_memory(c: Configuration, holder: Name, author: Name, again: Asking) ->
     mark = Marker(author, holder, to, questions_of(c, holder), again).mark
     mailbox_too = holder != author or _passes_on(c, holder, HEARD)
     mailbox = tuple(map(mark, watch.mailbox)) if mailbox_too else watch.mailbox
-    marked = Watch(tuple(map(mark, watch.code)), tuple(map(mark, watch.store)), mailbox, mark(watch.host))
-    return {watch_cell(holder): marked}
+    code, store = (tuple(map(mark, part)) for part in (watch.code, watch.store))
+    return {
+        watch_cell(holder): replace(watch, code=code, store=store, mailbox=mailbox, host=mark(watch.host))
+    }
 
 
 def _passes_on(c: Configuration, agent: Name, what: Name) -> bool:
@@ -298,7 +301,8 @@ def monitored(c: Configuration) -> Configuration:
         agents = c.alpha
         lengths = (len(agents.code(agent)), len(agents.store(agent)), len(agents.mailbox(agent)))
         code, store, mailbox = ((NOTHING,) * length for length in lengths)
-        cells[watch_cell(agent)] = Watch(code, store, mailbox)
+        begun = begun_loops(setting.program, agents.code(agent))
+        cells[watch_cell(agent)] = Watch(code, store, mailbox, begun=begun)
         lines = (line_cell(agent), sends_cell(agent), QUEUE)
         cells |= {
             (MONITOR, *cell): (NOTHING,) * len(c.read(cell)) for cell in lines if c.read(cell) is not None

@@ -109,8 +109,13 @@ def deciding(provenance: Provenance) -> Provenance:
     return frozenset(each.deciding() for each in provenance if each.asked is not None)
 
 
+def computed(provenance: Provenance) -> Provenance:
+    """Return what a value rests on, as what it was computed from."""
+    return frozenset(replace(each, computed=True) for each in provenance)
+
+
 def told_because(provenance: Provenance) -> Provenance:
-    """Return what it rests on that a message was sent, whatever it says."""
+    """Return what it rests on that a message was sent, or an observation asked for, whatever it says."""
     return frozenset(each for each in provenance if not each.computed)
 
 

@@ -32,12 +32,15 @@ class Watch:
         store: For each variable of the store, what it was computed from.
         mailbox: For each message of the mailbox, what its sender had computed it from.
         host: What the node that it is hosted at was chosen by.
+        begun: Of the loops that it is in, how many statements stand behind each, sorted: a loop that has begun looks
+            anew in its next turn.
     """
 
     code: tuple[Provenance, ...] = ()
     store: tuple[Provenance, ...] = ()
     mailbox: tuple[Provenance, ...] = ()
     host: Provenance = NOTHING
+    begun: tuple[int, ...] = ()
 
 
 def host_cell(agent: Name) -> Cell:

@@ -26,6 +26,12 @@ QUEUE: Cell = ("queue",)
 MONITOR = "watch"
 """Cells whose first word begins so belong to the race monitor; configurations are counted without them."""
 
+VOYAGE = "voyage"
+"""Cells whose first word begins so remember where vehicles may be, where a mission says how long flights take.
+
+They bound durations; the rules neither read nor write them.
+"""
+
 
 Question = Callable[..., Any]
 """What may be asked of a cell's value, and some constants; of None too, where there is no such cell (yet)."""

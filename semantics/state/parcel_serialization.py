@@ -1,7 +1,7 @@
 """Parcels as plain data: written, and read back within bounds by the types of their parts.
 
-A value of the mission language is written by its form; of everything else the type says what is read, so that nothing
-enters that the rules could not have made.
+A value of the mission language is written by its form; of everything else the type says what is read. No type of a
+reaction is among them: what a control asks for is made of the text of the mission that takes the parcel in.
 """
 
 from collections.abc import Mapping
@@ -11,17 +11,10 @@ from types import UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from semantics.behaviours.observations import All, Fact, Nodes, Observation, Of, Query, QueryOperator, Swept
-from semantics.behaviours.reaction_rules import (
-    LinkVariable,
-    Match,
-    NodeVariable,
-    Pattern,
-    PlaceVariable,
-    Reaction,
-)
 from semantics.behaviours.values import LARGEST_NUMBER, MOST_PARTS, Route, Truth, Value, in_order, parts
-from semantics.state.partition import Belief, Elsewhere, Parcel, Passage, Running, Whereabouts
-from semantics.state.requests import CTR, FLY, MGR, OBS, READY, SND, Request
+from semantics.state.parcels import Controls, Parcel, Running
+from semantics.state.partition import Belief, Elsewhere, Passage, Whereabouts
+from semantics.state.requests import MGR, OBS, READY, SND
 
 MOST_ITEMS = 10_000
 """The most parts of one list."""
@@ -31,12 +24,9 @@ DEEPEST = 40
 
 TYPES: Mapping[str, type] = {
     each.__name__: each
-    for each in (
-        *(OBS, READY, CTR, FLY, SND, MGR, All, Nodes, Of, Fact, Swept, Reaction, Match, Pattern),
-        *(NodeVariable, PlaceVariable, LinkVariable, Running, Parcel),
-    )
+    for each in (OBS, READY, SND, MGR, Controls, All, Nodes, Of, Fact, Swept, Running, Parcel)
 }
-NAMES: Mapping[str, Any] = {**TYPES, "Query": Query, "Observation": Observation, "Request": Request}
+NAMES: Mapping[str, Any] = {**TYPES, "Query": Query, "Observation": Observation}
 
 
 def elsewhere_json(seen: Elsewhere) -> dict[str, Any]:

@@ -5,18 +5,19 @@ package alone: `snd`, `migrate` and `spawn` are taken where the agent runs whose
 agent that runs elsewhere then *leaves* in a parcel, and *enters* there: which changes nothing of the whole.
 """
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from semantics.behaviours.observations import Nodes, Of, Query
+from semantics.admission.objections import may_be_hosted, text_objection
+from semantics.admission.value_flow import flow_of
 from semantics.behaviours.stepping import joining
-from semantics.behaviours.values import Value
 from semantics.environment import Says
-from semantics.state.agents import Code, Store, code_cell, host_cell, mailbox_cell, store_cell
+from semantics.state.agents import code_cell, host_cell, mailbox_cell, store_cell
 from semantics.state.cells import Cell, Changes
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.logical_model import links_cell, parent_cell
-from semantics.state.requests import CTR, FLY, MGR, OBS, READY, Request
+from semantics.state.parcels import Parcel, Running, asked, requested
+from semantics.state.requests import FLY
 from semantics.state.signature import REGION, Name
 
 Station = str
@@ -55,34 +56,6 @@ class Parting:
     hosts: Mapping[Name, Station]
     sent: Mapping[Station, int]
     took: Mapping[Station, int]
-
-
-@dataclass(frozen=True, slots=True)
-class Running:
-    """A bigActor on its way.
-
-    Attributes:
-        host: Where it goes.
-        code: What is left of it to run.
-        store: Its variables.
-        requests: What it has asked for.
-        says: How often each thing may still be said to it, in the order of the environment's clauses.
-    """
-
-    host: Name
-    code: Code = ()
-    store: Store = ()
-    requests: tuple[Request, ...] = ()
-    says: tuple[int, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Parcel:
-    """What goes from one station to another: messages for an agent, or the agent itself with its messages."""
-
-    agent: Name
-    mail: tuple[Value, ...] = ()
-    running: Running | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,11 +134,12 @@ def is_here(c: Configuration, a: Name) -> bool:
 
 
 def parcel_of(c: Configuration, a: Name) -> Parcel | None:
-    """Return what is here of an agent, None where nothing is."""
+    """Return what is here of an agent, None where nothing is; raises ValueError while it flies a vehicle."""
     code, store, mail = c.alpha.code(a), c.alpha.store(a), c.alpha.mailbox(a)
-    requests = tuple(pending.request for pending in c.eta.of(a))
+    host, program = c.alpha.host(a), c.setting.program
+    requests = tuple(asked(program, pending.request, host) for pending in c.eta.of(a))
     says = tuple(c.read(counter) for counter in _counters(c, a))
-    running = Running(c.alpha.host(a), code, store, requests, says) if code or store or requests else None
+    running = Running(host, code, store, requests, says) if code or store or requests else None
     return Parcel(a, mail, running) if mail or running else None
 
 
@@ -178,13 +152,15 @@ def _counters(c: Configuration, a: Name) -> tuple[Cell, ...]:
 def leave(c: Configuration, a: Name) -> Iterator[Transition]:
     """Send away what this station has of an agent that runs elsewhere.
 
-    a runs at station s, which is not this one      something of a is here
-    ──────────────────────────────────────────────────────────────────────────  ⟨leave : a, s⟩
+    a runs at station s, which is not this one      something of a is here      no FLY of a ∈ η
+    ─────────────────────────────────────────────────────────────────────────────────────────  ⟨leave : a, s⟩
     ⟨α | S | η⟩  →  ⟨α[a ↦ nothing left to run, no mail] | S | η − a's requests⟩
     """
     if a not in c.alpha or is_here(c, a):  # premise: a runs elsewhere
         return
     station = station_of(c, a)
+    if any(isinstance(each.request, FLY) for each in c.eta.of(a)):  # premise: no FLY of a ∈ η
+        return
     if station is None or parcel_of(c, a) is None:  # premises: at a station, something is here
         return
     count: int = c.read(sent_cell(station))
@@ -195,13 +171,14 @@ def enter(c: Configuration, station: Station, number: int, parcel: Parcel) -> It
     """Take in what another station had of an agent: each parcel once, and in order.
 
     the number-th parcel from station s has mail for a, or a itself      number − 1 parcels from s have entered
+    the text can have produced it: a at a statement of it, values that fit, requests that its statements make
     ─────────────────────────────────────────────────────────────────────────────────────────  ⟨enter : a, s⟩
     ⟨α | S | η⟩  →  ⟨α[a ↦ what is left to run, mailbox(a) + mail] | S | η ∪ a's requests⟩
     """
     a, running = parcel.agent, parcel.running
     if c.read(took_cell(station)) != number - 1:  # premise: the parcels before it have entered, and it hasn't
         return
-    if objection(c, parcel):  # premise: it speaks of what is known here
+    if objection(c, parcel):  # premise: the text can have produced it
         return
     entered = c.with_({took_cell(station): number})
     if running is not None:
@@ -212,72 +189,31 @@ def enter(c: Configuration, station: Station, number: int, parcel: Parcel) -> It
 
 
 def objection(c: Configuration, parcel: Parcel) -> str:
-    """Say why a parcel cannot enter: it is not of this mission, or its agent runs here already; nothing if it can."""
+    """Say why a parcel cannot enter: its agent runs here already, or this mission's text cannot have produced it."""
     a, running = parcel.agent, parcel.running
-    if running is None:
-        return "" if a in c.alpha else f"there is no bigActor {a:.60} here"
-    if a in c.alpha and is_here(c, a) and c.alpha.code(a):
-        return f"{a:.60} runs here already"
-    if not all(0 <= number < len(c.setting.program.statements) for number in running.code):
-        return "what it is to run is not in this mission"
-    if len(running.says) != len(_counters(c, a)) or any(count < 0 for count in running.says):
-        return "what may be said to it is not what this mission says"
-    if any(request.agent != a for request in running.requests):
-        return "it holds requests of another agent"
-    if not all(_is_closed(request) for request in running.requests):
-        return "it asks for what no mission can"
-    missing = sorted({running.host, *_nodes(running.requests)} - {*c.setting.kinds, REGION})
-    return f"nothing is known of {missing[0]:.60} here" if missing else ""
-
-
-def _is_closed(request: Request) -> bool:
-    """Tell whether a reaction speaks of nothing but what its redex names."""
-    if not isinstance(request, CTR | FLY):
-        return True
-    redex, reactum = request.reaction.redex, request.reaction.reactum
-    nodes, places = set(redex.nodes), {place for _, place in redex.parents}
-    links = {link for link, _ in redex.links}
-    named = all(node in nodes for node, _ in redex.parents) and all(node in nodes for _, node in redex.links)
-    known = all(node in nodes and _known(place, nodes | places) for node, place in reactum.parents)
-    joined = all(node in nodes and _known(link, links) for link, node in reactum.links)
-    others = (*redex.closed, *reactum.nodes, *reactum.closed, *request.reaction.via)
-    return named and known and joined and nodes.issuperset(others)
-
-
-def _known(term: object, among: Collection[object]) -> bool:
-    return isinstance(term, str) or term in among
-
-
-def _nodes(requests: Iterable[Request]) -> set[Name]:
-    """Return the nodes that requests name."""
-    found: set[Name] = set()
-    for request in requests:
-        match request:
-            case OBS(_, query) | READY(_, query, _):
-                found.update(_asked(query))
-            case CTR(_, reaction) | FLY(_, reaction, _):
-                terms = (*reaction.redex.nodes, *(place for _, place in reaction.redex.parents))
-                found.update(term for term in terms if isinstance(term, str))
-            case MGR(_, host):
-                found.add(host)
-    return found
-
-
-def _asked(query: Query) -> tuple[Name, ...]:
-    while isinstance(query, Of):
-        query = query.of
-    return query.names if isinstance(query, Nodes) else ()
+    if running is None and a not in c.alpha:
+        return f"there is no bigActor {a:.60} here"
+    if running is not None:
+        if a in c.alpha and is_here(c, a) and c.alpha.code(a):
+            return f"{a:.60} runs here already"
+        if running.host not in c.setting.kinds:
+            return f"nothing is known of {running.host:.60} here"
+        if c.read(station_cell(running.host)) != c.read(HERE):
+            return f"this station does not run what is hosted at {running.host:.60}"
+    return text_objection(c.setting, flow_of(c.setting), parcel)
 
 
 def learn(c: Configuration, a: Name, host: Name) -> Iterator[Transition]:
     """Learn the host of an agent that runs at another station; nothing else of it is known here.
 
-    a does not run here      h is a host of another station, and not the one known
-    ────────────────────────────────────────────────────────────────────────────────  ⟨learn : a, h⟩
+    a does not run here      h is a host of another station, where the text may host a, and not the one known
+    ─────────────────────────────────────────────────────────────────────────────────────────  ⟨learn : a, h⟩
     ⟨α | S | η⟩  →  ⟨α[host(a) ↦ h] | S | η⟩
     """
     station = c.read(station_cell(host))
     if station is None or station == c.read(HERE):  # premise: h is a host of another station
+        return
+    if not may_be_hosted(c.setting, flow_of(c.setting), a, host):  # premise: the text may host a there
         return
     if a not in c.alpha:
         yield Transition(Label("learn", a, host), _arriving(c, a, Running(host)))
@@ -342,7 +278,7 @@ def _arriving(c: Configuration, a: Name, running: Running) -> Configuration:
     cells |= dict(zip(_counters(c, a), running.says, strict=False))
     there = c.with_(cells if known else {**joining(c, a), **cells, mailbox_cell(a): ()})
     for request in running.requests:
-        there = there.with_(there.eta.adding(request))
+        there = there.with_(there.eta.adding(requested(c.setting.program, request)))
     return there
 
 

@@ -7,10 +7,11 @@ rules.
 
 import math
 import re
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Collection, Hashable, Iterable, Iterator
 from enum import IntEnum, auto
 from typing import NamedTuple
 
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.statements import React
 from semantics.behaviours.stepping import next_statement
@@ -162,10 +163,10 @@ def _around(c: Configuration, entity: Name) -> Iterator[Name]:
 def of_requests(c: Configuration, a: Name, served: Iterable[Transition | Fault]) -> ActorClocks:
     """Return the clocks of an agent's requests that a rule would serve apart from turns, and of its flights."""
     steps = [each for each in served if isinstance(each, Transition)]
-    enabled = {each.served.request for each in steps if each.served is not None}
+    enabled = _serving_rules(steps)
     pending = [each.request for each in c.eta.in_line(a) if each.request in enabled]
     running = [
-        Running(Clock(Sort.REQUEST, request, channel), _service(c, request, channel))
+        Running(Clock(Sort.REQUEST, request, channel), _service(c, request, channel, enabled[request]))
         for request in pending
         if not isinstance(request, FLY)
         for channel in _channels(c, request)
@@ -175,7 +176,16 @@ def of_requests(c: Configuration, a: Name, served: Iterable[Transition | Fault])
     return ActorClocks(found, tuple(_of_request(c, each, found) for each in steps))
 
 
-def _flights(c: Configuration, a: Name, enabled: set[Request]) -> Iterator[Running]:
+def _serving_rules(steps: Iterable[Transition]) -> dict[Request, frozenset[str]]:
+    """Return by which rules each request would be served."""
+    found: dict[Request, frozenset[str]] = {}
+    for each in steps:
+        if each.served is not None:
+            found[each.served.request] = found.get(each.served.request, frozenset()) | {each.label.rule}
+    return found
+
+
+def _flights(c: Configuration, a: Name, enabled: Collection[Request]) -> Iterator[Running]:
     for fly in dict.fromkeys(each.request for each in c.eta.own(a)):
         if isinstance(fly, FLY):
             interval = interval_of_flight(c, fly)
@@ -209,7 +219,8 @@ def _channels(c: Configuration, request: Request) -> tuple[Name, ...]:
     return (ONE_HOST,) if here == there else tuple(channels_between(c, here, there))
 
 
-def _service(c: Configuration, request: Request, channel: Name) -> Interval:
+def _service(c: Configuration, request: Request, channel: Name, rules: frozenset[str]) -> Interval:
+    """Return how long it takes until a request is served by some rules: what no line is about takes any time."""
     timing = timing_of(c)
     match request:
         case OBS():
@@ -219,9 +230,19 @@ def _service(c: Configuration, request: Request, channel: Name) -> Interval:
         case MGR():
             return timing.command("migrate") or ANY_TIME
         case CTR():
-            return timing.command(word_of(request)) or timing.react
+            taken_up = all(is_taken_up(request, rule) for rule in rules)
+            return timing.command(word_of(request)) or (timing.react if taken_up else ANY_TIME)
         case _:
             return ANY_TIME
+
+
+def is_taken_up(request: CTR, rule: str) -> bool:
+    """Tell whether serving a control is only taking it up, for which an agent takes the time of its own steps.
+
+    A vehicle is sent on its way, or is there already. All else is done then, and how long that takes has to be said.
+    """
+    command = COMMANDS.get(word_of(request))
+    return rule == "command" or (command is not None and command.travels)
 
 
 def word_of(request: CTR) -> str:

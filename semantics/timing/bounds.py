@@ -10,7 +10,7 @@ from semantics.behaviours.values import show
 from semantics.environment import Appears, Drifts, Drops, Leaves, Says, Vanishes
 from semantics.state.requests import CTR, FLY, MGR, OBS, SND
 from semantics.state.setting import Setting
-from semantics.timing.actor_clocks import Clock, Sort, word_of
+from semantics.timing.actor_clocks import Clock, Sort, is_taken_up, word_of
 from semantics.timing.clocks import Situation, TimedStep
 from semantics.timing.intervals import ANY_TIME, Interval
 from semantics.timing.timing import ONE_HOST, Every, Sayable, Window
@@ -99,7 +99,8 @@ def _beginnings(situation: Situation, step: TimedStep) -> Iterator[str]:
             yield "migrate "
         case CTR():
             yield f"{word_of(request)} "
-            if situation.timing.command(word_of(request)) is None:
+            said = situation.timing.command(word_of(request))
+            if said is None and is_taken_up(request, label.rule):
                 yield "agents "
         case _ if label.agent is not None:
             yield "spawn " if label.rule == "spawn" else "agents "

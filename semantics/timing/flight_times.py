@@ -56,7 +56,9 @@ def _interval(c: Configuration, fly: FLY, vehicle: Name, place: Name) -> Interva
     where = [each for each in found if each is not None]
     if timing is None or motion is None or not isinstance(voyage, Voyage):
         return ANY_TIME
-    if voyage.hull is None or len(where) < len(found):  # somebody drifts within a place: nothing is known
+    if voyage.hull is None or len(where) < len(
+        found
+    ):  # drifts within a place, or absent now: nothing is known
         return ANY_TIME
     least = sum(starmap(least_distance, pairwise([voyage.origin, *where])))
     most = _longest(voyage, _aims(c, fly, vehicle, names, where), motion)

@@ -84,7 +84,7 @@ class Timing:
         tick: Milliseconds of a tick.
         motions: How vehicles move, sorted by name.
         endurances: How long vehicles last, sorted by name.
-        react: `fun`, `req_*`, `rcv_*`, and taking up a request that no other bound names.
+        react: `fun`, `req_*`, `rcv_*`, and how long it takes until a vehicle is sent on its way.
         sense: How long `sense` takes.
         messages: How long a message over a channel takes, sorted by channel; `ONE_HOST` for those on one host.
         commands: By the word of a command or the name of a rule (`HAND`, `CONNECT`, `spawn`), sorted.

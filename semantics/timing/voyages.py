@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from enum import Enum
 from functools import partial
 from typing import Final
 
@@ -18,10 +19,10 @@ from semantics.behaviours.reaction_rules import moved
 from semantics.brr_driver import mobility_commands
 from semantics.control import commits
 from semantics.environment import Drifts
-from semantics.state.cells import Cell, Changes
+from semantics.state.cells import VOYAGE, Cell, Changes
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.eta import line_cell
-from semantics.state.physical_model import Carried, InTransit, PhysicalModel, placement_cell
+from semantics.state.physical_model import Carried, InTransit, PhysicalModel, Placed, placement_cell
 from semantics.state.requests import FLY, Request
 from semantics.state.setting import Setting
 from semantics.state.signature import REGION, Name
@@ -38,8 +39,8 @@ class Voyage:
         origin: Where the vehicle may have been at the `command`.
         toward: What it was sent by (VIA, in order) and to.
         waypoints: Every point that it was sent to in this flight, sorted.
-        hull: Where it may be: the hull of its origin and of everything that it was sent to or by. None where nothing
-            is known of one of them.
+        hull: Where it may be: the hull of its origin and of everything that it was sent to or by. None where something
+            of it drifts within a place: nothing is known. What is absent adds nothing: nobody is sent there.
     """
 
     origin: Extent
@@ -48,18 +49,44 @@ class Voyage:
     hull: Extent | None
 
 
-Memory = Voyage | Extent | None
-"""What is remembered of a vehicle: its flight; the place in which it arrived last, as that was then; or nothing."""
+class Adrift(Enum):
+    """Says that something was put down where its carrier had drifted within a place: P has one of many points."""
+
+    PUT_DOWN = "put down"
+
+
+Memory = Voyage | Extent | Adrift | None
+"""What is remembered of a vehicle: its flight; the place in which it arrived last, as that was then; that it was put
+down by what drifts within a place; or nothing."""
 
 
 def memory_cell(vehicle: Name) -> Cell:
     """Address what is remembered of a vehicle."""
-    return ("voyage", vehicle)
+    return (VOYAGE, vehicle)
 
 
 def remembered_at_first(setting: Setting) -> Changes:
     """Return the cells of all vehicles, as they are at first."""
-    return {} if setting.timing is None else {memory_cell(name): None for name in vehicles(setting)}
+    return {} if setting.timing is None else {memory_cell(name): None for name in _remembered(setting)}
+
+
+def _remembered(setting: Setting) -> tuple[Name, ...]:
+    """Return of whom something is remembered, sorted: who can be driven, or put down where nobody knows."""
+    return tuple(sorted({*vehicles(setting), *_drifting_cargo(setting)}))
+
+
+def _drifting_cargo(setting: Setting) -> Iterator[Name]:
+    """Yield who may be aboard of what drifts within a place."""
+    waiting, kinds = [setting.kind(each.entity) for each in _adrift(setting)], set[str]()
+    while waiting:
+        more = setting.signature[waiting.pop()].carries - kinds
+        kinds |= more
+        waiting += more
+    return (name for name, kind in setting.kinds.items() if kind in kinds)
+
+
+def _adrift(setting: Setting) -> Iterator[Drifts]:
+    return (each for each in setting.environment if isinstance(each, Drifts) and each.within)
 
 
 def vehicles(setting: Setting) -> tuple[Name, ...]:
@@ -82,9 +109,15 @@ def whereabouts(c: Configuration, entity: Name) -> Extent | None:
     if isinstance(kept, Voyage):
         return kept.hull
     at = physical.position(bearer)
-    if at is None or _is_adrift(c, bearer):
+    if at is None or isinstance(kept, Adrift) or _is_adrift(c, bearer):
         return None
     return kept or extent(at.geometry)
+
+
+def is_there(c: Configuration, entity: Name) -> bool:
+    """Tell whether P has an entity, and everything that carries it, at some place."""
+    physical = c.structure.physical
+    return physical.position(_outermost(physical, entity)) is not None
 
 
 def origin(c: Configuration, vehicle: Name) -> Extent | None:
@@ -101,9 +134,11 @@ def origin(c: Configuration, vehicle: Name) -> Extent | None:
         return kept.origin
     if _is_adrift(c, vehicle):
         return None
-    if kept is not None:
+    if isinstance(kept, Extent):
         return kept
     parent = physical.abstract_parent(vehicle)
+    if kept is Adrift.PUT_DOWN and parent == REGION:
+        return None
     at = physical.position(vehicle if parent == REGION else parent)
     return None if at is None else extent(at.geometry)
 
@@ -117,7 +152,7 @@ def _outermost(physical: PhysicalModel, entity: Name) -> Name:
 
 def _is_adrift(c: Configuration, entity: Name) -> bool:
     """Tell whether something drifts within a place, or lies in something that does."""
-    adrift = {each.entity for each in c.setting.environment if isinstance(each, Drifts) and each.within}
+    adrift = {each.entity for each in _adrift(c.setting)}
     around, seen = entity, set[Name]()
     while around != REGION and around not in seen and adrift:
         if around in adrift:
@@ -141,7 +176,7 @@ def remembering(c: Configuration, transition: Transition) -> Transition:
     }
     if not changed:
         return transition
-    begun = {name: _memory(c, after, name) for name in driven if name in changed}
+    begun = {name: _memory(c, after, name) for name in _remembered(c.setting) if name in changed}
     after = after.with_({memory_cell(name): kept for name, kept in begun.items()})
     return replace(transition, target=after.with_each(after.each(driven, partial(_widened, after))))
 
@@ -155,6 +190,8 @@ def _memory(c: Configuration, after: Configuration, vehicle: Name) -> Memory:
     if isinstance(before, InTransit) and not isinstance(now, Carried):
         place = after.structure.physical.position(before.to)
         return None if place is None else extent(place.geometry, circle(c.setting, vehicle))
+    if isinstance(before, Carried) and isinstance(now, Placed) and whereabouts(c, vehicle) is None:
+        return Adrift.PUT_DOWN
     return None
 
 
@@ -208,7 +245,7 @@ def _sent(
     for name, (_, toward) in flights.items():
         kept: Memory = c.read(memory_cell(name))
         if isinstance(kept, Voyage):
-            where = [whereabouts(c, each) for each in toward]
+            where = [whereabouts(c, each) for each in toward if is_there(c, each)]
             sent_to = tuple(sorted({*kept.waypoints, *points[name]}))
             yield memory_cell(name), Voyage(kept.origin, toward, sent_to, _hull([kept.hull, *where]))
 

@@ -97,7 +97,7 @@ def _declare_spawned(mission: s.Mission, names: Names) -> None:
 
 
 def elaborate_bodies(
-    mission: s.Mission, names: Names, actors: Iterable[Actor], schemas: Mapping[str, Schema]
+    mission: s.Mission, names: Names, actors: tuple[Actor, ...], schemas: Mapping[str, Schema]
 ) -> tuple[Bodies, Program]:
     """Return all bodies and the program that they are numbered in."""
     bodies = Bodies(schemas=dict(schemas))
@@ -135,7 +135,10 @@ def elaborate_bodies(
         if key[0] in ("rule", "behaviour")
     }
     begun = {name: body.block for name, body in bodies.agents.items()}
-    whole = Program(statements, behaviours, reactions, lines, program.branch_lines, declared, begun, copies)
+    homes = {actor.name: actor.host.text for actor in actors}
+    whole = Program(
+        statements, behaviours, reactions, lines, program.branch_lines, declared, begun, homes, copies
+    )
     return bodies, whole
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from physical import Geometry, PhysicalError, band_contains, drift_faces, face_at
+from physical.placement import still
 from semantics.environment import Drifts
 from semantics.state.physical_model import Carried, Placed
 from specs import syntax as s
@@ -97,10 +98,10 @@ def drifts_within(
     here, within = world.placements.get(clause.entity.text), world.placements.get(clause.place.text)
     if not isinstance(here, Placed) or not isinstance(within, Placed):
         return None
-    places = dict(_arrangement(clause.entity.text, here, spots, clauses))
+    places, aboard = _arrangement(clause.entity.text, here, spots, mobility, clauses)
     try:
-        faces = drift_faces(here.geometry, within.geometry, places)
-        at = face_at(here.geometry, within.geometry, places)
+        faces = drift_faces(here.geometry, within.geometry, places, aboard)
+        at = face_at(here.geometry, within.geometry, places, aboard)
     except PhysicalError as error:
         names.findings.add(Code.INEXACT_DRIFT, clause, error.message, error.hint or LIST_THEM)
         return None
@@ -110,14 +111,14 @@ def drifts_within(
         return None
     world.notes.append(f"borders are left out of the drift of {clause.entity.text}")
     placements = tuple(Placed(face.representative, here.altitude) for face in faces)
-    called = tuple(_face(clause.place.text, face.inside) for face in faces)
+    called = tuple(_face(clause.place.text, face.relations) for face in faces)
     following = tuple(face.adjacent for face in faces)
     return Drifts(clause.entity.text, placements, called, following, faces[at].adjacent, within=True)
 
 
-def _face(within: str, inside: tuple[str, ...]) -> str:
-    others = [name for name in inside if name != within]
-    return " and ".join([f"somewhere in {within}", *others])
+def _face(within: str, relations: tuple[tuple[str, ...], ...]) -> str:
+    around = dict.fromkeys(name for inside in relations for name in inside)
+    return " and ".join([f"somewhere in {within}", *(name for name in around if name != within)])
 
 
 def _inexact(
@@ -139,15 +140,33 @@ def _inexact(
         return f"'{place}' is no place with a border that is there at first"
     if moves(place, names, mobility):
         return f"'{place}' may move itself"
-    inside = [
-        other
-        for other, of in sorted(names.kinds.items())
-        if of in names.signature[kind].contains and other != entity
-    ]
+    inside = _contents(entity, names)
     if inside and not here.geometry.is_point:
         return f"'{entity}' may itself contain '{inside[0]}'"
-    swallowing = next((o for o in _containers(entity, names) if _roams(o, spots, mobility, clauses)), None)
-    return f"'{swallowing}', which may contain it, moves too" if swallowing else ""
+    swallowing = _roaming(entity, spots, mobility, clauses)
+    if swallowing:
+        return f"'{swallowing}', which may contain it, moves too"
+    return next(
+        filter(None, (_inexact_aboard(o, spots, mobility, clauses) for o in _cargo(entity, names, mobility))),
+        "",
+    )
+
+
+def _inexact_aboard(
+    other: str, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]
+) -> str:
+    """Say why placements of what takes off, or is put down, where its carrier has drifted to would not be exact."""
+    inside = _contents(other, spots.names)
+    if inside and any(not shape.geometry.is_point for shape in _shapes(other, spots, clauses)):
+        return f"'{other}', which it may carry, may contain '{inside[0]}' once it is put down"
+    swallowing = _roaming(other, spots, mobility, clauses)
+    return f"'{swallowing}', which may contain '{other}' from aboard, moves too" if swallowing else ""
+
+
+def _contents(entity: str, names: Names) -> list[str]:
+    """Return who may be in an entity, but for what it carries."""
+    contains = names.signature[names.kinds[entity]].contains
+    return [name for name, kind in sorted(names.kinds.items()) if kind in contains and name != entity]
 
 
 def _containers(entity: str, names: Names) -> list[str]:
@@ -159,6 +178,33 @@ def _containers(entity: str, names: Names) -> list[str]:
     ]
 
 
+def _cargo(entity: str, names: Names, mobility: Mobility) -> list[str]:
+    """Return who may ever be aboard an entity, at any depth, or on its way there."""
+    aboard, waiting = set[str](), [names.kinds[entity]]
+    while waiting:
+        more = names.signature[waiting.pop()].carries - aboard
+        aboard |= more
+        waiting += more
+    return [
+        name
+        for name, kind in sorted(names.kinds.items())
+        if kind in aboard and name != entity and (names.signature[kind].driven or name in mobility.carried)
+    ]
+
+
+def _shapes(entity: str, spots: Spots, clauses: Sequence[s.EnvironmentClause]) -> set[Placed]:
+    """Return every shape that an entity may ever have, wherever that is."""
+    shapes = {spots.world.shape(entity), *(placed for _, placed in _listed(entity, spots, clauses))}
+    return {Placed(still(each.geometry), each.altitude) for each in shapes if each is not None}
+
+
+def _roaming(
+    entity: str, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]
+) -> str | None:
+    """Return a polygon that may contain an entity and be in places that are not listed, if there is one."""
+    return next((o for o in _containers(entity, spots.names) if _roams(o, spots, mobility, clauses)), None)
+
+
 def _roams(name: str, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]) -> bool:
     """Tell whether a polygon may be in places that are not listed."""
     shape = spots.world.shape(name)
@@ -168,20 +214,45 @@ def _roams(name: str, spots: Spots, mobility: Mobility, clauses: Sequence[s.Envi
     return within or spots.names.signature[spots.names.kinds[name]].driven or name in mobility.carried
 
 
+Polygons = dict[str, Geometry]
+
+
 def _arrangement(
-    entity: str, here: Placed, spots: Spots, clauses: Sequence[s.EnvironmentClause]
-) -> Iterator[tuple[str, Geometry]]:
-    """Yield all polygons that may ever contain an entity: where they are, and where it is listed that they may be."""
-    for name in _containers(entity, spots.names):
-        where = [(name, spots.world.placements.get(name))]
-        for clause in clauses:
-            if isinstance(clause, s.DriftsAmong | s.Appears) and clause.entity.text == name:
-                listed = [spots.placed(spot, name) for spot in clause.placements]
-                where += [(f"{name} ({number})", placed) for number, placed in enumerate(listed, 1)]
-        for called, placed in where:
-            if (
-                isinstance(placed, Placed)
-                and not placed.geometry.is_point
-                and band_contains(placed.altitude, here.altitude)
-            ):
-                yield called, placed.geometry
+    entity: str,
+    here: Placed,
+    spots: Spots,
+    mobility: Mobility,
+    clauses: Sequence[s.EnvironmentClause],
+) -> tuple[Polygons, dict[Geometry, Polygons]]:
+    """Return all polygons that may ever contain an entity or what stands or flies where it is.
+
+    What is aboard, or on its way there, is where the entity is; put down, it stands there in a shape of its own.
+    """
+    own, aboard = _around(entity, here, spots, clauses), dict[Geometry, Polygons]()
+    for other in _cargo(entity, spots.names, mobility):
+        own |= _around(other, here, spots, clauses)
+        for shape in _shapes(other, spots, clauses):
+            aboard.setdefault(shape.geometry, {}).update(_around(other, shape, spots, clauses))
+    return own, aboard
+
+
+def _around(entity: str, here: Placed, spots: Spots, clauses: Sequence[s.EnvironmentClause]) -> Polygons:
+    """Return all polygons that may ever contain an entity: where they are, and where it is listed that they may be."""
+    return {
+        called: placed.geometry
+        for name in _containers(entity, spots.names)
+        for called, placed in [(name, spots.world.placements.get(name)), *_listed(name, spots, clauses)]
+        if isinstance(placed, Placed)
+        and not placed.geometry.is_point
+        and band_contains(placed.altitude, here.altitude)
+    }
+
+
+def _listed(
+    entity: str, spots: Spots, clauses: Sequence[s.EnvironmentClause]
+) -> Iterator[tuple[str, Placed | None]]:
+    """Yield the placements that are listed of an entity, with what each is called."""
+    for clause in clauses:
+        if isinstance(clause, s.DriftsAmong | s.Appears) and clause.entity.text == entity:
+            for number, spot in enumerate(clause.placements, 1):
+                yield f"{entity} ({number})", spots.placed(spot, entity)

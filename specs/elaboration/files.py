@@ -9,10 +9,11 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
-from physical import GeoJSONError, Geometry, PhysicalError, PhysicalProperty, contains, open_file, read_places
+from physical import GeoJSONError, Geometry, PhysicalError, PhysicalProperty, contains, open_file
 from physical.geojson import MAX_BYTES as MAX_GEOJSON
 from physical.mmsi import KINDS
-from physical.place_files import PLACES
+from physical.place_files import PLACES, read_place_file
+from physical.tally import Read
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import shorten
@@ -78,11 +79,14 @@ def read_source(
     for keep in entry.keep:
         names.kind(keep.kind)
     try:
-        found = _read(entry, library.locate(entry.file.value), area)
+        read = _read(entry, library.locate(entry.file.value), area)
     except Refused as refused:
         names.findings.add(refused.code, entry.file, refused.message, refused.hint)
         names.findings.unread.update(_GIVEN_BY_FILES)
         return ()
+    found = read.properties
+    if missing := read.missing():
+        notes.append(f"{entry.file.value}: {'; '.join(missing)}")
     _check_keep(entry, found, names)
     kept = tuple(_kept(found, entry.keep, area))
     limited = kept if entry.limit is None else kept[: entry.limit]
@@ -96,12 +100,13 @@ def read_source(
     return usable
 
 
-def _read(entry: s.FromSource, path: Path, area: Geometry | None) -> tuple[PhysicalProperty, ...]:
+def _read(entry: s.FromSource, path: Path, area: Geometry | None) -> Read:
     suffix = path.suffix.lower()
     if suffix in PLACES:
         if entry.time is not None:
             raise Refused(Code.BAD_FILE, "a file of places has no times", "leave out 'at'")
-        return tuple(sorted(_places(suffix, path), key=lambda item: item.entity))
+        read = _places(suffix, path)
+        return replace(read, properties=tuple(sorted(read.properties, key=lambda item: item.entity)))
     if suffix in AIS:
         return _ais(entry, path, area)
     known = ", ".join((*PLACES, *AIS))
@@ -112,11 +117,11 @@ def _read(entry: s.FromSource, path: Path, area: Geometry | None) -> tuple[Physi
     )
 
 
-def _places(suffix: str, path: Path) -> tuple[PhysicalProperty, ...]:
+def _places(suffix: str, path: Path) -> Read:
     try:
         with open_file(path) as file:
             data = file.read(MAX_GEOJSON + 1)
-        return read_places(suffix, data)
+        return read_place_file(suffix, data)
     except OSError as error:
         raise Refused(Code.UNREADABLE_FILE, f"it cannot be read: {error.strerror or error}") from error
     except GeoJSONError as error:
@@ -129,15 +134,20 @@ def _places(suffix: str, path: Path) -> tuple[PhysicalProperty, ...]:
         raise Refused(Code.BAD_FILE, f"{where}{error.message}", error.hint) from error
 
 
-def _ais(entry: s.FromSource, path: Path, area: Geometry | None) -> tuple[PhysicalProperty, ...]:
-    from physical.ais_recording import read_recording  # noqa: PLC0415 - few worlds are recordings
+def _ais(entry: s.FromSource, path: Path, area: Geometry | None) -> Read:
+    from physical.ais_recording import has_sentences, read_recording  # noqa: PLC0415 - few worlds are recordings
     from physical.ais_reports import AisError  # noqa: PLC0415
-    from physical.ais_world import world_at  # noqa: PLC0415
+    from physical.ais_world import check_time, seen_at  # noqa: PLC0415
 
     kinds = {keep.recorded.text for keep in entry.keep} or None
     time = None if entry.time is None else _seconds(entry.time.value)
     try:
-        return world_at(read_recording(path), time, area, kinds)
+        recording = read_recording(path)
+        if recording.tally.total and not has_sentences(recording.tally):
+            found = f"none of its {recording.tally.total:,} lines is an AIS sentence, or has one in it (!AIVDM,...)"
+            raise Refused(Code.BAD_FILE, found, "give a recording of AIS")
+        check_time(recording, time)
+        return seen_at(recording, time, area, kinds)
     except AisError as error:
         code = Code.MISSING_EXTRA if error.code == "ais-extra" else Code.BAD_FILE
         unread = Code.UNREADABLE_FILE if error.code == "ais-unreadable" else code

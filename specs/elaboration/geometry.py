@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from physical import Band, Geometry, PhysicalError, box, centroid, circle, point, polygon, translate_to
+from physical.long_edges import check_edges
 from physical.measure import metres_text
 from physical.outliers import is_swapped, outliers
 from semantics.state.physical_model import Placed
@@ -30,7 +31,9 @@ def _geometry(node: s.Geometry) -> Geometry:
         case s.Box(first, second):
             return box(_pair(first), _pair(second))
         case s.Polygon(corners):
-            return polygon([_pair(corner) for corner in corners])
+            found = polygon([_pair(corner) for corner in corners])
+            check_edges([_pair(corner) for corner in corners])
+            return found
         case s.Circle(centre, radius):
             return circle(_pair(centre), radius.metres)
 

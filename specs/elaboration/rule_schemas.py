@@ -115,6 +115,10 @@ class Checked:
         nodes = (_node(value, self.kinds, f"{self.command.name} needs a node, not") for value in arguments)
         return self.command(host, *nodes)
 
+    def made_from(self, reaction: Reaction, host: Name) -> tuple[Name, ...] | None:
+        """Return the host and the arguments of a reaction; None where another command or rule has made it."""
+        return self.command.made_from(reaction, host)
+
 
 @dataclass(frozen=True, slots=True)
 class Maker:
@@ -139,6 +143,21 @@ class Maker:
         values = {parameter.name: self._node(parameter, value) for parameter, value in given} | {HOST: host}
         text = self._text(values)
         return Reaction(text, _put(schema.redex, values), _put(schema.reactum, values))
+
+    def made_from(self, reaction: Reaction, host: Name) -> tuple[Name, ...] | None:
+        """Return the host and the arguments of a reaction; None where another command or rule has made it."""
+        schema, values = self.schema, {HOST: host}
+        if schema.name:
+            inside = reaction.text.removeprefix(f"{schema.name}(").removesuffix(")")
+            values |= {
+                each.name: word for each, word in zip(schema.parameters, inside.split(", "), strict=False)
+            }
+        values |= _stand_for(schema.redex, reaction.redex) | _stand_for(schema.reactum, reaction.reactum)
+        try:
+            found = (values[HOST], *(values[each.name] for each in schema.parameters))
+            return found if self(*found) == reaction else None
+        except (KeyError, Fault):
+            return None
 
     def _node(self, parameter: Parameter, value: Value) -> Name:
         node = _node(value, self.kinds, f"a node was expected for {parameter.shown}, not")
@@ -181,3 +200,15 @@ def _put(pattern: Pattern, values: Mapping[str, Name]) -> Pattern:
         tuple((link, node(point)) for link, point in pattern.links),
         tuple(map(node, pattern.closed)),
     )
+
+
+def _stand_for(schema: Pattern, pattern: Pattern) -> dict[str, Name]:
+    """Return what stands in a pattern where a schema has each of its names."""
+    pairs = [
+        *zip(schema.nodes, pattern.nodes, strict=False),
+        *zip(schema.closed, pattern.closed, strict=False),
+    ]
+    for mine, theirs in zip(schema.parents, pattern.parents, strict=False):
+        pairs += zip(mine, theirs, strict=True)
+    pairs += [(mine[1], theirs[1]) for mine, theirs in zip(schema.links, pattern.links, strict=False)]
+    return {mine: theirs for mine, theirs in pairs if isinstance(mine, str) and isinstance(theirs, str)}

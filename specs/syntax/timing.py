@@ -88,7 +88,7 @@ class ReactionTime(Node):
     """`agents react within 1 s`, or `agents take 1 s to 2 s`.
 
     How long a bigActor takes for a step of its own: to compute, to ask for something, to take what has come; and how
-    long it takes until a command is taken up that no other line is about.
+    long it takes until a vehicle is sent on its way. Other commands take any time where no line says how long.
     """
 
     lapse: Lapse

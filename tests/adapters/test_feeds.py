@@ -10,6 +10,7 @@ import aiohttp.web
 import pytest
 from worlds import DATA, World, running, until
 
+from adapters import web
 from adapters.ais import AisFeed
 from adapters.detections import Detections
 from adapters.lines import MAX_LINE, Lines
@@ -536,8 +537,8 @@ def test_a_location_service_is_asked_again_and_again():
         ({"entities": [5]}, "entity refused"),
         ({"entities": [DRIFTER | {"latitude": 91}]}, "entity refused"),
         ({"entities": [DRIFTER | {"latitude": "37"}]}, "entity refused"),
-        ({"entities": [DRIFTER | {"altitude": 10**399}]}, "entity refused"),
-        ({"entities": [DRIFTER | {"altitude": 10**400}]}, "answer unreadable"),
+        ({"entities": [DRIFTER | {"altitude": 10**299}]}, "entity refused"),
+        ({"entities": [DRIFTER | {"altitude": 10**300}]}, "answer unreadable"),
         ({"entities": [DRIFTER | {"name": "\x1b[31m"}]}, "entity refused"),
         ({"entities": [DRIFTER | {"channels": 1}]}, "entity refused"),
         ({"entities": [DRIFTER | {"time": 9e9}]}, "entity refused"),
@@ -572,5 +573,52 @@ def test_a_service_that_is_not_there_or_fails_is_reported():
         async with running(LocationService("cloud", "http://127.0.0.1:1/").run(world)):
             await asyncio.sleep(2)
         assert world.troubles() == {"no answer"}
+
+    run(main())
+
+
+# --- floods -------------------------------------------------------------------------------------------
+
+
+def test_half_requests_take_neither_all_connections_nor_much_time(monkeypatch, caplog):
+    """Who sends half a request makes room for others, and is cut off in time."""
+    monkeypatch.setattr(web, "IN_TIME", 1.0)
+
+    async def main():
+        world, plugin = World(), Detections("camera", listen=Listen(0))
+        async with running(plugin.run(world)), aiohttp.ClientSession() as session:
+            await until(lambda: plugin.port)
+            halves = []
+            for _ in range(3 * web.MOST_CONNECTIONS):
+                reader, writer = await asyncio.open_connection("127.0.0.1", plugin.port)
+                writer.write(POST + b"Content-Le")
+                halves.append((reader, writer))
+            async with session.post(posting(plugin), json=json.loads(write_geojson([SPILL]))) as answer:
+                assert answer.status == 200
+            await asyncio.sleep(1.5)
+            assert all([await _has_ended(reader) for reader, _ in halves])
+            for _, writer in halves:
+                writer.close()
+
+    run(main())
+    assert caplog.records == []
+
+
+async def _has_ended(reader):
+    try:
+        return not await asyncio.wait_for(reader.read(), 0.5)
+    except ConnectionResetError:
+        return True
+
+
+def test_each_request_has_a_connection_of_its_own():
+    async def main():
+        world, plugin = World(), Detections("camera", listen=Listen(0))
+        async with running(plugin.run(world)):
+            await until(lambda: plugin.port)
+            reader, writer = await asyncio.open_connection("127.0.0.1", plugin.port)
+            writer.write(POST + b"Content-Length: 2\r\n\r\n[]" + POST + b"Content-Length: 2\r\n\r\n[]")
+            assert (await asyncio.wait_for(reader.read(), 5.0)).count(b"HTTP/1.1") == 1
+            writer.close()
 
     run(main())

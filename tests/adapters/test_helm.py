@@ -242,3 +242,17 @@ def test_a_vehicle_that_is_stopped_is_not_handed_over_any_more(stop):
     flown.take(pilot.command(flown.pilot, stop("r3", "uav0"), flown.now))
     assert "PARAM_SET" not in told()
     assert "COMMAND_LONG" in told()
+
+
+@pytest.mark.parametrize("stop", [Hold, Return])
+def test_an_order_that_another_station_makes_impossible_ends_what_went_before_and_may_be_given_again(stop):
+    flown = Flown(target=(37.2, -8.6)).goes_on(GUIDED, 2)
+    flown.pilot = replace(flown.pilot, known=replace(flown.pilot.known, authority=252))
+    flown.take(pilot.command(flown.pilot, stop("r2", "uav0"), flown.now))
+    (no,) = flown.of(Rejected)
+    assert (no.request, no.reason) == ("r2", "it obeys system 252, not gcs0")
+    flown.pilot = replace(flown.pilot, known=replace(flown.pilot.known, authority=255))
+    flown.sent.clear()
+    assert flown.goes_on(GUIDED, 8).sent == []  # it is not sent on to where it was to go before
+    flown.take(pilot.command(flown.pilot, stop("r2", "uav0"), flown.now))
+    assert {each["command"] for each in flown.goes_on(GUIDED, 2).sent} == {176}

@@ -5,7 +5,8 @@ import socket
 
 import pytest
 
-from adapters.addresses import parse_address
+from adapters import transport
+from adapters.addresses import Address, parse_address
 from adapters.transport import MAX_AT_ONCE, open_port
 
 
@@ -51,3 +52,28 @@ def test_a_name_is_looked_up_and_one_that_is_unknown_is_an_error():
     assert asyncio.run(main("localhost"))[1]
     with pytest.raises(OSError, match=r"not known|resolution|Name"):
         asyncio.run(main("nobody.invalid"))
+
+
+def test_of_too_many_connections_the_one_that_was_silent_for_longest_makes_room(monkeypatch):
+    monkeypatch.setattr(transport, "MAX_PEERS", 3)
+    heard = []
+
+    async def main():
+        address = Address("tcpin", "127.0.0.1", 0)
+        async with transport._listening(address, lambda _, data: heard.append(data)) as port:
+            clients = []
+            for number in range(5):
+                reader, writer = await asyncio.open_connection(*port.local)
+                clients.append((reader, writer))
+                for _, each in clients[:1]:  # the first one is never silent
+                    each.write(b"%d" % number)
+                await asyncio.sleep(0.1)
+            clients[-1][1].write(b"last")
+            await asyncio.sleep(0.1)
+            ended = [reader.at_eof() or reader.exception() is not None for reader, _ in clients]
+            assert ended == [False, True, True, False, False]
+            for _, writer in clients:
+                writer.close()
+
+    asyncio.run(main())
+    assert heard[-1] == b"last"

@@ -30,6 +30,20 @@ react decay = A -[ k ]-> B;
 begin sbrs init start; rules = [ {decay} ]; preds = { gone }; end
 """
 
+ORDER = """\
+atomic ctrl A = 0; atomic ctrl B = 0; atomic ctrl C = 0; atomic ctrl D = 0; atomic ctrl E = 0;
+big s = A;
+react ab = A --> B;
+react ac = A --> C;
+react bd = B --> D;
+react ce = C --> E;
+big isd = D; big ise = E;
+begin brs init s;
+  rules = [ (ac, ab), {bd, ce} ];
+  preds = { isd, ise };
+end
+"""
+
 LAMPS = """\
 %active Lamp : 0;
 %passive On : 0;
@@ -137,6 +151,27 @@ class TestBig:
             "hint: did you mean 'meeting'?\n"
         )
 
+    @pytest.mark.parametrize(
+        ("task", "code"),
+        [(("full",), 0), (("sim",), 0), (("validate",), 0), (("check", "--ctl", "EF isd"), 1)],
+    )
+    def test_an_order_of_instantaneous_rules_that_matters_is_warned_of(self, bigactors, tmp_path, task, code):
+        file = tmp_path / "inst.big"
+        file.write_text(ORDER, encoding="utf-8")
+        found, _, err = bigactors("big", task[0], str(file), *task[1:])
+        assert found == code
+        assert (
+            err
+            == f"""\
+warning: {file}:9:13: the instantaneous class (ac, ab) is not confluent: the order of its rules matters
+  of A
+  ac makes in the end C
+  ab makes in the end B
+hint: a run takes the first rule of the class that applies, again and again, here ac; let the rules exclude each \
+other where that is not meant
+"""
+        )
+
     def test_a_property_of_a_bgm_file_that_holds_is_said_to(self, bigactors, walk):
         (walk / "lamps.bgm").write_text(
             LAMPS.replace("Lamp.On);", "Lamp.On) || terminal();"), encoding="utf-8"
@@ -147,6 +182,38 @@ class TestBig:
             ("no deadlock", "violated"),
             ("dark", "holds"),
         ]
+
+    def test_a_state_of_named_nodes_is_printed(self, bigactors, tmp_path):
+        file = tmp_path / "l.bgm"
+        file.write_text(
+            "l0_Location.u0_UAV | l1_Location;\n"
+            "%rule go l0_Location.u0_UAV | l1_Location -> l0_Location | l1_Location.u0_UAV;",
+            encoding="utf-8",
+        )
+        for task in (["validate"], ["show"], ["sim"]):
+            code, out, _ = bigactors("big", *task, str(file))
+            assert (code, "l0_Location.u0_UAV.1 | l1_Location.1" in out) == (0, True), task
+        code, out, _ = bigactors("big", "check", "--no-deadlock", str(file))
+        assert (code, "1: --go--> l0_Location.1 | l1_Location.u0_UAV.1" in out) == (1, True)
+
+    def test_a_state_that_nests_too_deeply_to_be_written_is_told_by_its_size(self, bigactors, tmp_path):
+        file = tmp_path / "deep.big"
+        file.write_text(
+            f"ctrl A = 0; big s = {'A * ' * 100}1; begin brs init s; rules = []; end", encoding="utf-8"
+        )
+        for task in ("validate", "show", "sim"):
+            code, out, _ = bigactors("big", task, str(file))
+            assert (code, "100 nodes of 1 control in 1 region" in out) == (0, True), task
+
+    def test_an_undeclared_constant_may_be_given_by_an_option(self, bigactors, tmp_path):
+        file = tmp_path / "c.big"
+        text = "fun ctrl A(n) = 0; big s = A(size).1; begin brs init s; rules = []; end"
+        file.write_text(text, encoding="utf-8")
+        code, _, err = bigactors("big", "full", str(file))
+        assert code == 2
+        assert "unknown value 'size'" in err
+        assert "or give a constant of a file by --const size=VALUE" in err
+        assert bigactors("big", "full", "--const", "size=3", str(file))[0] == 0
 
     def test_a_property_of_a_bgm_file_is_checked(self, bigactors, walk):
         (walk / "lamps.bgm").write_text(LAMPS, encoding="utf-8")
@@ -176,7 +243,7 @@ class TestBig:
             "big", "sim", "--runs", "200", "--until", "9", "--plot", "d.svg", "decay.big"
         )
         assert code == 0
-        assert out.startswith("decay.big: 200 runs, seeds 0 to 199, ")
+        assert out.startswith("decay.big: 200 runs of seed 0, ")
         assert "went on to time 9" in out or "ended where nothing can happen" in out
         assert re.search(
             r"\n  gone +[\d.]+ % of the runs \([\d.]+ to [\d.]+\), first at [\d.]+ \([\d.]+ to [\d.]+\)", out
@@ -193,18 +260,19 @@ class TestBig:
         (gone,) = said["predicates"]
         times = [each["first"]["gone"] for each in said["samples"]]
         assert gone["first"]["least"] == min(times)
-        assert gone["first"]["seed"] == 5 + times.index(min(times))
+        assert gone["first"]["run"] == times.index(min(times))
         assert gone["first"]["interval"][0] < sum(times) / 20 < gone["first"]["interval"][1]
-        run = json.loads(bigactors("big", "sim", "--seed", "5", "--json", "-", "decay.big")[1])["run"]
-        assert run[-1]["time"] == times[0]
+        one = ("big", "sim", "--seed", "5", "--run", "2", "--json", "-", "decay.big")
+        run = json.loads(bigactors(*one)[1])["run"]
+        assert run[-1]["time"] == times[2]
 
     def test_an_interruption_keeps_the_runs_that_were_taken(self, bigactors, monkeypatch):
         take = Sampler.run
 
-        def interrupted(sampler, seed):
-            if seed == 100:
+        def interrupted(sampler, number):
+            if number == 100:
                 signal.raise_signal(signal.SIGINT)
-            return take(sampler, seed)
+            return take(sampler, number)
 
         monkeypatch.setattr(Sampler, "run", interrupted)
         code, out, _ = bigactors("big", "sim", "--runs", "1000000000", "decay.big")

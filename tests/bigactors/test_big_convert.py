@@ -97,3 +97,29 @@ def test_what_cannot_be_converted_is_told(bigactors, rooms, words, message):
     assert code == 2
     assert message in err
     assert not (rooms / "x.big").exists()
+
+
+PARAMETERS = """\
+ctrl Room = 0; fun ctrl Badge(n) = 0;
+float rate = 2.0;
+fun react renew(n) = Badge(n) -[rate]-> Badge(n + 1);
+fun big has(n) = Badge(n);
+big s = Room.(Badge(1).1 | Badge(3).1);
+begin sbrs int k = [1 : 1 : 3]; init s; rules = [ {renew(k)} ]; preds = { has(k), has(k + 3) }; end
+"""
+
+
+def test_parameters_are_written_as_they_were_read(bigactors, missions):
+    (missions / "badges.big").write_text(PARAMETERS, encoding="utf-8")
+    code, out, err = bigactors("big", "convert", "badges.big", "-", "--to", "big", "--const", "rate=3.5")
+    assert (code, err) == (0, "")
+    assert "fun react renew(n) = Badge(n) -[rate]-> Badge(n + 1);" in out
+    assert read_system(out) == read_system(PARAMETERS, constants={"rate": 3.5})
+
+
+def test_what_bigrapher_does_not_read_is_said(bigactors, missions):
+    text = PARAMETERS.replace("ctrl Room", "passive ctrl Room")
+    (missions / "badges.big").write_text(text, encoding="utf-8")
+    code, _, err = bigactors("big", "convert", "badges.big", "badges2.big")
+    assert code == 0
+    assert "warning: BigraphER does not read 'passive ctrl Room'" in err

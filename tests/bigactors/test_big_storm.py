@@ -7,6 +7,7 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
+from bigactors.big import storm
 from bigactors.big.storm import answers, check_queries, translated
 from bigactors.mistakes import Mistake
 from bigraphs.errors import NotationError
@@ -219,3 +220,34 @@ def test_the_command_line_prints_values_strategies_and_runs(bigactors, tmp_path)
     code, out, _ = bigactors("big", "check", str(file), "--storm", "Rmin=? [F home]", "--json", "-")
     verdict = json.loads(out)["verdicts"][0]
     assert (code, verdict["value"]["number"], verdict["strategy"]) == (0, 1, {"0": "safe"})
+
+
+def test_a_query_without_an_answer_takes_no_others(monkeypatch):
+    """What Storm says of each query is given: where it has no answer, and where it fails on one of them."""
+
+    def replies(texts, _files=None):
+        if len(texts) > 1 and "LRA" in "".join(texts):
+            raise Mistake("Storm failed: it ended", "")
+        if texts == ["LRA=? [goal]"]:
+            raise Mistake("Storm failed: it ended", "")
+        return [{"error": "no rewards"} if text.startswith("R") else {"value": 0.5} for text in texts]
+
+    monkeypatch.setattr(storm, "_replies", replies)
+    monkeypatch.setattr(storm, "translated", lambda text, _: text)
+    found = explore(die())
+    rewards, chance = answers(found, ["R=? [F goal]", "P=? [F goal]"])
+    assert rewards.outcome is Outcome.INCOMPLETE
+    assert (
+        rewards.note == "no answer: the system has no rewards; give a predicate one, as in preds = { p[2] }"
+    )
+    assert (chance.outcome, chance.value.number) == (Outcome.HOLDS, 0.5)
+    chance, long_run = answers(found, ["P=? [F goal]", "LRA=? [goal]"])
+    assert (chance.value.number, long_run.outcome) == (0.5, Outcome.INCOMPLETE)
+    assert long_run.note == "no answer: Storm failed: it ended"
+
+
+@needs_storm
+def test_rewards_that_there_are_none_of_are_said_beside_other_answers():
+    rewards, chance = asked(die(), "R=? [F face1]", "P=? [F face1]")
+    assert rewards.note.startswith("no answer: the system has no rewards")
+    assert chance.value.number == pytest.approx(1 / 6)

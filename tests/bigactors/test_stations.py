@@ -18,7 +18,8 @@ from bigactors.recordings import Resumed, parting_of, trace_of
 from bigactors.stations import company_of
 from checker import ReplayError
 from semantics.state.parcel_serialization import parcel_json
-from semantics.state.partition import Parcel, Parting, enter, parted
+from semantics.state.parcels import Parcel
+from semantics.state.partition import Parting, enter, parted
 from semantics.state.setting import Control, Scheduler
 from specs.elaboration import Variation
 

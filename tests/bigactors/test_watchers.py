@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from adapters.live.core import advance, started
-from adapters.live.state import Batch, Bidden, Heard, LiveState, Order, Plan, Sighting
+from adapters.live.state import Batch, Bidden, Fate, Heard, LiveState, Order, Plan, Sighting
 from adapters.plugin import Accepted, Battery, Follow, GoTo, Hold, Status
 from bigactors.missions import open_mission
 from bigactors.vehicle_lines import vehicle_line, vehicles_line
@@ -46,7 +46,7 @@ def test_a_line_says_where_a_vehicle_is_going_how_far_it_is_and_what_it_says_of_
 
 
 def test_a_line_says_who_holds_a_vehicle_and_since_when_it_is_silent(first):
-    bidden = Bidden(Hold("operator-1", UAV), "Ana")
+    bidden = Bidden(Hold("operator-1", UAV), "Ana", Fate.CONFIRMED)
     state = LiveState(first, orders=going(), taken={UAV: bidden.reason}, lost=frozenset({UAV}))
     parent = first.structure.logical.parent(UAV)
     said = Status(UAV, 2.0, "autopilot", 2.0, "LOITER", False, Battery(None, 11.9))

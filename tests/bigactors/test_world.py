@@ -71,8 +71,9 @@ def test_a_recording_is_accounted_for(bigactors):
     pytest.importorskip("pyais")
     code, out, err = bigactors("world", str(NMEA))
     assert (code, err) == (0, "")
-    assert f"{NMEA}: 224 lines, 97 AIS sentences, 92 messages" in out
-    assert f"{NMEA}: 1 x checksum wrong" in out
+    assert f"{NMEA}: 224 sentences and other lines: " in out
+    assert f"{NMEA}: 1 x checksum wrong, not read" in out
+    assert f"{NMEA}: 78 positions: 10 stations\n{NMEA}: 68 x position of a station with a newer one" in out
 
 
 @pytest.mark.usefixtures("harbour")
@@ -86,9 +87,36 @@ def test_a_recording_and_a_map_make_one_world(bigactors):
 @pytest.mark.usefixtures("missions")
 def test_a_time_before_the_recording_shows_nobody(bigactors):
     pytest.importorskip("pyais")
-    code, out, _ = bigactors("world", str(NMEA), "--at", "1999-01-01T00:00:00Z")
+    code, out, err = bigactors("world", str(NMEA), "--at", "1999-01-01T00:00:00Z")
     assert code == 0
     assert "\n0 entities\n" in out
+    assert "it runs from 2020-04-07T21:40:33Z to 2020-04-07T21:42:30Z" in err
+
+
+@pytest.mark.usefixtures("missions")
+def test_what_is_not_read_of_a_plan_is_told_by_kind(missions, bigactors):
+    plan = json.loads(write_plan([point(1.5, 1.2)], 100.0))
+    plan["rallyPoints"]["points"] = [[1, 2, 3], [1, 2, 4]]
+    plan["mission"]["items"].append({"type": "ComplexItem", "complexItemType": "StructureScan"})
+    (missions / "way.plan").write_text(json.dumps(plan))
+    code, out, _ = bigactors("world", "way.plan")
+    assert code == 0
+    assert "way.plan: 5 items: 1 home, 1 waypoint\n" in out
+    assert "way.plan: 1 x complex item StructureScan, not read\nway.plan: 2 x rally point, not read\n" in out
+
+
+@pytest.mark.parametrize("within", ["-10,-100,10,100", "-10,-170,10,170", "-10,100,10,-60"])
+@pytest.mark.usefixtures("harbour")
+def test_a_box_of_half_the_earth_or_more_is_refused(bigactors, within):
+    code, _, err = bigactors("world", "harbour.geojson", "--within", within)
+    assert code == 2
+    assert "--within: from longitude" in err
+
+
+@pytest.mark.usefixtures("harbour")
+def test_a_box_may_lie_across_the_antimeridian(bigactors):
+    code, out, _ = bigactors("world", "harbour.geojson", "--within", "-10,170,10,-170")
+    assert (code, "\n0 entities" in out) == (0, True)
 
 
 def test_places_that_do_not_nest_are_warned_of(missions, bigactors):

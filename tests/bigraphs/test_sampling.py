@@ -1,14 +1,16 @@
 """Many runs: the same as single ones, and estimates that cover what is known by hand."""
 
+import random
 from math import isinf
 
+import numpy as np
 import pytest
 
 from bigraphs import sampling
 from bigraphs.examples import example_names, example_text
 from bigraphs.notation import read_system
 from bigraphs.sampling import End, Sampler, first_times, mean, share, shares_until
-from bigraphs.simulation import Bounds, simulate
+from bigraphs.simulation import Bounds, chances, simulate
 from bigraphs.system import SystemKind
 
 GAMBLER = """\
@@ -30,21 +32,21 @@ begin sbrs init start; rules = [ {decay} ]; preds = { one, both }; end
 def runs(text, count, steps=100, until=None):
     system = read_system(text)
     sampler = Sampler(system, Bounds(steps, until))
-    return system, [sampler.run(seed) for seed in range(count)]
+    return system, [sampler.run(number) for number in range(count)]
 
 
 @pytest.mark.parametrize("text", [GAMBLER, DECAY, *map(example_text, example_names())])
-def test_a_sample_is_the_run_of_its_seed(text):
+def test_a_sample_is_the_run_of_its_number(text):
     system = read_system(text)
     until = 1.5 if system.kind is SystemKind.SBRS else None
     sampler = Sampler(system, Bounds(30, until))
-    for seed in range(20):
-        sample, run = sampler.run(seed), list(simulate(system, seed, Bounds(30, until)))
+    for number in range(20):
+        sample, run = sampler.run(number), list(simulate(system, 0, Bounds(30, until), run=number))
         assert sample.steps == len(run) - 1
         assert sample.time == (until if sample.end is End.TIME else run[-1].time)
-        for number, predicate in enumerate(system.predicates):
+        for place, predicate in enumerate(system.predicates):
             true = (stage.time for stage in run if predicate.label in stage.labels)
-            assert sample.first[number] == next(true, None)
+            assert sample.first[place] == next(true, None)
 
 
 def test_what_is_forgotten_changes_no_run(monkeypatch):
@@ -61,7 +63,7 @@ def test_estimates_cover_what_is_known_by_hand():
     assert rich.time.low < 4 < rich.time.high
     assert rich.runs + broke.runs == 2000
     assert (rich.least, never.runs, never.time) == (2, 0, None)
-    assert samples[rich.seed].first[0] == 2
+    assert samples[rich.first_run].first[0] == 2
 
 
 def test_delays_are_those_of_the_rates():
@@ -80,6 +82,15 @@ def test_intervals_cover_in_95_of_100_experiments():
         rich = first_times(system, samples[first : first + 60])[0]
         covered += rich.share.low <= 0.5 <= rich.share.high
     assert 0.9 * 200 <= covered <= 0.99 * 200
+
+
+def test_the_runs_of_a_seed_have_streams_of_their_own():
+    """They are those of SeedSequence.spawn, so no run of a seed is one of another seed."""
+    spawned = [chances(3, number).random() for number in range(4)]
+    states = [sequence.generate_state(8).tobytes() for sequence in np.random.SeedSequence(3).spawn(4)]
+    assert spawned == [random.Random(state).random() for state in states]
+    streams = {chances(seed, number).random() for seed in range(50) for number in range(50)}
+    assert len(streams) == 2_500
 
 
 def test_bounds_end_runs():

@@ -38,7 +38,7 @@ def time_of(*lines, now=None):
 def test_a_position_is_heard():
     heard = hear(Ear(), POSITION + b"\r\n")
     assert heard.reports == (PositionReport(None, 3, 376427000, 37.346935, 23.44798, 0.0, None, 25.0),)
-    assert (heard.msg_type, heard.reasons, heard.sentence) == (3, (), True)
+    assert (heard.pieces, heard.reasons) == (("position",), ())
 
 
 def test_hearing_a_whole_message_leaves_the_state_the_same_object():
@@ -100,6 +100,42 @@ def test_a_new_group_with_an_old_number_has_its_own_time():
     assert [report.time for report in reports] == [1671533231.0, 1671533299.0, 1671533299.0]
 
 
+def test_the_first_sentence_of_a_group_begins_another_though_the_station_is_the_same():
+    lines = [
+        tagged(b"g:%d-2-%d%s" % (line, number % 2, b",s:r1,c:%d" % time if line == 1 else b""), sentence)
+        for number, time in enumerate((1671533231, 1671533241, 1671533251, 1671533261))
+        for line, sentence in ((1, b"$ARVSI,r1,1"), (2, POSITION))
+    ]
+    reports, _, _ = heard_all(*lines)
+    assert [report.time for report in reports] == [1671533231.0, 1671533241.0, 1671533251.0, 1671533261.0]
+
+
+def test_a_line_whose_group_has_ended_takes_no_time_from_it():
+    whole = tagged(b"g:1-2-7,s:r1,c:1671533231", b"$ARVSI,r1,1"), tagged(b"g:2-2-7", POSITION)
+    reports, _, _ = heard_all(*whole, tagged(b"g:2-2-7", POSITION))
+    assert [report.time for report in reports] == [1671533231.0, None]
+
+
+def test_a_line_of_a_group_of_another_length_takes_no_time_from_it():
+    assert time_of(tagged(b"g:1-3-7,c:1671533231", b"$ARVSI,r1,1"), tagged(b"g:2-2-7", POSITION)) is None
+
+
+def test_two_receivers_may_number_their_groups_alike():
+    lines = (
+        tagged(b"g:1-3-7,s:r1,c:1671533231", b"$ARVSI,r1,1"),
+        tagged(b"g:1-3-7,s:r2,c:1671533241", b"$ARVSI,r2,1"),
+        tagged(b"g:2-3-7,s:r1", POSITION),
+        tagged(b"g:2-3-7,s:r2", POSITION),
+        tagged(b"g:3-3-7,s:r1", POSITION),
+    )
+    reports, _, _ = heard_all(*lines)
+    assert [report.time for report in reports] == [1671533231.0, 1671533241.0, 1671533231.0]
+
+
+def test_the_first_line_of_a_group_may_be_a_tag_block_alone():
+    assert time_of(tagged(b"g:1-2-7,c:1671533231", b""), tagged(b"g:2-2-7", POSITION)) == 1671533231.0
+
+
 def test_a_damaged_tag_block_costs_its_time_but_not_the_sentence():
     reports, reasons, _ = heard_all(b"\\c:1671533231*00\\" + POSITION)
     assert [report.time for report in reports] == [None]
@@ -109,11 +145,11 @@ def test_a_damaged_tag_block_costs_its_time_but_not_the_sentence():
 def test_other_sentences_comments_and_blank_lines_bring_nothing():
     for line in (b"", b"  \r\n", b"# synthetic", b"$GPGSV,3,1,10*00", b"!AIABM,1,1,1,B,,0*00"):
         heard = hear(Ear(), line)
-        assert (heard.reports, heard.reasons, heard.sentence) == ((), (), False)
+        assert (heard.reports, heard.reasons) == ((), ())
 
 
-def test_what_is_no_sentence_is_malformed():
-    assert hear(Ear(), b"AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61").reasons == (Reason.MALFORMED,)
+def test_what_is_no_sentence_is_told():
+    assert hear(Ear(), b"AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61").reasons == (Reason.NO_SENTENCE,)
 
 
 def test_a_line_beyond_the_limit_is_refused():
@@ -123,6 +159,49 @@ def test_a_line_beyond_the_limit_is_refused():
 def test_a_damaged_time_leaves_the_clock_as_it_was():
     heard = hear(Ear(clock=1.0), PGHP[:-1] + b"0")
     assert (heard.ear.clock, heard.reasons) == (1.0, (Reason.CHECKSUM,))
+
+
+def test_what_a_logger_writes_around_a_sentence_is_passed_over_but_for_its_time():
+    for before, after in (
+        (b"", b" ( MSG: 1, signalpower: -65.2, timestamp: 20221220104711)"),
+        (b"1671533231.000 ", b""),
+        (b"2022-12-20T10:47:11Z: ", b""),
+        (b"[2022-12-20 11:47:11,000+01:00] ", b""),
+        (b'{"class": "AIS", "rxuxtime": 1671533231, "nmea": "', b'\\r\\n"}'),
+        (b'{"nmea": ["', b'"], "time": 1671533231000}'),
+        (b"", b",d-106,r003669945,1671533231"),
+        (tagged(b"s:rORBCOMM", b"") + tagged(b"c:1671533231", b""), b""),
+        (b"1999-01-01T00:00:00Z " + tagged(b"c:1671533231", b""), b",1306879500"),
+    ):
+        heard = hear(Ear(), before + POSITION + after)
+        assert [report.time for report in heard.reports] == [1671533231.0], before + after
+        assert (heard.reasons, heard.pieces) == ((), ("position",))
+
+
+def test_sentences_in_one_line_are_all_heard():
+    heard = hear(Ear(), POSITION * 3 + NAME[0] + NAME[1])
+    assert heard.pieces == ("position",) * 3 + ("part of a message", "message with a name or a type of ship")
+    heard = hear(Ear(), b"1671533231 " + POSITION + b" 1671533232 " + POSITION + POSITION)
+    assert [report.time for report in heard.reports] == [1671533231.0, 1671533232.0, 1671533232.0]
+    heard = hear(Ear(), POSITION + b",1671533231" + POSITION + POSITION + b",1671533232")
+    assert [report.time for report in heard.reports] == [1671533231.0, 1671533232.0, 1671533232.0]
+
+
+def test_a_torn_tag_block_gives_no_time():
+    heard = hear(Ear(), b"\\c:1671533231" + POSITION)
+    assert ([report.time for report in heard.reports], heard.reasons) == ([None], (Reason.TAG_BLOCK,))
+
+
+def test_numbers_that_are_no_times_are_not_taken_for_one():
+    for before in (
+        b"MMSI 376427000 ",
+        b"10:47:11 ",
+        b"127.0.0.1:10110 ",
+        b"7 ",
+        b"99999999999999 ",
+        b"20221320104711 ",
+    ):
+        assert time_of(before + POSITION) is None, before
 
 
 def test_a_lost_part_is_told_when_its_place_is_taken():

@@ -7,10 +7,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physical.ais_recording import Counts, read_recording
+from physical.ais_recording import PIECES, has_sentences, read_recording
 from physical.ais_reports import AisError, PositionReport
 from physical.nmea import MAX_LINE, Reason
+from physical.tally import Tally
 
+POSITION_KIND, PART_KIND, STATIC_KIND = (
+    "position",
+    "part of a message",
+    "message with a name or a type of ship",
+)
 ROOT = Path(__file__).parents[2]
 DATA = Path(os.environ.get("BIGACTORS_DATA", ROOT.parent / "shared" / "data")) / "ais"
 SYNTHETIC = ROOT / "specs" / "missions" / "harbour_watch.nmea"
@@ -85,16 +91,35 @@ def test_north_sea_has_ten_positions_more_and_each_is_explained():
 
 @needs_recordings
 @pytest.mark.parametrize(
-    ("name", "sentences", "reasons"),
+    ("name", "total", "taken", "reasons"),
     [
-        ("workum_2020", 183, {Reason.NOT_AVAILABLE: 3}),
-        ("north_sea_2010", 4500, {Reason.NOT_AVAILABLE: 28}),
-        ("greece_sample", 798, {Reason.EMPTY: 100, Reason.INCOMPLETE: 20, Reason.NOT_AVAILABLE: 4}),
+        (
+            "workum_2020",
+            1496,
+            {POSITION_KIND: 141, "time": 164, PART_KIND: 12, STATIC_KIND: 21},
+            {Reason.NOT_AVAILABLE: 3},
+        ),
+        (
+            "north_sea_2010",
+            8551,
+            {POSITION_KIND: 3132, "time": 4051, PART_KIND: 449, STATIC_KIND: 498},
+            {Reason.NOT_AVAILABLE: 28},
+        ),
+        (
+            "greece_sample",
+            898,
+            {POSITION_KIND: 764, STATIC_KIND: 2},
+            {Reason.EMPTY: 100, Reason.NOT_AVAILABLE: 4, "part of an incomplete message": 20},
+        ),
     ],
 )
-def test_what_could_not_be_used_of_a_real_recording_is_accounted_for(name, sentences, reasons):
-    counts = read_recording(DATA / f"{name}.nmea").counts
-    assert (counts.sentences, dict(counts.reasons)) == (sentences, reasons)
+def test_what_could_not_be_used_of_a_real_recording_is_accounted_for(name, total, taken, reasons):
+    tally = read_recording(DATA / f"{name}.nmea").tally
+    left = dict(tally.left_out)
+    assert (tally.total, dict(tally.taken)) == (total, taken)
+    assert {kind: count for kind, count in left.items() if kind in reasons} == reasons
+    assert all(kind.startswith(("sentence ", "message of type ")) for kind in left.keys() - reasons.keys())
+    assert tally.adds_up
 
 
 def test_a_path_bytes_and_lines_give_the_same_recording():
@@ -114,16 +139,17 @@ def test_lines_are_read_one_by_one():
 
 
 def test_an_empty_recording_has_no_reports():
-    assert read_recording(b"").counts == Counts(0, 0, (), ())
+    assert read_recording(b"").tally == Tally(0, *PIECES)
 
 
 def test_parts_that_wait_at_the_end_are_incomplete():
-    assert read_recording(PART).counts.reasons == ((Reason.INCOMPLETE, 1),)
+    tally = read_recording(PART).tally
+    assert (tally.taken, tally.left_out) == ((), (("part of an incomplete message", 1),))
 
 
 def test_an_overlong_line_is_counted_once_and_the_next_is_read():
     recording = read_recording(b"x" * (5 * MAX_LINE) + b"\n" + POSITION)
-    assert recording.counts.reasons == ((Reason.OVERLONG, 1),)
+    assert recording.tally.left_out == ((Reason.OVERLONG.value, 1),)
     assert [report.mmsi for report in recording.positions] == [376427000]
 
 
@@ -133,7 +159,13 @@ def test_a_recording_beyond_the_limit_is_refused(tmp_path):
     for source in (path, path.read_bytes(), [b"x" * 50] * 100):
         with pytest.raises(AisError, match="longer than 4999 bytes"):
             read_recording(source, limit=4999)
-        assert read_recording(source, limit=5000).counts.lines > 0
+        assert read_recording(source, limit=5000).tally.total > 0
+
+
+@pytest.mark.parametrize("end", [b"\n", b"\r\n", b"\r"])
+def test_lines_end_as_they_do_on_any_system(end):
+    recording = read_recording(end.join([POSITION.strip()] * 500) + end)
+    assert (len(recording.positions), recording.tally.total) == (500, 500)
 
 
 def test_a_file_that_cannot_be_read_is_named(tmp_path):
@@ -144,11 +176,40 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path):
 
 
 def test_the_account_is_printed_reason_by_reason():
-    assert str(read_recording(POSITION + PART + b"noise\n").counts).splitlines() == [
-        "3 lines, 2 AIS sentences, 1 messages",
-        "1 x malformed sentence",
-        "1 x multi-part message incomplete",
+    binary = b"!AIVDM,1,1,,A,85Mwp`1Kf3aCnsNvBWLi=wQuNhA5t43N`5nCuI=p<IBfVqnMgPGs,0*47\n"
+    recording = read_recording(POSITION + b"# noted\n" + PART + b"noise\n" + binary + b"$GPGSV,3,1,10*00\n")
+    assert str(recording.tally).splitlines() == [
+        "6 sentences and other lines: 1 comment, 1 position",
+        "1 x line without a sentence, not read",
+        "1 x message of type 8, which has no position, not read",
+        "1 x part of an incomplete message, not read",
+        "1 x sentence GPGSV, not read",
     ]
+
+
+def test_a_damaged_tag_block_is_counted_beside_its_sentence():
+    tally = read_recording(b"\\c:1671533231*00\\" + POSITION).tally
+    assert (tally.taken, tally.asides) == ((("position", 1),), ((Reason.TAG_BLOCK.value, 1),))
+
+
+def test_a_file_without_sentences_of_ais_is_told_from_one_whose_sentences_are_of_no_use():
+    assert not has_sentences(read_recording(b"Dear reader,\n$GPGGA,1*00\n").tally)
+    assert has_sentences(read_recording(PART).tally)
+    assert has_sentences(read_recording(POSITION).tally)
+
+
+lines = st.sampled_from([POSITION.strip(), PART.strip(), b"# c", b"noise", b"", b"$GPGSV,3,1,10*00"])
+tags = st.sampled_from(
+    [b"", b"\\c:1671533231*5D\\", b"\\c:1671533231*00\\", b"1671533231 ", b"\\g:1-2-3*00\\"]
+)
+
+
+@given(st.lists(st.tuples(tags, lines | st.binary(max_size=40)), max_size=40))
+def test_the_account_adds_up_to_the_sentences_and_other_lines(parts):
+    recording = read_recording(b"\n".join(tag + line for tag, line in parts))
+    assert recording.tally.adds_up
+    assert all(count > 0 for _, count in (*recording.tally.taken, *recording.tally.left_out))
+    assert dict(recording.tally.taken).get("position", 0) == len(recording.positions)
 
 
 @given(st.binary(max_size=3000))

@@ -59,16 +59,21 @@ def test_it_tells_the_name_and_type_of_every_vessel(recording, maker):
 
 
 def test_its_damage_is_counted(recording):
-    assert recording.counts.rows() == (
-        "224 lines, 97 AIS sentences, 92 messages",
-        "1 x checksum missing",
-        "1 x checksum wrong",
-        "1 x malformed sentence",
-        "1 x message too short",
-        "1 x multi-part message incomplete",
-        "1 x payload with characters that AIS does not use",
-        "1 x position not available",
+    head, *rows = recording.tally.rows()
+    assert head.startswith(
+        "224 sentences and other lines: 3 comments, 12 messages with a name or a type of ship, "
     )
+    assert head.endswith("4 parts of a message, 78 positions, 120 times")
+    assert rows == [
+        "1 x checksum missing, not read",
+        "1 x checksum wrong, not read",
+        "1 x line without a sentence, not read",
+        "1 x message too short, not read",
+        "1 x part of an incomplete message, not read",
+        "1 x payload with characters that AIS does not use, not read",
+        "1 x position not available, not read",
+    ]
+    assert recording.tally.adds_up
 
 
 def test_its_times_are_those_of_its_receiver(recording):

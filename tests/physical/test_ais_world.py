@@ -2,13 +2,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physical.ais_recording import Counts, Recording
+from physical.ais_recording import Recording
 from physical.ais_reports import AisError, PositionReport, StaticReport
-from physical.ais_world import KNOT, TIME_TO_LIVE, physical_property, world_at
+from physical.ais_world import (
+    COARSE,
+    KNOT,
+    TIME_TO_LIVE,
+    UNDATED,
+    Finest,
+    check_time,
+    physical_property,
+    seen_at,
+    world_at,
+)
+from physical.altitude import Band
 from physical.geometry import box, point
 from physical.physical_property import Velocity
 
-NOWHERE = Counts(0, 0, (), ())
 VESSEL, BUOY, STATION = 244660274, 992446001, 2442103
 
 
@@ -17,7 +27,7 @@ def at(time, lat=52.97, lon=5.41, mmsi=VESSEL, msg_type=1):
 
 
 def recording(*reports):
-    return Recording(tuple(reports), NOWHERE)
+    return Recording(tuple(reports))
 
 
 def places(world):
@@ -80,8 +90,60 @@ def test_a_time_cannot_be_asked_of_a_recording_without_times():
         world_at(recording(at(None)), 5.0)
 
 
-def test_a_position_without_a_time_is_left_out_among_others_that_have_one():
-    assert [known.entity for known in world_at(recording(at(None), at(1.0, mmsi=BUOY)))] == ["mmsi992446001"]
+def test_a_position_without_a_time_is_as_old_as_its_neighbour_and_that_is_said():
+    read = seen_at(recording(at(None, lat=1.0), at(1.0, mmsi=BUOY), at(None, lat=2.0), at(0.5, lat=3.0)))
+    assert places(read.properties) == {"mmsi244660274": point(2.0, 5.41), "mmsi992446001": point(52.97, 5.41)}
+    assert read.tallies[1].asides == ((UNDATED, 2),)
+
+
+def test_positions_without_a_time_are_too_old_when_their_neighbours_are():
+    heard = recording(at(None, lat=1.0), at(1.0, mmsi=BUOY), at(TIME_TO_LIVE + 2, mmsi=STATION))
+    assert [known.entity for known in world_at(heard)] == ["mmsi002442103"]
+
+
+def test_all_positions_are_accounted_for():
+    heard = recording(
+        at(0.0), at(TIME_TO_LIVE + 1), at(TIME_TO_LIVE + 2), at(TIME_TO_LIVE + 2, mmsi=BUOY, lat=1.0),
+        at(TIME_TO_LIVE + 2, msg_type=27), at(TIME_TO_LIVE + 9), at(TIME_TO_LIVE + 2, mmsi=STATION, msg_type=4),
+    )  # fmt: skip
+    kinds = {"Vessel", "AidToNavigation"}
+    tally = seen_at(heard, TIME_TO_LIVE + 2, box((52, 5), (53, 6)), kinds).tallies[1]
+    assert dict(tally.taken) == {"station": 1}
+    assert dict(tally.left_out) == {
+        "position older than 600 s": 1,
+        "position of a station with a newer one": 1,
+        COARSE: 1,
+        "position after the time": 1,
+        "BaseStation, not asked for": 1,
+        "station outside the area": 1,
+    }
+    assert tally.adds_up
+
+
+def test_a_time_outside_of_the_recording_is_refused_with_its_span():
+    heard = recording(at(1772596000.0), at(1772596600.0))
+    for time in (1772596000.0, 1772596600.0 + TIME_TO_LIVE):
+        check_time(heard, time)
+    for time in (1772595999.0, 1772596601.0 + TIME_TO_LIVE):
+        with pytest.raises(AisError, match="from 2026-03-04T03:46:40Z to 2026-03-04T03:56:40Z"):
+            check_time(heard, time)
+
+
+def test_an_aircraft_has_the_altitude_that_it_reports_and_one_beyond_its_scale_has_no_upper_end():
+    def band(altitude):
+        return physical_property(PositionReport(7.0, 9, 111232512, 53.0, 5.0, altitude=altitude)).altitude
+
+    assert band(600.0) == Band(600, 600)
+    assert band(4094.0) == Band(4094, 20_000)
+    assert band(None) is None
+
+
+def test_a_finer_position_supersedes_coarse_ones_while_it_counts():
+    finest = Finest(time_to_live=10.0)
+    heard = [(0.0, 27), (1.0, 1), (2.0, 27), (11.0, 17), (12.0, 27), (13.0, 1), (14.0, 27)]
+    coarse = [finest.supersedes(at(time, msg_type=kind), time) for time, kind in heard]
+    assert coarse == [False, False, True, True, False, False, True]
+    assert not finest.supersedes(at(14.0, mmsi=BUOY, msg_type=27), 14.0)
 
 
 def test_a_coarse_position_counts_only_where_there_is_no_better():

@@ -13,7 +13,7 @@ from physical.nmea import (
     parse_sentence,
     parse_tag_block,
     part_of,
-    split_tag_block,
+    together,
 )
 
 
@@ -47,24 +47,12 @@ def test_a_sentence_with_the_right_checksum_is_split_into_its_fields():
         (b"!AIVDM,1,1,,B,,0*-1", Reason.CHECKSUM),
         (b"!AIVDM,1,1,,B,,0*2", Reason.NO_CHECKSUM),
         (b"!AIVDM,1,1,,B,,0", Reason.NO_CHECKSUM),
-        (b"!AIVDM,1,1,,B,,0*25x", Reason.MALFORMED),
+        (b"!AIVDM,1,1,,B,,0*25,1306879500", Reason.MALFORMED),
         (b"!AIVDM,1,1,,\xff,,0*25", Reason.MALFORMED),
     ],
 )
 def test_a_damaged_sentence_is_refused_with_its_reason(text, reason):
     assert parse_sentence(text) is reason
-
-
-def test_a_time_that_a_coast_guard_appends_is_read_and_the_rest_cut_off():
-    sentence = parse_sentence(b"!AIVDM,1,1,,B,,0*25,d-106,r003669945,1306879500")
-    assert isinstance(sentence, Sentence)
-    assert (sentence.raw, sentence.time) == (b"!AIVDM,1,1,,B,,0*25", 1306879500.0)
-
-
-def test_an_appended_station_is_no_time():
-    sentence = parse_sentence(b"!AIVDM,1,1,,B,,0*25,r003669945")
-    assert isinstance(sentence, Sentence)
-    assert sentence.time is None
 
 
 @pytest.mark.parametrize(
@@ -108,19 +96,17 @@ def test_a_sound_sentence_that_carries_no_payload_is_refused_with_its_reason(bod
     assert part(body) is reason
 
 
-def test_a_tag_block_stands_between_backslashes():
-    assert split_tag_block(rb"\s:r1*2A\!AIVDM,1*00") == (b"s:r1*2A", b"!AIVDM,1*00")
-    assert split_tag_block(rb"\s:r1*2A") == (b"s:r1*2A", b"")
-    assert split_tag_block(b"!AIVDM") == (None, b"!AIVDM")
-
-
 @pytest.mark.parametrize(
     ("body", "tag"),
     [
         (b"c:1671533231", TagBlock(time=1671533231.0)),
         (b"c:1671533231250", TagBlock(time=1671533231.25)),
         (b"s:r3669961,n:157036,i:something", TagBlock(source="r3669961")),
-        (b"g:2-2-73874", TagBlock(group="73874")),
+        (b"c:1671533231250125", TagBlock(time=1671533231.250125)),
+        (b"c:1671533231250000000", TagBlock(time=1671533231.25)),
+        (b"c:1671533231.25", TagBlock(time=1671533231.25)),
+        (b"g:2-2-73874", TagBlock(group="73874", number=2, total=2)),
+        (b"1G3:73874,s:r1", TagBlock(source="r1", group="73874", number=1, total=3)),
         (b"", TagBlock()),
     ],
 )
@@ -129,7 +115,19 @@ def test_a_tag_block_gives_time_source_and_group(body, tag):
 
 
 @pytest.mark.parametrize(
-    "body", [b"c:yesterday", b"c:-5", b"c:1e999", b"c:" + b"9" * 400, b"g:1-2", b"g:a-b-c"]
+    "body",
+    [
+        b"c:yesterday",
+        b"c:-5",
+        b"c:1e999",
+        b"c:" + b"9" * 400,
+        b"c:9999999999",
+        b"c:99999999999999999999",
+        b"g:1-2",
+        b"g:a-b-c",
+        b"g:1-2-3-4",
+        b"g:" + b"9" * 400 + b"-2-3",
+    ],
 )
 def test_a_tag_block_that_cannot_be_read_is_refused(body):
     assert parse_tag_block(body + b"*%02X" % checksum(body)) is Reason.TAG_BLOCK
@@ -138,6 +136,18 @@ def test_a_tag_block_that_cannot_be_read_is_refused(body):
 def test_a_tag_block_with_a_wrong_checksum_is_refused():
     assert parse_tag_block(b"c:1671533231*00") is Reason.TAG_BLOCK
     assert parse_tag_block(b"c:1671533231") is Reason.TAG_BLOCK
+
+
+def test_tag_blocks_before_one_sentence_are_read_together():
+    source, time, group = TagBlock(source="r1"), TagBlock(time=5.0), TagBlock(group="7", number=2, total=3)
+    assert together([source, time, group]) == TagBlock(5.0, "r1", "7", 2, 3)
+    assert together([TagBlock(time=4.0, source="r2"), time, source]) == TagBlock(4.0, "r2")
+    assert together([]) is None
+
+
+def test_zda_gives_the_time_of_the_receiver():
+    assert clock(b"GPZDA,213950.00,07,04,2020,00,00") == 1586295590.0
+    assert clock(b"GPZDA,,,,,,") is None
 
 
 def test_pghp_gives_a_time_to_the_millisecond():
@@ -169,6 +179,10 @@ def test_the_years_of_rmc_begin_in_1980():
         b"GPRMC,2139nan,A,,,,,,,070420,,,A",
         b"GPRMC,213950.00,A,,,,,,,310220,,,A",
         b"GPRMC,213950.00,A,,,,,,,07042020,,,A",
+        b"GPZDA,213950.00",
+        b"GPZDA,213950.00,31,02,2020,00,00",
+        b"GPZDA,213950.00,07,04,9999,00,00",
+        b"GPZDA,993950.00,07,04,2020,00,00",
     ],
 )
 def test_a_time_that_does_not_exist_is_refused(body):
@@ -179,12 +193,11 @@ def test_a_time_that_does_not_exist_is_refused(body):
 @example(b"--\xff")
 def test_no_bytes_raise(text):
     assert isinstance(address(text), str)
-    assert isinstance(split_tag_block(text)[1], bytes)
     assert isinstance(parse_tag_block(text), TagBlock | Reason)
     assert isinstance(parse_sentence(text), Sentence | Reason)
 
 
-@given(st.lists(st.binary(max_size=12), max_size=14), st.sampled_from(["PGHP", "GPRMC"]))
+@given(st.lists(st.binary(max_size=12), max_size=14), st.sampled_from(["PGHP", "GPRMC", "GPZDA"]))
 def test_no_fields_raise(fields, name):
     sentence = Sentence(b"", name, tuple(fields))
     assert isinstance(clock_of(sentence), float | Reason | None)

@@ -57,6 +57,26 @@ def test_boats_that_are_all_on_land_were_probably_swapped():
     assert all_swapped(exchanged, []) == ""  # a UAV over Tanzania may be meant
 
 
+@pytest.mark.parametrize(
+    "port",
+    [
+        (53.54, 9.93), (51.50, 0.05), (51.90, 4.40), (30.50, 32.30), (29.97, 32.55),  # Hamburg, London, Rotterdam, Suez
+        (51.23, 4.40), (53.10, 8.75), (48.85, 2.35), (49.48, 8.45), (48.20, 16.40),  # Antwerp, Bremen, Paris, Mannheim
+        (30.05, 31.23), (22.35, 88.20), (30.53, 47.80), (41.90, -87.60), (-34.60, -58.40), (-3.10, -60.00),
+        (59.33, 18.07), (9.10, -79.70), (52.84, 5.71), (52.50, 13.40), (47.50, 19.05), (-27.47, 153.05 - 180),
+    ],
+)  # fmt: skip
+def test_boats_in_the_harbours_of_rivers_and_canals_were_not_swapped(port):
+    assert all_swapped([point(*port)], [point(*port)]) == ""
+
+
+@pytest.mark.parametrize("bay", [(37.05, -8.60), (36.90, -7.90), (43.35, -8.40), (54.40, 10.20)])
+def test_boats_of_a_bay_whose_exchange_is_far_inland_were_probably_swapped(bay):
+    assert all_swapped([point(*bay)], [point(*bay)]) == ""
+    exchanged = [point(*bay[::-1])]
+    assert all_swapped(exchanged, exchanged) != ""
+
+
 def test_a_world_far_out_at_sea_that_exchanged_is_on_a_coast_was_probably_swapped():
     assert all_swapped([point(10.0, 54.0), point(10.2, 54.1)], []) == "is more than 100 km from any coast"
     assert all_swapped([point(54.0, 10.0)], []) == ""

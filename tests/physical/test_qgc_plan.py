@@ -3,6 +3,8 @@
 import json
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from physical import (
     JoinChannel,
@@ -14,6 +16,7 @@ from physical import (
     waypoint_places,
     write_plan,
 )
+from physical.qgc_plan import read_plan_places
 
 STOPS = (point(37.0, -8.6), point(37.01, -8.61))
 
@@ -63,6 +66,116 @@ def test_what_goes_nowhere_is_no_place():
 def test_the_items_that_a_survey_stands_for_are_taken():
     survey = {"type": "ComplexItem", "TransectStyleComplexItem": {"Items": [simple(), simple(37.01)]}}
     assert len(read_plan(plan(survey, simple()))) == 4
+
+
+def complex_item(kind, **more):
+    return {"type": "ComplexItem", "complexItemType": kind, **more}
+
+
+def landing(kind="fwLandingPattern", **more):
+    where = {"landCoordinate": [37.02, -8.62, 0], "landingApproachCoordinate": [37.01, -8.61, 40]}
+    return complex_item(kind, **({"altitudesAreRelative": True} | where | more))
+
+
+def read(*items, home=(37.0, -8.6, 20), **members):
+    document = json.loads(plan(*items, home=home)) | members
+    return read_plan_places(json.dumps(document))
+
+
+@pytest.mark.parametrize(
+    ("pattern", "commands", "altitudes"),
+    [
+        (landing(), [189, 31, 21], [60.0, 20.0]),
+        (landing("vtolLandingPattern"), [189, 31, 85], [60.0, 20.0]),
+        (landing(useLoiterToAlt=False), [189, 16, 21], [60.0, 20.0]),
+        (landing(altitudesAreRelative=False), [189, 31, 21], [40.0, 0.0]),
+        (landing(loiterCoordinate=[37.01, -8.61, 40]), [189, 31, 21], [60.0, 20.0]),
+    ],
+)
+def test_a_landing_pattern_is_read_as_what_is_flown(pattern, commands, altitudes):
+    _, *items = read_plan(plan(simple(), pattern))
+    assert [item.command for item in items[1:]] == commands
+    places = {place.entity: place for place in read(simple(), pattern).properties}
+    assert [places[name].geometry for name in ("waypoint3", "waypoint4")] == [
+        point(37.01, -8.61),
+        point(37.02, -8.62),
+    ]
+    assert [places[name].altitude.low for name in ("waypoint3", "waypoint4")] == altitudes
+
+
+@pytest.mark.parametrize(
+    ("item", "kind"),
+    [
+        (complex_item("StructureScan", polygon=[[1, 2], [1, 3], [2, 3]]), "complex item StructureScan"),
+        (complex_item("survey", polygon=[[1, 2]], TransectStyleComplexItem={}), "complex item survey"),
+        (complex_item("CorridorScan"), "complex item CorridorScan"),
+        (complex_item("fwLandingPattern"), "complex item fwLandingPattern"),
+        ({"type": "ComplexItem"}, "complex item without a type"),
+    ],
+)
+def test_a_complex_item_that_is_not_read_is_named_and_the_rest_is_read(item, kind):
+    found = read(simple(), item, simple(37.01))
+    assert [place.entity for place in found.properties] == ["waypoint0", "waypoint1", "waypoint2"]
+    assert found.tallies[0].left_out == ((kind, 1),)
+
+
+def test_fences_and_rally_points_are_counted():
+    fence = {
+        "circles": [{"circle": {"center": [1, 2], "radius": 3}, "inclusion": True}, {"inclusion": False}],
+        "polygons": [{"inclusion": True, "polygon": []}, {"inclusion": False, "polygon": []}],
+        "breachReturn": [1, 2, 3],
+    }
+    tally = read(simple(), geoFence=fence, rallyPoints={"points": [[1, 2, 3], [1, 2, 4]]}).tallies[0]
+    assert dict(tally.left_out) == {
+        "fence circle (to stay in)": 1,
+        "fence circle (to stay out)": 1,
+        "fence polygon (to stay in)": 1,
+        "fence polygon (to stay out)": 1,
+        "fence return point": 1,
+        "rally point": 2,
+    }
+    assert (tally.total, tally.adds_up) == (9, True)
+    first_version = read(geoFence={"polygon": [[1, 2], [3, 4]], "version": 1}).tallies[0]
+    assert first_version.left_out == (("fence polygon (to stay in)", 1),)
+
+
+@pytest.mark.parametrize("home", [(0, 0, 0), (None, None, None)])
+def test_a_planned_home_that_is_none_gives_no_altitudes(home):
+    (place,) = read(simple(), home=home).properties
+    assert (place.entity, place.altitude) == ("waypoint1", None)
+
+
+def test_what_is_null_is_not_known():
+    found = read(simple(altitude=None), simple(None, None), simple(None, -8.6), home=(37.0, -8.6, None))
+    assert [(place.entity, place.altitude) for place in found.properties] == [
+        ("waypoint0", None),
+        ("waypoint1", None),
+    ]
+    assert found.tallies[0].left_out == (("WAYPOINT without a position", 2),)
+
+
+simples = st.builds(
+    simple,
+    st.sampled_from([0, None, 37.0]),
+    st.sampled_from([0, -8.6]),
+    st.sampled_from([None, 50]),
+    st.sampled_from([16, 20, 31, 84, 177, 206, 201]),
+    st.sampled_from([0, 2, 3, 10]),
+)
+complexes = st.sampled_from([landing(), complex_item("StructureScan"), complex_item("survey")]) | st.lists(
+    simples, max_size=3
+).map(lambda items: complex_item("survey", TransectStyleComplexItem={"Items": items}))
+
+
+@given(st.lists(simples | complexes, max_size=8), st.integers(0, 3), st.integers(0, 3))
+def test_the_account_adds_up_to_items_fences_and_rally_points(items, fences, points):
+    found = read(*items, geoFence={"polygons": [{}] * fences}, rallyPoints={"points": [[1, 2, 3]] * points})
+    unread = sum(
+        item.get("complexItemType") in ("StructureScan", "survey") and len(item) == 2 for item in items
+    )
+    assert found.tallies[0].adds_up
+    assert found.tallies[0].total == len(read_plan(plan(*items))) + unread + fences + points
+    assert sum(count for _, count in found.tallies[0].taken) == len(found.properties)
 
 
 @pytest.mark.parametrize(

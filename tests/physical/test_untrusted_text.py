@@ -1,6 +1,7 @@
 """Text from outside: what passes can be written again."""
 
 import json
+import math
 
 import pytest
 
@@ -21,7 +22,8 @@ from physical import PhysicalError, is_text, is_word, legible, read_json
         (b"[" * 100_000, "json"),
         (b"{", "json"),
         (b'{"a": 1, "b": 2, "a": 1}', "json"),
-        (b"9" * 401, "json"),
+        (b"9" * 301, "json"),
+        (b"-1" + b"0" * 350, "json"),
         (b" " * 1_001, "too-large"),
     ],
 )
@@ -36,13 +38,18 @@ def test_json_that_could_not_be_written_again_is_refused(said, code):
     [
         (b'[{"holds": false, "holds": true}]', "the key 'holds' is there twice in one object"),
         (b'{"a": 1, "\\u0061": 2}', "the key 'a' is there twice in one object"),
-        (b"[" + b"1" * 5_000 + b"]", "a number of 5,000 digits is longer than 400"),
+        (b"[" + b"1" * 5_000 + b"]", "a number of 5,000 digits is longer than 300"),
     ],
 )
 def test_what_others_could_read_otherwise_is_refused_in_our_own_words(said, reason):
     with pytest.raises(PhysicalError) as found:
         read_json(said, 10_000)
     assert found.value.message == f"the text is not JSON: {reason}"
+
+
+@pytest.mark.parametrize("said", [b"9" * 300, b"-" + b"9" * 300, b"1e308"])
+def test_every_number_that_is_read_is_a_float_too(said):
+    assert math.isfinite(float(read_json(said, 1_000)))
 
 
 def test_what_passes_is_what_json_says():

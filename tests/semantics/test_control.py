@@ -372,6 +372,15 @@ def test_commit_requires_the_entity_still_to_be_in_transit():
     assert obstacle(c, c.eta.all()[0].request) is Obstacle.INCONSISTENT
 
 
+def test_commit_requires_the_entity_to_be_on_the_way_of_this_flight_and_not_of_another():
+    """It may have vanished, appeared elsewhere, and been sent from there by another agent."""
+    flying = run(commanding(move_to("area")), "command")
+    going = flying.structure.physical.placement("u0")
+    elsewhere = flying.with_({("placement", "u0"): InTransit(going.origin, "base")})
+    assert list(commit(elsewhere, "a")) == []
+    assert obstacle(elsewhere, elsewhere.eta.all()[0].request) is Obstacle.INCONSISTENT
+
+
 def test_commit_requires_the_target_to_be_known_and_there():
     flying = run(commanding(move_to("area")), "command")
     lost = flying.with_({("placement", "area"): None})

@@ -1,27 +1,30 @@
 /** What may be said and done, and what became of what was. */
-import { html, memo, byName, useSections, useState, useWatched } from "./ui.js";
+import { Field, html, memo, byName, useSections, useWatched } from "./ui.js";
 import { fateOf } from "./plainly.js";
 import { HeldButton } from "./press.js";
 import { utc } from "./units.js";
 import { LONGEST_NAME } from "./who.js";
 
 export function Actions({ app }) {
-  const [sayings, actions, vehicles, agents] = useSections(app.store, ["sayings", "actions", "vehicles", "agents"], 200);
+  const [sayings, actions, vehicles, agents, mission] = useSections(app.store, ["sayings", "actions", "vehicles", "agents", "mission"], 200);
   const act = useWatched(app.mayAct);
   const past = useWatched(app.inPast);
   const why = useWatched(app.whyNot);
+  const { role, mode } = useWatched(app.link.welcome) ?? {};
   const order = (which) => () => app.act({ order: { order: which, vehicle: null } }, { what: which, about: "all" });
   return html`<div class="actions">
+    ${role === "act" && mode === "live" && html`<${Name} key="name" app=${app} />`}
     ${act ? html`
-      <${Name} app=${app} />
       <h3>Say</h3>
       ${sayings.size === 0 && html`<p class="none">The mission lets nobody say anything now.</p>`}
-      <ul class="sayings">${[...sayings].sort(([a], [b]) => byName(a, b)).map(([key, saying]) => html`<${Saying} key=${key} app=${app} saying=${saying} over=${agents.get(saying.agent)?.state === "has ended"} />`)}</ul>
+      ${sayings.size > 0 && mission.get("fallen_back") && html`<p class="none bad">The mission has fallen back: ${mission.get("fallen_back")}. What is said to its agents moves no vehicle.</p>`}
+      <ul class="sayings">${[...sayings].sort(([a], [b]) => byName(a, b)).map(([key, saying]) => html`<${Saying} key=${key} app=${app} saying=${saying} over=${agents.get(saying.agent)?.state === "has ended"} fallen=${Boolean(mission.get("fallen_back"))} />`)}</ul>
       ${vehicles.size > 1 && html`<h3>All ${vehicles.size} vehicles</h3>
       <div class="buttons">
         <${HeldButton} label="Hold all" tell=${app.tell} act=${order("hold")}>Hold all<//>
         <${HeldButton} label="Return all" tell=${app.tell} act=${order("return")}>Return all<//>
-      </div>`}` : html`<p class="none">${why}</p>${past && html`<p><button type="button" class="now" onClick=${app.live}>Go to now (L) to act</button></p>`}`}
+      </div>
+      ${[...vehicles].filter(([, card]) => card.on_return).slice(0, 1).map(([name, card]) => html`<p key=${name} class="on-return"><b>Return all</b>, of ${name}: ${card.on_return}</p>`)}`}` : html`<p class="none">${why}</p>${past && html`<p><button type="button" class="now" onClick=${app.live}>Go to now (L) to act</button></p>`}`}
     <h3>What was done</h3>
     ${actions.size === 0 && html`<p class="none">Nothing yet.</p>`}
     <ol class="fates">${[...actions].sort(([, a], [, b]) => b.time - a.time).slice(0, 100).map(([key, action]) => html`<${Fate} key=${key} action=${action} />`)}</ol>
@@ -29,24 +32,22 @@ export function Actions({ app }) {
 }
 
 /** What is said before its agent waits for it is kept: the button says so. */
-const Saying = memo(({ app, saying: { agent, message, left, awaited }, over }) => html`<li class=${awaited && left !== 0 && !over ? "awaited" : ""}><${HeldButton} label=${`say “${message}” to ${agent}`} tell=${app.tell} disabled=${left === 0 || over} act=${() => app.act({ say: { agent, message } }, { what: `say "${message}"`, about: agent })}>
-    “${message}” to ${agent} <span class="left">${over ? "has ended, hears nothing" : `${left} left${awaited === false ? ", not waited for yet" : awaited ? ", waited for now" : ""}`}</span><//></li>`);
+const Saying = memo(({ app, saying: { agent, message, left, awaited, vain }, over, fallen }) => html`<li class=${awaited && left !== 0 && !over && !vain ? "awaited" : ""}><${HeldButton} label=${`say “${message}” to ${agent}`} tell=${app.tell} disabled=${left === 0 || over || fallen} act=${() => app.act({ say: { agent, message } }, { what: `say "${message}"`, about: agent })}>
+    “${message}” to ${agent} <span class="left">${over ? "has ended, hears nothing" : `${left} left${awaited === false ? ", not waited for yet" : awaited ? ", waited for now" : ""}`}</span>${vain && !fallen && html`<span class="aside">${vain}</span>`}<//></li>`);
 
 const Fate = memo(({ action }) => html`<li class=${action.state}><time>${utc(action.time)}</time>
     <span><b>${action.what}</b>${action.about ? ` ${action.about}` : ""} · ${action.by || "someone"} · <span class="state">${fateOf(action)}${action.why ? `: ${action.why}` : ""}</span>${action.answered ? html` <time>${utc(action.answered)}</time>` : ""}
       ${Object.entries(action.left_out ?? {}).map(([name, why]) => html`<span class="aside" key=${name}>not ${name}: ${why}</span>`)}
       ${(action.notes ?? []).map((note) => html`<span class="aside" key=${note}>${note}</span>`)}</span></li>`);
 
-/** What is being typed stays, whatever is drawn meanwhile; it is taken as the name when it is complete. */
+/** The name is taken when it is complete. */
 function Name({ app }) {
   const name = useWatched(app.name);
-  const [typed, setTyped] = useState(null);
   const [mission] = useSections(app.store, ["mission"], 500);
   const station = mission.get("station");
   const take = (event) => {
     app.name.set(event.currentTarget.value.trim());
-    setTyped(null);
+    event.currentTarget.value = app.name.value;
   };
-  return html`<p class="who"><label for="who">You act as</label> <input id="who" value=${typed ?? name} maxlength=${LONGEST_NAME} placeholder="your name" autocomplete="off"
-    onInput=${(event) => setTyped(event.currentTarget.value)} onChange=${take} /> <span class="quiet">${station ? `for station ${station}, ` : ""}recorded with each action</span></p>`;
+  return html`<p class="who"><label for="who">You act as</label> <${Field} id="who" value=${name} maxlength=${LONGEST_NAME} placeholder="your name" onChange=${take} /> <span class="quiet">${station ? `for station ${station}, ` : ""}recorded with each action</span></p>`;
 }

@@ -8,10 +8,9 @@ import { utc } from "./units.js";
 const CAUSES = ["lost link", "taken over", "failed"];
 
 /** The newest first; of those of one second what is about a vehicle, and of these what has caused the others. */
-const standing = (alerts, vehicles) => {
+const standing = (alarms, vehicles) => {
   const rank = ({ kind, about }) => 2 * vehicles.has(about) + CAUSES.includes(kind);
-  return [...alerts]
-    .filter(([, alert]) => alert.wrong && !alert.acknowledged)
+  return [...alarms]
     .sort(([, a], [, b]) => Math.floor(b.time) - Math.floor(a.time) || rank(b) - rank(a) || b.time - a.time);
 };
 
@@ -24,7 +23,8 @@ function asked(sayings, agents) {
 }
 
 /** What is said where nothing stands: who is to be watched all the same, and why. */
-function calm(vehicles) {
+function calm(vehicles, fallenBack) {
+  if (fallenBack) return `The mission has fallen back: ${fallenBack}.`;
   const watched = [...vehicles].filter(([, card]) => card.level > 0);
   const [name, card] = watched.sort(([, a], [, b]) => b.level - a.level)[0] ?? [];
   if (!card) return "Nothing is wrong.";
@@ -46,24 +46,26 @@ function Acknowledge({ app, number, about }) {
 }
 
 export function Alert({ app }) {
-  const [alerts, vehicles, sayings, agents] = useSections(app.store, ["alerts", "vehicles", "sayings", "agents", "clock"], 200);
+  const [alerts, alarms, vehicles, sayings, agents, mission] = useSections(app.store, ["alerts", "alarms", "vehicles", "sayings", "agents", "mission", "clock"], 200);
+  const past = useWatched(app.inPast);
   const connected = useWatched(app.link.state).state === "open";
   const act = useWatched(app.mayAct);
   const open = useWatched(app.listing);
-  const wrong = standing(alerts, vehicles);
+  const wrong = standing(alarms, vehicles);
   const [number, newest] = wrong[0] ?? [];
-  const all = [...alerts].sort(([, a], [, b]) => b.time - a.time);
+  const all = [...new Map([...alerts, ...alarms])].sort(([, a], [, b]) => b.time - a.time);
   const shown = open && all.length > 0;
   const broken = app.clock.get("broken_off") && app.clock.atEnd;
   const welcome = useWatched(app.link.welcome);
   const question = act ? asked(sayings, agents) : null;
   return html`<div class="alerts">
     <div role="alert" class=${`alert ${newest ? "standing" : ""}`} key="line">
-      ${newest && html`<span class="message" key=${number} title=${newest.message} onClick=${() => app.listing.set(!open)}><b>${newest.about ? `${newest.about}: ` : ""}</b>${findingWords(newest)}</span>`}
+      ${newest && html`<span class="message" key=${number} title=${newest.message} onClick=${() => app.listing.set(!open)}><span class="cause">${past && html`<span class="now-mark">NOW</span> `}<b>${newest.about ? `${newest.about}: ` : ""}</b>${newest.message}</span>${newest.consequence && html` <span class="consequence"><i aria-hidden="true">→</i> ${newest.consequence}</span>`}</span>`}
     </div>
-    ${!newest && html`<span class=${`calm ${broken ? "wrong" : question ? "asked" : ""}`} key="calm">${broken ? `Unknown: ${app.clock.get("ended")}.` : app.clock.atEnd ? endOf(app.clock.get("ended"), welcome?.recording) : connected ? `${question ?? ""}${calm(vehicles)}` : "Unknown: not connected."}</span>`}
+    ${!newest && html`<span class=${`calm ${broken ? "wrong" : question ? "asked" : ""}`} key="calm">${broken ? `Unknown: ${app.clock.get("ended")}.` : app.clock.atEnd ? endOf(app.clock.get("ended"), welcome?.recording) : connected ? `${question ?? ""}${calm(vehicles, mission.get("fallen_back"))}` : "Unknown: not connected."}</span>`}
     ${all.length > 0 && html`<div class=${`alert-tools ${newest ? "standing" : ""}`} key="tools">
-      ${newest && html`<span class="quiet-red when">${utc(newest.time)} · <${Age} clock=${app.clock} time=${newest.time} /> ago</span>`}
+      ${newest && html`<span class="quiet-red when">${utc(newest.time)}${past ? " UTC" : html` · <${Age} clock=${app.clock} time=${newest.time} /> ago`}</span>`}
+      ${newest && past && html`<button type="button" class="now" onClick=${app.live}>Go to now (L)</button>`}
       ${newest && act && html`<${Acknowledge} app=${app} number=${number} about=${newest.about} />`}
       <button type="button" class="others" aria-expanded=${String(shown)} onClick=${() => app.listing.set(!open)}>${wrong.length > 1 ? `${wrong.length - 1} more` : `all ${all.length}`} ▾</button>
     </div>`}

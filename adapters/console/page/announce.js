@@ -1,5 +1,4 @@
 /** Tells people who don't see the screen what has changed, in one sentence every few seconds at the most. */
-import { LEVELS } from "./cards.js";
 import { fateOf } from "./plainly.js";
 
 const PAUSE = 3000;
@@ -25,11 +24,11 @@ export class Announcer {
   #vehicles(keys, section) {
     for (const name of keys) {
       const card = section.get(name);
-      const words = card ? `${LEVELS[card.level]}${card.why ? `: ${card.why}` : ""}` : "gone";
+      const words = card ? `${card.word}${card.why ? `: ${card.why}` : ""}` : "gone";
       this.#obeys(name, card?.authority?.join(", ") ?? "");
       const before = this.#levels.get(name);
-      this.#levels.set(name, card?.level);
-      if (before !== card?.level && (before !== undefined || card?.level > 0)) this.#say(name, `${name} ${words}`);
+      this.#levels.set(name, card?.word);
+      if (before !== card?.word && (before !== undefined || card?.level > 0)) this.#say(name, `${name} ${words}`);
     }
   }
 

@@ -9,7 +9,7 @@ import { Help, listenForKeys } from "./keys.js";
 import { Link } from "./link.js";
 import { Mission, NotConnected } from "./mission.js";
 import { NoticeList, Notices } from "./notices.js";
-import { Orders } from "./orders.js";
+import { OnReturn, Orders } from "./orders.js";
 import { Store } from "./store.js";
 import { openTab, Panel, PANELS, TabList, usePhone } from "./tabs.js";
 import { neighbour, SPEEDS, Timeline } from "./timeline.js";
@@ -47,6 +47,8 @@ class App {
   asking = new Watched(false);
   /** How fast the past is played, once it is. */
   speed = new Watched(1);
+  /** Whether what is shown as the newest moment is old: nothing is known of any vehicle now. */
+  stale = new Watched(false);
   /** The only vehicle there is, or null. */
   only = new Watched(null);
   /** The vehicles as the cards show them; empty where no cards are shown. */
@@ -114,6 +116,8 @@ class App {
   /** Whether this page may act now, and if not, why. */
   #judge() {
     const { role, mode } = this.link.welcome.value ?? {};
+    const heard = this.link.state.value.state === "open" && !this.clock.get("unread");
+    this.stale.set(mode === "live" && !heard && (this.clock.get("broken_off") || !this.clock.get("ended")));
     const why =
       mode === "replay" ? "This is a recording that has ended: nothing can be done in it."
       : role !== "act" ? "This link lets you watch. To act, open the link that the program printed for it."
@@ -281,9 +285,11 @@ class App {
 const onlyOf = (vehicles) => (vehicles.size === 1 ? vehicles.keys().next().value : null);
 
 function Page({ app }) {
-  const { state, why, asks } = useWatched(app.link.state);
+  const state = useWatched(app.link.state);
+  const refused = useRef(null);
   const known = app.clock.now !== null; // what was shown before stays: another run may be served here now
-  return state === "refused" && !known ? html`<${Door} app=${app} why=${why} asks=${asks} />` : html`<${Screen} app=${app} />`;
+  if (known || state.state !== "connecting") refused.current = !known && state.state === "refused" ? state : null;
+  return refused.current ? html`<${Door} app=${app} ...${refused.current} />` : html`<${Screen} app=${app} />`;
 }
 
 function Screen({ app }) {
@@ -321,7 +327,8 @@ function Subject({ app }) {
   if (!card) return null;
   return html`<div class=${`subject level-${card.level}`}>
     <p><b class="mark">${app.subject}</b> <${Brief} app=${app} name=${app.subject} card=${card} /></p>
-    <${Orders} app=${app} name=${app.subject} taken=${card.taken} /></div>`;
+    <${OnReturn} app=${app} card=${card} />
+    <${Orders} app=${app} name=${app.subject} card=${card} /></div>`;
 }
 
 /** The map's element, which is drawn once: what is in it is the map's own. */

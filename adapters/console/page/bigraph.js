@@ -49,9 +49,16 @@ function sizeOf(root) {
   return [0, 0, width, height];
 }
 
+/** Of which step the picture is, which may be another than the moment's: it is drawn once a second at most. */
+function captionOf(pictured, step) {
+  if (pictured === null) return "what is believed";
+  const later = step !== null && step !== pictured ? `; the moment shown is after step ${step}, which is not drawn yet` : "";
+  return `what is believed, after step ${pictured}${later}`;
+}
+
 export function Bigraph({ app }) {
   const [bigraph] = useSections(app.store, ["bigraph"], 200);
-  const [svg, text, step] = ["svg", "text", "step"].map((key) => bigraph.get(key) ?? null);
+  const [svg, text, step, drawn] = ["svg", "text", "step", "drawn"].map((key) => bigraph.get(key) ?? null);
   const frame = useRef(null);
   const view = useRef({ box: null, whole: null });
   const [words, setWords] = useState(false);
@@ -121,7 +128,7 @@ export function Bigraph({ app }) {
       <button type="button" onClick=${() => zoom(0.8)} disabled=${words} aria-label="make smaller">−</button>
       <button type="button" onClick=${fit} disabled=${words}>Fit</button>
       <button type="button" aria-pressed=${String(words)} onClick=${() => setWords(!words)}>Text</button>
-      <span class="quiet">what is believed${step !== null ? `, after step ${step}` : ""}</span></p>
+      <span class="quiet">${captionOf(words || !svg ? step : drawn, step)}</span></p>
     ${words || !svg
       ? html`<pre tabindex="0" key="text">${text}</pre>`
       : html`<div key="picture" class="frame" ref=${frame} tabindex="0" role="img" aria-label=${`The bigraph: ${text ?? "see the picture"}`} onPointerMove=${drag} onKeyDown=${keys}

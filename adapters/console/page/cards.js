@@ -2,13 +2,15 @@
 import { html, memo, byName, useEffect, useRef, useSections, useWatched } from "./ui.js";
 import { Age, Ticking, say } from "./clock.js";
 import { distance, distanceToArea } from "./map/geodesy.js";
-import { fallbackWords, fateOf, isSent, isUnderWay, orderWords, requestWords, wayOf, whereabouts } from "./plainly.js";
-import { Orders } from "./orders.js";
+import { fallbackWords, fateOf, isAstray, orderWords, requestWords, wayOf, whereabouts } from "./plainly.js";
+import { OnReturn, Orders } from "./orders.js";
 import { useStillness } from "./stillness.js";
-import { angle, age, duration, metres, position, range, speed, system } from "./units.js";
+import { angle, age, duration, metres, position, range, speed, system, utc } from "./units.js";
 
-export const LEVELS = ["well", "watch", "wrong", "lost"];
 const MARKS = ["●", "▲", "■", "✖"];
+/** How a vehicle is of which nothing is known now, whatever was known of it. */
+const UNKNOWN = "unknown";
+const UNKNOWN_MARK = "?";
 const MANY = 8;
 /** Seconds for which a change of authority is marked, a finished action is shown, and what was said is not dimmed. */
 const NEW = 60;
@@ -20,6 +22,7 @@ export const worstFirst = (vehicles) => [...vehicles].sort(([one, a], [other, b]
 export function Cards({ app }) {
   const [vehicles, entities] = useSections(app.store, ["vehicles", "entities"], 200);
   const chosen = useWatched(app.chosen);
+  const stale = useWatched(app.stale);
   useWatched(system);
   const list = useRef(null);
   const [isStill, hand] = useStillness(list);
@@ -33,34 +36,49 @@ export function Cards({ app }) {
   }, [chosen]);
 
   const many = vehicles.size > MANY;
-  const counts = LEVELS.map((_, level) => [...vehicles.values()].filter((card) => card.level === level).length);
   return html`<section class="cards" aria-labelledby="cards-title" id="cards">
     <h2 id="cards-title">Vehicles <span class="count">${vehicles.size}</span>
-      ${LEVELS.map((name, level) => counts[level] > 0 && html`<span key=${name} class=${`tally level-${level}`}>${MARKS[level]} ${counts[level]} ${name}</span>`)}
+      ${tallied([...vehicles.values()], stale).map(([word, { level, count }]) => html`<span key=${word} class=${`tally level-${level}`}>${markOf(word, level)} ${count} ${word}</span>`)}
     </h2>
     <div class="scroll" ref=${list} ...${hand} tabindex="-1"><div class="stack">
       ${chosen !== null && !vehicles.has(chosen) && entities.has(chosen) && html`<${Entity} key="*chosen" app=${app} name=${chosen} entity=${entities.get(chosen)} />`}
       ${vehicles.size === 0 && html`<p class="none">No vehicle is known yet.</p>`}
       ${app.order.map((name) => html`<${Card} key=${name} app=${app} name=${name} card=${vehicles.get(name)}
-        chosen=${name === chosen} units=${system.value} small=${many && name !== chosen} />`)}
+        chosen=${name === chosen} stale=${stale} units=${system.value} small=${many && name !== chosen} />`)}
     </div></div>
   </section>`;
 }
 
-const Card = memo(({ app, name, card, chosen, small }) => {
+const wordOf = ({ word }, stale) => (stale ? UNKNOWN : word);
+const markOf = (word, level) => (word === UNKNOWN ? UNKNOWN_MARK : MARKS[level]);
+
+/** How many vehicles are how, the best first: `[word, {level, count}]`. */
+function tallied(cards, stale) {
+  const found = new Map();
+  for (const card of cards) {
+    const word = wordOf(card, stale);
+    const known = found.get(word) ?? { level: card.level, count: 0 };
+    found.set(word, { level: Math.max(known.level, card.level), count: known.count + 1 });
+  }
+  return [...found].sort(([, a], [, b]) => a.level - b.level);
+}
+
+const Card = memo(({ app, name, card, chosen, stale, small }) => {
   const choose = () => app.chosen.set(chosen ? null : name);
+  const word = wordOf(card, stale);
   return html`<article class=${`card level-${card.level} ${small ? "small" : ""} ${chosen ? "chosen" : ""}`} data-name=${name} aria-label=${name}>
     <header>
       <h3>
-        <span class="mark" aria-hidden="true">${MARKS[card.level]}</span>
+        <span class="mark" aria-hidden="true">${markOf(word, card.level)}</span>
         <button type="button" class="name" aria-pressed=${String(chosen)} onClick=${choose}>${name}</button>
         <span class="kind">${card.kind}</span>
-        <span class=${`level ${card.level ? "" : "quiet"}`}>${LEVELS[card.level]}</span>
-        <${LinkAge} app=${app} link=${card.link} />
+        <span class=${`level ${card.level || stale ? "" : "quiet"}`}>${word}</span>
+        <${LinkAge} app=${app} link=${card.link} unknown=${word === UNKNOWN} />
         <${Battery} battery=${card.battery} />
       </h3>
-      ${!small && html`<${Orders} app=${app} name=${name} taken=${card.taken} />`}
+      ${!small && html`<${Orders} app=${app} name=${name} card=${card} />`}
     </header>
+    ${!small && html`<${OnReturn} app=${app} card=${card} />`}
     ${card.why && html`<p class="why">${card.why}</p>`}
     ${small ? html`<p class="brief"><${Place} card=${card} /> ${card.request && html`<${Request} app=${app} card=${card} />`}</p>` : html`
     <dl>
@@ -113,7 +131,8 @@ function toGo(store, name, card, brief = false) {
 export function Brief({ app, name, card }) {
   const { height, mode, link } = card;
   const facts = asHeard(link, [mode, isNumber(height) && metres(height), toGo(app.store, name, card, true)]);
-  return html`<${Battery} battery=${card.battery} /> <${LinkAge} app=${app} link=${card.link} />
+  const word = wordOf(card, useWatched(app.stale));
+  return html`<span class="level">${word}</span> <${Battery} battery=${card.battery} /> <${LinkAge} app=${app} link=${card.link} unknown=${word === UNKNOWN} />
     ${card.level > 0 && html`<span class="why" title=${card.why}>${card.why}</span>`} <span class="quiet">${facts}</span>`;
 }
 
@@ -123,11 +142,12 @@ const isCommanded = ({ taken, returning, request }) => !taken && !returning && !
 const isNumber = (value) => typeof value === "number";
 
 function Place({ card }) {
-  return html`<span class=${`place ${card.differs && !card.returning && !isUnderWay(card.order) && !isSent(card) ? "differs" : ""}`}>${whereabouts(card)}</span>`;
+  return html`<span class=${`place ${isAstray(card) ? "differs" : ""}`}>${whereabouts(card)}</span>`;
 }
 
-/** How long ago the vehicle was heard: the older, the more it is marked. */
-function LinkAge({ app, link }) {
+/** How long ago the vehicle was heard: the older, the more it is marked; when, where nobody listens any more. */
+function LinkAge({ app, link, unknown }) {
+  if (unknown && link.heard !== null) return html`<span class="link bad">last heard ${utc(link.heard)}</span>`;
   if (link.lost) return html`<span class="link bad">link lost${link.heard !== null && html` <${Age} clock=${app.clock} time=${link.heard} />`}</span>`;
   if (link.heard === null) return html`<span class="link quiet">not heard</span>`;
   const apply = (element, now) => {

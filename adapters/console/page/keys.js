@@ -1,5 +1,5 @@
 /** The keys, and the sheet that tells them. */
-import { html, useEffect, useRef, useWatched } from "./ui.js";
+import { html, Modal, useWatched } from "./ui.js";
 import { system, SYSTEMS } from "./units.js";
 
 const WRITES = "input:not([type=range]):not([type=checkbox]), textarea, select";
@@ -55,19 +55,14 @@ export function Help({ app }) {
   const open = useWatched(app.help);
   const single = useWatched(app.singleKeys);
   const units = useWatched(system);
-  const dialog = useRef(null);
-  useEffect(() => {
-    if (open) dialog.current.showModal();
-    else dialog.current.close();
-  }, [open]);
-  return html`<dialog ref=${dialog} class="help" aria-labelledby="help-title" onClose=${() => app.help.set(false)}>
+  return html`<${Modal} open=${open} class="help" aria-labelledby="help-title" closed=${() => app.help.set(false)}>
     <h2 id="help-title">Keys</h2>
     <dl>${shortcuts(app).map(([key, words]) => html`<div key=${key}><dt><kbd>${NAMES[key] ?? key.toUpperCase()}</kbd></dt><dd>${words}</dd></div>`)}</dl>
     <p>Hold, Return and Give back act when they are held for one second: by pointer, or by Enter or Space on the button. Tab goes from one thing to the next.</p>
     <p>In the picture and on the map: arrows move, + and − enlarge.</p>
-    <p class="levels"><span class="level-0"><span class="mark">●</span> well</span> <span class="level-1"><span class="mark">▲</span> watch</span> <span class="level-2"><span class="mark">■</span> wrong</span> <span class="level-3"><span class="mark">✖</span> lost</span></p>
+    <p class="levels"><span class="level-0"><span class="mark">●</span> well</span> <span class="level-1"><span class="mark">▲</span> watch</span> <span class="level-2"><span class="mark">■</span> wrong</span> <span class="level-3"><span class="mark">✖</span> lost, taken over, broken</span> <span><span class="mark">?</span> unknown</span></p>
     <p><label>Units <select value=${units} onChange=${(event) => system.set(event.currentTarget.value)}>${Object.entries(SYSTEMS).map(([key, words]) => html`<option key=${key} value=${key}>${words}</option>`)}</select></label></p>
     <p><label><input type="checkbox" checked=${single === "on"} onChange=${(event) => app.singleKeys.set(event.currentTarget.checked ? "on" : "off")} /> single keys are shortcuts</label></p>
     <button type="button" class="close" autofocus onClick=${() => app.help.set(false)}>Close</button>
-  </dialog>`;
+  <//>`;
 }

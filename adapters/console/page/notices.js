@@ -48,7 +48,7 @@ export class Notices {
       const found = [...this.#actions].find(([key, each]) => !known.has(key) && ["what", "about", "by"].every((part) => each[part] === action[part]));
       if (!found || !OVER.includes(found[1].state)) continue;
       for (const other of this.list.value) other.known?.add(found[0]); // two equal actions have a record each
-      this.#change(number, (notice) => ({ ...notice, state: found[1].state, text: textOf(action, found[1].state, found[1].why, more) }));
+      this.#change(number, (notice) => ({ ...notice, state: found[1].state, text: textOf({ ...action, vain: found[1].vain }, found[1].state, found[1].why, more) }));
       this.#fade(number);
     }
   }
@@ -68,8 +68,8 @@ export class Notices {
   }
 }
 
-function textOf({ what, about }, state, why = "", more = []) {
-  return [`${what} ${about}: ${fateOf({ what, state })}${why ? `, ${why}` : ""}`, ...more].join("; ");
+function textOf({ what, about, vain }, state, why = "", more = []) {
+  return [`${what} ${about}: ${fateOf({ what, state, vain })}${why ? `, ${why}` : ""}`, ...more].join("; ");
 }
 
 export function NoticeList({ app }) {

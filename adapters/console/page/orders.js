@@ -3,7 +3,7 @@ import { html, useWatched } from "./ui.js";
 import { HeldButton } from "./press.js";
 
 /** The last button has the same place whatever else is there, the first one comes and goes. */
-export function Orders({ app, name, taken }) {
+export function Orders({ app, name, card: { taken, on_return: onReturn } }) {
   const act = useWatched(app.mayAct);
   const past = useWatched(app.inPast);
   if (past) return html`<div class="orders"><button type="button" class="now" onClick=${app.live}>Go to now (L) to act</button></div>`;
@@ -12,6 +12,12 @@ export function Orders({ app, name, taken }) {
   return html`<div class="orders">
     ${taken && html`<${HeldButton} key="back" label=${`Give ${name} back`} tell=${app.tell} act=${() => app.act({ give_back: { vehicle: name } }, { what: "give back", about: name })}>Give back<//>`}
     <${HeldButton} key="hold" label=${`Hold ${name}`} tell=${app.tell} act=${order("hold")}>Hold<//>
-    <${HeldButton} key="return" label=${`Return ${name}`} tell=${app.tell} act=${order("return")}>Return<//>
+    <${HeldButton} key="return" label=${`Return ${name}${onReturn ? `, ${onReturn}` : ""}`} short=${`Return ${name}`} tell=${app.tell} act=${order("return")}>Return<//>
   </div>`;
+}
+
+/** What an order to return brings about beside the return: it is said before it is pressed. */
+export function OnReturn({ app, card }) {
+  const act = useWatched(app.mayAct);
+  return act && card.on_return ? html`<p class="on-return"><b>Return</b> ${card.on_return}</p>` : null;
 }

@@ -7,14 +7,18 @@ export const placeName = (name) => placed[name] ?? name ?? "nowhere";
 
 const within = (name) => (name === null || name === undefined ? "nowhere" : name === "region" ? placeName(name) : `in ${name}`);
 
-/** Where something is believed to be and where it really is: one that was sent somewhere is nowhere until it is there. */
+/** Where something is believed to be and where it really is: one that was sent somewhere is in no place until it is there. */
 export function whereabouts(card) {
-  const { believed, actual, differs, order, returning } = card;
+  const { believed, actual, differs, going, order, request, returning, taken } = card;
   if (returning) return `${placeName(believed)} → flies home`;
   if (!differs) return placeName(believed);
-  if (isSent(card) && !isUnderWay(order)) return `left ${placeName(believed)}, has not arrived anywhere yet`;
-  return isUnderWay(order) ? `${placeName(believed)} → under way to ${order.to}` : `believed ${within(believed)}, really ${within(actual)}`;
+  const to = isUnderWay(order) ? order.to : going && !request && !taken ? going : null; // another station's order is not told here
+  if (to) return `${placeName(believed)} → under way to ${to}`;
+  return going ? `left ${placeName(believed)}, has not arrived anywhere yet` : `believed ${within(believed)}, really ${within(actual)}`;
 }
+
+/** Whether something is not where it is believed to be, and no flight explains it. */
+export const isAstray = ({ differs, going, returning }) => differs && !going && !returning;
 
 /** The way on which a vehicle is: home where it flies there, whoever sent it; else where it was told to go. */
 export function wayOf({ order, returning, home }) {
@@ -72,9 +76,6 @@ export const isUnderWay = (order) => Boolean(order?.to) && ["sent", "accepted"].
 
 const FALLBACKS = { hold: "then it holds", return: "then it returns home", continue: "then it goes on waiting" };
 
-/** Whether a flight is pending: until it has arrived a vehicle is in no place, by the rules, wherever it is. */
-export const isSent = ({ request }) => Boolean(request?.text.startsWith("FLY("));
-
 /** What follows when a request has stood for too long. */
 export const fallbackWords = (fallback) => FALLBACKS[fallback] ?? "";
 
@@ -86,5 +87,5 @@ export const findingWords = ({ message, fallback }) => [message, FALLEN_BACK[fal
 const FATES = { asked: "asked", sent: "sent, not confirmed yet", confirmed: "confirmed by the vehicle", refused: "refused" };
 const OURS = /^(say|give back|acknowledge)/;
 
-/** What became of an action, in words: what no vehicle has to confirm is done. */
-export const fateOf = ({ what, state }) => (state === "confirmed" && OURS.test(what) ? "done" : FATES[state] ?? state);
+/** What became of an action, in words: what no vehicle has to confirm is done, unless nothing comes of it. */
+export const fateOf = ({ what, state, vain }) => (state === "confirmed" && OURS.test(what) ? (vain ? `heard, but ${vain}` : "done") : FATES[state] ?? state);

@@ -5,10 +5,10 @@ export const HOLD = 1000;
 const CONFIRM = 5000;
 
 /**
- * `act` is called once for each press that lasted. A short press does nothing but say so. Assistive technology
+ * `label` says all that the press does, `short` names it. `act` is called once for each press that lasted. A short press does nothing but say so. Assistive technology
  * presses without a duration: there, a second press within five seconds confirms.
  */
-export function HeldButton({ act, children, disabled, tell, label, ...attributes }) {
+export function HeldButton({ act, children, disabled, tell, label, short = label, ...attributes }) {
   const [pressed, setPressed] = useState(false);
   const timer = useRef(null);
   const armed = useRef(-Infinity);
@@ -37,7 +37,7 @@ export function HeldButton({ act, children, disabled, tell, label, ...attributes
     if (timer.current !== null && timer.current !== "done") {
       clearTimeout(timer.current);
       if (event.timeStamp - began.current >= HOLD) lasted();
-      else tell(`Not sent: keep ${label} pressed for one second.`);
+      else tell(`Not sent: keep ${short} pressed for one second.`);
     }
     cancel();
   };
@@ -64,7 +64,7 @@ export function HeldButton({ act, children, disabled, tell, label, ...attributes
       latest.current();
     } else {
       armed.current = performance.now();
-      tell(`Press ${label} again within five seconds to confirm.`);
+      tell(`Press ${short} again within five seconds to confirm.`);
     }
   };
   const point = (event) => {

@@ -29,6 +29,7 @@ export function Timeline({ app }) {
     setDragged(time);
     app.clock.hold(time);
     clearTimeout(app.seeking);
+    clearTimeout(released.current);
     const go = () => {
       sent.current.at = performance.now();
       app.seek(time);
@@ -46,10 +47,14 @@ export function Timeline({ app }) {
     if (dragged === null) input.current.value = String(Math.min(head, now) - begin);
     input.current.setAttribute("aria-valuetext", `${utc(now)} UTC, ${since(now - begin)} from the beginning`);
   }), [known, begin, head, dragged]);
-  const release = () => setTimeout(() => { // until the moment asked for has come
-    setDragged(null);
-    app.clock.hold(null);
-  }, 300);
+  const released = useRef(null);
+  const release = () => {
+    clearTimeout(released.current);
+    released.current = setTimeout(() => { // until the moment asked for has come
+      setDragged(null);
+      app.clock.hold(null);
+    }, 300);
+  };
 
   const counts = {};
   for (const [, sort] of ticks.values()) counts[sort] = (counts[sort] ?? 0) + 1;

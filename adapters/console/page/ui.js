@@ -53,6 +53,33 @@ export function useWatched(watched) {
   return value;
 }
 
+/**
+ * An input of text, which owns what is typed: a drawing writes into it only another `value` from outside, and leaves the
+ * text, the caret and the focus alone.
+ */
+export function Field({ value, ...attributes }) {
+  const input = useRef(null);
+  useLayoutEffect(() => {
+    input.current.value = value;
+  }, [value]);
+  return html`<input ref=${input} autocomplete="off" ...${attributes} />`;
+}
+
+/**
+ * A modal dialog. It opens and closes with the drawing that says so: keys that are pressed until a later frame would go to
+ * what has no focus any more. `closed` is called when its user has closed it.
+ */
+export function Modal({ open, closed, children, ...attributes }) {
+  const dialog = useRef(null);
+  useLayoutEffect(() => {
+    if (open === dialog.current.open) return;
+    if (!open) return dialog.current.close();
+    dialog.current.showModal();
+    dialog.current.querySelector("input[required]")?.focus(); // by touch it would not have it
+  }, [open]);
+  return html`<dialog ref=${dialog} onClose=${(event) => event.currentTarget.open || closed()} ...${attributes}>${children}</dialog>`;
+}
+
 /** How many drawings are owed for what has come: 0 where all of it is shown. */
 export const owed = new Watched(0);
 

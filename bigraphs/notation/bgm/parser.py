@@ -12,6 +12,7 @@ from bigraphs.notation.bgm import syntax
 from bigraphs.notation.bgm.syntax import Line, Query, Term, Wide
 from bigraphs.notation.lalr import Span, Tables, Token, kept_tables
 from bigraphs.notation.reading import read_into
+from bigraphs.notation.spelling import did_you_mean
 
 if TYPE_CHECKING:
     from lark import Lark
@@ -23,9 +24,9 @@ file: [line] (";" [line])*
 ?line: control | name | rule | property | term
 control: STATUS IDENT ":" INT
 name: NAMING IDENT
-rule: ["%rule" IDENT] wide "->" wide
+rule: ["%rule" IDENT] wide "->" wide ["{" "}"]
 property: "%property" IDENT query
-term: wide
+term: ["%agent"] wide
 wide: parallel ("||" parallel)*
 parallel: element ("|" element)*
 ?element: prefix | hole | NIL -> nil | "(" parallel ")"
@@ -42,7 +43,7 @@ ask: PREDICATE "(" [wide] ")"
 scoped: SCOPE "->" atom
 
 STATUS: "%active" | "%passive"
-NAMING: "%outer" | "%name" | "%inner"
+NAMING: "%outername" | "%outer" | "%innername" | "%inner" | "%name"
 COMPARISON: "==" | "!=" | "<=" | ">=" | "<" | ">"
 PREDICATE: "matches" | "equal" | "empty" | "size" | "terminal"
 SCOPE: "$this" | "$pred" | "$succ" | "$terminal"
@@ -74,11 +75,25 @@ _WORDS: Final = {
     "DOT": "'.'",
     "VBAR": "'|'",
     "DOLLAR": "'$'",
+    "LBRACE": "'{'",
+    "RBRACE": "'}'",
     "BANG": "'!'",
     "$END": "the end",
 }
 _CHECK: Final = re.compile(r"^(?P<code>[^#\n]*)%check\b.*", re.DOTALL | re.MULTILINE)
 _NAMED: Final = re.compile(r"(?P<name>\b[A-Za-z]\w*)\s*(?P<colon>:)\s*(?P<meant>[A-Za-z]\w*)")
+_DIRECTIVE: Final = re.compile(r"%[A-Za-z]+")
+_LINK_KINDS: Final = frozenset({"outername", "innername", "edge", "binding"})
+"""What another dialect says of a link after its name, `x:edge`."""
+_OTHER_WORDS: Final = {
+    "%prop": "write '%property NAME matches(TERM)', or another property",
+    "%binding": "links are not bound here: leave it out where no node is of this control",
+    "%ltlSpec": "leave it out, and ask it of 'bigactors big check --ltl'",
+    "%ctlSpec": "leave it out, and ask it of 'bigactors big check --ctl'",
+}
+"""Words of other dialects, and what to write."""
+_DIALECT: Final = re.compile(r"^[^#\n]*%(?:agent|outername|innername)\b", re.MULTILINE)
+"""Words of the dialect in which a port that is linked to nothing is `idle`."""
 MAX_QUERY: Final = 50
 OPTIONS: Final[dict[str, Any]] = {
     "parser": "lalr",
@@ -100,17 +115,41 @@ def parse_bgm(text: str) -> tuple[Line, ...]:
 
 
 def _named_apart(error: NotationError, text: str) -> NotationError | None:
-    """Return what to say of the dialect that names nodes and ports, `a:Ctrl[p:x]`; None for anything else."""
+    """Return what to say of what another dialect has; None for anything else."""
+    if word := _DIRECTIVE.match(text, error.offset):
+        return _other_word(word.group(), error, text)
+    before = text[: error.offset].rstrip()
+    if before.endswith("{"):
+        message = "a rule has no constraints, which another dialect of .bgm writes in braces"
+        return NotationError("syntax", message, text, len(before) - 1, hint="leave them out, with the braces")
     for named in _NAMED.finditer(text):
         if named.start("colon") == error.offset:
-            name, meant = named["name"], named["meant"]
-            port = text.rfind("[", 0, error.offset) > text.rfind("]", 0, error.offset)
-            message = (
-                f"'{name}:{meant}' names a {'port' if port else 'node'}, as another dialect of .bgm does"
-            )
-            hint = f"write the link alone, '{meant}'" if port else f"write '{meant}', or '{name}_{meant}'"
-            return NotationError("syntax", message, text, named.start(), length=len(named.group()), hint=hint)
+            return _colon(named, text)
     return None
+
+
+def _other_word(word: str, error: NotationError, text: str) -> NotationError | None:
+    """Return what to say of a word that is not of this language; None if it only stands in a wrong place."""
+    known = sorted({found.group() for found in _DIRECTIVE.finditer(GRAMMAR)} | {"%check"})
+    if word in known:
+        return None
+    dialect = " is a word of another dialect of .bgm" if word in _OTHER_WORDS else " is no word of .bgm"
+    hint = _OTHER_WORDS.get(word) or did_you_mean(word, known) or f"the words are {', '.join(known)}"
+    return NotationError("syntax", f"'{word}'{dialect}", text, error.offset, length=len(word), hint=hint)
+
+
+def _colon(named: re.Match[str], text: str) -> NotationError:
+    """Return what to say of `a:Ctrl` and `x:edge`."""
+    name, meant, at = named["name"], named["meant"], named.start("colon")
+    port = text.rfind("[", 0, at) > text.rfind("]", 0, at)
+    if port and meant in _LINK_KINDS:
+        message = f"'{name}:{meant}' says what link it is, as another dialect of .bgm does"
+        hint = f"write the link alone, '{name}'"
+    else:
+        what = "port" if port else "node"
+        message = f"'{name}:{meant}' names a {what}, as another dialect of .bgm does"
+        hint = f"write the link alone, '{meant}'" if port else f"write '{meant}', or '{name}_{meant}'"
+    return NotationError("syntax", message, text, named.start(), length=len(named.group()), hint=hint)
 
 
 @cache
@@ -132,6 +171,7 @@ class _Build:
 
     def __init__(self, text: str) -> None:
         self.text = text
+        self.unlinked = ("-", "idle") if _DIALECT.search(text) else ("-",)
 
     def file(self, _at: Span, *lines: Line | None) -> tuple[Line, ...]:
         return tuple(line for line in lines if line is not None)
@@ -141,7 +181,7 @@ class _Build:
         return syntax.ControlLine(str(name), int(arity), "active" if active else "passive", name.start)
 
     def name(self, _at: Span, word: Token, name: Token) -> syntax.NameLine:
-        return syntax.NameLine(str(name), word == "%inner", name.start)
+        return syntax.NameLine(str(name), word.startswith("%inner"), name.start)
 
     def rule(self, at: Span, name: Token | None, redex: Wide, reactum: Wide) -> syntax.RuleLine:
         return syntax.RuleLine(redex, reactum, None if name is None else str(name), at.start)
@@ -168,7 +208,7 @@ class _Build:
         return syntax.Prefix(str(control), names, within, control.start)
 
     def port(self, _at: Span, name: Token) -> _Port:
-        return _Port(None if name == "-" else str(name))
+        return _Port(None if name in self.unlinked else str(name))
 
     def hole(self, at: Span, index: Token) -> syntax.Hole:
         return syntax.Hole(int(index), at.start)

@@ -173,7 +173,7 @@ class Evaluation:
         return algebra.nest(around, content)
 
     def _wired(self, wires: Sequence[Wire], found: Bigraph | None, frame: Frame) -> Bigraph | None:
-        for wire in reversed(wires):
+        for wire in reversed(_once(wires)):
             if found is None or not self._has_names(wire, found, frame):
                 return None
             found = _wire(wire, found)
@@ -345,6 +345,22 @@ def _element(expression: Expression) -> Bigraph:
         case _:
             hint = "write 0 for a site without a region, 1 for an empty region"
             raise BigraphError("syntax", "a number is no bigraph", hint)
+
+
+def _once(wires: Sequence[Wire]) -> list[Wire]:
+    """Return wires; of closures that stand together, those of one name are one, as in BigraphER."""
+    found: list[Wire] = []
+    closed: set[str] = set()
+    for wire in reversed(wires):
+        name = wire.names[0] if isinstance(wire, Close) and len(wire.names) == 1 else None
+        if name is None:
+            closed.clear()
+        elif name in closed:
+            continue
+        else:
+            closed.add(name)
+        found.append(wire)
+    return found[::-1]
 
 
 def _wire(wire: Wire, body: Bigraph) -> Bigraph:

@@ -46,7 +46,7 @@ class Findings:
 
     def unknown(self, what: str, name: str, span: Span, known: Iterable[str], how: str = "") -> None:
         """Note a name that is not declared, with the declared one that it resembles, or how it is declared."""
-        hint = did_you_mean(name, known) or f"declare it with {how or _KEYWORD[what]}"
+        hint = did_you_mean(name, known) or f"declare it with {(how or _KEYWORD[what]).format(name=name)}"
         self.add("name", f"unknown {what} '{name}'", span, hint)
 
     def raise_any(self) -> None:
@@ -59,5 +59,5 @@ _KEYWORD: Final = {
     "control": "'ctrl'",
     "bigraph": "'big'",
     "rule": "'react'",
-    "value": "'int', 'float' or 'string'",
+    "value": "'int', 'float' or 'string', or give a constant of a file by --const {name}=VALUE",
 }

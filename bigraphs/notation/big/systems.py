@@ -126,7 +126,7 @@ class _Systems:
             self.ranges[name] = tuple(chosen)
 
     def ranged(self, bounds: list[Value], span: Span) -> list[Value]:
-        """Return `[first : step : last]`, the first value always."""
+        """Return `[first : step : last]`, the first value always, the last one first (see `instances`)."""
         first, step, last = (value if isinstance(value, int | float) else 0 for value in bounds)
         if step <= 0:
             self.findings.add("number", f"a step is more than 0, this is {step}", span)
@@ -139,7 +139,7 @@ class _Systems:
         while value <= last:
             found.append(value)
             value += step
-        return found
+        return found[::-1]
 
     def initial(self, call: Call) -> Bigraph | None:
         given = self.scope.arguments(call.arguments, Frame())
@@ -152,7 +152,8 @@ class _Systems:
     def instances(self, call: Call) -> Iterator[tuple[tuple[Value, ...], Frame]]:
         """Yield the arguments of a call for each value of the parameters in it, and the frame that gives these.
 
-        The last comes first, as in BigraphER, where that decides between instantaneous rules.
+        The order decides between instantaneous rules. It is BigraphER's: the values of a range come as they are
+        written, those of a set `{...}` from the greatest down.
         """
         names = sorted(
             {name for value in call.arguments for name in values.variables(value)} & set(self.ranges)
@@ -179,7 +180,7 @@ class _Systems:
         if len(rules) > MAX_INSTANCES:
             self.findings.add("too-large", f"more than {MAX_INSTANCES} rules", term.span)
         self.check_distinct([rule.label for rule in rules], term.rules)
-        return PriorityClass(tuple(rules), term.instantaneous)
+        return PriorityClass(tuple(rules), term.instantaneous, self.rules.position(term.span))
 
     def check_distinct(self, labels: list[str], calls: tuple[Call, ...]) -> None:
         again = sorted(label for label, times in Counter(labels).items() if times > 1)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Final, TypeVar
 
-from bigraphs.errors import BigraphError
+from bigraphs.errors import BigraphError, NotationError
 from bigraphs.notation.big.declarations import (
     ActionDeclaration,
     BigDeclaration,
@@ -22,9 +22,11 @@ from bigraphs.notation.big.declarations import (
     SystemTerm,
 )
 from bigraphs.notation.big.expression_of import expression_of, values_of, written_value
+from bigraphs.notation.big.functions import folded
 from bigraphs.notation.big.grammar import RESERVED
 from bigraphs.notation.big.printer import format_model
 from bigraphs.notation.big.syntax import Arguments, ValueExpression
+from bigraphs.notation.reading import check_bounds
 from bigraphs.signature import Control
 from bigraphs.sorting import base
 from bigraphs.system import Action, Predicate, Rule, System, SystemKind, Value
@@ -38,19 +40,33 @@ def write_system(system: System) -> str:
     """Write a system; raises BigraphError for what the notation has no way to say.
 
     That is: names of nodes, properties and declared names of BigMC, controls of any arity, idle edges, and names
-    with other characters.
+    with other characters. A system whose text would be longer than is read is refused, too.
     """
-    return format_model(model_of(system))
+    return checked_text(model_of(system))
+
+
+def checked_text(model: Model) -> str:
+    """Return the text of a model; raises BigraphError if it is longer than a text that is read."""
+    text = format_model(model)
+    try:
+        check_bounds(text)
+    except NotationError as error:
+        message = f"as a .big file it would not be read again: {error.message}"
+        raise BigraphError(error.code, message, "keep the file that it was read from") from None
+    return text
 
 
 def model_of(system: System) -> Model:
-    """Return a system as syntax: one declaration for each rule and predicate, parameters filled in."""
+    """Return a system as syntax: one declaration for each rule and predicate.
+
+    Those with parameters are one with theirs filled in where that is possible, else one for each list of arguments.
+    """
     if system.properties:
         raise _unwritable("properties")
     rules = _distinct(system.rules())
     initial = _fresh("initial", [*(rule.name for rule in rules), *(each.name for each in system.predicates)])
     declarations: list[Declaration] = [*_controls(system), *_sorts(system)]
-    declarations += [_big(predicate) for predicate in _distinct(system.predicates)]
+    declarations += folded(map(_big, _distinct(system.predicates)))
     declarations.append(BigDeclaration(initial, expression_of(system.initial)))
     declarations += _rules(system, rules)
     return Model(tuple(declarations), _system(system, initial))
@@ -120,11 +136,11 @@ def _values(values: Iterable[Value]) -> Arguments:
 
 def _rules(system: System, rules: Iterable[Rule]) -> Iterator[Declaration]:
     if system.kind is not SystemKind.NBRS:
-        yield from map(_react, rules)
+        yield from folded(map(_react, rules))
         return
     for action in system.actions:
-        within = tuple(_react(rule) for rule in rules if rule.action == action.name)
-        yield ActionDeclaration(_checked(action.name, _NAME), within, _reward(action))
+        within = folded(_react(rule) for rule in rules if rule.action == action.name)
+        yield ActionDeclaration(_checked(action.name, _NAME), tuple(within), _reward(action))
 
 
 def _reward(rewarded: Action | Predicate) -> ValueExpression | None:
@@ -158,6 +174,7 @@ def _system(system: System, initial: str) -> SystemTerm:
     classes = tuple(
         ClassTerm(tuple(Call(rule.name, _values(rule.parameters)) for rule in each.rules), each.instantaneous)
         for each in system.classes
+        if each.rules
     )
     predicates = tuple(Call(each.name, _values(each.parameters), _reward(each)) for each in system.predicates)
     return SystemTerm(system.kind.value, Call(initial), classes, predicates)

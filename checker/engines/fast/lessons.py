@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 from checker.engines.fast.columns import ABSENT, Place
 from checker.engines.fast.recording import Ask, Edited
 from checker.engines.fast.skeletons import put_together, taken_apart
-from checker.engines.fast.trees import LearningError
 from checker.reduction.renaming import WORD, Renaming, asked
 from semantics.behaviours.observations import AGENT
 from semantics.state.cells import Cell
@@ -239,52 +238,88 @@ class Lesson:
         )
 
 
-@dataclass(slots=True)
-class Lessons:
-    """All lessons of those that are alike, in the names of the first: a decision tree by values.
+Taken = tuple[tuple[Cell, Any], ...]
+"""Cells that were taken to be never written, with what they hold, sorted."""
+
+
+class Stage(NamedTuple):
+    """One stage of a run: what was taken to be never written, then one question with its answer; none at the end.
 
     Attributes:
-        ask: What is asked first.
+        taken: The cells that mention somebody who may be exchanged.
+        ask: The question.
+        answer: Its answer.
+    """
+
+    taken: Taken
+    ask: Ask | None = None
+    answer: Any = None
+
+
+@dataclass(slots=True)
+class Branch:
+    """What is known where some cells that are never written hold this.
+
+    Attributes:
+        ask: What is asked next.
         after: By the answer what is known then.
         lesson: What follows where nothing more is asked.
-        since: How often what was taken for known had been forgotten when it began.
     """
 
     ask: Ask | None = None
     after: dict[Any, "Lessons"] = field(default_factory=dict)
     lesson: Lesson | None = None
+
+
+@dataclass(slots=True)
+class Lessons:
+    """All lessons of those that are alike, in the names of the first: a decision tree by values.
+
+    A run depends on all that it reads: on what is never written, too, which may differ between two that are alike.
+
+    Attributes:
+        branches: By what is taken to be never written what is known then.
+        since: How often what was taken for known had been forgotten when it began.
+    """
+
+    branches: dict[Taken, Branch] = field(default_factory=dict)
     since: int = 0
 
     def begin(self, since: int) -> None:
         """Know nothing, if something was forgotten since."""
         if since != self.since:
-            self.ask, self.after, self.lesson, self.since = None, {}, None, since
+            self.branches, self.since = {}, since
 
-    def find(self, answer: Callable[[Ask], Any]) -> Lesson | None:
-        """Return what follows where questions are answered so, None where it isn't known."""
+    def find(self, answer: Callable[[Ask], Any], holds: Callable[[Cell], Any]) -> Lesson | None:
+        """Return what follows where questions are answered so and cells hold this, None where it isn't known."""
         node = self
-        while node.ask is not None:
-            found = node.after.get(answer(node.ask))
+        while True:
+            branch = next((each for taken, each in node.branches.items() if _agree(taken, holds)), None)
+            if branch is None or branch.ask is None:
+                return None if branch is None else branch.lesson
+            found = branch.after.get(answer(branch.ask))
             if found is None:
                 return None
             node = found
-        return node.lesson
 
-    def learn(self, asked: Mapping[Ask, Any], lesson: Lesson) -> None:
-        """Know what follows from some answers.
+    def learn(self, stages: Iterable[Stage], lesson: Lesson) -> None:
+        """Know what follows from some answers; nothing where something else was asked after the same ones.
 
-        Raises:
-            LearningError: Something else was asked after the same answers: a bug, for those are not alike.
+        Rules may go through names in their order, and stop: two that are alike may then ask in another order.
         """
         node = self
-        for ask, answer in asked.items():
-            if node.lesson is not None or node.ask not in (None, ask):
-                raise LearningError(f"of those that are alike one asked {ask} and another did not")
-            node.ask = ask
-            node = node.after.setdefault(answer, Lessons())
-        if node.ask is not None:
-            raise LearningError(f"of those that are alike one asked {node.ask} and another did not")
-        node.lesson = lesson
+        for taken, ask, answer in stages:
+            branch = node.branches.setdefault(taken, Branch(ask))
+            if branch.ask != ask:
+                return
+            if ask is None:
+                branch.lesson = lesson
+                return
+            node = branch.after.setdefault(answer, Lessons())
+
+
+def _agree(taken: Taken, holds: Callable[[Cell], Any]) -> bool:
+    return all(holds(cell) == value for cell, value in taken)
 
 
 class Kin(NamedTuple):

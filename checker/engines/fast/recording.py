@@ -64,13 +64,17 @@ class Scope:
 
     Attributes:
         asked: The questions with their answers.
-        taken: The cells that were taken to be never written.
+        taken: The cells that were taken to be never written, each with how many questions had been asked then.
         known: What was worked out already.
     """
 
     asked: Asked = field(default_factory=dict)
-    taken: set[Cell] = field(default_factory=set)
+    taken: dict[Cell, int] = field(default_factory=dict)
     known: dict[Any, Any] = field(default_factory=dict)
+
+    def take(self, cell: Cell) -> None:
+        """Note that a cell was taken to be never written."""
+        self.taken.setdefault(cell, len(self.asked))
 
 
 @dataclass(slots=True)
@@ -96,7 +100,7 @@ class Recorder:
     def read(self, cell: Cell) -> Any:
         """Return the value of a cell, and note its skeleton; what its observations say is noted as it is asked."""
         if not self.varies(cell):
-            self.scopes[-1].taken.add(cell)
+            self.scopes[-1].take(cell)
             return self.still.read(cell)
         skeleton = self._note(Ask(cell), lambda: self.source.skeleton(cell))
         return put_together(skeleton, lambda hole: Heard(self, cell, hole))
@@ -104,7 +108,7 @@ class Recorder:
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Ask a cell, and note the yes or no."""
         if not self.varies(cell):
-            self.scopes[-1].taken.add(cell)
+            self.scopes[-1].take(cell)
             return bool(question(self.still.read(cell), *constants))
         ask = Ask(cell, None, question, constants)
         answer: bool = self._note(ask, lambda: bool(question(self.source.skeleton(cell), *constants)))
@@ -113,7 +117,7 @@ class Recorder:
     def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
         """Ask a cell, and note the answer."""
         if not self.varies(cell):
-            self.scopes[-1].taken.add(cell)
+            self.scopes[-1].take(cell)
             return question(self.still.read(cell), *constants)
         answer = self._note(
             Ask(cell, None, question, constants), lambda: question(self.source.skeleton(cell), *constants)

@@ -1,15 +1,18 @@
 """Sharing: what was learned of one agent, or of one part of a transition, as it is known of those that are like it."""
 
-from collections.abc import Iterable, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Final, NamedTuple, Protocol
 
 from checker.engines.fast.columns import Columns
-from checker.engines.fast.lessons import Kin, Lesson, Lessons, NoImage, Outcome, mentioned
+from checker.engines.fast.lessons import Kin, Lesson, Lessons, NoImage, Outcome, Stage, mentioned
 from checker.engines.fast.likeness import Likeness
 from checker.engines.fast.recording import Ask, Asked
 from semantics.state.cells import Cell, Row
 from semantics.state.signature import Name
+
+WRITTEN: Final = object()
+"""Stands for what a cell holds that is written somewhere."""
 
 
 class Source(Protocol):
@@ -25,14 +28,14 @@ class Learned(NamedTuple):
     Attributes:
         asked: What was asked, with the answers.
         codes: For each value that was read its code.
-        taken: The cells that were taken to be never written.
+        taken: The cells that were taken to be never written, each with how many questions had been asked then.
         flags: Of the leaf.
         outcomes: The transitions.
     """
 
     asked: Asked
     codes: dict[Ask, int]
-    taken: Iterable[Cell]
+    taken: Mapping[Cell, int]
     flags: int
     outcomes: Sequence[Outcome]
 
@@ -84,15 +87,19 @@ class Sharing:
             asked[image] = said
             return exchange.answer(image, said)
 
+        def holds(cell: Cell) -> Any:
+            image = back.cell(cell)
+            return WRITTEN if image in self.varying else exchange.value(image, self.still.read(image))
+
         try:
             kin.lessons.begin(self.forgotten)
-            lesson = kin.lessons.find(answer)
+            lesson = kin.lessons.find(answer, holds)
             own = None if lesson is None else lesson.image(back)
             return None if own is None else Learned(asked, codes, self._still(own), own.flags, own.outcomes)
         except NoImage:
             return None
 
-    def _still(self, lesson: Lesson) -> Iterable[Cell]:
+    def _still(self, lesson: Lesson) -> dict[Cell, int]:
         """Return what a lesson takes to be never written; raises NoImage where anything is not as it takes it to be."""
         for cell, value in lesson.taken.items():
             if cell in self.varying or self.still.read(cell) != value:
@@ -100,7 +107,7 @@ class Sharing:
         for cell, depth in lesson.depths.items():
             if cell not in self.varying or self.columns.holes.get(cell, 0) != depth:
                 raise NoImage
-        return (*lesson.still, *lesson.taken)
+        return dict.fromkeys((*lesson.still, *lesson.taken), 0)
 
     def teach(self, kin: Kin | None, found: Learned) -> None:
         """Let those that are alike know what one of them found, where it has an image."""
@@ -117,12 +124,32 @@ class Sharing:
                 {cell: self.columns.holes.get(cell, 0) for cell in written},
                 mentioned(found.asked, found.outcomes),
             ).image(kin.exchange)
-            asked = {
-                kin.exchange.ask(ask): kin.exchange.answer(ask, said) for ask, said in found.asked.items()
-            }
+            stages = [
+                Stage(
+                    tuple(
+                        sorted(
+                            (kin.exchange.cell(cell), lesson.taken[kin.exchange.cell(cell)]) for cell in taken
+                        )
+                    ),
+                    None if ask is None else kin.exchange.ask(ask),
+                    None if ask is None else kin.exchange.answer(ask, said),
+                )
+                for taken, ask, said in _stages(found, about)
+            ]
         except NoImage:
             return
-        if not self.varying.isdisjoint(lesson.taken) or any(ask.cell not in self.varying for ask in asked):
+        asked = (each.ask.cell for each in stages if each.ask is not None)
+        if not self.varying.isdisjoint(lesson.taken) or not self.varying.issuperset(asked):
             return  # the first of them would ask otherwise
         kin.lessons.begin(self.forgotten)
-        kin.lessons.learn(asked, lesson)
+        kin.lessons.learn(stages, lesson)
+
+
+def _stages(found: Learned, about: Set[Cell]) -> Iterator[tuple[list[Cell], Ask | None, Any]]:
+    """Yield before each question, and at the end, the cells of some that had been taken since the one before."""
+    taken: list[list[Cell]] = [[] for _ in range(len(found.asked) + 1)]
+    for cell, asked in found.taken.items():
+        taken[asked] += [cell] if cell in about else []
+    for cells, (ask, said) in zip(taken, found.asked.items(), strict=False):
+        yield cells, ask, said
+    yield taken[-1], None, None

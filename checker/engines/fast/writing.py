@@ -115,7 +115,7 @@ class Writing:
             if cell in self.still.layout.index and self.still.read(cell) == value:
                 conclusion = found.step.target.state
                 assert isinstance(conclusion, Conclusion)
-                conclusion.recorder.scopes[-1].taken.add(cell)  # what is written is what is there
+                conclusion.recorder.scopes[-1].take(cell)  # what is written is what is there
                 return
             self.varying.add(cell)
             raise Varies(cell)

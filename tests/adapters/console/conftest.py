@@ -10,8 +10,10 @@ import pytest
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "live")]
 
-from live_missions import WEST  # noqa: E402 - found by the line before
+from browsers import DESK, Watch, chromium  # noqa: E402 - found by the line before
+from live_missions import WEST  # noqa: E402
 from once import once  # noqa: E402
+from page_harness import PAGE  # noqa: E402
 from recorded import Tape, eventful, uav  # noqa: E402
 
 
@@ -59,3 +61,37 @@ def taped(request):
 def _close(tape):
     with suppress(ValueError):  # it was closed by the test
         tape.recorder.close("over", 2000.0)
+
+
+@pytest.fixture(scope="module")
+def browser():
+    if not (PAGE / "parts" / "preact.js").exists():
+        pytest.skip("the page has no parts: `make parts` fetches them")
+    with chromium() as found:
+        yield found
+
+
+DRAWN = "html[data-drawn]"
+
+
+@pytest.fixture
+def shown(browser):
+    """Show a harness in a page until its first frame is drawn whole; at the end, nothing may have gone wrong there."""
+    pages = []
+
+    def show(harness, size=DESK, refused=(), name="Ana", until=DRAWN, **options):
+        watch = Watch()
+        page = browser.new_page(viewport=size, **options)
+        watch.over(page, harness.link.partition("#")[0])
+        page.set_default_timeout(60_000)
+        page.add_init_script(f"if (location.port) localStorage['bigactors.name'] ??= {name!r}")
+        page.goto(harness.link)
+        page.locator(until).wait_for()
+        pages.append((page, watch, refused))
+        return page
+
+    yield show
+    for page, watch, refused in pages:
+        page.close()
+        watch.forgive("ERR_CONNECTION_REFUSED", *refused)
+        watch.saw_nothing()

@@ -25,7 +25,7 @@ class Harness:
     """Serves the page, and its state to whoever says hello with the token; keeps what they send."""
 
     def __init__(self, state, *, role="act", mode="live", port=0):
-        self.state, self.role, self.mode = state, role, mode
+        self.state, self.role, self.mode = with_alarms(state), role, mode
         self.received, self.sockets, self.hellos = [], {}, []
         self.refusal, self.answers = "", {}
         self.token, self.recording = TOKEN, "run.mcap"
@@ -54,13 +54,18 @@ class Harness:
 
     def set(self, section, values):
         """Set values of a section, and send them."""
-        self.state.setdefault(section, {}).update(values)
-        self._call(self._send({"type": "changes", "set": {section: values}, "gone": {}}))
+        self.change({section: values})
 
     def change(self, sections):
         """Set values of several sections in one frame."""
         for section, values in sections.items():
             self.state.setdefault(section, {}).update(values)
+        if "alerts" in sections and "alarms" not in sections:
+            known = self.state.get("alarms", {})
+            self.state["alarms"] = alarms_of(self.state["alerts"])
+            for gone in [key for key in known if key not in self.state["alarms"]]:
+                self._call(self._send({"type": "changes", "set": {}, "gone": {"alarms": [gone]}}))
+            sections = {**sections, "alarms": self.state["alarms"]}
         self._call(self._send({"type": "changes", "set": sections, "gone": {}}))
 
     def drop(self, section, *keys):
@@ -183,6 +188,21 @@ class Harness:
             await socket.send_str(json.dumps(frame | {"n": self.sockets[socket]}))
 
 
+def with_alarms(state):
+    """Add what is wrong to a state of which only alerts are given."""
+    return state if "alarms" in state else state | {"alarms": alarms_of(state.get("alerts", {}))}
+
+
+def alarms_of(alerts):
+    """Return the section `alarms` of a run that has not fallen back."""
+    follows = {"hold": "all vehicles were told to hold", "return": "all vehicles were told to return home"}
+    return {
+        key: alert | {"consequence": follows.get(alert["fallback"], alert["fallback"])}
+        for key, alert in alerts.items()
+        if alert["wrong"] and not alert["acknowledged"]
+    }
+
+
 # --- a state to look at ---------------------------------------------------------------------------------------
 
 
@@ -206,6 +226,7 @@ def card(level=0, **more):
         "believed": "searchArea0",
         "actual": "searchArea0",
         "differs": False,
+        "going": None,
         "request": None,
         "flight": None,
         "order": None,
@@ -222,7 +243,9 @@ def card(level=0, **more):
         "handed": None,
         "said": None,
         "taken": None,
+        "on_return": None,
         "level": level,
+        "word": ["well", "watch", "wrong", "lost"][level],
         "why": "",
     } | more
 
@@ -259,7 +282,7 @@ def deed(at, by, what, about, state="confirmed", why=""):
     """Return an action as the section has it."""
     answered = None if state == "sent" else at
     done = {"time": at, "by": by, "what": what, "about": about, "state": state, "why": why}
-    return done | {"left_out": {}, "notes": [], "answered": answered}
+    return done | {"left_out": {}, "notes": [], "vain": None, "answered": answered}
 
 
 def world():
@@ -286,10 +309,16 @@ def world():
         },
         "steps": {str(n): step(n, begin) for n in range(1, 43)},
         "ticks": {str(n): [begin + 12 * n, TICKS[n % 7]] for n in range(1, 50)},
-        "bigraph": {"svg": PICTURE, "text": "searchArea0\n  uav0\n  oilSpill0", "step": 42},
+        "bigraph": {"svg": PICTURE, "text": "searchArea0\n  uav0\n  oilSpill0", "step": 42, "drawn": 42},
         "alerts": alerts(now),
         "sayings": {
-            'tower "handover"': {"agent": "tower", "message": "handover", "left": 2, "awaited": True}
+            'tower "handover"': {
+                "agent": "tower",
+                "message": "handover",
+                "left": 2,
+                "awaited": True,
+                "vain": None,
+            }
         },
         "actions": {
             "1": deed(now - 200, "Ana", "hold", "uav0"),

@@ -212,7 +212,7 @@ def test_an_order_is_sent_then_confirmed_by_the_vehicle_until_it_is_given_back(t
     tape.turn(0, uav(WEST, 0))
     tape.turn(1, sayings=[Ordering(Fallback.HOLD, "uav0", "Ana")])
     sent = {"time": 1001.0, "by": "Ana", "what": "hold", "about": "uav0", "state": "sent", "why": ""}
-    sent |= {"left_out": {}, "notes": []}
+    sent |= {"left_out": {}, "notes": [], "vain": None}
     assert actions(tape) == [{**sent, "answered": None}]
     card = tape.card()
     assert (card["level"], card["taken"]) == (1, "held by the operator (Ana)")
@@ -297,7 +297,7 @@ def test_while_a_vehicle_is_held_its_request_runs_out_and_its_agent_is_grounded(
 
 
 FALLING_BACK = FLIGHT.replace("on broken assumption: continue", "on broken assumption: return")
-STOPPED = "the mission commands nothing any more: all vehicles were told to return"
+STOPPED = "all vehicles were told to return home; the mission commands nothing any more"
 
 
 def test_after_a_fallback_the_cards_say_that_nothing_is_commanded_any_more(tmp_path):
@@ -312,6 +312,94 @@ def test_after_a_fallback_the_cards_say_that_nothing_is_commanded_any_more(tmp_p
         assert tape.card()["why"] == f"{STOPPED}; held by the operator (Ana)"
         tape.turn(3, sayings=[GivingBack("uav0", by="Ana")])
         assert (level(tape), tape.card()["request"]["given_up"]) == ((2, STOPPED), True)
+
+
+def test_what_is_said_after_a_fallback_is_told_to_be_in_vain(tmp_path):
+    with Tape(tmp_path / "r.mcap", FALLING_BACK) as tape:
+        tape.turn(0, uav(WEST, 0))
+        tape.turn(1, sayings=[("op", "status")])
+        tape.turn(2, uav(BETWEEN, 2), boat(EAST, 1002.0))
+        tape.turn(3, sayings=[("op", "status")])
+        shown = tape.history().newest().sections
+        vain = "the mission has fallen back and commands nothing any more: what is said moves no vehicle"
+        assert [each["vain"] for each in shown["actions"].values()] == [None, vain]
+        assert {each["vain"] for each in shown["sayings"].values()} == {vain}
+        assert shown["mission"]["fallen_back"] == STOPPED
+        before = tape.history().at(1001.0).forward(1001.0).sections
+        assert {each["vain"] for each in before["sayings"].values()} == {None}
+        assert before["mission"]["fallen_back"] is None
+
+
+def test_an_alarm_has_its_consequence_whichever_finding_had_it(tmp_path):
+    with Tape(tmp_path / "r.mcap", FALLING_BACK) as tape:
+        tape.turn(0, uav(WEST, 0))
+        tape.turn(5, reports=[LinkLost("uav0", 1005.0, 1001.0)])
+        tape.turn(6, uav(BETWEEN, 6), boat(EAST, 1006.0))
+        shown = tape.history().newest().sections
+        kinds = {each["kind"]: each["consequence"] for each in shown["alarms"].values()}
+        assert kinds["lost link"] == kinds["broken assumption"] == STOPPED
+        (lost,) = [key for key, each in shown["alarms"].items() if each["kind"] == "lost link"]
+        tape.turn(7, sayings=[Acknowledging(int(lost), "Ana")])
+        assert lost not in tape.history().newest().sections["alarms"]
+
+
+LATE = FLIGHT.replace("FLY a within 100 s: continue", "FLY a within 100 s: hold")
+
+
+def test_what_follows_from_a_late_request_is_told_of_its_agent(tmp_path):
+    with Tape(tmp_path / "r.mcap", LATE) as tape:
+        tape.turn(0, uav(WEST, 0))
+        tape.turn(101, uav(WEST, 101))
+        (alarm,) = tape.history().newest().sections["alarms"].values()
+        told_to = "its vehicles were told to hold; nothing that a orders is carried out any more"
+        assert (alarm["kind"], alarm["consequence"]) == ("late", told_to)
+
+
+def test_what_is_wrong_now_is_shown_beside_each_earlier_moment_of_a_run_that_goes_on(tape):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(10, reports=[LinkLost("uav0", 1010.0, 1000.0)])
+    before = tape.history().at(1001.0).forward(1001.0).sections
+    assert before["alerts"] == {}
+    assert {each["kind"] for each in before["alarms"].values()} >= {"lost link"}
+    tape.end(11)
+    assert tape.history().at(1001.0).forward(1001.0).sections["alarms"] == {}
+
+
+def word(card):
+    return card["level"], card["word"]
+
+
+def test_a_vehicle_is_lost_taken_over_or_broken_by_what_is_so(tape):
+    assert word(tape.card()) == (1, "unknown")
+    assert tape.card()["why"] == "nothing was heard of it yet"
+    tape.turn(0, uav(WEST, 0))
+    assert word(tape.card()) == (0, "well")
+    tape.turn(1, uav(WEST, 1), reports=[TakenOver("uav0", 1001.0, "its pilot has taken over")])
+    assert word(tape.card()) == (3, "taken over")
+    tape.turn(2, sayings=[GivingBack("uav0")])
+    tape.turn(3, boat(EAST, 1003.0), uav(WEST, 3))
+    assert word(tape.card()) == (0, "well")
+    tape.turn(10, reports=[LinkLost("uav0", 1010.0, 1003.0)])
+    assert word(tape.card()) == (3, "lost")
+
+
+def test_a_vehicle_that_broke_an_assumption_is_broken_and_not_lost(tmp_path):
+    broken = {"kind": "broken assumption", "about": "uav0", "message": "it strayed", "fallback": ""}
+    card = told(tmp_path / "a", ("findings", 1002.0, broken))["vehicles"]["uav0"]
+    assert word(card) == (3, "broken")
+
+
+@pytest.mark.parametrize("at", [None, 1001.0])
+def test_nothing_is_known_of_the_vehicles_of_a_run_that_was_killed(tape, at):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(1, uav(WEST, 1))
+    history = tape.history()
+    history.end("the run was killed")
+    view = history.newest() if at is None else history.at(at).forward(at)
+    card = view.sections["vehicles"]["uav0"]
+    assert word(card) == (3, "unknown")
+    assert card["why"].startswith("nothing is known of it any more: the run was killed")
+    assert word(history.at(1000.5).forward(1000.5).sections["vehicles"]["uav0"]) == (0, "well")
 
 
 TIMED = FLIGHT.replace(
@@ -400,3 +488,59 @@ def test_a_card_stays_as_it_is_while_its_vehicle_is_heard_ten_times_a_second(tmp
     assert first["link"] == {"heard": 1002, "lost": False}
     assert first == card(8)
     assert first != card(11)
+
+
+AT_HOME = FLIGHT.replace("  control(MOVE_HOST_TO east0)\n", '  react { case "go" => skip }\n', 1)
+HOME = {
+    "mode": "AUTO",
+    "armed": True,
+    "heading": None,
+    "battery": None,
+    "authority": ["gcs0"],
+    "height": 50.0,
+}
+
+
+def on_return(tmp_path, home, text, *more):
+    """Return what is said of an order to return to a vehicle that stands in west0."""
+    tmp_path.mkdir()
+    with Tape(tmp_path / "r.mcap", text) as tape:
+        tape.turn(0, uav(WEST, 0))
+        status = Status("uav0", 1001.0, "autopilot", home=home)
+        tape.recorder.report(status, 1001.0)
+        for each in more:
+            tape.turn(2, each)
+        return tape, tape.card()["on_return"]
+
+
+STANDING = AT_HOME.replace("on broken assumption: continue", "on broken assumption: hold")
+
+
+def test_what_a_return_breaks_is_told_before_it_is_ordered(tmp_path):
+    _, said = on_return(tmp_path / "a", BETWEEN, STANDING)
+    assert said == (
+        "takes it out of west0, which breaks what the mission assumes: "
+        "all vehicles are told to hold, and the mission commands nothing any more"
+    )
+    _, said = on_return(tmp_path / "b", BETWEEN, AT_HOME)
+    assert said.endswith("that is reported, and the mission goes on")
+    assert on_return(tmp_path / "c", (37.011, -8.652), STANDING)[1] is None
+    assert on_return(tmp_path / "d", None, STANDING)[1] is None
+
+
+def test_what_is_told_of_a_return_is_what_the_run_does(tmp_path):
+    for folder, home in (("a", BETWEEN), ("b", (37.011, -8.652))):
+        (tmp_path / folder).mkdir()
+        with Tape(tmp_path / folder / "r.mcap", STANDING) as tape:
+            tape.turn(0, uav(WEST, 0))
+            tape.recorder.report(Status("uav0", 1001.0, "autopilot", home=home), 1001.0)
+            said = tape.card()["on_return"]
+            tape.turn(2, sayings=[Ordering(Fallback.RETURN, "uav0", "Ana")])
+            tape.turn(9, uav(home, 9))
+            assert tape.run.state.suspended == (said is not None)
+            assert tape.card()["on_return"] is None or not tape.run.state.suspended
+
+
+def test_a_vehicle_in_flight_leaves_no_place_when_it_is_sent_home(tmp_path):
+    text = FLIGHT.replace("on broken assumption: continue", "on broken assumption: hold")
+    assert on_return(tmp_path / "a", (37.05, -8.63), text, uav(BETWEEN, 2))[1] is None

@@ -161,6 +161,7 @@ def test_what_may_be_said_becomes_less_with_each_saying(tmp_path):
         "message": "status",
         "left": 2,
         "awaited": False,
+        "vain": None,
     }
     actions = history.newest().sections["actions"]
     assert [(each["what"], each["state"]) for each in actions.values()] == [

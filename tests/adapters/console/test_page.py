@@ -4,65 +4,11 @@ import re
 import time
 
 import pytest
-from browsers import DESK, PHONE, Watch, chromium, overflow
-from page_harness import PAGE, Harness, alert, card, crowd, world
+from browsers import DESK, PHONE, overflow
+from page_driving import HOLD, await_acts, await_turns, focused, has, press_mouse
+from page_harness import Harness, alert, card, crowd, world
 
 HOSTILE = '<img src=x onerror="document.title=1">"\'&amp;'
-
-
-@pytest.fixture(scope="module")
-def browser():
-    if not (PAGE / "parts" / "preact.js").exists():
-        pytest.skip("the page has no parts: `make parts` fetches them")
-    with chromium() as found:
-        yield found
-
-
-DRAWN = "html[data-drawn]"
-
-
-@pytest.fixture
-def shown(browser):
-    """Show a harness in a page until its first frame is drawn whole; at the end, nothing may have gone wrong there."""
-    pages = []
-
-    def show(harness, size=DESK, refused=(), name="Ana", until=DRAWN, **options):
-        watch = Watch()
-        page = browser.new_page(viewport=size, **options)
-        watch.over(page, harness.link.partition("#")[0])
-        page.set_default_timeout(60_000)
-        page.add_init_script(f"if (location.port) localStorage['bigactors.name'] ??= {name!r}")
-        page.goto(harness.link)
-        page.locator(until).wait_for()
-        pages.append((page, watch, refused))
-        return page
-
-    yield show
-    for page, watch, refused in pages:
-        page.close()
-        watch.forgive("ERR_CONNECTION_REFUSED", *refused)
-        watch.saw_nothing()
-
-
-def has(page, selector, text):
-    page.locator(selector, has_text=text).first.wait_for()
-
-
-def await_acts(harness, page, count):
-    """Wait until so many actions were asked for, and a little longer."""
-    end = time.monotonic() + 60
-    while len(harness.acts()) < count and time.monotonic() < end:
-        page.wait_for_timeout(50)
-    page.wait_for_timeout(300)
-    return harness.acts()
-
-
-def await_turns(harness, page, count):
-    """Wait until so many frames came."""
-    end = time.monotonic() + 60
-    while len(harness.received) < count and time.monotonic() < end:
-        page.wait_for_timeout(20)
-    assert len(harness.received) == count
 
 
 # --- what comes from others is text
@@ -114,16 +60,6 @@ def test_a_picture_with_a_script_is_a_picture_without_it(shown):
 
 
 # --- what acts
-
-
-HOLD = ".card [aria-label^='Hold uav0']"
-
-
-def press_mouse(page, seconds, button=HOLD):
-    page.locator(button).hover()
-    page.mouse.down()
-    page.wait_for_timeout(1_000 * seconds)
-    page.mouse.up()
 
 
 def press_key(page, seconds):
@@ -699,10 +635,6 @@ def test_the_speed_is_chosen_without_playing(shown):
 
 
 # --- without a mouse
-
-
-def focused(page, script="e => e.getAttribute('aria-label') || e.textContent"):
-    return page.evaluate(f"({script})(document.activeElement)")
 
 
 def test_everything_that_acts_is_reached_by_tab_and_shows_its_focus(shown):

@@ -6,6 +6,7 @@ from recorded import written
 
 from adapters.console.history import History
 from adapters.live.state import Plan, Saying
+from adapters.plugin import Underway
 from adapters.recording.schemas import VERSION
 from adapters.recording.writing import Recorder
 from bigactors.console import rules_of
@@ -88,6 +89,22 @@ def test_a_vehicle_whose_station_is_not_reached_is_wrong(mission, tmp_path):
         ("stations", 1002.0, {"station": "gcs1", "time": 1002.0, "reached": False, "heard": 1000.5}),
     ]
     for count, level, why in ((1, 0, ""), (2, 2, "gcs1, which it obeys, is not reached")):
-        written(tmp_path / f"{count}.mcap", run, told[:count]).close()
+        writer = written(tmp_path / f"{count}.mcap", run, told[:count])
         card = view(tmp_path / f"{count}.mcap")["vehicles"]["uav0"]
+        writer.close()
         assert (card["level"], card["why"]) == (level, why)
+
+
+def test_a_flight_that_another_station_has_ordered_is_known_as_a_flight(mission, tmp_path):
+    first = parted(mission.initial, PART)
+    run = Run(Plan(first, {"uav0": "autopilot"}, mission.precautions, peers="stations"))
+    recorder = Recorder(tmp_path / "r.mcap", header(mission), 1000.0, mission.setting.kinds)
+    place = next(name for name, kind in mission.setting.kinds.items() if kind == "Location")
+    at = first.structure.physical.position("uav0").geometry.ring[0]
+    heard = seen("uav0", (at[0] / 1e7, at[1] / 1e7), 1001.0)
+    recorder.turn(run.turn(1001.0, heard), 1001.0, lambda _: ())
+    recorder.turn(run.turn(1002.0, reports=[Underway("uav0", 1002.0, place, 1002.0)]), 1002.0, lambda _: ())
+    recorder.close("done", 1003.0)
+    card = view(tmp_path / "r.mcap")["vehicles"]["uav0"]
+    assert (card["going"], card["request"], card["order"]) == (place, None, None)
+    assert "differ" not in card["why"]

@@ -508,6 +508,8 @@ def test_a_place_that_drifts_over_a_waiting_vehicle_lets_it_arrive():
     run.turn(1.0, seen("uav0", (37.0139, -8.6139), 1.0))
     assert "commit" not in run.rules
     run.turn(2.0, seen("oilSpill0", (37.013, -8.613), 2.0, "camera", "OilSpill", ()))
+    assert "commit" not in run.rules  # it goes to where the place was
+    run.turn(3.0, seen("uav0", (37.0139, -8.6139), 3.0))  # and here it shows that it goes to where it is
     assert run.rules[-1] == "commit"
 
 

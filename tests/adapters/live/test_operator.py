@@ -128,7 +128,8 @@ def test_a_run_that_is_not_given_back_ends_held_and_is_resumed_so(flying):
     flown = flying(Vehicle(Kind.PLANE, (37.0, -8.6, 20.0)), foe=operator, seconds=300)
     assert not flown.ended
     found = resume("r.mcap", open_mission("flown.mission", LIVE))
-    assert found.taken == flown.ending.state.taken == {"uav0": "held by the operator (Ana)"}
+    assert flown.ending.state.taken == {"uav0": "held by the operator (Ana)"}
+    assert found.taken == {"uav0": "told to hold by the operator (Ana), not confirmed yet"}
     (_request,) = found.bidden
     assert found.bidden == {"uav0": Bidden(Hold("operator-2", "uav0"), "Ana")}
 
@@ -177,6 +178,7 @@ def test_a_killed_run_holds_its_vehicle_still_when_it_is_resumed(tmp_path, capsy
             _out, _ = run.communicate(timeout=30)
     out = capsys.readouterr().out
     assert "told to hold: uav0" in out
+    assert "uav0 held by the operator (Ana)\n" in out
     does = r"held by the operator \(Ana\), has not arrived in east0, BRAKE(, disarmed)?, battery"
     held = re.search(rf"^vehicles\n  uav0 {does}", out, re.M)
     assert held is not None, out

@@ -7,6 +7,7 @@ from adapters.live.core import is_refused, resumed
 from adapters.live.state import (
     Acknowledging,
     Bidden,
+    Fate,
     GivingBack,
     Heard,
     Ordering,
@@ -52,14 +53,14 @@ def flying(text=TOUR + GO, precautions=None, **more):
     return run
 
 
-@pytest.mark.parametrize(("what", "kind", "reason"), [(HOLD, Hold, "held"), (RETURN, Return, "sent home")])
-def test_a_vehicle_that_an_operator_orders_is_told_at_once_and_its_request_stands_pending(what, kind, reason):
+@pytest.mark.parametrize(("what", "kind"), [(HOLD, Hold), (RETURN, Return)])
+def test_a_vehicle_that_an_operator_orders_is_told_at_once_and_its_request_stands_pending(what, kind):
     run = flying()
     turn = run.turn(1.0, seen("uav0", BETWEEN, 1.0), sayings=[ordered(what=what)])
     assert turn.commands == (kind("operator-2", "uav0"),)
     assert turn.answers[0].refusal == ""
     assert turn.answers[0].requests == {"uav0": "operator-2"}
-    assert run.state.taken == {"uav0": f"{reason} by {ANA}"}
+    assert run.state.taken == {"uav0": f"told to {what.value} by {ANA}, not confirmed yet"}
     assert [f.message for f in turn.findings] == [
         f"uav0 is told to {what.value} by {ANA}; the mission does not command it until `bigactors give-back uav0`"
     ]
@@ -113,7 +114,7 @@ def test_an_order_to_a_vehicle_that_was_taken_over_overrules_that_and_says_so():
     turn = run.turn(2.0, sayings=[ordered()])
     assert [type(each).__name__ for each in turn.commands] == ["GiveBack", "Hold"]
     assert "that overrules who took uav0 over: it is in RTL" in turn.findings[0].message
-    assert run.state.taken == {"uav0": f"held by {ANA}"}
+    assert run.state.taken == {"uav0": f"told to hold by {ANA}, not confirmed yet"}
 
 
 def test_an_order_does_not_overrule_what_its_operator_cannot_know_of_yet():
@@ -146,13 +147,15 @@ def test_what_was_ordered_is_confirmed_once_by_the_vehicle():
     run.turn(2.0, reports=[Accepted("operator-2", "uav0", 2.0)])
     run.turn(3.0, reports=[Accepted("operator-2", "uav0", 3.0), Arrived("operator-2", "uav0", 3.0)])
     assert [f.message for f in run.findings[1:]] == [f"uav0 returns, as {ANA} ordered"]
+    assert run.state.taken == {"uav0": f"sent home by {ANA}"}
 
 
 def test_a_vehicle_that_refuses_an_order_is_not_commanded_by_the_mission_all_the_same():
     run = flying()
     run.turn(1.0, sayings=[ordered()])
     run.turn(2.0, reports=[Rejected("operator-2", "uav0", 2.0, "no mode of that name")])
-    assert run.findings[-1].message == "uav0 refuses the operator's order operator-2: no mode of that name"
+    why = f"uav0 refuses to hold, as {ANA} ordered: no mode of that name"
+    assert run.findings[-1].message == f"{why}; it is told again until it does"
     run.turn(3.0, seen("uav0", EAST, 3.0))
     assert "commit" not in run.rules
 
@@ -162,7 +165,7 @@ def test_an_order_may_be_given_twice_and_another_after_it():
     for number, what in enumerate((HOLD, HOLD, RETURN), 1):
         run.turn(float(number), sayings=[ordered(what=what)])
     assert told(run) == ["GoTo", "Hold", "Hold", "Return"]
-    assert run.state.taken == {"uav0": f"sent home by {ANA}"}
+    assert run.state.taken == {"uav0": f"told to return by {ANA}, not confirmed yet"}
 
 
 def test_a_vehicle_that_was_ordered_does_anew_what_the_mission_asks_once_it_is_given_back():
@@ -180,7 +183,7 @@ def test_what_is_said_at_once_counts_in_its_order():
     run = flying()
     run.turn(1.0, sayings=[ordered(), GivingBack("uav0"), ordered(what=RETURN)])
     assert told(run)[-1] == "Return"
-    assert run.state.taken == {"uav0": f"sent home by {ANA}"}
+    assert run.state.taken == {"uav0": f"told to return by {ANA}, not confirmed yet"}
 
 
 def test_a_vehicle_that_was_taken_over_is_given_back_and_held_by_two_words_at_once():
@@ -219,10 +222,8 @@ def test_what_the_mission_falls_back_on_does_not_overrule_an_operator(fallback):
     assert {"broken assumption", "late"} <= set(run.kinds())
     assert told(run) == ["GoTo", type(run.commands[-1]).__name__]
     assert told(run)[-1] == other.value.capitalize()
-    reason = "held" if other is HOLD else "sent home"
-    assert f"uav0 is not told to {fallback.value}: it is {reason} by {ANA}" in [
-        f.message for f in run.findings
-    ]
+    why = f"{ANA} ordered it to {other.value}"
+    assert f"uav0 is not told to {fallback.value}: {why}" in [f.message for f in run.findings]
 
 
 def test_an_operator_is_obeyed_while_the_mission_is_suspended():
@@ -269,7 +270,7 @@ def test_a_resumed_run_keeps_the_operators_order():
     again.turn(101.0, seen("uav0", EAST, 101.0), reports=[Arrived("operator-2", "uav0", 101.0)])
     assert again.rules == []
     assert again.kinds() == ["confirmed"]
-    assert again.state.bidden == {"uav0": Bidden(Hold("operator-2", "uav0"), "Ana", confirmed=True)}
+    assert again.state.bidden == {"uav0": Bidden(Hold("operator-2", "uav0"), "Ana", Fate.CONFIRMED)}
 
 
 def test_a_finding_is_acknowledged_by_its_number_if_there_is_one():
@@ -355,7 +356,8 @@ def test_a_vehicle_that_was_told_to_return_breaks_no_assumption_on_its_way_home(
     assert run.kinds().count("broken assumption") == 1
     run.turn(70.0, seen("uav0", BETWEEN, 70.0))
     assert run.state.configuration.structure.logical.parent("uav0") == "east0"
-    assert vehicle_line("uav0", run.state, None, 70.0) == "uav0 is in none of the places"
+    told_home = "told to return by the mission, not confirmed yet"
+    assert vehicle_line("uav0", run.state, None, 70.0) == f"uav0 {told_home}, is in none of the places"
     run.turn(80.0, seen("uav0", WEST, 80.0))
     assert run.kinds().count("broken assumption") == 1
     assert run.state.configuration.structure.physical.abstract_parent("uav0") == "west0"
@@ -371,7 +373,7 @@ def test_who_sends_a_vehicle_home_that_is_to_stay_is_told_what_follows_and_is_na
     )
     run.turn(70.0, seen("uav0", BETWEEN, 70.0))
     (broken,) = (each.message for each in run.findings if each.kind == "broken assumption")
-    assert broken.endswith("has not stayed where it was: sent home by the operator (Ana)")
+    assert broken.endswith("stayed where it was: told to return by the operator (Ana), not confirmed yet")
     again = flying(TWO + GO, Precautions(HOLD))
     (answer,) = again.turn(10.0, seen("uav0", BETWEEN, 10.0), sayings=[ordered(what=RETURN)]).answers
     assert answer.notes == ()

@@ -15,7 +15,8 @@ from adapters.recording.schemas import REPORT
 from checker import replay
 from checker.traces import SCHEMA
 from semantics.state.parcel_serialization import parcel_json
-from semantics.state.partition import Parcel, Parting, parted, station_of
+from semantics.state.parcels import Parcel
+from semantics.state.partition import Parting, parted, station_of
 from semantics.state.physical_model import InTransit
 from semantics.timing.actor_clocks import Clock, Sort
 
@@ -25,8 +26,11 @@ TEXT = (
         + """
 BigActor op0 hosted_at gcs0 with_behavior { loop { react {
   case "tell" => send "told" to op1
-  case "fly" => control(MOVE uav0 TO east0) } } }
-BigActor op1 hosted_at gcs1 with_behavior { loop { react { case "told" => send ("thanks", 1) to op0 } } }
+  case "fly" => control(MOVE uav0 TO east0)
+  case "bear" => spawn child hosted_at gcs1 with_behavior Childhood() } } }
+BigActor op1 hosted_at gcs1 with_behavior { loop { react { case "told" => send ("thanks", 1) to op0
+                                                           case "move" => migrate(uav0) } } }
+def Childhood() = { skip }
 environment { says "tell" to op0 at most 9 times
               says "fly" to op0 at most once
               says "stop" to op1 at most once }
@@ -173,6 +177,16 @@ def test_what_is_under_command_here_another_station_does_not_place():
     assert run.rules[-1] == "commit"
 
 
+def test_a_peer_has_not_sent_a_vehicle_that_obeys_this_station():
+    run = at("gcs0")
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run.turn(1.0, reports=[Underway("uav0", 1.0, "east0")])
+    assert run.state.configuration.structure.physical.going_to("uav0") == ""
+    assert [finding.message for finding in run.findings] == [
+        "another station says that it has sent uav0 to east0, but uav0 obeys this one"
+    ]
+
+
 def test_a_vehicle_of_another_stations_is_not_commanded_from_here():
     run = at("gcs0", vehicles=())
     run.turn(0.0, seen("uav0", WEST, 0.0, "stations"), sayings=[Saying("op0", "fly")])
@@ -257,6 +271,9 @@ def test_l_stays_a_forest_whatever_others_write_into_it(node, names, parent):
 def test_where_an_agent_went_is_learned_and_messages_follow_it():
     run = at("gcs0")
     run.turn(0.0, reports=[Hosts("op1", 0.0, "uav0"), Hosts("child", 0.0, "gcs1"), Hosts("op0", 0.0, "gcs1")])
+    run.turn(
+        0.0, reports=[Hosts("nobody", 0.0, "gcs1"), Hosts("child", 0.0, "uav0")]
+    )  # the text has no such thing
     assert run.labels == ["⟨learn : op1, uav0⟩", "⟨learn : child, gcs1⟩"]
     c = run.state.configuration
     assert (station_of(c, "op1"), station_of(c, "child"), station_of(c, "op0")) == ("gcs1", "gcs1", "gcs0")

@@ -65,6 +65,17 @@ def test_what_was_commanded_since_is_newer_than_a_doubt():
     assert believed(authority, GCS0, known(GCS1, 11.0), 10.0 + LASTING) == (GCS1, 11.0)
 
 
+def test_a_vehicle_is_kept_while_our_link_shows_that_it_obeys_us_and_we_have_not_handed_it_over():
+    authority = Authority("gcs0")
+    assert not authority.keeps("uav0")
+    believed(authority, GCS0, None)
+    assert authority.keeps("uav0")
+    authority.handing["uav0"] = HandOver("op0-1", "uav0", *GCS0, *GCS1)
+    assert not authority.keeps("uav0")
+    believed(authority, GCS1, known(GCS0))
+    assert not authority.keeps("uav0")
+
+
 @pytest.mark.parametrize(("of", "counts"), [(GCS0, True), (GCS1, False)])
 def test_a_link_that_is_lost_says_so_only_of_its_own_authority(of, counts):
     authority = Authority("gcs0")

@@ -26,9 +26,12 @@ from adapters.plugin import (
     Rejected,
     Trouble,
     Underway,
+    entity_of,
 )
 from adapters.stations.entries import Broke, Posted, Sent, Took
+from adapters.stations.entries import Said as EntrySaid
 from adapters.stations.journal import Journal
+from adapters.stations.merge import ABREAST
 from adapters.stations.peers import peers_of
 from adapters.stations.remote_station import SELDOM
 from adapters.stations.sharing import Sharing
@@ -304,6 +307,7 @@ def test_a_vehicle_is_not_seen_before_a_link_tells_whom_it_obeys(tmp_path):
             assert gcs0.world.at("uav0") is gcs1.world.at("uav0") is None
             gcs0.see("uav0", WEST, owned=True, channels=("control:gcs0",))
             await until(lambda: gcs1.world.at("uav0") == WEST)
+            await asyncio.sleep(ABREAST)  # while its own link hears it, that counts
             gcs1.see("uav0", EAST, owned=True)
             await until(lambda: gcs0.world.at("uav0") == EAST)
             for node in (gcs0, gcs1):
@@ -311,6 +315,29 @@ def test_a_vehicle_is_not_seen_before_a_link_tells_whom_it_obeys(tmp_path):
                 assert {each.channels for each in said if each.entity == "uav0"} == {("control:gcs0",)}
 
     asyncio.run(hearing())
+
+
+def test_what_a_peer_claims_of_a_vehicle_takes_it_from_nobody_whose_link_it_obeys(tmp_path):
+    """A station with a certificate lies: it has the vehicle, from later on, and elsewhere; or it is gone."""
+    table = both()
+    gcs0, gcs1 = (Node(peers_of(table, name, tmp_path), tmp_path) for name in ("gcs0", "gcs1"))
+    lie = PhysicalProperty("uav0", "UAV", point(*EAST), channels=("control:gcs1",), time=0.0)
+
+    async def lying():
+        async with running(gcs0, gcs1):
+            gcs0.see("uav0", WEST, owned=True, channels=("control:gcs0",))
+            await until(lambda: gcs1.world.at("uav0") == WEST)
+            for published in (replace(lie, time=time.time() + 4), Gone("uav0", time.time() + 4.5, "gcs1")):
+                gcs1.sharing._add([EntrySaid(published, time.time() + 1_000, owned=True)])
+                gcs1.see("boat0", WEST if published is lie else EAST)
+                await asyncio.sleep(0.5)
+                gcs0.see("uav0", WEST, owned=True, channels=("control:gcs0",))
+            await until(lambda: gcs0.world.at("boat0"))
+
+    asyncio.run(lying())
+    said = [each for each in gcs0.world.published if entity_of(each) == "uav0"]
+    assert {each.property.channels for each in said} == {("control:gcs0",)}
+    assert gcs0.world.at("uav0") == WEST
 
 
 class Link(Camera):

@@ -102,9 +102,11 @@ class Naive:
             case ("request", MGR(), _):
                 return self.said(timing.command("migrate"))
             case ("request", CTR() as request, _):
-                return self.said(
-                    timing.command(request.reaction.text.split()[0].split("(")[0]) or timing.react
-                )
+                word = request.reaction.text.split()[0].split("(")[0]
+                served = (t for t, *_ in self.look(c)[0] if t.served is not None)
+                rules = {t.label.rule for t in served if t.served.request == request}
+                taken_up = rules == {"command"} or word in ("MOVE", "MOVE_HOST_TO")
+                return self.said(timing.command(word) or (timing.react if taken_up else None))
             case ("request", FLY() as fly, _):
                 lo, hi = self.said(interval_of_flight(c, fly))
                 if lo > self.CAP or self.CAP < hi < inf:  # clocks are not counted so far here

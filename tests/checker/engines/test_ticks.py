@@ -24,7 +24,7 @@ from checker.traces import ReplayError, print_trace, to_json
 from checker.verdicts import Outcome
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property, watching
-from semantics.properties.propositions import Ended, HasPending, Inside, Not
+from semantics.properties.propositions import Ended, HasPending, Inside, LinkedWith, Not
 from semantics.timing.intervals import Interval
 from semantics.timing.timing import ClauseTimes, Endurance, Every, Motion, Sayable, Timing, Window
 from specs.elaboration import load_mission
@@ -172,6 +172,42 @@ def test_what_is_not_said_is_not_assumed_and_a_late_deadline_says_so():
         "it may stay so for ever",
         "nothing says how long ⟨commit : FLY(a, MOVE_HOST_TO south0)⟩ takes",
     )
+
+
+@pytest.mark.parametrize("said", [(), (("HAND", Interval(0, 2)),)], ids=["unsaid", "said"])
+def test_a_command_of_which_no_line_speaks_takes_any_time(said):
+    hand = "BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }"
+    linked = LinkedWith("uav0", "gcs1", actually=True)
+    report = decided(
+        timed(hand, Timing(react=Interval(0, 1), commands=said)), when(linked), within(3, linked)
+    )
+    latest = "at 0:03 at the latest" if said else "at any time if at all: it may never"
+    assert report.verdicts["time"].note == f"at 0:00 at the earliest, {latest}"
+    assert (report.verdicts["within"].outcome is Outcome.HOLDS) is bool(said)
+
+
+COMES_AGAIN = """
+signature { kind Tanker contains UAV kind UAV driven }
+world {
+  tanker0: Tanker = circle (37.02, -8.70) radius 300 m
+  uav0: UAV = point (37.00, -8.70)
+}
+BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO tanker0) }
+control timed
+environment {
+  tanker0 vanishes
+  tanker0 appears at circle (37.12, -8.70) radius 300 m
+}
+timing { UAV flies at 400 m/s to 500 m/s agents take 0 s }
+"""
+
+
+def test_a_destination_that_vanishes_on_the_way_and_comes_again_brings_nobody_there_sooner():
+    arrived = Inside("uav0", "tanker0", actually=True)
+    stays = COMES_AGAIN[: COMES_AGAIN.index("environment")] + COMES_AGAIN[COMES_AGAIN.index("timing") :]
+    for text in (stays, COMES_AGAIN):
+        report = decided(load(text, "").initial, when(arrived))
+        assert report.verdicts["time"].note.startswith("at 0:03 at the earliest")
 
 
 ANSWERS = """

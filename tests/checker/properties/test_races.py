@@ -174,6 +174,21 @@ def test_the_environment_is_no_partner_of_a_race():
     assert verdict(text, "race_freedom").outcome is Outcome.HOLDS
 
 
+TWO_APART = """
+control timed
+rule enter(u: UAV, b: Location) { u || b -> b.u }
+BigActor a hosted_at uav0 with_behavior { control(enter(uav0, gate0)) }
+BigActor b hosted_at uav1 with_behavior { control(enter(uav1, basin0)) }
+timing { UAV flies at 300 m/s to 400 m/s }
+"""
+
+
+def test_what_is_remembered_of_flights_for_their_times_makes_no_race():
+    apart = WORLD.replace("  gate0: ", "  basin0: Location = circle (37.00, -8.60) radius 300 m\n  gate0: ")
+    for timing in (TWO_APART, TWO_APART[: TWO_APART.index("timing")]):
+        assert verdict(timing, "race_freedom", apart).outcome is Outcome.HOLDS
+
+
 # --- stale observations: the paper's example ------------------------------------------------------------------
 
 

@@ -1,5 +1,6 @@
 """What is learned about one name holds for those that the mission does not tell from it."""
 
+import random
 from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations, product
@@ -8,15 +9,14 @@ from pathlib import Path
 import pytest
 from checked_missions import load
 from hypothesis import given
-from scale import examples
+from scale import examples, seeds
 from shipped import UNTIMED
 from test_symmetry import swarm, swarms
 
 from checker import Engine, Limits, explore
-from checker.engines.fast.lessons import Exchange, Lesson, Lessons, NoImage
+from checker.engines.fast.lessons import Exchange, Lesson, Lessons, NoImage, Stage
 from checker.engines.fast.likeness import Likeness
 from checker.engines.fast.recording import Ask
-from checker.engines.fast.trees import LearningError
 from checker.reduction.renaming import Renaming
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Nodes, agent_key
@@ -149,14 +149,135 @@ def test_a_word_that_is_displayed_may_not_be_a_name():
         SWAP.shown("at b")
 
 
-def test_of_those_that_are_alike_none_asks_what_another_does_not():
-    lessons, lesson = Lessons(), Lesson(0, (), frozenset(), {}, {}, frozenset())
-    lessons.learn({Ask(("code", "a")): (1,), Ask(("store", "a")): ()}, lesson)
-    assert lessons.find({Ask(("code", "a")): (1,), Ask(("store", "a")): ()}.__getitem__) is lesson
-    assert lessons.find({Ask(("code", "a")): (2,)}.__getitem__) is None
-    for asked in ({Ask(("code", "a")): (1,)}, {Ask(("store", "a")): ()}, {}):
-        with pytest.raises(LearningError):
-            lessons.learn(asked, lesson)
+CODE, STORE, LINKS = Ask(("code", "a")), Ask(("store", "a")), ("channels", "a")
+NOTHING = Lesson(0, (), frozenset(), {}, {}, frozenset())
+
+
+def found(lessons, answers, links=()):
+    return lessons.find(answers.__getitem__, {LINKS: links}.get)
+
+
+def test_what_follows_from_the_same_answers_is_known():
+    lessons = Lessons()
+    lessons.learn([Stage((), CODE, (1,)), Stage((), STORE, ()), Stage(())], NOTHING)
+    assert found(lessons, {CODE: (1,), STORE: ()}) is NOTHING
+    assert found(lessons, {CODE: (2,)}) is None
+
+
+def test_two_that_differ_in_what_is_never_written_may_ask_differently():
+    lessons, other = Lessons(), replace(NOTHING, flags=1)
+    lessons.learn([Stage(((LINKS, ("wifi",)),), CODE, (1,)), Stage(())], NOTHING)
+    lessons.learn([Stage(((LINKS, ()),))], other)
+    assert found(lessons, {CODE: (1,)}, ("wifi",)) is NOTHING
+    assert found(lessons, {}) is other
+    assert found(lessons, {}, ("mesh",)) is None
+
+
+@pytest.mark.parametrize("stages", [[CODE], [STORE, CODE], [], [CODE, STORE, LINKS]])
+def test_one_that_asks_in_another_order_is_learned_apart(stages):
+    lessons, answers = Lessons(), {CODE: (1,), STORE: ()}
+    lessons.learn([Stage((), CODE, (1,)), Stage((), STORE, ()), Stage(())], NOTHING)
+    asked = [Stage((), ask, answers.get(ask)) for ask in stages]
+    lessons.learn([*asked, Stage(())], replace(NOTHING, flags=1))
+    assert found(lessons, answers) is NOTHING
+
+
+QUERIES = (
+    "LINKED_TO(gcs0)", "LINKED_TO(HOST)", "LINKED_TO(robot1)", "CHILDREN(room0)", "CHILDREN(PARENT(HOST))",
+    "HOSTED_AT(ALL)", "HOSTED_AT(LINKED_TO(HOST))", "PARENT(robot0)", "ALL", "CHILDREN(spill0)",
+)  # fmt: skip
+
+
+def looking_fleet(seed):
+    """A fleet some of whose members differ in links, places or presence, looked at by somebody."""
+    draw = random.Random(seed)
+    robots = range(draw.randint(2, 4))
+    links = [draw.choice(["", " linked wifi", " linked mesh, wifi"]) for _ in robots]
+    there = [f"= point (0.0, {draw.choice([0.0, 0.003, 0.02])})" for _ in robots]
+    there = [each if not n or draw.random() < 0.7 else "absent" for n, each in enumerate(there)]
+    hosts = [n for n in robots if there[n] != "absent"]
+    body = f"observe({draw.choice(QUERIES)}) react {{ case o => control({draw.choice(MOVES)}) }}"
+    agents = [f"BigActor r{n} hosted_at robot{n} with_behavior {{ {body} }}" for n in hosts]
+    if len(hosts) == len(robots) and draw.random() < 0.5:
+        agents = [f"BigActor r[i] for u in Robot hosted_at u with_behavior {{ {body} }}"]
+    looks = " ".join(f"observe({draw.choice(QUERIES)})" for _ in "ab")
+    agents.append(f"BigActor base hosted_at gcs0 with_behavior {{ {looks} }}")
+    clauses = draw.sample(CLAUSES, draw.randint(0, 2))
+    clauses += [f"robot{n} appears at room0" for n in robots if n not in hosts]
+    return LOOKING.format(
+        world="\n".join(f"  robot{n}: Robot {there[n]}{links[n]}" for n in robots),
+        agents="\n".join(agents),
+        clauses="\n".join(clauses),
+        scheduler=draw.choice(["unordered", "program_order", "fcfs"]),
+    )
+
+
+MOVES = ("MOVE_HOST_TO room1", "DISCONNECT_HOST_FROM gcs0", "CONNECT_HOST_TO gcs0", "MOVE_HOST_TO room0")
+CLAUSES = (
+    "spill0 appears at room1, room0",
+    "robot0 vanishes",
+    "wifi drops and returns",
+    "robot1 leaves wifi",
+)
+LOOKING = """mission looking
+signature {{
+  kind Room contains Robot, Spill, Station
+  kind Spill contains Robot
+  kind Station
+  kind Robot driven
+}}
+world {{
+  channel wifi
+  channel mesh
+  room0: Room = box (0.001, 0.001) (-0.001, -0.001)
+  room1: Room = box (0.001, 0.004) (-0.001, 0.002)
+  gcs0: Station = point (0.0, 0.0005) linked wifi
+  spill0: Spill absent
+{world}
+}}
+{agents}
+environment {{
+{clauses}
+}}
+scheduler {scheduler}
+"""
+
+
+@seeds(200, 8)
+def test_fleets_that_differ_in_what_is_looked_at_are_explored_as_by_the_reference(seed):
+    initial, limits = load(looking_fleet(seed), "").initial, Limits(configurations=1_000)
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        shared, apart = both(initial, monkeypatch, limits=limits)
+    assert_alike(shared, apart)
+    reference = explore(initial, engine=Engine.REFERENCE, limits=limits)
+    assert shared.complete is reference.complete
+    if shared.complete:
+        assert set(shared.configurations) == set(reference.configurations)
+        assert shared.rules == reference.rules
+
+
+ONE_IS_LINKED = """
+signature {
+  kind OilSpill contains UAV
+  kind Station
+  kind UAV driven
+}
+world {
+  oilSpill0: OilSpill absent
+  gcs0: Station = point (0.2, 0.5) linked wifi
+  uav0: UAV = point (0.1, 0.3) linked wifi
+  uav1: UAV = point (0.1, 0.4)
+}
+BigActor b hosted_at uav1 with_behavior { observe(LINKED_TO(gcs0)) }
+environment { oilSpill0 appears at box (0.1732, 0.2754) (0.2232, 0.3154) }
+"""
+
+
+def test_of_two_uavs_one_may_be_on_the_link_that_is_looked_at():
+    initial = load(ONE_IS_LINKED, "").initial
+    fast, reference = (explore(initial, engine=each) for each in (Engine.FAST, Engine.REFERENCE))
+    assert fast.rules == reference.rules == {"req_obs": 2, "sense": 2, "env": 3}
+    assert set(fast.configurations) == set(reference.configurations)
 
 
 # --- what likeness rests on -----------------------------------------------------------------------------------

@@ -18,11 +18,10 @@ from semantics.state.agents import code_cell
 from semantics.state.canonical import written
 from semantics.state.parcel_serialization import parcel_json
 from semantics.state.parcel_serialization import parcel_of as parcel_in
+from semantics.state.parcels import Controls, Parcel, Running
 from semantics.state.partition import (
     Belief,
-    Parcel,
     Parting,
-    Running,
     believe,
     enter,
     is_here,
@@ -34,7 +33,7 @@ from semantics.state.partition import (
     station_of,
     took_cell,
 )
-from semantics.state.requests import CTR, MGR, OBS
+from semantics.state.requests import MGR, OBS
 from semantics.state.setting import Control, Scheduler
 from semantics.successors import expand, moves, served
 from specs.diagnostics import Source
@@ -265,16 +264,7 @@ def running(**changes):
     return replace(Running("gcs1", asked.code, asked.store, (), asked.says), **changes)
 
 
-REACTION = next(
-    t.target.eta.of("a")[0].request.reaction
-    for t in moves(
-        mission(
-            TEXT.partition("def visit")[0]
-            + "BigActor a hosted_at gcs0 with_behavior { control(HAND gcs1 TO gcs2) }"
-        ),
-        "a",
-    )
-)
+HANDS = Controls("nomad", "HAND", "gcs0", ("gcs1", "gcs2"))
 
 
 @pytest.mark.parametrize(
@@ -286,19 +276,9 @@ REACTION = next(
         (Parcel("nomad", (), running(says=())), "what may be said to it"),
         (Parcel("nomad", (), running(host="gcs9")), "nothing is known of gcs9"),
         (Parcel("nomad", (), running(requests=(MGR("op1", "gcs1"),))), "another agent"),
-        (Parcel("nomad", (), running(requests=(MGR("nomad", "gcs8"),))), "nothing is known of gcs8"),
-        (
-            Parcel("nomad", (), running(requests=(CTR("nomad", replace(REACTION, via=("gcs8",))),))),
-            "no mission can",
-        ),
-        (
-            Parcel(
-                "nomad",
-                (),
-                running(requests=(CTR("nomad", replace(REACTION, redex=replace(REACTION.redex, nodes=()))),)),
-            ),
-            "no mission can",
-        ),
+        (Parcel("nomad", (), running(requests=(MGR("nomad", "gcs8"),))), "no statement that it has passed"),
+        (Parcel("nomad", (), running(host="gcs2")), "does not run what is hosted at gcs2"),
+        (Parcel("nomad", (), running(requests=(HANDS,))), "no statement that it has passed"),
     ],
 )
 def test_what_no_station_of_the_mission_can_have_sent_does_not_enter(parcel, why):
@@ -307,12 +287,10 @@ def test_what_no_station_of_the_mission_can_have_sent_does_not_enter(parcel, why
     assert list(enter(part, "gcs0", 1, parcel)) == []
 
 
-GOOD = parcel_json(Parcel("nomad", ("x",), running(requests=(CTR("nomad", REACTION),))))
-
-
 def test_a_parcel_is_read_as_it_was_written():
-    assert parcel_in(GOOD).running.requests == (CTR("nomad", REACTION),)
-    assert objection(parted(FIRST, parting("gcs1")), parcel_in(GOOD)) == ""
+    whole = Parcel("nomad", ("x",), running(requests=(HANDS,)))
+    assert parcel_in(json.loads(json.dumps(parcel_json(whole)))) == whole
+    assert objection(parted(FIRST, parting("gcs1")), Parcel("nomad", ("come",), running())) == ""
 
 
 def test_a_route_is_read_as_it_was_written_and_as_no_tuple():
@@ -360,21 +338,6 @@ def deep(levels):
 def test_what_is_no_parcel_is_refused(data):
     with pytest.raises(ValueError, match=r"."):
         parcel_in(data)
-
-
-@given(st.data())
-def test_no_change_of_a_parcel_breaks_more_than_itself(data):
-    """Whatever comes over the wire: it is refused as data, or by the rule, or it enters."""
-    text = json.dumps(GOOD)
-    at = data.draw(st.integers(0, len(text) - 1))
-    changed = (
-        text[:at] + data.draw(st.sampled_from(['"', "0", "[", "]", "null", "{}", "x", ","])) + text[at + 1 :]
-    )
-    try:
-        parcel = parcel_in(json.loads(changed))
-    except ValueError:
-        return
-    list(enter(parted(FIRST, parting("gcs1")), "gcs0", 1, parcel))
 
 
 def test_what_may_be_said_to_an_agent_goes_where_it_goes():

@@ -1,6 +1,6 @@
 /** What the chart shows, in words: for readers of the screen, and for what is pointed at. */
 import { ageClass, FRESH } from "./ages.js";
-import { orderWords, whereabouts } from "../plainly.js";
+import { isAstray, orderWords, whereabouts } from "../plainly.js";
 import { age, angle, position, speed } from "../units.js";
 import { counted, drawable, plain } from "./words.js";
 
@@ -19,7 +19,7 @@ function describeEntity(name, entity, card, now) {
   const heard = (entity.seen ?? null) === null ? "never heard, where the mission has it" : `heard ${age(entity.seen, now)} ago`;
   const old = ageClass(entity, now) === FRESH ? "" : ", old";
   const facts = [drawable(name), String(entity.kind ?? ""), position(entity.at), motion(entity), `${heard}${old}`];
-  const place = entity.differs ? whereabouts({ ...entity, order: card?.order, returning: card?.returning }) : "";
+  const place = entity.differs ? whereabouts({ ...card, ...entity }) : "";
   const order = card?.order ? orderWords(card.order, card.returning) : "";
   return [...facts, plain(place), plain(order), card?.why ?? ""].filter((line) => line !== "");
 }
@@ -33,7 +33,7 @@ function motion({ course, speed: fast }) {
 export function summary(store, now, centre) {
   const entities = [...store.section("entities")];
   const vehicles = entities.filter(([, { vehicle }]) => vehicle);
-  const differing = entities.filter(([, { differs }]) => differs).map(([name]) => drawable(name));
+  const differing = entities.filter(([name, entity]) => isAstray({ ...store.section("vehicles").get(name), ...entity })).map(([name]) => drawable(name));
   const said = vehicles.slice(0, 20).map(([name]) => describe(name, store, now).slice(0, 5).join(", "));
   return [
     `Chart around ${position(centre)}.`,

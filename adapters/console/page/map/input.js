@@ -2,14 +2,23 @@
 
 export const TOLERANCE = { mouse: 8, touch: 24 };
 
-/** Tell the chart of clicks and of where the pointer is. */
+/**
+ * Tell the chart of clicks and of where the pointer is. A finger points at nothing when it has left the screen, though the
+ * browser makes a mouse's events of its tap.
+ */
 export function listenForPointer(map, chart) {
-  map.on("click", ({ containerPoint: { x, y }, latlng, originalEvent }) => {
-    const isTouch = originalEvent?.pointerType === "touch" || (!originalEvent?.pointerType && "ontouchstart" in globalThis);
+  let kind = "mouse";
+  const note = ({ pointerType }) => {
+    if (pointerType === "touch" && kind !== "touch") chart.point(null, null);
+    kind = pointerType;
+  };
+  for (const each of ["pointerdown", "pointermove"]) map.getContainer().addEventListener(each, note, true);
+  map.on("click", ({ containerPoint: { x, y }, latlng }) => {
+    const isTouch = kind === "touch";
     if (!isTouch) chart.point([x, y], [latlng.lat, latlng.lng]); // a busy browser tells of a click before it tells of the way to it
     chart.click([x, y], [latlng.lat, latlng.lng], isTouch ? TOLERANCE.touch : TOLERANCE.mouse);
   });
-  map.on("mousemove", ({ containerPoint: { x, y }, latlng }) => chart.point([x, y], [latlng.lat, latlng.lng]));
+  map.on("mousemove", ({ containerPoint: { x, y }, latlng }) => kind !== "touch" && chart.point([x, y], [latlng.lat, latlng.lng]));
   map.on("mouseout", () => chart.point(null, null));
   map.on("dragstart", () => chart.drag());
 }

@@ -121,6 +121,7 @@ class Chart {
     this.#surface.map.invalidateSize({ animate: false });
     this.#surface.invalidate();
     this.#fitFirst();
+    if (this.#hovered !== null) this.#hover(null); // what it names lies elsewhere now
   }
 
   setTheme(theme) {

@@ -56,7 +56,7 @@ function inView(view, store, now, chosen) {
       age: card?.link?.lost ? LOST : age,
       heading: card?.heading ?? entity.course ?? 0,
       level: card?.level ?? 0,
-      expected: Boolean(card && (card.returning || isUnderWay(card.order))),
+      expected: Boolean(card && (card.returning || isUnderWay(card.order) || card.going)),
       radius: entity.vehicle ? RADIUS.vehicle : RADIUS[shape],
       full: entity.vehicle || entity.named || entity.differs || name === chosen,
     });

@@ -131,6 +131,16 @@ def test_declared_names_are_outer_names_of_the_first_state():
 
 MISTAKES = [
     ("syntax", "%active a : ;", "found ';', expected a number"),
+    ("syntax", "%prop p matches(UAV);", "'%prop' is a word of another dialect of .bgm"),
+    ("syntax", "%binding Bind;", "'%binding' is a word of another dialect of .bgm"),
+    ("syntax", "%ltlSpec G!(a);", "'%ltlSpec' is a word of another dialect of .bgm"),
+    ("syntax", "%agnet UAV[x, y];", "'%agnet' is no word of .bgm"),
+    ("syntax", "%agent UAV[idle, x:edge];", "'x:edge' says what link it is, as another dialect of .bgm does"),
+    (
+        "syntax",
+        "%rule r UAV[x, y] -> UAV[x, y]{n > 3};",
+        "a rule has no constraints, which another dialect of .bgm writes in braces",
+    ),
     ("syntax", "u:UAV[p:x].nil;", "'u:UAV' names a node, as another dialect of .bgm does"),
     ("syntax", "UAV[x, p : y].nil;", "'p:y' names a port, as another dialect of .bgm does"),
     ("name", "b;", "unknown control 'b'"),
@@ -239,3 +249,18 @@ def test_controls_that_no_file_declares_are_inferred_with_a_warning():
     with pytest.raises(NotationError, match="node 'u0' is there twice"):
         read_bgm("u0_UAV | u0_UAV;")
     assert read_bgm("%active l0_Location : 0; l0_Location;").initial.nodes[0].name is None
+
+
+def test_a_dialects_words_for_what_there_is_are_read():
+    """`%outername`, `%innername`, `%agent`, `idle` ports and an empty `{}` behind a rule."""
+    ours = "%active A : 2; %outer x; %rule go A[-, x].$0 -> A[x, -].$0; A[-, x] | A[-, -];"
+    theirs = "%active A : 2; %outername x; %rule go A[idle, x].$0 -> A[x, idle].$0{}; %agent A[idle, x] | "
+    theirs += "A[idle, idle];"
+    assert read_bgm(theirs) == read_bgm(ours)
+    with pytest.raises(NotationError, match="no inner names"):
+        read_bgm(theirs.replace("%outername x", "%innername x"))
+
+
+def test_a_link_may_be_called_idle_elsewhere():
+    found = read_bgm("%active A : 1; %outer idle; A[idle] | A[idle];")
+    assert found.initial.outer_names == ("idle",)

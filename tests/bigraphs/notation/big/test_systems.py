@@ -44,7 +44,7 @@ def test_the_last_value_of_a_parameter_comes_first_as_in_bigrapher():
 def test_one_parameter_twice_has_one_value():
     declarations = "fun ctrl K(i) = 0; fun react r(i, j) = K(i) --> K(j);"
     found = rules(declarations, "int n = [1 : 1 : 3];", rules="{r(n, n + 1)}")
-    assert [rule.parameters for rule in found] == [(3, 4), (2, 3), (1, 2)]
+    assert [rule.parameters for rule in found] == [(1, 2), (2, 3), (3, 4)]
 
 
 def test_strings_are_parameters_too():

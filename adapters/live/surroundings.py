@@ -1,0 +1,91 @@
+"""Where a vehicle must stay for P to be right: in the places of its point in P, and out of all others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from itertools import islice, product
+from typing import Final
+
+from physical import Geometry, Surroundings, band_contains, share_interior, surroundings_of
+from semantics.drive import reach
+from semantics.environment import Placing
+from semantics.state.configuration import Configuration
+from semantics.state.physical_model import Placed, Placement, encloses, placement_cell
+from semantics.state.setting import Setting
+from semantics.state.signature import Name
+
+MOST_COMBINATIONS: Final = 500
+"""Of where movers are, when a mission is looked at before take-off."""
+
+
+def surroundings(
+    c: Configuration, node: Name, spot: Placed, target: Geometry, first: Configuration
+) -> Surroundings:
+    """Return what a vehicle has to stay in, and out of, within a place.
+
+    That is every place that may hold it, where the place is now and where the mission lists it.
+    """
+    holders = sorted(c.setting.containers(c.setting.kind(node)))
+    stands = {each for name in holders for each in _stands(c, first, name, spot)} - {target}
+    return surroundings_of(spot.geometry, (each for each in stands if share_interior(each, target)))
+
+
+def _stands(c: Configuration, first: Configuration, place: Name, spot: Placed) -> Iterator[Geometry]:
+    """Yield where a place may stand at the height of a vehicle.
+
+    What the mission lists counts as long as the place is where the mission has it: of one that was seen elsewhere
+    nobody knows where it goes.
+    """
+    for at in (c.structure.physical.placement(place), *_listed(c, first, place)):
+        if isinstance(at, Placed) and not at.geometry.is_point and band_contains(at.altitude, spot.altitude):
+            yield at.geometry
+
+
+def _listed(c: Configuration, first: Configuration, place: Name) -> tuple[Placement, ...]:
+    """Return where the mission has a place, unless it was seen elsewhere."""
+    here, begins = c.structure.physical.placement(place), first.structure.physical.placement(place)
+    listed = (*(() if begins is None else (begins,)), *_placements(c.setting, place))
+    return listed if here is None or here in listed else ()
+
+
+@lru_cache(maxsize=1 << 10)
+def _placements(setting: Setting, place: Name) -> tuple[Placed, ...]:
+    clauses = (each for each in setting.environment if isinstance(each, Placing) and each.entity == place)
+    return tuple(at for clause in clauses for at in clause.placements if isinstance(at, Placed))
+
+
+@lru_cache(maxsize=1 << 6)
+def _movers(setting: Setting, kind: str) -> tuple[Name, ...]:
+    """Return what may hold an entity of a kind and may come to stand elsewhere."""
+    return tuple(name for name in sorted(setting.containers(kind)) if _placements(setting, name))
+
+
+def told_apart(c: Configuration, node: Name, here: Placed, seen: Placed, first: Configuration) -> str:
+    """Return what would hold a vehicle at one of two points only, where the mission lists it; or an empty text."""
+    for place in _movers(c.setting, c.setting.kind(node)):
+        for at in _listed(c, first, place):
+            if isinstance(at, Placed) and encloses(at, here) != encloses(at, seen):
+                return place
+    return ""
+
+
+def spots(first: Configuration, node: Name, place: Name) -> Iterator[tuple[Geometry, Surroundings]]:
+    """Yield each geometry of a place with what a vehicle has to stay in and out of there, wherever the others are.
+
+    Of very many combinations of where the others are, only the first are looked at.
+    """
+    movers = sorted({place, *first.setting.containers(first.setting.kind(node))})
+    physical = first.structure.physical
+    where = {name: (physical.placement(name), *_placements(first.setting, name)) for name in movers}
+    several = {name: tuple(dict.fromkeys(at)) for name, at in where.items() if len(set(at)) > 1}
+    seen = set()
+    for chosen in islice(product(*several.values()), MOST_COMBINATIONS):
+        c = first.with_({placement_cell(name): at for name, at in zip(several, chosen, strict=True)})
+        target, spot = c.structure.physical.position(place), reach(c.structure.physical, node, place)
+        if target is None or not isinstance(spot, Placed):
+            continue
+        found = target.geometry, surroundings(c, node, spot, target.geometry, first)
+        if found not in seen:
+            seen.add(found)
+            yield found

@@ -1,0 +1,56 @@
+"""What of a vehicle's position and home its operator has to know: that none counts, that it was moved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from adapters.mavlink.telemetry import Telemetry
+from adapters.plugin import Trouble
+
+BLIND: Final = 5.0
+"""Seconds without a position that counts, after which that is reported."""
+
+NO_POSITION: Final = "no position"
+HOME_MOVED: Final = "home moved"
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """Since when a vehicle that had a position has none that counts, and what was reported of that and of its home."""
+
+    blind: float | None = None
+    reported: frozenset[str] = frozenset()
+
+
+def look(
+    before: Condition, entity: str, known: Telemetry, now: float, *, lost: bool
+) -> tuple[Condition, tuple[Trouble, ...]]:
+    """Report, once each, what has become of a vehicle's position and its home."""
+    if lost:
+        return before, ()
+    told = bool(known.fixes) or known.estimate is not None
+    placed = known.position is None or known.is_placed(now) or not told
+    blind = None if placed else now if before.blind is None else before.blind
+    found = frozenset(_found(known, blind, now))
+    after = Condition(blind, found)
+    return after, tuple(Trouble(entity, now, *words) for words in _words(before, after, known, now))
+
+
+def _found(known: Telemetry, blind: float | None, now: float) -> Iterator[str]:
+    if blind is not None and now - blind >= BLIND:
+        yield NO_POSITION
+    if known.armed and known.home_moved:
+        yield HOME_MOVED
+
+
+def _words(before: Condition, after: Condition, known: Telemetry, now: float) -> Iterator[tuple[str, str]]:
+    come, gone = after.reported - before.reported, before.reported - after.reported
+    if NO_POSITION in come:
+        yield NO_POSITION, f"{known.lacks(now)}; nobody sees where it is"
+    if NO_POSITION in gone:
+        yield "position again", "its position counts again"
+    if HOME_MOVED in come:
+        told = f"{known.home_moved}, by itself or told by someone else; `return` leads there"
+        yield HOME_MOVED, f"{told}, and heights of the mission stay above the home before"

@@ -1,0 +1,97 @@
+r"""Find the sentences of a line, and what loggers write around them: tag blocks, times, their own words.
+
+A line may hold no sentence, one, or several. A sentence begins with `!` or `$` and an address, and ends with its
+checksum.
+
+>>> [framed.sentence for framed in framed_in(rb"1772596000.883 !AIVDM,1,1,,B,,0*25")]
+[b'!AIVDM,1,1,,B,,0*25']
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import Final
+
+from physical.nmea import Reason, TagBlock, parse_tag_block, together
+from physical.written_times import time_beside
+
+_BEGINNING: Final = rb"[!$](?=(?:--)?[A-Za-z0-9]{1,8}[,*])"
+_FRAME: Final = re.compile(
+    rb"(?P<tags>(?:\\[^\\!$\r\n]*\\[ \t]*){0,8})"
+    rb"(?P<sentence>" + _BEGINNING + rb"(?:(?!" + _BEGINNING + rb")[^*\\\r\n])*(?:\*[^\\\s!$]{0,2})?)"
+)
+_BLOCK: Final = re.compile(rb"\\([^\\]*)\\")
+_TORN: Final = re.compile(rb"\\(?:[a-z]|\d+G\d+):")
+"""How a tag block begins, of which the end is missing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Framed:
+    """One sentence of a line; none where a line is a tag block and no more.
+
+    Attributes:
+        sentence: From its start delimiter to its checksum.
+        tag: What the tag blocks before it say together, if there are any.
+        time: What the logger wrote beside it, in seconds since 1970.
+        reasons: What could not be read of its tag blocks.
+    """
+
+    sentence: bytes
+    tag: TagBlock | None = None
+    time: float | None = None
+    reasons: tuple[Reason, ...] = ()
+
+
+def framed_in(line: bytes) -> tuple[Framed, ...]:
+    """Return the sentences of a line, in order.
+
+    What a logger writes stands before each of its sentences, or behind each: before, where a time stands before the
+    first. A sentence beside which no time stands has that of its neighbour.
+    """
+    found = list(_FRAME.finditer(line))
+    if not found:
+        return _lone_blocks(line)
+    ends = [0, *(each.end() for each in found)]
+    starts = [*(each.start() for each in found), len(line)]
+    around = [line[end:start] for end, start in zip(ends, starts, strict=True)]
+    times = _times(around)
+    torn = [bool(_TORN.search(text)) for text in around]
+    return tuple(_framed(*each) for each in zip(found, times, torn, strict=False))
+
+
+def _lone_blocks(line: bytes) -> tuple[Framed, ...]:
+    if not line.startswith(b"\\") or not _BLOCK.match(line):
+        return ()
+    tag, reasons = _tag(line)
+    return (Framed(b"", tag, reasons=reasons),)
+
+
+def _framed(found: re.Match[bytes], time: float | None, torn: bool) -> Framed:
+    tag, reasons = _tag(found["tags"])
+    return Framed(found["sentence"].rstrip(), tag, time, (*reasons, Reason.TAG_BLOCK) if torn else reasons)
+
+
+def _times(around: list[bytes]) -> list[float | None]:
+    """Return the time of each sentence from what stands around them."""
+    if (first := _time(around[0])) is not None:
+        return list(accumulate(around[1:-1], lambda known, text: _either(_time(text), known), initial=first))
+    behind = [_time(text, last=True) for text in around[1:]]
+    return list(accumulate(reversed(behind), lambda known, time: _either(time, known)))[::-1]
+
+
+def _either(time: float | None, known: float | None) -> float | None:
+    return known if time is None else time
+
+
+def _time(text: bytes, *, last: bool = False) -> float | None:
+    torn = _TORN.search(text)
+    text = text[: torn.start()] if torn else text
+    return time_beside(text.decode("ascii", errors="replace"), last=last) if text.strip() else None
+
+
+def _tag(text: bytes) -> tuple[TagBlock | None, tuple[Reason, ...]]:
+    parsed = [parse_tag_block(found[1]) for found in _BLOCK.finditer(text)]
+    known = [block for block in parsed if isinstance(block, TagBlock)]
+    return together(known), tuple(block for block in parsed if isinstance(block, Reason))

@@ -1,0 +1,87 @@
+"""Control points: what may be left of a bigActor to run, as its text is nested."""
+
+from collections.abc import Iterable, Iterator
+
+from semantics.behaviours.program import Program, leads_to
+from semantics.behaviours.statements import (
+    Block,
+    Call,
+    For,
+    ForEach,
+    Loop,
+    Statement,
+    While,
+    branches,
+)
+
+Point = tuple[Block, int]
+"""A block, and how many of its statements were taken or are being taken."""
+
+STAYING = (Loop, While, ForEach)
+"""Statements that stay what comes next while their body runs."""
+
+
+def is_point(program: Program, starts: Iterable[Block], code: tuple[int, ...]) -> bool:
+    """Tell whether a run that began with one of some blocks can have this left to run.
+
+    What is left is read from its end: the rest of the outermost block, then of what it has entered, and so on.
+    """
+    if code and isinstance(_statement(program, code[0]), Loop | None):
+        return False  # the jump of a loop belongs to the step before it
+    points = _entered(program, {(block, len(block)) for block in starts})
+    for number in reversed(code):
+        before = {(block, at - 1) for block, at in points if at and block[at - 1] == number}
+        points = _entered(program, before)
+    return bool(points)
+
+
+def _statement(program: Program, number: int) -> Statement | None:
+    return program.statements[number] if 0 <= number < len(program.statements) else None
+
+
+def _entered(program: Program, points: set[Point]) -> set[Point]:
+    """Return the points, and the ends of all blocks that may have been entered from there."""
+    found, waiting = set(points), list(points)
+    while waiting:
+        for block in _blocks(program, *waiting.pop()):
+            point = (block, len(block))
+            if point not in found:
+                found.add(point)
+                waiting.append(point)
+    return found
+
+
+def _blocks(program: Program, block: Block, at: int) -> Iterator[Block]:
+    """Yield the blocks that may come before the rest of a block."""
+    taken = program.statements[block[at - 1]] if at else None
+    match taken:
+        case None | Loop() | While() | ForEach():
+            pass
+        case Call(behaviour):
+            yield program.behaviours[behaviour].body
+        case For(_, _, each):
+            yield (each,)
+        case _:
+            yield from branches(taken)
+    staying = program.statements[block[at]] if at < len(block) else None
+    if isinstance(staying, STAYING):
+        yield staying.body
+
+
+def once(program: Program, starts: Iterable[Block]) -> frozenset[int]:
+    """Return the statements that no run of an agent takes twice: in no loop, in no behaviour called from two places."""
+    again: set[int] = set()
+    seen: set[int] = set()
+    waiting = [number for block in starts for number in block]
+    while waiting:
+        number = waiting.pop()
+        statement = program.statements[number]
+        if number in seen:
+            if number not in again:
+                again.add(number)
+                waiting.extend(leads_to(program, statement))
+            continue
+        seen.add(number)
+        inside = tuple(leads_to(program, statement))
+        waiting.extend(inside * 2 if isinstance(statement, STAYING) else inside)
+    return frozenset(seen - again)

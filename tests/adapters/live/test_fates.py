@@ -1,0 +1,126 @@
+"""What becomes of orders to hold or to return: asked, sent, confirmed, refused and told again."""
+
+import pytest
+from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
+from test_orders import ANA, HOLD, RETURN, flying, ordered, told
+
+from adapters.live.core import is_over
+from adapters.live.fates import RETRY
+from adapters.live.loop import Ending
+from adapters.live.state import Fate, GivingBack
+from adapters.plugin import Accepted, Arrived, Hold, Rejected, Sent, TakenOver
+from bigactors.commands.run import conclude
+from bigactors.exits import Exit
+from bigactors.vehicle_lines import standing, vehicle_line
+from semantics.contingencies import Precautions, TimeLimit
+
+OBEYS = "it obeys system 252, not gcs0"
+REFUSES = f"refuses to hold, as {ANA} ordered: {OBEYS}"
+
+
+def refused(run, request="operator-2", now=2.0, reason=OBEYS):
+    run.turn(now, seen("uav0", BETWEEN, now), reports=[Rejected(request, "uav0", now, reason)])
+    return run
+
+
+def held():
+    run = flying()
+    run.turn(1.0, sayings=[ordered()])
+    return run
+
+
+def test_an_order_is_asked_then_sent_then_confirmed():
+    run = held()
+    fates = [run.state.fates["uav0"]]
+    for report in (Sent("operator-2", "uav0", 2.0), Accepted("operator-2", "uav0", 3.0)):
+        run.turn(report.time, reports=[report])
+        fates.append(run.state.fates["uav0"])
+    assert fates == [
+        ("asked", f"told to hold by {ANA}, not confirmed yet"),
+        ("sent", f"told to hold by {ANA}, not confirmed yet"),
+        ("confirmed", f"held by {ANA}"),
+    ]
+
+
+def test_a_refused_order_is_shown_as_refused_and_not_as_done():
+    run = refused(held())
+    run.turn(2.1, reports=[Sent("operator-2", "uav0", 2.1)])  # it was taken on before it was refused
+    assert run.state.fates == {"uav0": ("refused", REFUSES)}
+    assert vehicle_line("uav0", run.state, None, 3.0) == f"uav0 {REFUSES}, has not arrived in east0"
+    assert standing(run.state) == f"; uav0 {REFUSES}"
+
+
+def test_a_refused_order_is_told_again_until_it_is_confirmed():
+    run = refused(held())
+    assert run.again <= 2.0 + RETRY
+    run.turn(2.0 + RETRY)
+    assert run.commands[-2:] == [Hold("operator-2", "uav0")] * 2
+    refused(run, now=3.0 + RETRY)
+    run.turn(3.0 + 2 * RETRY)
+    assert told(run) == ["GoTo", "Hold", "Hold", "Hold"]
+    assert "refuses to hold" in run.state.taken["uav0"]  # also while it is not known what comes of it now
+    run.turn(4.0 + 2 * RETRY, reports=[Arrived("operator-2", "uav0", 4.0 + 2 * RETRY)])
+    assert run.state.taken == {"uav0": f"held by {ANA}"}
+    run.turn(100.0)
+    assert told(run) == ["GoTo", "Hold", "Hold", "Hold"]
+    assert run.kinds() == ["ordered", "refused", "confirmed"]  # one reason is said once
+
+
+def test_a_refused_fall_back_is_owed_until_it_is_confirmed():
+    run = flying(precautions=Precautions(HOLD))
+    run.turn(1.0, boat(EAST, 1.0))
+    refused(run, "fallback-2")
+    assert vehicle_line("uav0", run.state, None, 3.0).startswith(
+        f"uav0 refuses to hold, as the mission ordered: {OBEYS}"
+    )
+    run.turn(2.0 + RETRY)
+    assert told(run) == ["GoTo", "Hold", "Hold"]
+    run.turn(3.0 + RETRY, reports=[Arrived("fallback-2", "uav0", 3.0 + RETRY)])
+    assert (run.findings[-1].kind, run.findings[-1].message) == (
+        "confirmed",
+        "uav0 holds, as the mission ordered",
+    )
+    run.turn(100.0)
+    assert told(run) == ["GoTo", "Hold", "Hold"]
+    assert run.state.owing == {}
+
+
+def test_a_fall_back_that_is_not_confirmed_is_in_the_last_line():
+    run = flying(precautions=Precautions(limits=(TimeLimit("FLY", "a", 60.0, RETURN),)))
+    run.turn(61.0, seen("uav0", BETWEEN, 61.0))
+    assert standing(run.state) == "; uav0 told to return by the mission, not confirmed yet"
+
+
+@pytest.mark.parametrize("ends", ["taken over", "given back", "ordered"])
+def test_what_replaces_a_refused_fall_back_ends_it(ends):
+    run = flying(precautions=Precautions(limits=(TimeLimit("FLY", "a", 60.0, HOLD),)))
+    run.turn(61.0, seen("uav0", BETWEEN, 61.0))
+    refused(run, "fallback-2", 62.0)
+    if ends == "taken over":
+        run.turn(63.0, reports=[TakenOver("uav0", 63.0, "it is in RTL")])
+        assert run.state.owing == {}
+    elif ends == "ordered":
+        run.turn(63.0, sayings=[ordered(what=RETURN)])
+        assert [each.what for each in run.state.owing.values()] == ["return"]
+    else:
+        run.turn(63.0, sayings=[GivingBack("uav0")])
+        assert run.state.owed["uav0"].fate is Fate.ASKED
+    before = len(run.commands)
+    run.turn(63.0 + RETRY, seen("uav0", BETWEEN, 63.0 + RETRY))
+    assert len(run.commands) == before
+
+
+def test_a_run_is_not_over_while_a_vehicle_owes_what_was_ordered():
+    run = Run(plan_of(TOUR))
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    assert is_over(run.state)
+    run.turn(1.0, sayings=[ordered()])
+    assert not is_over(run.state)
+    run.turn(2.0, reports=[Arrived("operator-1", "uav0", 2.0)])
+    assert is_over(run.state)
+
+
+def test_the_last_line_and_the_exit_code_say_that_an_order_was_refused(capsys):
+    run = refused(held())
+    assert conclude(Ending("the time is over", run.state), broken=False) is Exit.INCOMPLETE
+    assert capsys.readouterr().out == f"the time is over after 3 steps; uav0 {REFUSES}\n"

@@ -1,0 +1,170 @@
+"""Positions and heights: what counts as one, what is said where there is none, and above what heights are."""
+
+import asyncio
+from dataclasses import replace
+
+import pytest
+from worlds import AREA, HOME, flight, until
+
+from adapters.live.loop import NotHeard
+from adapters.mavlink.condition import Condition, look
+from adapters.mavlink.constants import Cmd, Frame, MissionType
+from adapters.mavlink.message import say
+from adapters.mavlink.telemetry import Telemetry, absorb
+from adapters.plugin import Accepted, Arrived, Follow, GoTo, Status, TakenOver, Trouble
+from adapters.simulated import Kind, Vehicle, protocol, run
+from adapters.simulated.reporting import Reporter
+from physical import Band, box, point
+
+NO_FIX, FIX = 1, 3
+GOOD, CONSTANT = 831, 165
+NEAR = box((37.003, -8.601), (37.002, -8.603))
+
+
+def told(*messages):
+    known = Telemetry()
+    for second, (name, fields) in enumerate(messages):
+        known = absorb(known, replace(say(name, **fields), system=1, component=1), float(second))
+    return known
+
+
+def receiver(name, fix):
+    fields = ("time_usec", "lat", "lon", "alt", "eph", "epv", "vel", "cog", "satellites_visible")
+    more = {"dgps_numch": 0, "dgps_age": 0} if name == "GPS2_RAW" else {}
+    return name, {"fix_type": fix, **dict.fromkeys(fields, 0), **more}
+
+
+def filters(flags):
+    kinds = ("velocity", "pos_horiz", "pos_vert", "compass", "terrain_alt")
+    return "EKF_STATUS_REPORT", {"flags": flags, **{f"{kind}_variance": 0.0 for kind in kinds}}
+
+
+@pytest.mark.parametrize(
+    ("messages", "lacks"),
+    [
+        ((), "it has no position: it tells of no GPS"),
+        ((receiver("GPS_RAW_INT", NO_FIX),), "it has no position: GPS fix 1"),
+        ((receiver("GPS_RAW_INT", FIX),), ""),
+        ((receiver("GPS_RAW_INT", NO_FIX), receiver("GPS2_RAW", FIX)), ""),
+        ((receiver("GPS_RAW_INT", NO_FIX), filters(GOOD)), ""),
+        (
+            (receiver("GPS_RAW_INT", FIX), receiver("GPS2_RAW", 0), filters(CONSTANT)),
+            "it has no position: GPS fix 3, GPS 2 fix 0, its own estimate is not good",
+        ),
+    ],
+)
+def test_a_position_counts_by_the_vehicles_own_estimate_or_else_by_the_fix_of_any_receiver(messages, lacks):
+    assert told(*messages).lacks(3.0) == lacks
+
+
+def test_what_a_receiver_does_not_tell_any_more_does_not_count():
+    known = told(receiver("GPS_RAW_INT", FIX))
+    assert known.lacks(10.0) == ""
+    assert known.lacks(11.0) == "it has no position: GPS fix not told any more"
+
+
+def test_a_plane_whose_first_receiver_fails_arrives_by_its_second():
+    async def main():
+        async with flight(Kind.PLANE, second=True) as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await until(lambda: f.world.of(Accepted, request="r1"), 200)
+            f.vehicle.fixed = False
+            assert isinstance(await f.ended("r1"), Arrived)
+            assert f.world.of(Trouble, what="no position") == []
+
+    run(main())
+
+
+@pytest.mark.parametrize("kind", [Kind.PLANE, Kind.PX4_PLANE])
+def test_a_vehicle_that_loses_its_position_in_flight_is_said_to_have_none_and_why(kind):
+    async def main():
+        async with flight(kind) as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            await until(lambda: f.world.of(Accepted, request="r1"), 200)
+            f.vehicle.fixed = False
+            await asyncio.sleep(42)
+            (lost,) = f.world.of(Trouble, what="no position")
+            why = "it has no position: GPS fix 1, its own estimate is not good"
+            assert lost.detail == f"{why}; nobody sees where it is"
+            f.vehicle.fixed = True
+            await until(lambda: f.world.of(Trouble, what="position again"), 10)
+
+    run(main())
+
+
+def test_a_run_that_does_not_begin_says_whether_a_vehicle_is_silent_or_has_no_position():
+    said = {"uav0": Status("uav0", 1.0, lacks="it has no position: GPS fix 1")}
+    error = NotHeard(["uav0", "uav1"], said)
+    assert str(error) == "nothing was heard of uav1; uav0 is heard, and it has no position: GPS fix 1"
+    assert not error.heard
+    assert NotHeard(["uav0"], said).heard
+
+
+# --- heights ------------------------------------------------------------------------------------------
+
+
+def test_a_target_at_the_same_point_and_another_height_is_not_ours():
+    async def main():
+        async with flight(Kind.PLANE) as f:
+            await f.plugin.command(GoTo("r1", "uav0", AREA))
+            assert isinstance(await f.ended("r1"), Arrived)
+            assert f.vehicle.target.height == 100.0
+            f.vehicle.target = replace(f.vehicle.target, height=400.0)
+            (taken,) = await until(lambda: f.world.of(TakenOver), 20)
+            assert taken.reason.endswith("to go there at another height: its target is 420 m above sea level")
+
+    run(main())
+
+
+@pytest.mark.parametrize("kind", [Kind.PLANE, Kind.COPTER, Kind.PX4_COPTER])
+@pytest.mark.parametrize("band", [None, Band(100.0, 140.0)])
+def test_a_home_that_is_moved_is_said_and_the_next_leg_is_flown_above_the_home_before(kind, band):
+    async def main():
+        async with flight(kind) as f:
+            await f.plugin.command(GoTo("r1", "uav0", NEAR if kind is not Kind.PLANE else AREA, band))
+            assert isinstance(await f.ended("r1"), Arrived)
+            latitude, longitude, altitude = f.vehicle.home
+            before = altitude + f.vehicle.target.height
+            f.vehicle.set_home(latitude, longitude, altitude + 300.0)
+            (moved,) = await until(lambda: f.world.of(Trouble, what="home moved"), 20)
+            assert moved.detail.startswith(
+                "its home was moved by 0 m and +300 m in height, by itself or told"
+            )
+            await f.plugin.command(GoTo("r2", "uav0", point(37.004, -8.6), band))
+            assert isinstance(await f.ended("r2"), Arrived)
+            assert f.vehicle.home[2] + f.vehicle.target.height == pytest.approx(before, abs=0.2)
+            assert f.world.of(TakenOver) == []
+
+    run(main())
+
+
+def test_a_path_in_a_band_is_uploaded_above_sea_level():
+    async def main():
+        async with flight(Kind.PLANE) as f:
+            await f.plugin.command(Follow("r1", "uav0", (point(37.004, -8.604), AREA), Band(150.0, 190.0)))
+            await until(lambda: f.world.of(Accepted, request="r1"), 200)
+            flown = f.vehicle.store.items[MissionType.MISSION][1:]
+            assert {(item.frame, item.z) for item in flown} == {(Frame.SEA_LEVEL, 170.0)}
+            assert isinstance(await f.ended("r1"), Arrived)
+            assert f.vehicle.home[2] + f.vehicle.body.height == pytest.approx(170.0, abs=3.0)
+
+    run(main())
+
+
+def test_a_simulated_vehicle_stays_where_it_is_when_its_home_is_moved_by_command():
+    vehicle, reporter = Vehicle(Kind.COPTER, HOME), Reporter()
+    moves = {"frame": 0, "command": int(Cmd.DO_SET_HOME), "current": 0, "autocontinue": 0, "z": 50.0}
+    numbers = dict.fromkeys(("param1", "param2", "param3", "param4"), 0.0)
+    there = {"x": 371_000_000, "y": -86_000_000, "target_system": 1, "target_component": 1}
+    told = replace(say("COMMAND_INT", **moves, **numbers, **there), system=255, component=190)
+    (answer,) = protocol.hear(vehicle, reporter, told, 1.0)
+    assert (answer["command"], answer["result"]) == (179, 0)
+    assert vehicle.home == (37.1, -8.6, 50.0)
+    assert vehicle.home[2] + vehicle.body.height == HOME[2]
+    assert not vehicle.flies
+
+
+def test_a_home_that_arming_sets_anew_was_not_moved():
+    known = Telemetry(armed=True, base=(37.0, -8.6, 20.0), home=(37.00001, -8.6), ground=21.5, position=None)
+    condition, reports = look(Condition(), "uav0", known, 1.0, lost=False)
+    assert (condition, reports) == (Condition(), ())
