@@ -92,8 +92,10 @@ def read_again(pilot: Pilot, told: Command, now: float) -> Pilot:
 
 
 def is_surveyed(pilot: Believer) -> bool:
-    """Tell whether it is certain what is on board, or asking for it was in vain."""
-    return all(kind in pilot.on_board or kind in pilot.survey.given_up for kind in MissionType)
+    """Tell whether it is certain where the vehicle is and what is on board, or asking for that was in vain."""
+    return pilot.known.position is not None and all(
+        kind in pilot.on_board or kind in pilot.survey.given_up for kind in MissionType
+    )
 
 
 def out_of_fence(pilot: Believer, now: float) -> tuple[Report, ...]:

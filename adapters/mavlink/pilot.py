@@ -340,7 +340,8 @@ def _untold(pilot: Pilot) -> Iterator[Message]:
 
 def is_known(pilot: Pilot) -> bool:
     """Tell whether a vehicle has told all that was asked, what is on board too, or was asked for long enough."""
-    known = pilot.known.profile is not None and pilot.known.home is not None
+    told = (pilot.known.profile, pilot.known.home, pilot.known.position)
+    known = all(each is not None for each in told)
     return known and not any(_untold(pilot)) and (pilot.survey.settled or not _is_ours(pilot))
 
 
