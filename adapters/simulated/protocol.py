@@ -137,7 +137,7 @@ def _arm(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
         vehicle.arm(armed=vehicle.flies and vehicle.kind.profile.takeoff is not TakeOff.NONE)
         return Result.FAILED if vehicle.armed else Result.ACCEPTED
     if not vehicle.ready:
-        reporter.text("PreArm: not ready")
+        reporter.text(f"PreArm: {vehicle.fault or 'not ready'}")
         return Result.FAILED
     vehicle.arm(armed=True)
     return Result.ACCEPTED

@@ -28,9 +28,14 @@ FIX_AFTER: Final = 10.0
 READY_AFTER: Final = 19.0
 """Seconds after boot at which it has a fix, and could be armed; before, it says that it is near (0, 0)."""
 
+COMPLAINS_EVERY: Final = 30.0
+"""Seconds between two texts of why it cannot be armed."""
+
+CRITICAL: Final = 2
 WARNING: Final = 4
+NOTICE: Final = 5
 INFO: Final = 6
-"""MAV_SEVERITY_WARNING and MAV_SEVERITY_INFO."""
+"""MAV_SEVERITY_CRITICAL, _WARNING, _NOTICE and _INFO."""
 
 ITEMS: Final[dict[int, str]] = {Cmd.TAKEOFF: "Takeoff", Cmd.WAYPOINT: "WP", Cmd.LOITER_UNLIMITED: "LoitUnlim"}
 """What ArduPilot calls the items of a mission when it begins them."""
@@ -144,6 +149,7 @@ class Vehicle:
         failed_safe: Whether the fail-safe has acted since it booted.
         words: What it has to say, with its severity.
         ground: The altitude of the ground, in metres above sea level: its first home's.
+        fault: Why it cannot be armed, beside that it has only just booted; it says so every 30 s.
         told: The item of its mission that it has said it begins.
         breached: Whether it was outside a fence when it last looked.
     """
@@ -174,6 +180,8 @@ class Vehicle:
     store: Store = field(init=False)
     reached: list[int] = field(default_factory=list)
     voltage: float = 12.6
+    fault: str = ""
+    complained: float = -math.inf
     low: float | None = None
     failed_safe: bool = False
     charge: float = 1.0
@@ -288,7 +296,7 @@ class Vehicle:
     @property
     def ready(self) -> bool:
         """Whether it could be armed, and takes missions."""
-        return self.uptime >= READY_AFTER
+        return self.uptime >= READY_AFTER and not self.fault
 
     def reboot(self, *, armed: bool = False) -> None:
         """Reboot, also in the air; its permanent memory stays. A watchdog's reboot keeps it armed."""
@@ -323,6 +331,7 @@ class Vehicle:
     def move(self, now: float) -> None:
         """Move on to a time."""
         seconds, self.time = now - self.time, now
+        self._complain()
         if not self.armed or seconds <= 0:
             return
         self.charge = max(0.0, self.charge - seconds / ENDURANCE)
@@ -341,6 +350,13 @@ class Vehicle:
         else:
             self._idle(seconds)
 
+    def _complain(self) -> None:
+        """Say why it cannot be armed, every 30 s."""
+        due = self.uptime >= READY_AFTER and self.uptime - self.complained >= COMPLAINS_EVERY
+        if self.fault and due and not self.armed:
+            self.complained = self.uptime
+            self.words.append((CRITICAL, f"PreArm: {self.fault}"))
+
     def _keep_fence(self) -> None:
         """Return, or stop, as soon as it is outside a fence; what drives has stopped before its circle."""
         here = self.body
@@ -350,8 +366,18 @@ class Vehicle:
                 self.words.append((WARNING, "Geofence violation: holding"))
                 self.stay()
         elif outside:
+            if not self.breached and not self.kind.profile.dialect.typed:
+                self.words.append((NOTICE, f"{self._breached_fence()} fence breached"))
             self.mode = self.kind.profile.home
         self.breached = outside
+
+    def _breached_fence(self) -> str:
+        """Name the fence that it is outside of, as ArduPilot does."""
+        here, fence = self.body, self.fence
+        if fence is not None and not contains(fence, point(here.latitude, here.longitude)):
+            return "Polygon"
+        higher = Fence.ALT_MAX in self.fences and here.height > self.parameters["FENCE_ALT_MAX"]
+        return "Max Alt" if higher else "Circle"
 
     def stay(self) -> None:
         """Hold where it is."""
