@@ -422,6 +422,7 @@ class Status:
         home: Its home, in degrees.
         returning: Whether it is in the mode in which it flies home.
         lacks: Why it has no position that counts; empty if it has one.
+        follows: Whether it is under way in the mode in which it follows the mission that is on board.
     """
 
     entity: str
@@ -437,6 +438,7 @@ class Status:
     home: tuple[float, float] | None = None
     returning: bool | None = None
     lacks: str = ""
+    follows: bool | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,7 +33,7 @@ def vehicles_line(vehicles: Iterable[Name], state: LiveState, said: Mapping[Name
 
 def vehicle_line(name: Name, state: LiveState, said: Status | None, now: float) -> str:
     """Return where a vehicle is, what it is on its way to, and what it says of itself."""
-    return f"{name} {', '.join((*_does(name, state, now), *_tells(said), *_heard(name, state, said, now)))}"
+    return f"{name} {', '.join((*_does(name, state, said, now), *_tells(said), *_heard(name, state, said, now)))}"
 
 
 def standing(state: LiveState) -> str:
@@ -68,7 +68,7 @@ def _request(request: Request, state: LiveState, now: float) -> str:
     return f"{request}, for {now - waiting.since:.0f} s" if waiting is not None and known else str(request)
 
 
-def _does(name: Name, state: LiveState, now: float) -> Iterator[str]:
+def _does(name: Name, state: LiveState, said: Status | None, now: float) -> Iterator[str]:
     if name in state.taken:
         yield state.taken[name]
     elif name in state.owing:
@@ -84,8 +84,9 @@ def _does(name: Name, state: LiveState, now: float) -> Iterator[str]:
     else:
         to = order.command.path[-1] if isinstance(order.command, Follow) else order.command.place
         far = "" if seen is None else f", {_metres(distance(seen.property.geometry, to))} away"
-        refused = "has refused to go" if order.refused else "is on its way"
-        yield f"{refused} to {order.command.name}{far}"
+        waits = not order.obeyed and said is not None and said.armed is False
+        goes = "has not set out" if waits else "is on its way"
+        yield f"{'has refused to go' if order.refused else goes} to {order.command.name}{far}"
         yield from _lasts(name, state, now)
 
 

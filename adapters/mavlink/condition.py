@@ -1,4 +1,4 @@
-"""What of a vehicle's position and home its operator has to know: that none counts, that it was moved."""
+"""What an operator has to know of a vehicle at once: it has no position, its home was moved, it cannot be armed."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from adapters.mavlink.telemetry import Telemetry
+from adapters.mavlink.telemetry import REFUSES_TO_ARM, Telemetry
 from adapters.plugin import Trouble
 
 BLIND: Final = 5.0
@@ -18,7 +18,7 @@ HOME_MOVED: Final = "home moved"
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """Since when a vehicle that had a position has none that counts, and what was reported of that and of its home."""
+    """Since when a vehicle that had a position has none that counts, and what was reported."""
 
     blind: float | None = None
     reported: frozenset[str] = frozenset()
@@ -34,6 +34,8 @@ def look(
     placed = known.position is None or known.is_placed(now) or not told
     blind = None if placed else now if before.blind is None else before.blind
     found = frozenset(_found(known, blind, now))
+    if not known.armed:  # a reason is said again every 30 s, and said here once
+        found |= {each for each in before.reported if each.startswith(REFUSES_TO_ARM)}
     after = Condition(blind, found)
     return after, tuple(Trouble(entity, now, *words) for words in _words(before, after, known, now))
 
@@ -43,6 +45,7 @@ def _found(known: Telemetry, blind: float | None, now: float) -> Iterator[str]:
         yield NO_POSITION
     if known.armed and known.home_moved:
         yield HOME_MOVED
+    yield from known.unready(now)
 
 
 def _words(before: Condition, after: Condition, known: Telemetry, now: float) -> Iterator[tuple[str, str]]:
@@ -54,3 +57,6 @@ def _words(before: Condition, after: Condition, known: Telemetry, now: float) ->
     if HOME_MOVED in come:
         told = f"{known.home_moved}, by itself or told by someone else; `return` leads there"
         yield HOME_MOVED, f"{told}, and heights of the mission stay above the home before"
+    for text in sorted(come):
+        if text.startswith(REFUSES_TO_ARM):
+            yield "not ready", f"it cannot be armed: {text!r}"

@@ -135,7 +135,12 @@ def not_ours(stations: Stations, known: Telemetry) -> str | None:
     name = stations.name_of(authority)
     if authority is None or name in stations.own:
         return None
-    return f"it obeys {name or f'system {authority}'}, not {' or '.join(stations.own)}"
+    ours = " or ".join(stations.own)
+    if known.authority_parameter is None:
+        return f"it obeys {name or f'system {authority}'}, not {ours}"
+    ids = " or ".join(str(stations.ids[each]) for each in stations.own)
+    told = f"its {known.authority_parameter} is {authority}, and {ours} has {ids}"
+    return f"it obeys {name or f'system {authority}'}, not {ours}: {told}"
 
 
 def _of_hand_over(command: HandOver, stations: Stations, known: Telemetry) -> Iterator[str]:

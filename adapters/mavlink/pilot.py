@@ -296,6 +296,7 @@ def _status(pilot: Pilot, now: float) -> Status:
         home=known.home,
         returning=None if profile is None else known.mode == profile.home,
         lacks=known.lacks(now),
+        follows=None if profile is None else known.flying and known.mode == profile.auto,
     )
 
 
@@ -541,5 +542,11 @@ def _authority_trouble(pilot: Pilot, now: float) -> tuple[Report, ...]:
     entity = pilot.craft.entity
     if authority is None:
         return (Trouble(entity, now, "authority not told", _deaf(pilot)),)
-    detail = f"{entity} obeys system {authority}, which is no station of the mission; add it to the stations"
+    parameter = pilot.known.authority_parameter
+    by = "" if parameter is None else f" ({parameter})"
+    which = f"{entity} obeys system {authority}{by}, which is no station of the mission"
+    remedy = "add it to the stations" + (
+        "" if parameter is None else f", or set {parameter} to the id of one"
+    )
+    detail = f"{which}; {remedy}"
     return (Trouble(entity, now, "unknown authority", detail),)

@@ -55,6 +55,9 @@ MEMORY: Final = 60.0
 """Seconds for which a warning may explain what the vehicle does."""
 
 MOST_WORDS: Final = 3
+REFUSES_TO_ARM: Final = ("PreArm:", "Arm:", "Arming denied", "Preflight Fail")
+"""How texts begin by which a vehicle says why it cannot be armed."""
+
 WARNING: Final = 4
 """MAV_SEVERITY_WARNING: what is less urgent has a larger number."""
 
@@ -178,6 +181,11 @@ class Telemetry:
         ]
         own = [] if self.estimate is None else ["its own estimate is not good"]
         return f"it has no position: {', '.join([*said, *own]) or 'it tells of no GPS'}"
+
+    def unready(self, now: float) -> tuple[str, ...]:
+        """Return why it said lately that it cannot be armed."""
+        lately = (text for time, text in self.words if now - time <= MEMORY)
+        return () if self.armed else tuple(text for text in lately if text.startswith(REFUSES_TO_ARM))
 
     @property
     def datum(self) -> float | None:
@@ -367,9 +375,14 @@ def waited(known: Telemetry, now: float) -> Telemetry:
     return known if known.chunks is None else _said(known, give_up(known.chunks, now), now)
 
 
+def _matters(text: str) -> bool:
+    """Tell whether a text explains what a vehicle does, however severe it is: of a fence ArduPilot says a notice."""
+    return "breach" in text.lower() or text.startswith(REFUSES_TO_ARM)
+
+
 def _said(known: Telemetry, joined: Joined, now: float) -> Telemetry:
     chunks, texts = joined
-    grave = tuple((now, each.text) for each in texts if each.severity <= WARNING)
+    grave = tuple((now, each.text) for each in texts if each.severity <= WARNING or _matters(each.text))
     words = (*known.words, *grave)[-MOST_WORDS:]
     return changed(known, chunks=chunks, words=words, texts=(*known.texts, *texts))
 

@@ -304,6 +304,7 @@ STATUS: Final = _object(
         "description": "The latitude and longitude of its home, in degrees.",
     },
     lacks={**_TEXT, "description": "Why it has no position that counts; empty if it has one."},
+    follows={"type": ["boolean", "null"], "description": "Whether it follows the mission that is on board."},
     returning={
         "type": ["boolean", "null"],
         "description": "Whether it is in the mode in which it flies home.",

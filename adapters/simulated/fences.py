@@ -7,11 +7,9 @@ from typing import Final
 from adapters.mavlink.constants import Fence, FenceAction
 from adapters.mavlink.merging import UNION
 from adapters.simulated.body import Body, metres_to
-from adapters.simulated.state import State
+from adapters.simulated.state import NOTICE, WARNING, State
 from physical import contains, point
 
-WARNING: Final = 4
-NOTICE: Final = 5
 
 REPORT_ONLY: Final = 0.0
 """ArduPilot's FENCE_ACTION with which it only says that it is outside."""
@@ -50,10 +48,19 @@ def keep(vehicle: State) -> None:
             vehicle.stay()
     elif outside:
         if not vehicle.breached and vehicle.fence_action is None:
-            vehicle.words.append((NOTICE, "Polygon fence breached"))
+            vehicle.words.append((NOTICE, f"{_breached(vehicle)} fence breached"))
         if vehicle.parameters.get("FENCE_ACTION") != REPORT_ONLY:
             vehicle.mode = vehicle.kind.profile.home
     vehicle.breached = outside
+
+
+def _breached(vehicle: State) -> str:
+    """Name the fence that it is outside of, as ArduPilot does."""
+    here = vehicle.body
+    if not _in_zones(vehicle, here.latitude, here.longitude):
+        return "Polygon"
+    higher = Fence.ALT_MAX in vehicle.fences and here.height > vehicle.parameters["FENCE_ALT_MAX"]
+    return "Max Alt" if higher else "Circle"
 
 
 def holds(vehicle: State, latitude: float, longitude: float, height: float) -> bool:

@@ -9,10 +9,8 @@ from adapters.mavlink.items import Item, Items
 from adapters.mavlink.refuges import missing_items
 from adapters.mavlink.telemetry import Telemetry
 from adapters.simulated.body import Target, metres_to
-from adapters.simulated.state import State
+from adapters.simulated.state import INFO, WARNING, State
 
-WARNING: Final = 4
-INFO: Final = 6
 
 NAMES: Final[dict[int, str]] = {
     Cmd.TAKEOFF: "Takeoff",

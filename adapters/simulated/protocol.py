@@ -138,9 +138,8 @@ def _arm(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
         vehicle.arm(armed=vehicle.flies and vehicle.kind.profile.takeoff is not TakeOff.NONE)
         return Result.FAILED if vehicle.armed else Result.ACCEPTED
     if not vehicle.ready:
-        reporter.text(
-            "PreArm: Missing mission item" if vehicle.up and missing(vehicle) else "PreArm: not ready"
-        )
+        lacks_item = vehicle.up and missing(vehicle)
+        reporter.text(f"PreArm: {'Missing mission item' if lacks_item else vehicle.fault or 'not ready'}")
         return Result.FAILED
     vehicle.arm(armed=True)
     return Result.ACCEPTED

@@ -24,9 +24,11 @@ FIX_AFTER: Final = 10.0
 UP_AFTER: Final = 5.0
 """Seconds after boot at which it takes missions."""
 
+CRITICAL: Final = 2
 WARNING: Final = 4
+NOTICE: Final = 5
 INFO: Final = 6
-"""MAV_SEVERITY_WARNING and MAV_SEVERITY_INFO."""
+"""MAV_SEVERITY_CRITICAL, _WARNING, _NOTICE and _INFO."""
 
 SAG: Final = 1.8
 """Volts that it loses over the second half of its charge; that alone is not low yet."""
@@ -125,6 +127,8 @@ class State:
         slowed: What part of its kind's speed it makes over the ground, as against a head wind.
         wind: Metres a second to the north and to the east: it carries a plane out of its circle.
         serial: Its autopilot's serial number: at most 18 bytes.
+        fault: Why it cannot be armed, beside that it has only just booted; it says so every 30 s.
+        complained: When it last said so, in seconds since it booted.
         voltage: Its battery's when it is full; when it is low for a while, the fail-safe acts once.
         charge: How much of its battery is left, from 1 to 0.
         low: Since when it is low.
@@ -162,6 +166,8 @@ class State:
     body: Body = field(init=False)
     store: Store = field(init=False)
     reached: list[int] = field(default_factory=list)
+    fault: str = ""
+    complained: float = -math.inf
     voltage: float = 12.6
     low: float | None = None
     failed_safe: bool = False

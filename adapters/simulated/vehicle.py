@@ -11,10 +11,13 @@ from typing import Final
 from adapters.mavlink.constants import Fence
 from adapters.simulated import fences, missions
 from adapters.simulated.body import Body, Target, moved
-from adapters.simulated.state import NO_FENCE, WARNING, State
+from adapters.simulated.state import CRITICAL, NO_FENCE, WARNING, State
 
 READY_AFTER: Final = 19.0
 """Seconds after boot at which it has a fix, and could be armed; before, it says that it is near (0, 0)."""
+
+COMPLAINS_EVERY: Final = 30.0
+"""Seconds between two texts of why it cannot be armed."""
 
 ENDURANCE: Final = 7_200.0
 """Seconds for which a full battery lasts."""
@@ -30,7 +33,7 @@ class Vehicle(State):
     @property
     def ready(self) -> bool:
         """Whether it could be armed."""
-        return self.uptime >= READY_AFTER and not missions.missing(self)
+        return self.uptime >= READY_AFTER and not self.fault and not missions.missing(self)
 
     def reboot(self, *, armed: bool = False) -> None:
         """Reboot, also in the air; its permanent memory stays. A watchdog's reboot keeps it armed."""
@@ -57,6 +60,7 @@ class Vehicle(State):
         profile = self.kind.profile
         self.store.flown = self.armed and self.mode == profile.auto
         fences.switch_by_itself(self)
+        self._complain()
         if not self.armed or seconds <= 0:
             return
         self.charge = max(0.0, self.charge - seconds / ENDURANCE)
@@ -74,6 +78,13 @@ class Vehicle(State):
             self._return(seconds)
         else:
             self._idle(seconds)
+
+    def _complain(self) -> None:
+        """Say why it cannot be armed, every 30 s."""
+        due = self.uptime >= READY_AFTER and self.uptime - self.complained >= COMPLAINS_EVERY
+        if self.fault and due and not self.armed:
+            self.complained = self.uptime
+            self.words.append((CRITICAL, f"PreArm: {self.fault}"))
 
     def _return(self, seconds: float) -> None:
         """Go to the nearest rally point or home, or by the landing sequence, as it is configured to."""

@@ -119,6 +119,11 @@ def fill(parser: Parser) -> None:
         help="fly only with a verdict that is signed by the private key of KEY.pub (check --sign)",
     )
     parser.add_argument("--unverified", action="store_true", help="fly without a verdict, with a warning")
+    parser.add_argument(
+        "--take-over",
+        action="store_true",
+        help="command vehicles that are found under way on a mission that is on board, somebody's or an earlier run's",
+    )
     parser.add_argument("--for", metavar="SECONDS", dest="duration", type=seconds, help="end after SECONDS")
     parser.add_argument(
         "--wait",

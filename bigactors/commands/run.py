@@ -273,11 +273,28 @@ async def fly(flight: Flight, watchers: Sequence[Watcher]) -> Ending:
         except OSError as error:
             raise Mistake(error.strerror or str(error), "give another with --socket", str(path)) from error
         await live.begin(options.wait, forced=options.unverified)
+        _check_idle(flight, live)
         await get_to_know(flight.plugins, obeying(flight.plan, live.state))
         check_places(flight.mission, flight.plugins)
         settle()
         say(f"{flight.mission.name} begins; bigactors status, say, hold and return reach it at {path}")
         return await live.go(seconds=options.duration)
+
+
+def _check_idle(flight: Flight, live: LiveRun) -> None:
+    """Refuse to command vehicles that are under way on a mission of somebody else; raises Mistake.
+
+    A run that goes on from another one finds its own.
+    """
+    if flight.options.take_over or flight.resumed is not None:
+        return
+    said = live.inbox.said
+    for name in sorted(obeying(flight.plan, live.state)):
+        if name in said and said[name].follows:
+            found = f"{name} is under way already, in {said[name].mode}"
+            message = f"{found}: it flies a mission that this run did not give it"
+            hint = "land it, or take it over: --take-over; a run that was interrupted goes on with --resume"
+            raise Mistake(message, hint)
 
 
 def _not_begun(error: Exception) -> Exit:

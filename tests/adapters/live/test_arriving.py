@@ -1,14 +1,20 @@
 """Where a vehicle is put, and when it has arrived: no verified mission breaks on arrival."""
 
+import asyncio
+from dataclasses import replace
+
 import pytest
 from live_missions import TOUR, Run, mission, plan_of, seen
 from test_flying import flown, options_of
 
 from adapters.live.surroundings import spots
+from adapters.mavlink.constants import Cmd, MissionType
+from adapters.mavlink.items import Item
 from adapters.plugin import Accepted, GoTo
-from adapters.simulated import Disturbance, Kind, run
-from bigactors.commands.run import prepare
+from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
+from bigactors.commands.run import fly, prepare
 from bigactors.mistakes import Mistake
+from bigactors.watchers import Terminal
 from physical import circle, contains, overlaps, point, waypoint
 
 BAY = """mission bay
@@ -145,3 +151,38 @@ def test_a_vehicle_that_stands_where_something_may_come_over_it_alone_is_not_as_
         "uav0 is seen at point(37.012, -8.652), the mission has it at point(37.01, -8.65): "
         "slick0, where the mission lists it, holds uav0 at one of the two points only"
     )
+
+
+FOREIGN = (
+    Item(Cmd.WAYPOINT, 0, 0),
+    *(Item(Cmd.WAYPOINT, 370_500_000 + n, -86_000_000, 100.0) for n in (0, 9)),
+)
+
+
+@pytest.mark.parametrize("takes", [False, True])
+def test_a_run_asks_before_it_commands_a_vehicle_that_flies_somebodys_mission(tmp_path, capsys, takes):
+    options = bay(tmp_path, "")
+    options.take_over = takes
+
+    async def found_flying():
+        task = asyncio.ensure_future(fly(prepared, (Terminal(prepared.resting),)))
+        while not prepared.plugins[0].local and not task.done():
+            await asyncio.sleep(0.05)
+        vehicle = Vehicle(Kind.PLANE, (37.0, -8.6, 20.0), armed=True, mode=Kind.PLANE.profile.auto)
+        vehicle.body, vehicle.time = replace(vehicle.body, height=100.0), 0.0
+        vehicle.store.items[MissionType.MISSION] = FOREIGN
+        simulator = Simulator(f"udpout:127.0.0.1:{prepared.plugins[0].local[1]}", [vehicle])
+        simulation = asyncio.ensure_future(simulator.run())
+        try:
+            return await task
+        finally:
+            simulation.cancel()
+
+    prepared = prepare(options)
+    if takes:
+        assert run(found_flying()).state.number > 0
+        assert "command" in capsys.readouterr().out
+    else:
+        with pytest.raises(Mistake, match="uav0 is under way already, in AUTO") as error:
+            run(found_flying())
+        assert "--take-over" in str(error.value)
