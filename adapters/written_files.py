@@ -9,11 +9,17 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO, Final, cast
 
+from physical import opened_itself
+
 OWNER: Final = 0o600
 
 
 def open_private(path: Path, mode: str, buffering: int = -1) -> BinaryIO:
-    """Open a file of bytes that only its owner may read and write; one that was there becomes so before it is used."""
+    """Open a file of bytes that only its owner may read and write; one that was there becomes so before it is used.
+
+    Raises:
+        OSError: It can't be opened, or is a symbolic link.
+    """
     return cast("BinaryIO", open(path, mode, buffering, opener=_opened))
 
 
@@ -24,7 +30,7 @@ def others_may_read(path: Path) -> str:
 
 
 def _opened(path: str, flags: int) -> int:
-    handle = os.open(path, flags, OWNER)
+    handle = opened_itself(path, flags, OWNER)
     try:
         if stat.S_ISREG(os.fstat(handle).st_mode):  # not /dev/null
             os.fchmod(handle, OWNER)

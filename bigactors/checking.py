@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from bigactors import __version__
+from bigactors.build import build_digest
 from bigactors.diagnostics import diagnostic_json
 from bigactors.exits import Exit
 from bigactors.files import file_stem
@@ -174,8 +174,8 @@ def _check_times(name: str, mission: ElaboratedMission, report: Report) -> None:
 
 
 def _of_this(keeping: Keeping, mission: ElaboratedMission, limits: Limits) -> Keeping:
-    """Bind checkpoints to the mission with its variations, to the version, and to the limit of pending requests."""
-    bound = digest((digest_of(mission), __version__, limits.pending))
+    """Bind checkpoints to the mission with its variations, to the build, and to the limit of pending requests."""
+    bound = digest((digest_of(mission), build_digest(), limits.pending))
     folder = keeping.folder and str(Path(keeping.folder) / file_stem(mission.name))
     return replace(keeping, folder=folder, digest=bound)
 

@@ -148,15 +148,15 @@ def _parting(peers: Peers, journal: Journal, before: Resumed | None) -> Parting:
 
 def _amended(journal: Journal, before: Resumed | None) -> Iterator[Content]:
     """Yield the entries by which the log differs from the run, after a crash or a new start."""
-    now = time.time()
+    now, kinds = time.time(), {} if before is None else before.configuration.setting.kinds
     physical = None if before is None else before.configuration.structure.physical
     for entry in list(journal.entries()):
         match entry.content:
             case Sent(entity, known):
-                to = "" if physical is None else physical.going_to(entity)
+                to = "" if physical is None or entity not in kinds else physical.going_to(entity)
                 if to != known:
                     yield Sent(entity, to, now)
-            case Believed(node, slot, known) if before is not None:
+            case Believed(node, slot, known) if before is not None and node in kinds:
                 logical = before.configuration.structure.logical
                 parent = logical.parent(node)
                 nested = () if parent is None else (parent,)

@@ -40,6 +40,7 @@ def _plain(error: UnicodeError) -> tuple[str | bytes, int]:
 @contextmanager
 def safe_output() -> Iterator[None]:
     """Replace characters that the encoding lacks, and flush the output at the end."""
+    _open_closed()
     codecs.register_error("bigactors.plain", _plain)
     for stream in (sys.stdout, sys.stderr):
         if getattr(stream, "errors", "") in ("strict", "backslashreplace", "surrogateescape"):
@@ -49,6 +50,21 @@ def safe_output() -> Iterator[None]:
     finally:
         write(sys.stdout, "", flush=True)
         write(sys.stderr, "", flush=True)
+
+
+def _open_closed() -> None:
+    """Open what the shell has closed (`>&-`) on nothing: else a file that is written would get its descriptor."""
+    for descriptor in (0, 1, 2):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # the least that is free: this one
+    if sys.stdin is None:
+        sys.stdin = os.fdopen(0, encoding="utf-8", closefd=False)
+    if sys.stdout is None:
+        sys.stdout = os.fdopen(1, "w", encoding="utf-8", closefd=False)
+    if sys.stderr is None:
+        sys.stderr = os.fdopen(2, "w", encoding="utf-8", closefd=False)
 
 
 def say(line: str = "") -> None:

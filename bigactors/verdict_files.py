@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bigactors import __version__
+from bigactors.build import build_digest
 from bigactors.checking import Checked
 from bigactors.files import read_json
 from bigactors.flight_limits import short_limits
@@ -45,6 +46,7 @@ def verdict_json(checked: Checked, engine: str, key: SigningKey | None = None) -
         "schema": SCHEMA,
         "mission": checked.name,
         "version": __version__,
+        "build": build_digest(),
         "engine": engine,
         "scheduler": mission.setting.scheduler.value,
         "control": mission.setting.control.value,
@@ -174,6 +176,8 @@ def _differing(data: dict[str, Any], mission: ElaboratedMission) -> str:
     """Return the parts of a mission that have changed since the verdict."""
     if data.get("version") != __version__:
         return f"it was reached by version {data.get('version')!s:.40}, this is {__version__}"
+    if data.get("build") != build_digest():
+        return f"it was reached by another build of version {__version__}"
     known = data.get("parts")
     parts = known if isinstance(known, dict) else {}
     others = [called for part, called in PARTS.items() if parts.get(part) != parts_of(mission)[part]]

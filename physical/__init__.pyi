@@ -11,6 +11,7 @@ from .drift import face_at as face_at
 from .errors import GeometryError as GeometryError
 from .errors import PhysicalError as PhysicalError
 from .files import open_file as open_file
+from .files import opened_itself as opened_itself
 from .geojson import GeoJSONError as GeoJSONError
 from .geojson import read_geojson as read_geojson
 from .geojson import reading_geojson as reading_geojson

@@ -30,6 +30,21 @@ def open_file(path: str | PathLike[str]) -> BufferedReader:
     return open(path, "rb", opener=_opened)
 
 
+def opened_itself(path: str, flags: int, mode: int = 0o666) -> int:
+    """Open a file for writing, as `open` asks its opener to; never one that a symbolic link leads to.
+
+    Raises:
+        OSError: It can't be opened, or is a symbolic link.
+    """
+    try:
+        return os.open(path, flags | os.O_NOFOLLOW | os.O_CLOEXEC, mode)
+    except OSError as error:
+        if error.errno != errno.ELOOP:
+            raise
+        message = "this is a symbolic link: name the file that it leads to"
+        raise OSError(errno.ELOOP, message, path) from error
+
+
 def _opened(path: str, flags: int) -> int:
     # a socket can't be opened at all, and a device may do something when it is
     if strange := _strange(os.stat(path).st_mode):

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 import gc
+import math
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Container, Mapping, Sequence
@@ -312,22 +313,23 @@ class LiveRun:
         self._listening.looked = (
             self.clock()
         )  # since `begin` arrivals were gathered, though there was no turn
-        end = None if seconds is None else self.clock() + seconds
+        elapsed = asyncio.get_running_loop().time  # no date: whoever sets the system's clock ends no run
+        end = None if seconds is None else elapsed() + seconds
         again: float | None = self.clock()
         while True:
-            await self._next(self._patience(again, end))
+            await self._next(self._patience(again, math.inf if end is None else end - elapsed()))
             turn = self._turn()
             again = turn.again
             if until(self.state):
                 return Ending("the mission has ended", self.state)
             if again is None and is_refused(self.state):
                 return Ending("what was left to be done was refused", self.state)
-            if end is not None and self.clock() >= end:
+            if end is not None and elapsed() >= end:
                 return Ending("the time is over", self.state)
 
-    def _patience(self, again: float | None, end: float | None) -> float:
-        due = [at for at in (again, end) if at is not None]
-        return max(0.0, min([IDLE, *(at - self.clock() for at in due)]))
+    def _patience(self, again: float | None, left: float) -> float:
+        due = math.inf if again is None else again - self.clock()
+        return max(0.0, min(IDLE, due, left))
 
     def _turn(self) -> Turn:
         for failed in self._watchers.failures():

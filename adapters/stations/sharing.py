@@ -373,10 +373,10 @@ class Sharing:
             case Broke(assumption) if assumption and entry.station != self._journal.station:
                 self._world.report(Broken(entry.station, self._world.now(), assumption))
             case Posted(to, index) as posted:
-                if to == self._journal.station and index > self._journal.took(entry.station):
+                if to == self._journal.station != entry.station and index > self._journal.took(entry.station):
                     self.others[entry.station].parcels[index] = posted
             case Took(of, index):
-                if of == self._journal.station:
+                if of == self._journal.station != entry.station:
                     self._journal.taken(entry.station, index)
 
     def _pass_on(self, entry: Entry | None) -> None:

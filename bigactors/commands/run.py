@@ -24,6 +24,7 @@ from adapters.ros import RosSending
 from bigactors import __version__
 from bigactors.console_beside import console_beside, recorded
 from bigactors.exits import Exit
+from bigactors.files import check_writable
 from bigactors.missions import checkable, digest_of, fixed_places, locate, open_mission
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.plugins import fences_of, plugins_of
@@ -124,7 +125,7 @@ def prepare(options: Namespace) -> Flight:
     live = Variation(Scheduler.FCFS, Control.TIMED, sources)
     mission = checkable(open_mission(options.file, live))
     licence = _licence(options, mission)
-    log = None if options.record is None else Log(Path(options.record).with_suffix(".tlog"))
+    log = None if options.record is None else Log(_log_beside(options.record))
     plugins, owners = plugins_of(options, mission, log)
     check_flyable(mission)
     strict = licence is not None and licence.scheduler is Scheduler.FCFS
@@ -164,6 +165,21 @@ def _licence(options: Namespace, mission: ElaboratedMission) -> Licence | None:
         hint = f"bigactors check --control timed --verdict {Path(name).stem}.verdict.json {name}, or --unverified"
         raise Mistake("there is no verdict that this mission holds", hint, name)
     return licence_for(name, path, mission, None if options.trust is None else load_trusted(options.trust))
+
+
+def _log_beside(recording: str) -> Path:
+    """Return the path of the telemetry log beside a recording; raises Mistake where neither can be written."""
+    try:
+        check_writable(recording)
+    except ValueError as error:  # a zero byte
+        raise Mistake("this is no path of a file", place=repr(recording)) from error
+    path = Path(recording).with_suffix(".tlog")
+    if path == Path(recording):
+        raise Mistake("the telemetry log is called so", "give the recording the suffix .mcap", recording)
+    if path.is_symlink():
+        raise Mistake("this is a symbolic link", "remove it, or record under another name", str(path))
+    check_writable(str(path))
+    return path
 
 
 @contextmanager

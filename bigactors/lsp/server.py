@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
+from urllib.parse import unquote
 
 from lsprotocol import types as t
 from pygls.exceptions import JsonRpcException
@@ -95,8 +96,9 @@ class Server(LanguageServer):
         self.pending: dict[str, asyncio.Task[None]] = {}
 
     def document(self, uri: str) -> Document:
-        """Return what is known of a text, as it is now."""
-        text = self.workspace.get_text_document(uri).source
+        """Return what is known of a text, as it is now; nothing stands in one that the editor has not opened."""
+        opened = self.workspace.text_documents.get(unquote(uri))  # a path may be that of /dev/zero
+        text = "" if opened is None else opened.source
         known = self.documents.get(uri)
         if known is not None and known.lines.text is text:
             return known
@@ -104,6 +106,8 @@ class Server(LanguageServer):
         encoding = t.PositionEncodingKind(self.server_capabilities.position_encoding or "utf-16")
         lines = Lines(text, encoding.value)
         reading = reading_of(path.name, text, path.parent)
+        if opened is None:
+            return Document(reading, lines)
         if known is None:
             known = self.documents[uri] = Document(reading, lines)
         known.reading, known.lines = reading, lines
@@ -131,7 +135,8 @@ class Server(LanguageServer):
     def publish(self, uri: str) -> None:
         """Publish the mistakes and warnings of a text."""
         document = self.document(uri)
-        version = self.workspace.get_text_document(uri).version
+        opened = self.workspace.text_documents.get(unquote(uri))
+        version = None if opened is None else opened.version
         found = [*_diagnostics(document)]
         self.text_document_publish_diagnostics(t.PublishDiagnosticsParams(uri, found, version))
 

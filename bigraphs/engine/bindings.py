@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 
 from bigraphs.engine.patterns import Pattern
-from bigraphs.engine.search_state import Placing, Run, Step
+from bigraphs.engine.search_state import OFTEN, Placing, Run, Step
 from bigraphs.engine.state import State
 from bigraphs.engine.world import World
 
@@ -64,6 +64,9 @@ def _in_any_order(world: World, pattern: Pattern, ports: tuple[int, ...], then: 
         for target in [target for target in left if left[target] >= times]:
             if target != known and (known >= 0 or not fits(run.state, link, target)):
                 continue
+            run.steps += 1
+            if run.steps & OFTEN == 0:
+                run.state.world.pause()
             left[target] -= times
             run.links[link] = target
             yield from ways(run, left, place + 1)

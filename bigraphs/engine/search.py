@@ -14,15 +14,13 @@ from typing import Final
 
 from bigraphs.engine.bindings import binding
 from bigraphs.engine.patterns import Pattern
-from bigraphs.engine.search_state import Occurrence, Placing, Run, Step
+from bigraphs.engine.search_state import OFTEN, Occurrence, Placing, Run, Step
 from bigraphs.engine.sharing import shared_places_fit
 from bigraphs.engine.state import State, bits
 from bigraphs.engine.world import World
 
 _SELDOM: Final = 8
 """Up to how many searches a pattern is looked for everywhere, and not where a state was touched."""
-_OFTEN: Final = 0x3FF
-"""After how many steps, less one, a search pauses."""
 
 
 class _Plans:
@@ -129,7 +127,7 @@ def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing
 
     def step(run: Run, used: int) -> bool:
         run.steps += 1
-        if run.steps & _OFTEN == 0:
+        if run.steps & OFTEN == 0:
             run.state.world.pause()
         state, nodes = run.state, run.nodes
         mask = state.by_control[run.pattern.controls[node]] & run.allowed & ~used

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 from bigraphs.engine.patterns import Pattern
 from bigraphs.engine.state import State
+
+OFTEN: Final = 0x3FF
+"""After how many steps, less one, a search pauses."""
 
 
 class Occurrence(NamedTuple):

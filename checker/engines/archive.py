@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.contract import CheckpointError
-from physical import PhysicalError, open_file, read_json
+from physical import PhysicalError, open_file, opened_itself, read_json
 
 FIRST = re.compile(rb"bigactors archive 1 ([0-9a-f]{64}) ([0-9]{1,9})\n")
 MOST_FIRST, MOST_ABOUT = 128, 1 << 27
@@ -42,7 +42,7 @@ def write_archive(path: Path, head: dict[str, Any], kinds: Kinds, arrays: Sequen
     partial = path.with_suffix(".partial")
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
-        with partial.open("wb") as file:
+        with open(partial, "wb", opener=opened_itself) as file:
             file.write(b"bigactors archive 1 %s %d\n" % (found.hexdigest().encode(), len(about)))
             file.write(about)
             for each in rows:

@@ -84,3 +84,14 @@ def test_who_else_has_a_right_to_a_file_is_told_by_its_mode(tmp_path, mode, told
     path.touch()
     path.chmod(mode)
     assert others_may_read(path) == told
+
+
+@pytest.mark.parametrize("mode", ["ab", "wb", "a+b"])
+def test_nothing_is_written_through_a_symbolic_link(tmp_path, mode):
+    precious = tmp_path / "precious"
+    precious.write_text("mine")
+    precious.chmod(0o644)
+    (tmp_path / "link").symlink_to(precious)
+    with pytest.raises(OSError, match="this is a symbolic link"):
+        open_private(tmp_path / "link", mode)
+    assert (precious.read_text(), precious.stat().st_mode & 0o777) == ("mine", 0o644)

@@ -57,7 +57,10 @@ def there(monkeypatch):
         ([UAV, "--station=gcs9=3"], "no channel 'control:gcs9'"),
         ([UAV, "--name=mmsi:1=a", "--name=mmsi:2=a"], "would be called a"),
         ([UAV, "--resume=nowhere.mcap"], "No such file"),
-        ([UAV, "--record=nowhere/run.mcap"], "No such file"),
+        ([UAV, "--record=nowhere/run.mcap"], "there is no such folder"),
+        ([UAV, "--record=."], "this is a folder, not a file"),
+        ([UAV, "--record=/"], "this is a folder, not a file"),
+        ([UAV, "--record=run.tlog"], "the telemetry log is called so"),
         (["--vehicle=uav0"], "not NAME[:ID]=ADDRESS"),
     ],
 )
@@ -353,3 +356,12 @@ def test_where_no_mission_runs_nothing_is_given_back(capsys):
     assert "no mission runs here" in capsys.readouterr().err
     assert main(["give-back", "uav0", "--socket=s"]) == 2
     assert "no mission runs at s" in capsys.readouterr().err
+
+
+def test_a_telemetry_log_that_is_a_symbolic_link_is_not_written_through(there, capsys):
+    (there / "precious").write_text("mine")
+    (there / "run.tlog").symlink_to(there / "precious")
+    assert main(["run", "oil_spill", "--unverified", UAV, "--record=run.mcap"]) == 2
+    assert "run.tlog: this is a symbolic link" in capsys.readouterr().err
+    assert (there / "precious").read_text() == "mine"
+    assert not (there / "run.mcap").exists()

@@ -1,6 +1,7 @@
 """What a terminal shows: colours as asked for, and lines that are broken between words."""
 
 import fcntl
+import json
 import os
 import re
 import struct
@@ -102,3 +103,27 @@ def test_what_the_line_says_of_colours_counts_most(line):
     always, never = ([word.format(choice) for word in line] for choice in ("always", "never"))
     assert ESCAPE in shown(always, NO_COLOR="1")
     assert ESCAPE not in shown(never, columns=80, FORCE_COLOR="1")
+
+
+@pytest.mark.parametrize("closed", [">&-", "2>&-", "<&-", "<&- >&- 2>&-"])
+def test_what_the_shell_has_closed_changes_no_verdict_and_no_file(tmp_path, closed):
+    (tmp_path / "m.mission").write_text(HOLDS)
+    line = f'"$0" -m bigactors check m.mission --verdict v.json --output json:r.json {closed}'
+    where = {"cwd": tmp_path, "env": {**os.environ, "PYTHONPATH": os.getcwd()}}
+    assert (
+        subprocess.run(
+            ["sh", "-c", line, sys.executable], check=False, capture_output=True, **where
+        ).returncode
+        == 0
+    )
+    for name in ("v.json", "r.json"):
+        assert json.loads((tmp_path / name).read_text())
+
+
+HOLDS = """
+signature { kind Location contains Station
+            kind Station }
+world { shore0: Location = box (37.1, -8.5) (37.0, -8.6)
+        gcs0: Station = point (37.05, -8.53) }
+BigActor op0 hosted_at gcs0 with_behavior { display("x") }
+"""

@@ -106,6 +106,8 @@ def test_a_verdict_of_another_mission_says_what_differs(verdict):
     ("members", "says"),
     [
         ({"version": "0.0.0"}, "version 0.0.0"),
+        ({"build": "sha256:" + "0" * 64}, "another build of version"),
+        ({"build": None}, "another build of version"),
         ({"parts": {}}, "changed since"),
         ({"digest": "sha256:0"}, "digest"),
         ({"schema": "other"}, "no verdict"),

@@ -1,6 +1,8 @@
 """Full transition systems: exact counts, priorities, conditions, weights, limits."""
 
+import time
 from dataclasses import replace
+from itertools import combinations
 
 import pytest
 from bigraph_strategies import SIGNATURE, grounds, shuffled
@@ -310,6 +312,45 @@ def test_an_interruption_leaves_what_was_found():
     )
     found = run(growing, watch=interrupt, max_states=3000)
     assert (found.complete, found.reason) == (False, "it was interrupted")
+
+
+def one_long_match():
+    """A graph in which a path through more edges than it has vertices is looked for in vain."""
+    edges = " || ".join(f"A{{x{one}, x{other}}}.1" for one, other in combinations(range(9), 2))
+    path = " || ".join(f"A{{y{at}, y{at + 1}}}.1" for at in range(12))
+    return (
+        f"ctrl A = 2; big s = {edges}; react r = {path} --> {path}; begin brs init s; rules = [ {{r}} ]; end"
+    )
+
+
+def one_long_binding():
+    """Two nodes of many ports: every order of the links of one is tried."""
+    ports = [", ".join(f"{name}{at}" for at in range(12)) for name in "xy"]
+    node = f"A{{{ports[0]}}}.1"
+    other = "B{" + ", ".join(["x0"] * 12) + "}.1"
+    return (
+        f"ctrl A = 12; ctrl B = 12; big s = {node} || {other}; "
+        f"react r = A{{{ports[1]}}}.1 || B{{{ports[1]}}}.1 --> A{{{ports[1]}}}.1 || B{{{ports[1]}}}.1; "
+        "begin brs init s; rules = [ {r} ]; end"
+    )
+
+
+@pytest.mark.parametrize("text", [one_long_match(), one_long_binding()], ids=["match", "binding"])
+def test_one_long_match_is_interrupted_and_ends_in_time(text, monkeypatch):
+    monkeypatch.setattr("bigraphs.exploration.LOOK_EVERY", 0.2)
+    looks = []
+
+    def interrupt(progress):
+        looks.append(progress)
+        if len(looks) > 1:
+            raise KeyboardInterrupt
+
+    began = time.monotonic()
+    found = run(text, watch=interrupt)
+    assert (found.complete, found.reason) == (False, "it was interrupted")
+    found = run(text, max_time=0.5)
+    assert (found.complete, found.reason) == (False, "the limit of 0.5 seconds was reached")
+    assert time.monotonic() - began < 20.0
 
 
 def test_states_may_be_nested_as_deep_as_they_grow():

@@ -115,6 +115,19 @@ def test_a_machine_that_was_suspended_has_the_systems_time_and_finds_nobody_sile
     assert finding.message.startswith("this process did not listen for 359")
 
 
+def test_a_run_for_some_seconds_takes_them_whoever_sets_the_systems_clock(monkeypatch):
+    class Set(Vehicle):
+        async def run(self, world):
+            system = time.time
+            monkeypatch.setattr(time, "time", lambda: system() + 3_600)
+            await super().run(world)
+
+    began = time.monotonic()
+    ending, _ = fly(TOUR + GO, Set(pace=60.0), seconds=2.0)
+    assert ending.reason == "the time is over"
+    assert time.monotonic() - began >= 2.0
+
+
 def test_a_run_that_is_interrupted_ends_even_if_something_has_just_come_in():
     async def interrupted():
         plan = plan_of(TOUR + GO)

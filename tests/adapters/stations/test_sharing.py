@@ -1,7 +1,9 @@
 """Stations in one process, over real loopback links: what they share, and with whom not."""
 
 import asyncio
+import json
 import time
+import zlib
 from contextlib import asynccontextmanager, suppress
 from dataclasses import replace
 from itertools import groupby, pairwise
@@ -9,6 +11,8 @@ from itertools import groupby, pairwise
 import pytest
 from certificates import Authority
 from company import free_port
+from hypothesis import given
+from hypothesis import strategies as st
 from live_missions import EAST, TOUR, WEST, Run, boat, plan_of
 
 from adapters.live.state import Finding, LiveState, LiveStep, Plan, Turn
@@ -30,7 +34,7 @@ from adapters.plugin import (
 )
 from adapters.stations.entries import Broke, Posted, Sent, Took
 from adapters.stations.entries import Said as EntrySaid
-from adapters.stations.journal import Journal
+from adapters.stations.journal import SCHEMA, Journal, JournalError
 from adapters.stations.merge import ABREAST
 from adapters.stations.peers import peers_of
 from adapters.stations.remote_station import SELDOM
@@ -477,3 +481,63 @@ def test_who_has_another_authority_or_another_name_gets_nothing_and_is_not_heard
                 assert gcs0.world.at("boat1") is None
 
     asyncio.run(sharing())
+
+
+# --- a log that somebody has altered, and given new checksums -------------------------------------------
+
+SEALED = [
+    {"log": SCHEMA, "station": "gcs0", "mission": MISSION},
+    {"last": 5, "sent": {"gcs1": 1}},
+    {"n": 1, "sent": "uav0", "to": "east0", "time": 1.0},
+    {"n": 2, "hosted": "op0", "host": "gcs0", "time": 1.0},
+    {"n": 3, "believed": "uav0", "slot": "parent", "names": ["east0"], "time": 1.0},
+    {"n": 4, "to": "gcs1", "index": 1, "parcel": {}, "knows": {"gcs1": 3}, "time": 2.0},
+    {"n": 5, "took": "gcs1", "index": 1},
+    {"n": 6, "broke": "it rains", "time": 2.0},
+    {"n": 7, "entity": "uav0", "kind": "UAV", "at": {"ring": [[370000000, -86500000]]}, "time": 1.0}
+    | {"since": 1.0, "owned": True, "ttl": 60.0},
+]
+ODD = [
+    None,
+    True,
+    -1,
+    0,
+    1,
+    10**15,
+    10**30,
+    1e300,
+    "",
+    "gcs0",
+    "gcs1",
+    "nobody",
+    "uav0",
+    [],
+    [[]],
+    {},
+    {"a": 1},
+]
+
+
+@given(st.data())
+def test_a_log_that_was_altered_and_sealed_again_ends_in_no_traceback(tmp_path_factory, data):
+    folder = tmp_path_factory.mktemp("sealed")
+    lines = json.loads(json.dumps(SEALED))
+    for _ in range(data.draw(st.integers(1, 3))):
+        line = data.draw(st.sampled_from(lines))
+        key = data.draw(st.sampled_from([*line, "to", "sent", "took"]))
+        line[key] = data.draw(st.sampled_from(ODD))
+    found, told = 0, b""
+    for line in lines:
+        text = json.dumps(line).encode()
+        found = zlib.crc32(text, found)
+        told += b"%08x %s\n" % (found, text)
+    (folder / "gcs0.log").write_bytes(told)
+    try:
+        node = Node(peers_of(both(), "gcs0", folder), folder)
+    except JournalError:
+        return
+    node.sharing._world = node.world
+    for entry in node.journal.entries():
+        node.sharing._take(entry)
+    node.sharing._deliver()
+    node.sharing.close()

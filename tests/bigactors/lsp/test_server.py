@@ -270,3 +270,14 @@ async def test_after_any_changes_the_server_has_the_text_that_the_editor_has(cli
         places = [Lines(editor.text, "utf-16").position(each.span.start) for each in found]
         told = await editor.mistakes()
         assert [(each.range.start.line, each.range.start.character) for each in told] == places
+
+
+@pytest.mark.asyncio(loop_scope="module")
+@pytest.mark.parametrize("path", ["/dev/zero", "/dev/stdin", str(MISSIONS / "oil_spill.mission")])
+async def test_a_file_that_the_editor_has_not_opened_is_not_read(client, path):
+    asked = t.TextDocumentIdentifier(Path(path).as_uri())
+    async with asyncio.timeout(30):
+        found = await client.text_document_document_symbol_async(t.DocumentSymbolParams(asked))
+        hover = await client.text_document_hover_async(t.HoverParams(asked, t.Position(0, 0)))
+    assert not found
+    assert hover is None
