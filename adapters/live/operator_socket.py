@@ -24,13 +24,18 @@ PATIENCE: Final = 5.0
 ASKED: Final = b'{"status": true}\n'
 """The line that asks how a run stands."""
 
+HAS_STARTED: Final = "the run has started already"
+
 EXPECTED: Final = (
-    "an object with 'agent' and 'message', 'give_back', 'order' (hold or return) and 'vehicle', or 'acknowledge', "
-    "and 'by', in valid Unicode"
+    "an object with 'agent' and 'message', 'give_back', 'order' (hold or return) and 'vehicle', 'acknowledge', or "
+    "'start', and 'by', in valid Unicode"
 )
 
 Listener = Callable[[Said], Awaitable[Answer]]
 """Takes a message, and returns the answer to it."""
+
+Starter = Callable[[str], str]
+"""Starts the run for somebody, and returns why not; an empty text if it starts."""
 
 
 class NobodyListens(Exception):
@@ -38,10 +43,15 @@ class NobodyListens(Exception):
 
 
 @asynccontextmanager
-async def listening(path: Path, listener: Listener, describe: Callable[[], str] = str) -> AsyncIterator[None]:
+async def listening(
+    path: Path,
+    listener: Listener,
+    describe: Callable[[], str] = str,
+    start: Starter = lambda _by: HAS_STARTED,
+) -> AsyncIterator[None]:
     """Listen at a path that only its user may open; raises OSError if that is impossible.
 
-    `describe` says how the run stands, to who asks.
+    `describe` says how the run stands, to who asks; `start` starts a run that waits for an operator.
     The socket of a killed run is replaced; that of a live run is not.
     """
     if await is_taken(path):
@@ -53,7 +63,9 @@ async def listening(path: Path, listener: Listener, describe: Callable[[], str] 
         with suppress(OSError, ValueError, TimeoutError, asyncio.IncompleteReadError):
             async with asyncio.timeout(PATIENCE):
                 line = await reader.readuntil()
-            writer.write(json.dumps(await _answer(line, listener, describe)).encode() + b"\n")
+            by = _starter(line)
+            answer = {"refusal": start(by)} if by is not None else await _answer(line, listener, describe)
+            writer.write(json.dumps(answer).encode() + b"\n")
             await writer.drain()
         writer.close()
 
@@ -87,6 +99,15 @@ async def _answer(line: bytes, listener: Listener, describe: Callable[[], str]) 
     answer = await listener(said)
     more = {"left_out": dict(answer.left_out), "notes": [*answer.notes]}
     return {"refusal": answer.refusal, **{name: each for name, each in more.items() if each}}
+
+
+def _starter(line: bytes) -> str | None:
+    """Return who starts the run by a line, None if nobody does."""
+    with suppress(PhysicalError):
+        match read_json(line, MOST_BYTES):
+            case {"start": True, **rest} if (by := rest.get("by", "")) == "" or is_word(by):
+                return str(by)
+    return None
 
 
 def _said(line: bytes) -> Said | None:
@@ -149,6 +170,11 @@ async def give_back(path: Path, vehicle: str, at: str = "", by: str = "") -> Out
 async def acknowledge(path: Path, finding: int, by: str = "") -> str:
     """Say that a finding was seen, by its number; as `say`."""
     return _refusal(await _say(path, {"acknowledge": finding, "by": by}))
+
+
+async def start(path: Path, by: str = "") -> str:
+    """Start the run that waits at a path; as `say`."""
+    return _refusal(await _say(path, {"start": True, "by": by}))
 
 
 async def status(path: Path) -> str:

@@ -6,9 +6,9 @@ import asyncio
 import sys
 import time
 from argparse import Namespace
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AsyncExitStack, ExitStack, closing, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,7 @@ from bigactors.preflight import check_flyable, check_places, get_to_know
 from bigactors.recordings import Resumed, resume
 from bigactors.signatures import load_trusted
 from bigactors.sockets import socket_of
+from bigactors.starting import Preflight, Start, stand_by
 from bigactors.stations import Company, company_of, parting_json
 from bigactors.terminal import paint, say, tell
 from bigactors.vehicle_lines import situation
@@ -56,6 +57,7 @@ class Flight:
         log: What takes every frame.
         company: The station that it is among others, None where it is the only one.
         rate: How fast its clock runs beside that on the wall; None for as fast as can be computed.
+        start: Whether it has begun, and whether an operator has to start it.
     """
 
     options: Namespace
@@ -68,6 +70,7 @@ class Flight:
     log: Log | None = None
     company: Company | None = None
     rate: float | None = 1.0
+    start: Start = field(default_factory=Start)
 
     def resting(self, finding: Finding) -> tuple[str, ...]:
         """Return the properties whose verdicts rest on a broken assumption: all that were decided by exploring."""
@@ -92,7 +95,9 @@ def run(options: Namespace) -> Exit:
                 ros,
             )  # recorded first, then said
             try:
-                ending = asyncio.run(fly(flight, tuple(looker for looker in lookers if looker)))
+                preflight = None if tape is None else tape.preflight
+                flown = fly(flight, tuple(looker for looker in lookers if looker), preflight)
+                ending = asyncio.run(flown)
             finally:
                 terminal.ends()
     except (NotAsAssumed, NotHeard, PluginFailed) as error:
@@ -146,7 +151,8 @@ def prepare(options: Namespace) -> Flight:
             stopped=before.until,
         )
         state = resumed(plan, known, time.time())
-    return Flight(options, mission, licence, plan, state, plugins, before, log, company)
+    start = Start(waits=options.console is not None and not options.at_once)
+    return Flight(options, mission, licence, plan, state, plugins, before, log, company, start=start)
 
 
 def _licence(options: Namespace, mission: ElaboratedMission) -> Licence | None:
@@ -174,10 +180,18 @@ def record(flight: Flight) -> Iterator[Tape | None]:
         if flight.log is not None:
             stack.callback(flight.log.close)
         tape = None if path is None else _tape(flight, path)
+        if path is not None:
+            stack.callback(_forget, flight.start, path)
         stack.enter_context(console_beside(options, path, socket_of(flight.mission.name, options.socket)))
         if tape is not None:
             stack.enter_context(_ending(tape))
         yield tape
+
+
+def _forget(start: Start, path: Path) -> None:
+    """Remove the recording of a run that did not begin: the next one is to have its name."""
+    if not start.begun:
+        path.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -219,6 +233,9 @@ def _tape(flight: Flight, path: Path) -> Tape:
         recorder = Recorder(path, run_json(flight), time.time(), kinds, fixed)
     except RecordingError as error:
         raise Mistake(str(error), place=str(path)) from error
+    except FileExistsError as error:
+        hint = "name another with --record, or remove it; --resume goes on from a recording"
+        raise Mistake("there is a file already", hint, str(path)) from error
     except OSError as error:
         raise unreadable(str(path), error) from error
     if flight.resumed is not None:
@@ -256,7 +273,11 @@ def run_json(flight: Flight) -> dict[str, Any]:
     }
 
 
-async def fly(flight: Flight, watchers: Sequence[Watcher]) -> Ending:
+async def fly(
+    flight: Flight,
+    watchers: Sequence[Watcher],
+    tell_preflight: Callable[[dict[str, Any], float], None] | None = None,
+) -> Ending:
     """Begin and go; raises what `LiveRun` raises."""
     options = flight.options
     async with AsyncExitStack() as stack:
@@ -267,12 +288,20 @@ async def fly(flight: Flight, watchers: Sequence[Watcher]) -> Ending:
 
         path = socket_of(flight.mission.name, options.socket)
         try:
-            await stack.enter_async_context(listening(path, live.inbox.say, describe))
+            await stack.enter_async_context(listening(path, live.inbox.say, describe, flight.start.press))
         except OSError as error:
             raise Mistake(error.strerror or str(error), "give another with --socket", str(path)) from error
-        await live.begin(options.wait, forced=options.unverified)
-        await get_to_know(flight.plugins, obeying(flight.plan, live.state))
-        check_places(flight.mission, flight.plugins)
+        if flight.start.waits:
+            verdict = None if flight.licence is None else len(flight.licence.data.get("properties", ()))
+            before = Preflight(flight.mission, flight.plugins, verdict, options.wait)
+            say("the run waits: press Start in the console when its list is done")
+            sys.stdout.flush()
+            await stand_by(live, flight.start, before, tell_preflight)
+        else:
+            await live.begin(options.wait, forced=options.unverified)
+            await get_to_know(flight.plugins, obeying(flight.plan, live.state))
+            check_places(flight.mission, flight.plugins)
+        flight.start.begun = True
         settle()
         say(f"{flight.mission.name} begins; bigactors status, say, hold and return reach it at {path}")
         return await live.go(seconds=options.duration)
