@@ -190,6 +190,15 @@ def test_a_tip_goes_when_the_map_changes_its_size_under_the_pointer(shown):
         page.locator(TIP).wait_for(state="hidden")
 
 
+def test_a_phone_names_each_vehicle_whole_above_its_buttons(shown):
+    with Harness(world()) as harness:
+        page = shown(harness, PHONE, has_touch=True)
+        page.get_by_role("tab", name="Vehicles", exact=True).click()
+        page.locator(".card[data-name=uav1] [aria-label^='Give']").wait_for()
+        cut = "all => all.filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.textContent)"
+        assert page.locator(".card .name").evaluate_all(cut) == []
+
+
 # --- before the start
 
 
