@@ -9,14 +9,20 @@ from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from subprocess import PIPE
 from tempfile import TemporaryDirectory
 from typing import Final
 
 from bigactors.arguments.serving import ANYWHERE
+from bigactors.commands.console import LAST
+from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
 
 PATIENCE: Final = 5.0
 """Seconds that a console has to end."""
+
+STARTING: Final = 120.0
+"""Seconds that it has to say its links: nothing is commanded before."""
 
 
 @contextmanager
@@ -40,9 +46,14 @@ def console_beside(options: Namespace, recording: Path | None, socket: Path) -> 
     say("console: it starts beside the run; its links follow")
     sys.stdout.flush()
     process = subprocess.Popen(
-        _line(options, recording, socket), stdin=subprocess.PIPE, start_new_session=True
+        _line(options, recording, socket), stdin=PIPE, stdout=PIPE, start_new_session=True
     )
-    leaving = threading.Event()
+    linked, leaving = threading.Event(), threading.Event()
+    threading.Thread(target=_relay, args=(process, linked), daemon=True).start()
+    if not linked.wait(STARTING) or process.poll() is not None:
+        process.kill()
+        hint = "it has said why; nothing has been commanded. Mend that, or leave --console out"
+        raise Mistake("the console does not start", hint)
     threading.Thread(target=_watch, args=(process, leaving), daemon=True).start()
     try:
         yield
@@ -69,6 +80,17 @@ def _line(options: Namespace, recording: Path, socket: Path) -> list[str]:
     line += [] if options.tiles is None else ["--tiles", options.tiles]
     line += [] if options.tls is None else ["--tls", *options.tls]
     return line + (["--insecure"] if options.insecure else [])
+
+
+def _relay(process: subprocess.Popen[bytes], linked: threading.Event) -> None:
+    """Say what a console says, and note that its last link was said, or that it says no more."""
+    assert process.stdout is not None
+    for line in process.stdout:
+        say(line.decode(errors="replace").rstrip())
+        sys.stdout.flush()
+        if line.startswith(LAST.encode()):
+            linked.set()
+    linked.set()
 
 
 def _watch(process: subprocess.Popen[bytes], leaving: threading.Event) -> None:

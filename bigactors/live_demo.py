@@ -92,7 +92,7 @@ def main() -> int:
 def _demonstrated(asked: Namespace) -> int:
     folder: Path = asked.folder
     speed = asked.speed or (FOLLOWED if asked.console else None)
-    more = ("--console",) if asked.console else ()
+    more = ("--console", "--at-once") if asked.console else ()
     began = time.monotonic()
     _prepare(folder)
     verdict = str(folder / "verdict.json")

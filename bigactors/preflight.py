@@ -11,6 +11,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from itertools import islice, product
 
+from adapters.live.core import obeying
+from adapters.live.loop import LiveRun
 from adapters.live.orders import is_authority
 from adapters.live.surroundings import spots
 from adapters.plugin import Plugin, Preflight, preflights
@@ -33,6 +35,19 @@ MOST_INSTANCES = 5_000
 
 Objection = Callable[[Reaction], str]
 """Returns the objection to a control, or an empty text."""
+
+
+def check_idle(live: LiveRun, *, takes_over: bool) -> None:
+    """Refuse to command vehicles that are under way on a mission of somebody else; raises Mistake."""
+    if takes_over:
+        return
+    said = live.inbox.said
+    for name in sorted(obeying(live.plan, live.state)):
+        if name in said and said[name].follows:
+            found = f"{name} is under way already, in {said[name].mode}"
+            message = f"{found}: it flies a mission that this run did not give it"
+            hint = "land it, or take it over: --take-over; a run that was interrupted goes on with --resume"
+            raise Mistake(message, hint)
 
 
 def check_flyable(mission: ElaboratedMission) -> None:

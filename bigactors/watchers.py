@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from adapters.live.state import Finding, Heard, LiveState, LiveStep, Turn
 from adapters.live.watchers import TOLD
@@ -175,6 +175,10 @@ class Tape:
     def turned(self, turn: Turn, now: float) -> None:
         """Record a turn: its commands are on file before they are sent."""
         self.recorder.turn(turn, now, self.resting)
+
+    def preflight(self, said: dict[str, Any], now: float) -> None:
+        """Record what is checked before the start, and whether it has come."""
+        self.recorder.preflight(said, now)
 
 
 class Log:

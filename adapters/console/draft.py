@@ -94,6 +94,7 @@ class Draft:
     acted: int
     awaited: Table[int]
     stations: Table[Json]
+    preflight: Table[Json]
 
     def __init__(self, facts: Facts) -> None:
         self.changed = False

@@ -215,6 +215,7 @@ class Facts:
         acted: How many actions there were.
         awaited: For each request of an action that is not confirmed yet the number of the action.
         stations: When each station was heard, and whether it is reached.
+        preflight: The section `preflight`.
     """
 
     run: Run | None = None
@@ -248,3 +249,4 @@ class Facts:
     acted: int = 0
     awaited: Mapping[str, int] = field(default_factory=dict)
     stations: Mapping[str, Json] = field(default_factory=dict)
+    preflight: Section = field(default_factory=dict)

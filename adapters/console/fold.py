@@ -13,6 +13,7 @@ from adapters.console.draft import Draft
 from adapters.console.facts import Change, Facts, Opening, Standing, Unreplayable
 from adapters.console.flights import take_command, take_flight, take_report, take_status, take_words
 from adapters.console.parsing import text
+from adapters.console.preflight import take_preflight
 from adapters.console.runs import run_of
 from adapters.console.stations import take_presence
 from adapters.console.steps import take_step
@@ -36,6 +37,7 @@ TOPICS: Final[dict[str, Callable[[Draft, float, Any], None]]] = {
     "status": take_status,
     "said": take_words,
     "stations": take_presence,
+    "preflight": take_preflight,
 }
 """What each topic's messages are taken in by; of all other topics nothing is shown."""
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
-from adapters.console.requests import Acknowledge, Action, GiveBack, Order, Say
-from adapters.live.operator_socket import NobodyListens, Outcome, acknowledge, give_back, order, say
+from adapters.console.requests import Acknowledge, Action, GiveBack, Order, Say, Start
+from adapters.live.operator_socket import NobodyListens, Outcome, acknowledge, give_back, order, say, start
 
 Performing = Callable[[Action, str], Awaitable[Outcome]]
 """Performs an action for somebody, and returns what came of it."""
@@ -34,3 +34,5 @@ async def _perform(socket: Path, action: Action, by: str) -> Outcome:
             return await give_back(socket, vehicle, by=by)
         case Acknowledge(finding):
             return Outcome(await acknowledge(socket, finding, by))
+        case Start():
+            return Outcome(await start(socket, by))

@@ -82,7 +82,12 @@ class Acknowledge:
     finding: int
 
 
-Action = Say | Order | GiveBack | Acknowledge
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Let a run begin that waits for it."""
+
+
+Action = Say | Order | GiveBack | Acknowledge | Start
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,9 +153,11 @@ def _action(said: Mapping[object, object]) -> Action:
             alert.isascii() and alert.isdigit() and len(alert) < 10
         ):
             return Acknowledge(int(alert))
+        case {"start": True}:
+            return Start()
     raise Unreadable(
         "expected one of 'say' with 'agent' and 'message', 'order' with 'order' (hold or return) and 'vehicle', "
-        "'give_back' with 'vehicle', 'acknowledge' with 'alert'"
+        "'give_back' with 'vehicle', 'acknowledge' with 'alert', 'start' with true"
     )
 
 

@@ -43,6 +43,7 @@ def view_of(facts: Facts, now: float, head: Facts, picture: Section, before: Vie
         "sayings": sayings(facts),
         "actions": facts.actions,
         "stations": stations(facts, cards),
+        "preflight": facts.preflight,
     }
     return View({name: keeping(before.sections.get(name, {}), each) for name, each in sections.items()})
 

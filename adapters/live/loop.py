@@ -271,16 +271,18 @@ class LiveRun:
 
     # --- beginning
 
-    async def begin(self, patience: float, *, forced: bool = False) -> None:
-        """Wait until every vehicle is heard and the world satisfies the mission's environment section.
+    async def begin(
+        self, patience: float, *, forced: bool = False, start: asyncio.Event | None = None
+    ) -> None:
+        """Wait until every vehicle is heard and the world satisfies the mission's environment section, and for `start`.
 
         Raises:
             NotHeard: A vehicle was not heard in time.
             NotAsAssumed: The world differs, and the run is not forced.
         """
         until = self._listening.look(self.clock()) + patience
-        while missing := sorted(set(self.plan.vehicles) - set(self.state.seen)):
-            if self._listening.look(self.clock()) >= until:
+        while (missing := self._unheard()) or not (start is None or start.is_set()):
+            if missing and self._listening.look(self.clock()) >= until:
                 raise NotHeard(missing, self.inbox.said)
             await self._next(0.1)
             batch, answers = self.inbox.take(self._missed())
@@ -300,6 +302,9 @@ class LiveRun:
         for order in (*self.state.orders.values(), *self.state.handing.values()):
             if order.command.entity not in self.state.taken:  # a resumed run has compared it
                 self._orders.put_nowait(order.command)
+
+    def _unheard(self) -> list[str]:
+        return sorted(set(self.plan.vehicles) - set(self.state.seen))
 
     def _refuse(self, answers: list[asyncio.Future[Answer]]) -> None:
         for answer in answers:

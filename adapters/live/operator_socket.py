@@ -28,9 +28,11 @@ ASKED: Final = b'{"status": true}\n'
 ASKED_FATES: Final = b'{"fates": true}\n'
 """The line that asks what has become of operators' orders."""
 
+HAS_STARTED: Final = "the run has started already"
+
 EXPECTED: Final = (
-    "an object with 'agent' and 'message', 'give_back', 'order' (hold or return) and 'vehicle', or 'acknowledge', "
-    "and 'by', in valid Unicode"
+    "an object with 'agent' and 'message', 'give_back', 'order' (hold or return) and 'vehicle', 'acknowledge', or "
+    "'start', and 'by', in valid Unicode"
 )
 
 Listener = Callable[[Said], Awaitable[Answer]]
@@ -39,6 +41,9 @@ Listener = Callable[[Said], Awaitable[Answer]]
 Fates = Mapping[str, tuple[str, str]]
 """What has become of the operator's order to each vehicle, and in words."""
 
+Starter = Callable[[str], str]
+"""Starts the run for somebody, and returns why not; an empty text if it starts."""
+
 
 class NobodyListens(Exception):
     """No mission runs there, or it does not answer; the message says which."""
@@ -46,19 +51,27 @@ class NobodyListens(Exception):
 
 @asynccontextmanager
 async def listening(
-    path: Path, listener: Listener, describe: Callable[[], str] = str, fates: Callable[[], Fates] = dict
+    path: Path,
+    listener: Listener,
+    describe: Callable[[], str] = str,
+    fates: Callable[[], Fates] = dict,
+    start: Starter = lambda _by: HAS_STARTED,
 ) -> AsyncIterator[None]:
     """Listen at a path that only its user may open; raises OSError if that is impossible.
 
-    `describe` says how the run stands, and `fates` what has become of orders, to who asks.
-    The socket of a killed run is replaced; that of a live run is not, be it stopped.
+    `describe` says how the run stands, and `fates` what has become of orders, to who asks; `start` starts a run that
+    waits for an operator. The socket of a killed run is replaced; that of a live run is not, be it stopped.
     """
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         with suppress(OSError, ValueError, TimeoutError, asyncio.IncompleteReadError):
             async with asyncio.timeout(PATIENCE):
                 line = await reader.readuntil()
-            writer.write(json.dumps(await _answer(line, listener, describe, fates)).encode() + b"\n")
+            by = _starter(line)
+            answer = (
+                {"refusal": start(by)} if by is not None else await _answer(line, listener, describe, fates)
+            )
+            writer.write(json.dumps(answer).encode() + b"\n")
             await writer.drain()
         writer.close()
         with suppress(OSError):
@@ -117,6 +130,15 @@ async def _answer(
     answer = await listener(said)
     more = {"left_out": dict(answer.left_out), "notes": [*answer.notes]}
     return {"refusal": answer.refusal, **{name: each for name, each in more.items() if each}}
+
+
+def _starter(line: bytes) -> str | None:
+    """Return who starts the run by a line, None if nobody does."""
+    with suppress(PhysicalError):
+        match read_json(line, MOST_BYTES):
+            case {"start": True, **rest} if (by := rest.get("by", "")) == "" or is_word(by):
+                return str(by)
+    return None
 
 
 def _said(line: bytes) -> Said | None:
@@ -179,6 +201,11 @@ async def give_back(path: Path, vehicle: str, at: str = "", by: str = "") -> Out
 async def acknowledge(path: Path, finding: int, by: str = "") -> str:
     """Say that a finding was seen, by its number; as `say`."""
     return _refusal(await _say(path, {"acknowledge": finding, "by": by}))
+
+
+async def start(path: Path, by: str = "") -> str:
+    """Start the run that waits at a path; as `say`."""
+    return _refusal(await _say(path, {"start": True, "by": by}))
 
 
 async def status(path: Path) -> str:

@@ -334,6 +334,22 @@ PRESENCE: Final = _object(
     heard={"type": ["number", "null"], "description": "When it answered last."},
 )
 
+PREFLIGHT: Final = _object(
+    "What is checked before the start of a run that waits for an operator, when that changes.",
+    ("state", "items", "by"),
+    state={"enum": ["waits", "ready", "begun"], "description": "`ready`: it begins when Start is pressed."},
+    items={
+        "type": "array",
+        "description": "In the order in which they are done.",
+        "items": {
+            "type": "object",
+            "required": ["what", "done", "detail"],
+            "properties": {"what": _TEXT, "done": {"type": "boolean"}, "detail": _TEXT},
+        },
+    },
+    by={**_TEXT, "description": "Who has pressed Start."},
+)
+
 FINDING: Final = _object(
     "A message to the operator: a broken assumption, a refusal, a lost link, a request that takes too long.",
     ("kind", "about", "message"),
@@ -364,6 +380,7 @@ SCHEMAS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
     "status": (f"bigactors.status/{VERSION}", STATUS),
     "said": (f"bigactors.status_text/{VERSION}", STATUS_TEXT),
     "stations": (f"bigactors.presence/{VERSION}", PRESENCE),
+    "preflight": (f"bigactors.preflight/{VERSION}", PREFLIGHT),
     "end": (f"bigactors.end/{VERSION}", END),
 }
 """The name and the schema of each topic's messages."""

@@ -102,6 +102,11 @@ class Recorder:
         if turn.steps or turn.commands or turn.findings or turn.answers or now - self._flushed >= AT_MOST:
             self._flush(now)
 
+    def preflight(self, said: dict[str, Any], now: float) -> None:
+        """Write what is checked before the start, and whether it has come."""
+        self._put("preflight", now, said)
+        self._flush(now)
+
     def _stands(self, topic: str, of: str, what: str, standing: Mapping[Name, Any], now: float) -> None:
         """Write what stands of each name, where that has changed; null where nothing does any more."""
         before, self._standing[topic] = self._standing[topic], standing

@@ -10,7 +10,6 @@ from adapters.simulated.body import Body, metres_to
 from adapters.simulated.state import NOTICE, WARNING, State
 from physical import contains, point
 
-
 REPORT_ONLY: Final = 0.0
 """ArduPilot's FENCE_ACTION with which it only says that it is outside."""
 

@@ -11,7 +11,6 @@ from adapters.mavlink.telemetry import Telemetry
 from adapters.simulated.body import Target, metres_to
 from adapters.simulated.state import INFO, WARNING, State
 
-
 NAMES: Final[dict[int, str]] = {
     Cmd.TAKEOFF: "Takeoff",
     Cmd.WAYPOINT: "WP",

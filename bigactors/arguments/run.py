@@ -100,7 +100,12 @@ def fill(parser: Parser) -> None:
         const=ANYWHERE,
         type=place,
         help="serve the operator's console in the browser (default: on this machine only, port 8765 or a free one); "
-        "the links are printed",
+        "the links are printed, and the run begins when Start is pressed there",
+    )
+    parser.add_argument(
+        "--at-once",
+        action="store_true",
+        help="with --console: begin as soon as all is checked, without Start",
     )
     add_serving(parser)
     parser.add_argument(

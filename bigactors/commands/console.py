@@ -34,6 +34,9 @@ PORT: Final = 8765
 NICENESS: Final = 5
 """How much a console gives way to the run beside it: where both want the same core it gets a quarter."""
 
+LAST: Final = "console, to watch:"
+"""What begins the last line that a console says at its start."""
+
 PARTING: Final = 0.5
 """Seconds from the end of a run to that of its console."""
 
@@ -124,7 +127,7 @@ async def _serve(options: Namespace, history: History) -> None:
         address = f"{'http' if tls is None else 'https'}://{f'[{host}]' if ':' in host else host}:{port}"
         if perform is not None:
             say(f"console, to act:   {address}/#token={access.act}")
-        say(f"console, to watch: {address}/#token={access.watch}")
+        say(f"{LAST} {address}/#token={access.watch}")
         sys.stdout.flush()
         await (_until_left(history) if options.beside else asyncio.Event().wait())
 

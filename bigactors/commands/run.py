@@ -6,9 +6,9 @@ import asyncio
 import sys
 import time
 from argparse import Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AsyncExitStack, ExitStack, closing, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -28,10 +28,11 @@ from bigactors.files import check_writable
 from bigactors.missions import checkable, digest_of, fixed_places, locate, open_mission
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.plugins import fences_of, plugins_of
-from bigactors.preflight import check_flyable, check_places, get_to_know
+from bigactors.preflight import check_flyable, check_idle, check_places, get_to_know
 from bigactors.recordings import Resumed, resume
 from bigactors.signatures import load_trusted
 from bigactors.sockets import socket_of
+from bigactors.starting import Preflight, Start, stand_by
 from bigactors.stations import Company, company_of, parting_json
 from bigactors.terminal import flying_output, paint, say, tell
 from bigactors.vehicle_lines import situation, standing
@@ -57,6 +58,7 @@ class Flight:
         log: What takes every frame.
         company: The station that it is among others, None where it is the only one.
         rate: How fast its clock runs beside that on the wall; None for as fast as can be computed.
+        start: Whether it has begun, and whether an operator has to start it.
     """
 
     options: Namespace
@@ -69,6 +71,7 @@ class Flight:
     log: Log | None = None
     company: Company | None = None
     rate: float | None = 1.0
+    start: Start = field(default_factory=Start)
 
     def resting(self, finding: Finding) -> tuple[str, ...]:
         """Return the properties whose verdicts rest on a broken assumption: all that were decided by exploring."""
@@ -97,7 +100,9 @@ def _run(flight: Flight, options: Namespace) -> Exit:
                 ros,
             )  # recorded first, then said
             try:
-                ending = asyncio.run(fly(flight, tuple(looker for looker in lookers if looker)))
+                preflight = None if tape is None else tape.preflight
+                flown = fly(flight, tuple(looker for looker in lookers if looker), preflight)
+                ending = asyncio.run(flown)
             finally:
                 terminal.ends()
     except (NotAsAssumed, NotHeard, PluginFailed) as error:
@@ -147,7 +152,8 @@ def prepare(options: Namespace) -> Flight:
             stopped=before.until,
         )
         state = resumed(plan, known, time.time())
-    return Flight(options, mission, licence, plan, state, plugins, before, log, company)
+    start = Start(waits=options.console is not None and not options.at_once)
+    return Flight(options, mission, licence, plan, state, plugins, before, log, company, start=start)
 
 
 def _licence(options: Namespace, mission: ElaboratedMission) -> Licence | None:
@@ -190,10 +196,18 @@ def record(flight: Flight) -> Iterator[Tape | None]:
         if flight.log is not None:
             stack.callback(flight.log.close)
         tape = None if path is None else _tape(flight, path)
+        if path is not None:
+            stack.callback(_forget, flight.start, path)
         stack.enter_context(console_beside(options, path, socket_of(flight.mission.name, options.socket)))
         if tape is not None:
             stack.enter_context(_ending(tape))
         yield tape
+
+
+def _forget(start: Start, path: Path) -> None:
+    """Remove the recording of a run that did not begin: the next one is to have its name."""
+    if not start.begun:
+        path.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -235,6 +249,9 @@ def _tape(flight: Flight, path: Path) -> Tape:
         recorder = Recorder(path, run_json(flight), time.time(), kinds, fixed)
     except RecordingError as error:
         raise Mistake(str(error), place=str(path)) from error
+    except FileExistsError as error:
+        hint = "name another with --record, or remove it; --resume goes on from a recording"
+        raise Mistake("there is a file already", hint, str(path)) from error
     except OSError as error:
         raise unreadable(str(path), error) from error
     if flight.resumed is not None:
@@ -272,7 +289,11 @@ def run_json(flight: Flight) -> dict[str, Any]:
     }
 
 
-async def fly(flight: Flight, watchers: Sequence[Watcher]) -> Ending:
+async def fly(
+    flight: Flight,
+    watchers: Sequence[Watcher],
+    tell_preflight: Callable[[dict[str, Any], float], None] | None = None,
+) -> Ending:
     """Begin and go; raises what `LiveRun` raises."""
     options = flight.options
     async with AsyncExitStack() as stack:
@@ -284,33 +305,26 @@ async def fly(flight: Flight, watchers: Sequence[Watcher]) -> Ending:
         path = socket_of(flight.mission.name, options.socket)
         try:
             await stack.enter_async_context(
-                listening(path, live.inbox.say, describe, lambda: live.state.fates)
+                listening(path, live.inbox.say, describe, lambda: live.state.fates, flight.start.press)
             )
         except OSError as error:
             raise Mistake(error.strerror or str(error), "give another with --socket", str(path)) from error
-        await live.begin(options.wait, forced=options.unverified)
-        _check_idle(flight, live)
-        await get_to_know(flight.plugins, obeying(flight.plan, live.state))
-        check_places(flight.mission, flight.plugins)
+        takes_over = options.take_over or flight.resumed is not None
+        if flight.start.waits:
+            verdict = None if flight.licence is None else len(flight.licence.data.get("properties", ()))
+            before = Preflight(flight.mission, flight.plugins, verdict, options.wait, takes_over)
+            say("the run waits: press Start in the console when its list is done")
+            sys.stdout.flush()
+            await stand_by(live, flight.start, before, tell_preflight)
+        else:
+            await live.begin(options.wait, forced=options.unverified)
+            check_idle(live, takes_over=takes_over)
+            await get_to_know(flight.plugins, obeying(flight.plan, live.state))
+            check_places(flight.mission, flight.plugins)
+        flight.start.begun = True
         settle()
         say(f"{flight.mission.name} begins; bigactors status, say, hold and return reach it at {path}")
         return await live.go(seconds=options.duration)
-
-
-def _check_idle(flight: Flight, live: LiveRun) -> None:
-    """Refuse to command vehicles that are under way on a mission of somebody else; raises Mistake.
-
-    A run that goes on from another one finds its own.
-    """
-    if flight.options.take_over or flight.resumed is not None:
-        return
-    said = live.inbox.said
-    for name in sorted(obeying(flight.plan, live.state)):
-        if name in said and said[name].follows:
-            found = f"{name} is under way already, in {said[name].mode}"
-            message = f"{found}: it flies a mission that this run did not give it"
-            hint = "land it, or take it over: --take-over; a run that was interrupted goes on with --resume"
-            raise Mistake(message, hint)
 
 
 def _not_begun(error: Exception) -> Exit:

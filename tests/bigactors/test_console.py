@@ -161,8 +161,9 @@ def test_with_a_certificate_it_is_served_by_https_also_before_there_is_a_recordi
 
 
 @contextmanager
-def flying(folder, *more):
+def flying(folder, *more, at_once=True):
     """Fly the mission with a console; yield the process."""
+    more = (*more, "--at-once") if at_once else more
     (folder / "tour.mission").write_text(MISSION)
     port = free_port(socket.SOCK_DGRAM)
     line = ["-m", "bigactors", "run", folder / "tour.mission", f"--vehicle=uav0=udp:127.0.0.1:{port}"]
@@ -265,12 +266,65 @@ def test_an_operator_acts_and_sees_what_becomes_of_it_and_the_run_outlives_its_c
     assert not recording.parent.exists()
 
 
+def test_beside_a_console_nothing_is_commanded_before_somebody_presses_start(tmp_path):
+    async def does(state, until, act):
+        await until(lambda: state["preflight"].get("state") == "ready")
+        assert all(each["done"] for each in state["preflight"]["items"])
+        assert "uav0 is heard" in [each["what"] for each in state["preflight"]["items"]]
+        await asyncio.sleep(1.0)
+        assert state["vehicles"]["uav0"]["order"] is None
+        assert "has not begun" in await act(say={"agent": "op", "message": "status"})
+        assert await act(start=True) == ""
+        await until(lambda: state["vehicles"]["uav0"]["order"] is not None)
+        assert (state["preflight"]["state"], state["preflight"]["by"]) == ("begun", "Ana")
+        assert await act(start=True) == "the run has started already"
+
+    with flying(tmp_path, "--record", tmp_path / "run.mcap", at_once=False) as process:
+        link = link_of(process)
+        assert process.stdout.readline().startswith("console, to watch:")
+        assert "press Start" in process.stdout.readline()
+        asyncio.run(operate(link, does))
+        process.send_signal(signal.SIGINT)
+        assert process.wait(20) == 3
+    told = read_recording(tmp_path / "run.mcap")
+    (begun_at,) = [each.time for each in told.of("preflight") if each.data["state"] == "begun"]
+    assert all(each.time >= begun_at - 0.5 for each in told.of("commands"))
+
+
+def test_a_run_that_did_not_begin_leaves_no_recording_to_stop_the_next_one(tmp_path):
+    (tmp_path / "tour.mission").write_text(MISSION)
+    port = free_port(socket.SOCK_DGRAM)
+    line = ["-m", "bigactors", "run", tmp_path / "tour.mission", f"--vehicle=uav0=udp:127.0.0.1:{port}"]
+    line += ["--unverified", "--wait", "0.5", "--socket", tmp_path / "s", "--record", tmp_path / "run.mcap"]
+    for _ in range(2):
+        with begun(*line) as process:
+            assert process.wait(60) == 2
+            assert "nothing was heard of uav0" in process.stdout.read()
+        assert not (tmp_path / "run.mcap").exists()
+    (tmp_path / "run.mcap").write_bytes(b"another's")
+    with begun(*line) as process:
+        assert process.wait(60) == 2
+        assert "there is a file already" in process.stdout.read()
+    assert (tmp_path / "run.mcap").read_bytes() == b"another's"
+
+
+def test_a_run_whose_console_does_not_start_commands_nothing(tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        place = f"127.0.0.1:{taken.getsockname()[1]}"
+        with flying(tmp_path, "--console", place, "--record", tmp_path / "run.mcap") as process:
+            said = process.stdout.read()
+            assert process.wait(60) == 2
+    assert "the console does not start" in said
+    assert not (tmp_path / "run.mcap").exists()
+
+
 def test_a_console_says_that_its_run_was_killed_and_ends_with_it(tmp_path):
     async def does(state, until, _act):
         await until(lambda: state["vehicles"]["uav0"]["order"] is not None)
         process.kill()
         await until(lambda: state["clock"]["ended"] is not None)
         assert state["clock"]["ended"].startswith("the run ended without a word")
+        await until(lambda: state["vehicles"]["uav0"]["word"] == "unknown")
 
     with flying(tmp_path, "--record", tmp_path / "run.mcap") as process:
         assert "console: it starts beside the run; its links follow\n" in process.stdout

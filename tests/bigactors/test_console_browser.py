@@ -72,7 +72,7 @@ def flying(folder):
     line += [f"--feed=ais=file:{shipped_missions()[MISSION].with_suffix('.nmea')}"]
     line += [f"--feed=detections=folder:{folder / 'camera'}", "--name=mmsi:263999001=drifter0"]
     line += ["--name=mmsi:263999002=drifter1", f"--socket={folder / 's'}", f"--record={folder / 'run.mcap'}"]
-    line += [f"--console=127.0.0.1:{free_port()}"]
+    line += [f"--console=127.0.0.1:{free_port()}", "--at-once"]
     with begun("-c", PLANE, f"udpout:127.0.0.1:{port}", folder, SPEED), begun(*line) as process:
         yield process
 

@@ -10,6 +10,7 @@ import { Link } from "./link.js";
 import { Mission, NotConnected } from "./mission.js";
 import { NoticeList, Notices } from "./notices.js";
 import { OnReturn, Orders } from "./orders.js";
+import { Preflight } from "./preflight.js";
 import { Store } from "./store.js";
 import { openTab, Panel, PANELS, TabList, usePhone } from "./tabs.js";
 import { neighbour, SPEEDS, Timeline } from "./timeline.js";
@@ -134,7 +135,7 @@ class App {
   act = async (action, words) => {
     if (!this.name.value) return this.pending.set({ action, words });
     const notice = this.notices.asked(words, this.name.value);
-    this.notices.answered(notice, await this.link.act(action), !action.acknowledge);
+    this.notices.answered(notice, await this.link.act(action), !action.acknowledge && !action.start);
   };
 
   /** Take a name, and do what has waited for it as soon as the connection with that name is there. */
@@ -302,6 +303,7 @@ function Screen({ app }) {
     <${Mission} app=${app} />
     <${NotConnected} app=${app} />
     <${Alert} app=${app} />
+    <${Preflight} app=${app} key="preflight" />
     ${phone && html`<${TabList} key="tabs" app=${app} phone=${true} />`}
     <main key="main">
       <section class="map-area" id="area-map" aria-label="Map" key="map"><${MapElement} app=${app} /><${MapTools} app=${app} />${phone && html`<${Subject} app=${app} />`}</section>

@@ -85,7 +85,7 @@ const FALLEN_BACK = { hold: "vehicles were told to hold", return: "vehicles were
 export const findingWords = ({ message, fallback }) => [message, FALLEN_BACK[fallback]].filter(Boolean).join(" · ");
 
 const FATES = { asked: "asked", sent: "sent, not confirmed yet", confirmed: "confirmed by the vehicle", refused: "refused" };
-const OURS = /^(say|give back|acknowledge)/;
+const OURS = /^(say|give back|acknowledge|start)/;
 
 /** What became of an action, in words: what no vehicle has to confirm is done, unless nothing comes of it. */
 export const fateOf = ({ what, state, vain }) => (state === "confirmed" && OURS.test(what) ? (vain ? `heard, but ${vain}` : "done") : FATES[state] ?? state);

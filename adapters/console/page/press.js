@@ -8,7 +8,7 @@ const CONFIRM = 5000;
  * `label` says all that the press does, `short` names it. `act` is called once for each press that lasted. A short press does nothing but say so. Assistive technology
  * presses without a duration: there, a second press within five seconds confirms.
  */
-export function HeldButton({ act, children, disabled, tell, label, short = label, ...attributes }) {
+export function HeldButton({ act, children, disabled, tell, label, short = label, kind = "", ...attributes }) {
   const [pressed, setPressed] = useState(false);
   const timer = useRef(null);
   const armed = useRef(-Infinity);
@@ -77,7 +77,7 @@ export function HeldButton({ act, children, disabled, tell, label, short = label
     const inside = event.clientX >= box.left && event.clientX <= box.right && event.clientY >= box.top && event.clientY <= box.bottom;
     if (!inside && timer.current !== null) cancel();
   };
-  return html`<button type="button" class=${`held ${pressed ? "pressed" : ""}`} disabled=${disabled} aria-label=${`${label} (hold for one second)`}
+  return html`<button type="button" class=${`held ${kind} ${pressed ? "pressed" : ""}`} disabled=${disabled} aria-label=${`${label} (hold for one second)`}
     onPointerDown=${point} onPointerUp=${end} onPointerMove=${leave} onPointerCancel=${cancel} onBlur=${cancel}
     onKeyDown=${down} onKeyUp=${up} onClick=${click} onContextMenu=${(event) => event.preventDefault()} ...${attributes}>
     <svg class="ring" viewBox="0 0 20 20" aria-hidden="true"><circle class="track" cx="10" cy="10" r="7.5" /><circle class="fill" cx="10" cy="10" r="7.5" /></svg>

@@ -188,3 +188,50 @@ def test_a_tip_goes_when_the_map_changes_its_size_under_the_pointer(shown):
         page.keyboard.press("j")
         page.locator(".subject").wait_for()
         page.locator(TIP).wait_for(state="hidden")
+
+
+def test_a_phone_names_each_vehicle_whole_above_its_buttons(shown):
+    with Harness(world()) as harness:
+        page = shown(harness, PHONE, has_touch=True)
+        page.get_by_role("tab", name="Vehicles", exact=True).click()
+        page.locator(".card[data-name=uav1] [aria-label^='Give']").wait_for()
+        cut = "all => all.filter(e => e.scrollWidth > e.clientWidth + 1).map(e => e.textContent)"
+        assert page.locator(".card .name").evaluate_all(cut) == []
+
+
+# --- before the start
+
+
+def waiting(state, *done):
+    """Return the section of a run that waits, with what is done."""
+    what = ["the mission is verified", "uav0 is heard", "places and fences fit the vehicles"]
+    items = [{"what": each, "done": n in done, "detail": ""} for n, each in enumerate(what)]
+    return {"state": state, "by": "", "items": items}
+
+
+def test_a_run_is_started_from_its_list_and_not_before_all_of_it_is_done(shown):
+    with Harness(world() | {"preflight": waiting("waits", 0)}) as harness:
+        desk, phone = shown(harness), shown(harness, PHONE, has_touch=True)
+        for page in (desk, phone):
+            has(page, ".preflight", "Before the start: nothing is commanded yet")
+            assert page.locator(".preflight .open").count() == 2
+            page.locator(".preflight .start:disabled").wait_for()
+        harness.set("preflight", waiting("ready", 0, 1, 2))
+        for page in (desk, phone):
+            page.locator(".preflight .start:enabled").wait_for()
+            box = page.locator(".preflight .start").bounding_box()
+            assert box["x"] >= 0
+            assert box["x"] + box["width"] <= page.viewport_size["width"]
+        press_mouse(desk, 1.2, ".preflight .start")
+        assert await_acts(harness, desk, 1) == [{"start": True}]
+        has(desk, ".notice.confirmed", "start the run: done")
+        harness.set("preflight", {"state": "begun", "by": "Ana"})
+        for page in (desk, phone):
+            page.locator(".preflight").wait_for(state="detached")
+
+
+def test_who_only_watches_is_told_that_somebody_has_to_start_the_run(shown):
+    with Harness(world() | {"preflight": waiting("ready", 0, 1, 2)}, role="watch") as harness:
+        page = shown(harness)
+        has(page, ".preflight", "Somebody who may act has to press Start.")
+        assert page.locator(".preflight button").count() == 0

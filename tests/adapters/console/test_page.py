@@ -255,7 +255,8 @@ def test_who_is_held_or_whose_mission_has_fallen_back_is_not_said_to_do_what_was
         page = shown(harness)
         has(page, ".card[data-name=uav0] .request", "flies to spillArea")
         held = {"command": "Hold", "to": "", "way": [], "since": time.time(), "state": "arrived", "why": ""}
-        harness.set("vehicles", {"uav0": flies | {"taken": "held by Ana", "order": held, "differs": True}})
+        held_in_flight = {"taken": "held by Ana", "order": held, "differs": True, "going": "spillArea"}
+        harness.set("vehicles", {"uav0": flies | held_in_flight})
         has(page, ".card[data-name=uav0] .request", "not now: flies to spillArea")
         assert "then it returns" not in page.locator(".card[data-name=uav0]").inner_text()
         has(page, ".card[data-name=uav0] .place:not(.differs)", "left searchArea0, has not arrived anywhere")
@@ -323,7 +324,7 @@ def test_of_what_is_found_at_once_the_cause_is_said_first_and_what_the_run_did_o
         page = shown(harness)
         has(page, ".alert .message", "nothing was heard of uav1")
         harness.set("alerts", {"2": state["alerts"]["2"] | {"acknowledged": {"by": "Ana", "time": now}}})
-        has(page, ".alert .message", "control:gcs0 any more · vehicles were told to return home")
+        has(page, ".alert .message", "control:gcs0 any more → all vehicles were told to return home")
 
 
 def test_how_far_it_is_counts_to_the_edge_of_the_place_where_a_flight_ends(shown):

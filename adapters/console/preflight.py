@@ -1,0 +1,29 @@
+"""What is checked before the start of a run that waits for an operator."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from adapters.console.draft import Draft
+from adapters.console.parsing import text
+from adapters.console.view import Json
+
+STATES: Final = ("waits", "ready", "begun")
+MOST: Final = 1_000
+
+
+def take_preflight(draft: Draft, _time: float, data: Any) -> None:
+    """Take in the list, and whether the run waits, may start, or has begun."""
+    match data:
+        case {"state": str(state), "items": list(items)} if state in STATES:
+            draft.preflight["state"] = state
+            draft.preflight["by"] = text(data.get("by"))
+            draft.preflight["items"] = [_item(each) for each in items[:MOST] if isinstance(each, dict)]
+
+
+def _item(said: dict[Any, Any]) -> Json:
+    return {
+        "what": text(said.get("what")),
+        "done": said.get("done") is True,
+        "detail": text(said.get("detail")),
+    }
