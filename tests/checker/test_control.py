@@ -90,3 +90,26 @@ def test_who_enters_and_leaves_what_a_control_needs_empty_makes_what_was_seen_th
     BigActor b hosted_at uav1 with_behavior { control(MOVE_HOST_TO gate0) control(MOVE_HOST_TO south0) }
     """
     assert "stale-observation race" in kinds(verdict(text, "race_freedom"))
+
+
+def test_of_several_that_are_to_fly_one_in_transit_is_enough_to_wait_for():
+    text = """
+    rule both(u: UAV, v: UAV, p: Sea) { u || v || p.$0 -> p.(u | v | $0) }
+    BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO west0) }
+    BigActor b hosted_at uav1 with_behavior { control(both(uav0, uav1, east0)) }
+    """
+    c = walked(start(text, INNER), "req_ctr : a", "req_ctr : b")
+    assert any("command : CTR(b" in each for each in labels(c))
+    assert labels(walked(c, "command : CTR(a")) == {"⟨commit : FLY(a, MOVE_HOST_TO west0)⟩"}
+
+
+def test_of_several_matches_the_one_that_comes_furthest_says_what_is_in_the_way():
+    text = """
+    rule enter_by(u: UAV, p: Sea) { u[c] || p.$0 -> p.(u[c] | $0) }
+    BigActor a hosted_at uav0 with_behavior { control(enter_by(uav0, west0)) }
+    environment { wifi drops fog0 drifts among box (0.01, 0.01) (0.04, 0.04) }
+    """
+    world = INNER.replace("buoy0: Buoy", "fog0: Sea = box (0.2, 0.2) (0.23, 0.23)\n  buoy0: Buoy")
+    c = walked(start(text, world), "req_ctr : a", "fog0 drifts", "wifi drops")
+    (request,) = (each.request for each in c.eta.of("a"))
+    assert obstacle(c, request) is Obstacle.UNREALISABLE
