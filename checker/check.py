@@ -198,7 +198,9 @@ class _Check:
         self.owned = asked and owned(initial)
         self.searching = asked and not self.owned
         self.remembered: Exploration | None = None
-        self.temporal = tuple(each for each in self.properties if each.is_of_runs)
+        self.temporal = tuple(
+            each for each in self.properties if each.is_of_runs and self.refused(each) is None
+        )
         self.decider: Decider | None = None
         self.deadlines: Deadlines | None = None
         self.unscheduled: tuple[str, ...] = ()
@@ -273,9 +275,11 @@ class _Check:
         reason = self.refused(asked)
         if reason is None:
             return self.decided(asked)
+        undecided = Verdict(asked, Outcome.INCOMPLETE, note=f"not decided under this reduction: {reason}")
+        if asked.is_of_runs:  # which runs there are, and which are fair, only all steps tell
+            return undecided
         found = self.decided(asked)
-        note = f"not decided under this reduction: {reason}"
-        return found if found.outcome is Outcome.VIOLATED else Verdict(asked, Outcome.INCOMPLETE, note=note)
+        return found if found.outcome is Outcome.VIOLATED else undecided
 
     def decided(self, asked: Property) -> Verdict:
         """Return what the exploration says of a property."""

@@ -20,7 +20,8 @@ from semantics.state.observation_serialization import sight_json, sight_of
 from semantics.state.partition import Elsewhere
 from semantics.state.printing import print_changes
 from semantics.state.requests import Received
-from semantics.successors import expand, expand_by
+from semantics.state.signature import Name
+from semantics.successors import expand, expand_by, served, turn_of
 from semantics.timing.dates import clock_text
 
 if TYPE_CHECKING:
@@ -135,23 +136,33 @@ def step_between(source: Configuration, target: Configuration) -> Step:
     ):  # a step changes its agent, or what is nobody's: the queue
         named = {name for cell in changed for name in cell[1:]}
         agents = tuple(name for name in agents if name in named)
-    expansion = expand_by(source, agents)
-    steps = expansion.transitions + expansion.out_of_turn
+    steps = _in_turn(source, agents)
     return step_of(source, next(step.label for step in steps if step.target == target), target)
 
 
 def candidates(
     source: Configuration, sight: Sight | Elsewhere | None = None, label: str | None = None
 ) -> tuple[Transition, ...]:
-    """Return what may follow, or be meant by what was observed: transitions in turn first.
+    """Return what may follow, or be meant by what was observed.
 
     With a label, agents that it does not name are passed over: every label of an agent's steps names it.
     """
     agents = [name for name in source.alpha.names() if label is None or name in label]
     if sight is not None:
         return tuple(steps_seen(source, sight, agents))
-    expansion = expand_by(source, agents)
-    return expansion.transitions + expansion.out_of_turn
+    return _in_turn(source, agents)
+
+
+def _in_turn(source: Configuration, agents: Sequence[Name]) -> tuple[Transition, ...]:
+    """Return what some agents and the environment may do, in the turn of all."""
+    found = expand_by(source, agents).transitions
+    turn = next((turn_of(each) for each in found if turn_of(each) is not None), None)
+    if turn is None:
+        return found
+    others = (name for name in source.alpha.names() if name not in agents)
+    turns = (turn_of(each) for other in others for each in served(source, other))
+    is_first = all(other is None or turn <= other for other in turns)
+    return found if is_first else tuple(each for each in found if turn_of(each) is None)
 
 
 def alike(source: Configuration, label: str, sight: Sight | Elsewhere | None = None) -> list[Transition]:
@@ -160,9 +171,14 @@ def alike(source: Configuration, label: str, sight: Sight | Elsewhere | None = N
 
 
 def trace_to(found: Exploration, number: int, by: Transition | None = None) -> Trace:
-    """Return a trace to a configuration of an exploration: a shortest one, unless steps were put off."""
+    """Return a trace to a configuration of an exploration: a shortest one, unless steps were put off.
+
+    A step by which the configuration counts is the last one, if it is its turn.
+    """
     if found.times is not None:
         return dated_trace(found.times, found.times.run_before(number, by))
+    if by is not None and by.served is not None and not _is_in_turn(found.configurations[number], by):
+        by = None
     shortest = found.reducer is None or not found.reducer.putting_off
     if found.reducer is not None and found.reducer.symmetry is not None:
         return _unfolded(found, number, by, shortest=shortest)
@@ -170,6 +186,10 @@ def trace_to(found: Exploration, number: int, by: Transition | None = None) -> T
     steps = tuple(step_between(source, target) for source, target in pairwise(run))
     trace = Trace(run[0], steps, shortest=shortest)
     return trace if by is None else trace.extended(by)
+
+
+def _is_in_turn(c: Configuration, step: Transition) -> bool:
+    return turn_of(step) is None or turn_of(step) in map(turn_of, expand(c).by_agents)
 
 
 def dated_trace(times: Times, run: Run) -> Trace:
@@ -337,7 +357,8 @@ def _followed(before: Configuration, number: int, said: _Said) -> Step:
     same = alike(before, label, sight)
     if choice >= len(same):
         enabled = sorted({str(transition.label) for transition in candidates(before, sight)})
-        raise ReplayError(number, label, enabled, _cause(len(same)))
+        waits = sight is None and any(str(each.label) == label for each in expand(before).out_of_turn)
+        raise ReplayError(number, label, enabled, OUT_OF_TURN if waits else _cause(len(same)))
     taken = same[choice]
     if wrote is not None and digest_of_step(before, taken.target) != wrote:
         changes = print_changes(before, taken.target)
@@ -359,6 +380,9 @@ def _closed(trace: Trace) -> Trace:
             len(trace), f"coming round to c{trace.loop}", enabled, "its last step leads elsewhere"
         )
     return trace
+
+
+OUT_OF_TURN = "it is out of turn: 'scheduler fcfs' serves what was asked first"
 
 
 def _cause(alike: int) -> str:

@@ -59,7 +59,5 @@ def _really(reducer: Reduced, taken: Transition, real: Configuration, renaming: 
         return taken
     target = renaming.inverse.configuration(taken.target)
     label = renaming.inverse.text(str(taken.label))
-    expansion = expand(real)
-    candidates = expansion.transitions + expansion.out_of_turn
-    alike = [each for each in candidates if each.target == target]
+    alike = [each for each in expand(real).transitions if each.target == target]
     return next((each for each in alike if str(each.label) == label), alike[0])

@@ -8,13 +8,16 @@ import pytest
 from checked_missions import checked, load, moves, rules_of, verdict_of, violation
 from hypothesis import given
 from hypothesis import strategies as st
-from scale import examples
+from replaying import assert_replays
+from scale import crossed, examples
+from shipped import ALL
 
-from checker import Limits, ReplayError, Step, Trace, check, explore, print_trace, replay, to_json
-from checker.traces import MOST_STEPS, alike, candidates, step_of, trace_to
+from checker import Engine, Limits, ReplayError, Step, Trace, check, explore, print_trace, replay, to_json
+from checker.traces import MOST_STEPS, SCHEMA, alike, candidates, step_of, trace_to
 from semantics.state.configuration import Label
+from semantics.state.setting import Scheduler
 from semantics.strategies import initial_configurations
-from specs.elaboration import load_mission
+from specs.elaboration import Variation, load_mission
 
 OIL_SPILL = Path(__file__).parents[2] / "specs" / "missions" / "oil_spill.mission"
 
@@ -92,6 +95,64 @@ def test_a_trace_with_the_monitors_memory_replays_from_where_it_was_written_and_
     assert [c.unmonitored() for c in again.configurations] == [c.unmonitored() for c in trace.configurations]
     assert again.initial.setting.monitored
     assert replay(again.initial, data).configurations == again.configurations
+
+
+OUT_OF_TURN = """mission m
+signature {
+  kind Place contains UAV
+  kind UAV driven
+}
+world {
+  p0: Place = box (0.0, 0.0) (0.1, 0.1)
+  p1: Place = box (0.0, 0.2) (0.1, 0.3)
+  u0: UAV = point (0.05, 0.05)
+}
+BigActor a hosted_at u0 with_behavior {
+  send "no" to b
+  control(MOVE_HOST_TO p1)
+}
+BigActor b hosted_at u0 with_behavior { loop { react { case "no" => skip } } }
+scheduler fcfs
+check { local_consistency }
+"""
+
+
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_a_witness_ends_before_a_step_that_is_out_of_turn(engine):
+    report = check(load(OUT_OF_TURN, ""), engine=engine)
+    assert [str(step.label) for step in report.verdicts[0].witness.steps] == [
+        '⟨req_snd : a, send("no", b)⟩',
+        "⟨req_ctr : a, control(MOVE_HOST_TO p1)⟩",
+    ]
+    assert_replays(report)
+
+
+def test_a_step_out_of_turn_does_not_replay():
+    c = load(OUT_OF_TURN, "").initial
+    labels = ['⟨req_snd : a, send("no", b)⟩', "⟨req_ctr : a, control(MOVE_HOST_TO p1)⟩"]
+    late = [*labels, "⟨actuate : CTR(a, MOVE_HOST_TO p1)⟩"]
+    for steps in (labels, [*labels, '⟨snd : SND(a, b, "no")⟩', late[-1]]):
+        assert len(replay(c, {"schema": SCHEMA, "steps": [{"label": each} for each in steps]})) == len(steps)
+    with pytest.raises(ReplayError) as refused:
+        replay(c, {"schema": SCHEMA, "steps": [{"label": each} for each in late]})
+    assert refused.value.enabled == ('⟨snd : SND(a, b, "no")⟩',)
+    assert "step 3: ⟨actuate : CTR(a, MOVE_HOST_TO p1)⟩ is not enabled: it is out of turn" in str(
+        refused.value
+    )
+
+
+EVERY_WAY = {
+    f"{scheduler.value}, {engine.value}": (scheduler, engine)
+    for scheduler in Scheduler
+    for engine in (Engine.FAST, Engine.REFERENCE)
+}
+
+
+@crossed(ALL, EVERY_WAY)
+def test_whatever_is_shown_of_a_mission_that_ships_replays(name, variation):
+    scheduler, engine = variation
+    mission = load_mission(name, Variation(scheduler=scheduler))
+    assert_replays(check(mission, engine=engine, limits=Limits(configurations=3_000, seconds=20)))
 
 
 def test_the_empty_trace_replays(oil_spill):
@@ -229,7 +290,6 @@ def test_the_steps_before_the_one_that_fails_are_no_matter(oil_spill, witness):
 
 # --- what is no trace -----------------------------------------------------------------------------------------
 
-SCHEMA = "bigactors.trace/1"
 NO_TRACES = [
     (None, "this is no trace: it should be an object with 'schema': 'bigactors.trace/1'"),
     ([], "this is no trace: it should be an object with"),
