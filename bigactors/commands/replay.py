@@ -22,7 +22,7 @@ from bigraphs import draw_text
 from checker import ReplayError, Trace, print_loop, print_trace, replay
 from physical.messages import counted
 from semantics.races.monitor import monitored
-from semantics.state.abstraction import as_it_is
+from semantics.state.abstraction import all_as_it_is
 from semantics.state.printing import print_configuration
 from specs.elaboration import ElaboratedMission
 from specs.missions import shipped_missions
@@ -84,7 +84,7 @@ def show_foreign(options: Namespace) -> Exit:
     for finding in shown.findings:
         tell(finding.message, "not as the mission says:")
     say(f"c{len(shown.trace)} shows")
-    say(indent(draw_text(as_it_is(shown.trace.configurations[-1]).structure.logical.bigraph()), "  "))
+    say(indent(draw_text(all_as_it_is(shown.trace.configurations[-1]).structure.logical.bigraph()), "  "))
     changes = counted(len(shown.trace), "change")
     say(f"{options.trace}: {counted(shown.positions, 'position')}, {changes} of the bigraph")
     _account_for(options.trace, shown)

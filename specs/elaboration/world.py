@@ -16,7 +16,7 @@ from specs.elaboration.geometry import elaborate_placement
 from specs.elaboration.names import Names
 
 MOST_ENTITIES: Final = 2_000
-MOST_PAIRS: Final = 100_000
+MOST_PAIRS: Final = 1_200_000
 """How often it may be asked whether a place contains an entity."""
 
 _NOWHERE: Final = point(0, 0)
