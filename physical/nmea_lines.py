@@ -61,6 +61,11 @@ def framed_in(line: bytes) -> tuple[Framed, ...]:
     return tuple(_framed(*each) for each in zip(found, times, torn, strict=False))
 
 
+def has_frame(text: bytes) -> bool:
+    """Tell whether a sentence is anywhere in a text."""
+    return _FRAME.search(text) is not None
+
+
 def _lone_blocks(line: bytes) -> tuple[Framed, ...]:
     if not line.startswith(b"\\") or not _BLOCK.match(line):
         return ()

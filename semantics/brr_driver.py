@@ -26,8 +26,10 @@ def mobility_commands(c: Configuration, found: Realisation) -> tuple[MobilityCom
     physical = c.structure.physical
     told: list[MobilityCommand] = []
     for node, place in found.flying:
-        for stop in stops(c, found, node, place):
-            told.append(Waypoint(node, stop.point, stop.altitude or _level(physical, stop.place)))
+        told.extend(
+            Waypoint(node, stop.point, stop.altitude or _level(physical, stop.place))
+            for stop in stops(c, found, node, place)
+        )
     for cell, channels in sorted(found.physical.items()):
         if cell == channels_cell(cell[-1]):
             told.extend(rechannel(cell[-1], physical.channels(cell[-1]), channels))

@@ -21,11 +21,14 @@ from bigactors.waypoint_export import write_route
 from bigraphs import draw_text
 from checker import ReplayError, Trace, print_loop, print_trace, replay
 from physical.messages import counted
+from physical.nmea_lines import has_frame
 from semantics.races.monitor import monitored
 from semantics.state.abstraction import all_as_it_is
 from semantics.state.printing import print_configuration
 from specs.elaboration import ElaboratedMission
 from specs.missions import shipped_missions
+
+AIS = (".nmea", ".ais")
 
 Open = Callable[[str], ElaboratedMission]
 """Returns a mission by its path or name."""
@@ -68,8 +71,12 @@ def run(options: Namespace) -> Exit:
 
 def is_foreign(path: str) -> bool:
     """Tell whether a file is neither a trace nor a recording of ours: a telemetry log, or AIS."""
-    first = read_bytes(path, 64).lstrip()[:1]
-    return path.endswith(TELEMETRY) or (first != b"" and first in b"!$\\#")
+    if path.endswith((TELEMETRY, *AIS)):
+        return True
+    begins = read_bytes(path, 4_096).lstrip()
+    return begins[:1] in (b"!", b"$", b"\\", b"#") or (
+        begins[:1] not in (b"", b"{", b"[") and has_frame(begins)
+    )
 
 
 def show_foreign(options: Namespace) -> Exit:

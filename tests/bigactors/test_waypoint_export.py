@@ -89,7 +89,7 @@ check {{ {claims} }}
 @pytest.mark.parametrize("suffix", ["waypoints", "plan"])
 @pytest.mark.parametrize("via", ["", " VIA gate0"])
 @pytest.mark.parametrize(
-    ("goal", "uav", "height"),
+    "altitudes",
     [
         ("altitude 200 m to 400 m", "altitude 300 m", 300.0),  # a vehicle keeps its altitude
         ("altitude 200 m to 400 m", "", 300.0),
@@ -98,7 +98,8 @@ check {{ {claims} }}
         ("", "altitude 222.25 m", 222.25),
     ],
 )
-def test_what_is_written_is_read_back_in_the_goal(missions, bigactors, suffix, via, goal, uav, height):
+def test_what_is_written_is_read_back_in_the_goal(missions, bigactors, suffix, via, altitudes):
+    goal, uav, height = altitudes
     (missions / "banded.mission").write_text(BANDED.format(goal=goal, uav=uav, via=via))
     assert bigactors("simulate", "banded.mission", "--json", "run.json")[0] == 0
     assert bigactors("replay", "run.json", "--waypoints", f"uav0=route.{suffix}")[0] == 0
