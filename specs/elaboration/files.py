@@ -13,7 +13,7 @@ from physical import GeoJSONError, Geometry, PhysicalError, PhysicalProperty, ci
 from physical.geojson import MAX_BYTES as MAX_GEOJSON
 from physical.mmsi import KINDS
 from physical.place_files import PLACES, read_place_file
-from physical.tally import Read
+from physical.tally import Counting, Read
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import shorten
@@ -85,14 +85,16 @@ def read_source(
         names.findings.unread.update(_GIVEN_BY_FILES)
         return ()
     found = read.properties
-    if missing := read.missing():
-        notes.append(f"{entry.file.value}: {'; '.join(missing)}")
     _check_keep(entry, found, names)
-    kept = _as_places(_prefixed(_kept(found, entry.keep, area), entry.prefix), entry, names, notes)
-    limited = kept if entry.limit is None else kept[: entry.limit]
-    if len(limited) < len(kept):
+    counting = Counting()
+    kept = tuple(_kept(found, entry.keep, area, counting))
+    if missing := (*read.missing(), *counting.tally(len(found), "entity", "entities").missing()):
+        notes.append(f"{entry.file.value}: {'; '.join(missing)}")
+    places = _as_places(_prefixed(kept, entry.prefix), entry, names, notes)
+    limited = places if entry.limit is None else places[: entry.limit]
+    if len(limited) < len(places):
         notes.append(
-            f"of the {len(kept)} entities in {entry.file.value} the first {len(limited)} are in the world"
+            f"of the {len(places)} entities in {entry.file.value} the first {len(limited)} are in the world"
         )
     usable = tuple(item for item in limited if _usable(item, entry, names))
     if len(usable) < len(limited):
@@ -178,13 +180,17 @@ def _check_keep(entry: s.FromSource, found: tuple[PhysicalProperty, ...], names:
 
 
 def _kept(
-    found: tuple[PhysicalProperty, ...], keep: tuple[s.Keep, ...], area: Geometry | None
+    found: tuple[PhysicalProperty, ...], keep: tuple[s.Keep, ...], area: Geometry | None, counting: Counting
 ) -> Iterator[tuple[PhysicalProperty, s.Keep | None]]:
-    """Yield what is kept, of the kind that the mission calls it, with what says so."""
+    """Yield what is kept, of the kind that the mission calls it, with what says so; count the rest."""
     kinds = {each.recorded.text: each for each in keep}
     for item in found:
         as_kind = kinds.get(item.kind)
-        if (not keep or as_kind is not None) and (area is None or contains(area, item.geometry)):
+        if keep and as_kind is None:
+            counting.leave(f"{shorten(item.kind)} not asked for")
+        elif area is not None and not contains(area, item.geometry):
+            counting.leave(f"{shorten(item.kind)} outside the area")
+        else:
             yield (item if as_kind is None else replace(item, kind=as_kind.kind.text)), as_kind
 
 
