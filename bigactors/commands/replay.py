@@ -94,15 +94,15 @@ def show_foreign(options: Namespace) -> Exit:
     say(indent(draw_text(all_as_it_is(shown.trace.configurations[-1]).structure.logical.bigraph()), "  "))
     changes = counted(len(shown.trace), "change")
     say(f"{options.trace}: {counted(shown.positions, 'position')}, {changes} of the bigraph")
-    _account_for(options.trace, shown)
+    _account_for(options.trace, shown, say)
     return Exit.HOLDS
 
 
-def _account_for(path: str, shown: Shown) -> None:
+def _account_for(path: str, shown: Shown, write: Callable[[str], None]) -> None:
     """Say what was in a recording of others, and what of it does not count."""
     for tally in shown.tallies:
         for row in tally.summary():
-            say(f"{path}: {row}")
+            write(f"{path}: {row}")
 
 
 def _watched(
@@ -130,6 +130,7 @@ def read_trace(
         return _read_recording(path, mission_file, open_mission)
     if is_foreign(path):
         mission, shown = _watched(path, mission_file, open_mission, names or {})
+        _account_for(path, shown, tell)
         return Replayed(mission, shown.trace, times=shown.times)
     data = read_json(path)
     named = data.get("mission") if isinstance(data, dict) else None

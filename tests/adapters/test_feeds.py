@@ -262,8 +262,8 @@ def test_what_brings_no_position_is_told_by_kind_at_once_and_in_all_at_the_end()
                     link.sendto(line, feed.local)
                     await wait()
         told = troubles(world)
-        assert told["message of type 8, which has no position: such are not read"] == 1
-        assert told["message of type 8, which has no position, not read in all"] == 3
+        assert told["message of type 8, without a position of its sender: such are not read"] == 1
+        assert told["message of type 8, without a position of its sender, not read in all"] == 3
         assert told["sentence GPGSV, not read in all"] == 1
         assert len(told) == 4
 

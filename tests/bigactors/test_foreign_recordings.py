@@ -138,3 +138,14 @@ def test_a_trace_is_no_recording_of_others_whatever_texts_are_in_it(missions, bi
     code, _, err = bigactors("replay", "run.json")
     assert code != 0
     assert "position" not in err
+
+
+@pytest.mark.usefixtures("missions")
+def test_a_recording_that_is_drawn_is_accounted_for_too(missions, bigactors):
+    (missions / "places.mission").write_text(HARBOUR)
+    (missions / "x.nmea").write_bytes(FINE + b"\nnoise\n")
+    code, _, err = bigactors(
+        "show", "places.mission", "--trace", "x.nmea", "--name", "mmsi:211000001=ship0", "--output", "x.svg"
+    )
+    assert code == 0
+    assert "x.nmea: not read: 1 x line without a sentence" in err
