@@ -10,7 +10,7 @@ from bigactors.files import write_text
 from bigactors.mistakes import Mistake
 from bigraphs.notation.spelling import did_you_mean
 from checker import Trace
-from physical import Geometry, MobilityCommand, visited, write_plan, write_waypoints
+from physical import Geometry, MobilityCommand, Waypoint, write_plan, write_waypoints
 from physical.place_files import PLAN, WAYPOINTS
 from semantics.brr_driver import mobility_commands
 from semantics.control import Realisation, realisations
@@ -20,7 +20,7 @@ from semantics.state.requests import CTR
 from semantics.state.signature import Name
 
 HEIGHT = 100.0
-"""Metres above home at which what has no band of its own travels."""
+"""Metres above home at which a vehicle travels of which the mission says no altitude, to a place without a band."""
 
 WRITERS = {PLAN: write_plan, WAYPOINTS: write_waypoints}
 
@@ -34,17 +34,19 @@ def write_route(trace: Trace, vehicle: Name, path: str) -> int:
     if vehicle not in start.setting.kinds:
         hint = did_you_mean(vehicle, start.setting.kinds) or "name a vehicle of the mission"
         raise Mistake(f"the mission has no entity '{vehicle:.60}'", hint)
-    told = tuple(_told(trace))
-    points = visited(told, vehicle)
-    if not points:
+    told = [each for each in _told(trace) if isinstance(each, Waypoint) and each.entity == vehicle]
+    if not told:
         raise Mistake(f"nothing sends '{vehicle}' anywhere in this trace", "name another vehicle")
-    write_text(path, write(points, HEIGHT, _home(start, vehicle)))
-    return len(points)
+    points, bands = [each.point for each in told], [each.altitude for each in told]
+    write_text(path, write(points, HEIGHT, *_home(start, vehicle), bands))
+    return len(told)
 
 
-def _home(c: Configuration, vehicle: Name) -> Geometry | None:
+def _home(c: Configuration, vehicle: Name) -> tuple[Geometry | None, float]:
+    """Return where a vehicle starts, if that is a point, and how high; at 0 m where the mission doesn't say."""
     at = c.structure.physical.position(vehicle)
-    return at.geometry if at is not None and at.geometry.is_point else None
+    altitude = 0.0 if at is None or at.altitude is None else at.altitude.low
+    return at.geometry if at is not None and at.geometry.is_point else None, altitude
 
 
 def _told(trace: Trace) -> Iterator[MobilityCommand]:

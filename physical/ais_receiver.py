@@ -210,5 +210,5 @@ def _message(ear: Ear, parts: tuple[Part, ...], time: float | None) -> Heard:
     elif reason is not None:
         piece = reason.value
     else:
-        piece = STATIC if reports else f"message of type {type_of(parts)}, which has no position"
+        piece = STATIC if reports else f"message of type {type_of(parts)}, without a position of its sender"
     return Heard(ear, reports, () if reason is None else (reason,), (piece,))

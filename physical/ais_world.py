@@ -190,7 +190,7 @@ def _is_wanted(
     known: PhysicalProperty, area: Geometry | None, kinds: Collection[str] | None, counting: Counting
 ) -> bool:
     if kinds is not None and known.kind not in kinds:
-        counting.leave(f"{known.kind}, not asked for")
+        counting.leave(f"{known.kind} not asked for")
     elif area is not None and not contains(area, known.geometry):
         counting.leave("station outside the area")
     else:

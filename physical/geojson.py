@@ -29,7 +29,7 @@ from physical.tally import Counting, Read
 from physical.untrusted_text import is_word, legible, read_json
 
 MAX_BYTES: Final = 10_000_000
-MAX_FEATURES: Final = 10_000
+MAX_FEATURES: Final = 20_000
 MAX_VERTICES: Final = 100_000
 
 READ: Final = ("name", "kind", "altitude", "channels", "carried_by", "radius_m", "width_m")

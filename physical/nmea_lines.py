@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from itertools import accumulate
 from typing import Final
 
 from physical.nmea import Reason, TagBlock, parse_tag_block, together
@@ -20,7 +19,8 @@ from physical.written_times import time_beside
 _BEGINNING: Final = rb"[!$](?=(?:--)?[A-Za-z0-9]{1,8}[,*])"
 _FRAME: Final = re.compile(
     rb"(?P<tags>(?:\\[^\\!$\r\n]*\\[ \t]*){0,8})"
-    rb"(?P<sentence>" + _BEGINNING + rb"(?:(?!" + _BEGINNING + rb")[^*\\\r\n])*(?:\*[^\\\s!$]{0,2})?)"
+    rb"(?P<sentence>" + _BEGINNING + rb"[^*\\\r\n!$]*(?:(?!" + _BEGINNING + rb")[!$][^*\\\r\n!$]*)*"
+    rb"(?:\*[^\\\s!$]{0,2})?)"
 )
 _BLOCK: Final = re.compile(rb"\\([^\\]*)\\")
 _TORN: Final = re.compile(rb"\\(?:[a-z]|\d+G\d+):")
@@ -53,12 +53,20 @@ def framed_in(line: bytes) -> tuple[Framed, ...]:
     found = list(_FRAME.finditer(line))
     if not found:
         return _lone_blocks(line)
+    if found[0].span() == (0, len(line)):  # most lines
+        return (_framed(found[0], None, torn=False),)
     ends = [0, *(each.end() for each in found)]
     starts = [*(each.start() for each in found), len(line)]
     around = [line[end:start] for end, start in zip(ends, starts, strict=True)]
     times = _times(around)
     torn = [bool(_TORN.search(text)) for text in around]
-    return tuple(_framed(*each) for each in zip(found, times, torn, strict=False))
+    told = zip(found, times, torn, strict=False)
+    return tuple(_framed(each, time, torn=is_torn) for each, time, is_torn in told)
+
+
+def has_frame(text: bytes) -> bool:
+    """Tell whether a sentence is anywhere in a text."""
+    return _FRAME.search(text) is not None
 
 
 def _lone_blocks(line: bytes) -> tuple[Framed, ...]:
@@ -68,27 +76,41 @@ def _lone_blocks(line: bytes) -> tuple[Framed, ...]:
     return (Framed(b"", tag, reasons=reasons),)
 
 
-def _framed(found: re.Match[bytes], time: float | None, torn: bool) -> Framed:
+def _framed(found: re.Match[bytes], time: float | None, *, torn: bool) -> Framed:
     tag, reasons = _tag(found["tags"])
     return Framed(found["sentence"].rstrip(), tag, time, (*reasons, Reason.TAG_BLOCK) if torn else reasons)
 
 
 def _times(around: list[bytes]) -> list[float | None]:
     """Return the time of each sentence from what stands around them."""
-    if (first := _time(around[0])) is not None:
-        return list(accumulate(around[1:-1], lambda known, text: _either(_time(text), known), initial=first))
-    behind = [_time(text, last=True) for text in around[1:]]
-    return list(accumulate(reversed(behind), lambda known, time: _either(time, known)))[::-1]
+    first = _time(around[0])
+    if first is not None:
+        return _carried([first, *map(_time, around[1:-1])])
+    behind = [_last_time(text) for text in around[1:]]
+    return _carried(behind[::-1])[::-1]
 
 
-def _either(time: float | None, known: float | None) -> float | None:
-    return known if time is None else time
+def _carried(times: list[float | None]) -> list[float | None]:
+    """Return times in which a missing one is the one before."""
+    found, known = list[float | None](), None
+    for time in times:
+        known = known if time is None else time
+        found.append(known)
+    return found
 
 
-def _time(text: bytes, *, last: bool = False) -> float | None:
+def _time(text: bytes) -> float | None:
+    return time_beside(_untorn(text)) if text else None
+
+
+def _last_time(text: bytes) -> float | None:
+    return time_beside(_untorn(text), last=True) if text else None
+
+
+def _untorn(text: bytes) -> str:
+    """Return a logger's words, without a torn tag block."""
     torn = _TORN.search(text)
-    text = text[: torn.start()] if torn else text
-    return time_beside(text.decode("ascii", errors="replace"), last=last) if text.strip() else None
+    return (text[: torn.start()] if torn else text).decode("ascii", errors="replace")
 
 
 def _tag(text: bytes) -> tuple[TagBlock | None, tuple[Reason, ...]]:

@@ -74,14 +74,14 @@ def write_plan(
     points: Sequence[Geometry],
     altitude: float,
     home: Geometry | None = None,
-    bands: Sequence[Band | None] = (),
     home_altitude: float = 0.0,
+    bands: Sequence[Band | None] = (),
 ) -> str:
     """Return a plan that visits points at an altitude in metres above home; home is the first unless given.
 
     A point with a band of altitudes above sea level is visited within it instead.
     """
-    start, *stops = stops_of(points, altitude, home, bands, home_altitude)
+    start, *stops = stops_of(points, altitude, home, home_altitude, bands)
     mission = {
         "version": 2,
         "firmwareType": _ARDUPILOT,

@@ -188,15 +188,15 @@ def write_waypoints(
     points: Sequence[Geometry],
     altitude: float,
     home: Geometry | None = None,
-    bands: Sequence[Band | None] = (),
     home_altitude: float = 0.0,
+    bands: Sequence[Band | None] = (),
 ) -> str:
     """Return a waypoint file that visits points at an altitude in metres above home.
 
     A point with a band of altitudes above sea level is visited within it instead. Home, the first point unless given,
     is written as item 0.
     """
-    stops = stops_of(points, altitude, home, bands, home_altitude)
+    stops = stops_of(points, altitude, home, home_altitude, bands)
     return "".join(f"{line}\n" for line in (HEADER, *(_line(i, stop) for i, stop in enumerate(stops))))
 
 
@@ -212,8 +212,8 @@ def stops_of(
     points: Sequence[Geometry],
     altitude: float,
     home: Geometry | None,
-    bands: Sequence[Band | None],
     home_altitude: float,
+    bands: Sequence[Band | None],
 ) -> tuple[Stop, ...]:
     """Return home and the points that are visited, each with its altitude; raises PhysicalError."""
     at = [home or points[0], *points] if points else []

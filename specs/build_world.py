@@ -76,10 +76,11 @@ class BuildWorld(BuildTiming):
     def from_source(self, c: Children) -> s.FromSource:
         keep = tuple(item for item in c if isinstance(item, s.Keep))
         limit = None if c[-1] is None else whole(c[-1])
-        return s.FromSource(text(c[1]), optional(c[3], text), c[5], keep, limit, span=cover(c))
+        prefix, time = optional(c[3], name), optional(c[5], text)
+        return s.FromSource(text(c[1]), prefix, time, c[7], keep, limit, span=cover(c))
 
     def keep(self, c: Children) -> s.Keep:
-        return s.Keep(name(c[0]), name(c[0] if c[2] is None else c[2]), span=cover(c))
+        return s.Keep(name(c[0]), name(c[0] if c[2] is None else c[2]), c[4], span=cover(c))
 
     # --- geometry
 

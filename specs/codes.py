@@ -303,9 +303,9 @@ class Code(Enum):
     TOO_MANY_ENTITIES = (
         "LS307",
         "too many entities",
-        """A mission has at most two thousand entities, and its entities and places make at most a hundred thousand
-        pairs to test for containment. Reduce a file with `within` (an area), `keep` (some kinds) or `limit` (a
-        number).""",
+        """A mission has at most two thousand entities, and its entities and places make at most 1.2 million pairs (a
+        thousand places) to test for containment. Reduce a file with `within` (an area), `keep` (some kinds) or `limit`
+        (a number).""",
     )
     MISSING_EXTRA = (
         "LS308",

@@ -243,6 +243,8 @@ def _entity(node: s.Entity) -> list[str]:
 
 def _from_source(node: s.FromSource) -> list[str]:
     found = [f"from {write(node.file)}"]
+    if node.prefix:
+        found.append(f"as {write(node.prefix)}")
     if node.time:
         found.append(f"at {write(node.time)}")
     if node.within:
@@ -253,13 +255,14 @@ def _from_source(node: s.FromSource) -> list[str]:
 
 
 def _kept(keep: Sequence[s.Keep]) -> list[str]:
-    texts = [
-        write(item.recorded)
-        if item.recorded == item.kind
-        else f"{write(item.recorded)} as {write(item.kind)}"
-        for item in keep
-    ]
+    texts = [_kept_kind(item) for item in keep]
     return ["keep", *(f"{text}," for text in texts[:-1]), texts[-1]]
+
+
+def _kept_kind(item: s.Keep) -> str:
+    kind = "" if item.recorded == item.kind else f" as {write(item.kind)}"
+    radius = "" if item.radius is None else f" radius {write(item.radius)}"
+    return f"{write(item.recorded)}{kind}{radius}"
 
 
 def _rule(node: s.Rule) -> list[str]:

@@ -47,8 +47,8 @@ def fill(parser: Parser) -> None:
         action="append",
         default=[],
         type=route,
-        help="write the points that the trace sends a vehicle to, for ground stations, as QGC WPL 110 (.waypoints) "
-        "or as a plan (.plan); may be repeated",
+        help="write the points that the trace sends a vehicle to, at its altitude there, for ground stations, as "
+        "QGC WPL 110 (.waypoints) or as a plan (.plan); may be repeated",
     )
     parser.add_argument("--step", action="store_true", help="wait for Enter before each step")
     varying(parser)

@@ -7,7 +7,7 @@ from bigactors.arguments.values import corners, named, time_of
 
 DESCRIPTION: Final = """\
 Read GeoJSON, waypoint files, plans of QGroundControl and AIS recordings into one world, print its bigraph A(P),
-and count what of the recordings could not be used."""
+and count by kind what was in the files and not read."""
 
 
 def fill(parser: Parser) -> None:

@@ -21,11 +21,14 @@ from bigactors.waypoint_export import write_route
 from bigraphs import draw_text
 from checker import ReplayError, Trace, print_loop, print_trace, replay
 from physical.messages import counted
+from physical.nmea_lines import has_frame
 from semantics.races.monitor import monitored
-from semantics.state.abstraction import as_it_is
+from semantics.state.abstraction import all_as_it_is
 from semantics.state.printing import print_configuration
 from specs.elaboration import ElaboratedMission
 from specs.missions import shipped_missions
+
+AIS = (".nmea", ".ais")
 
 Open = Callable[[str], ElaboratedMission]
 """Returns a mission by its path or name."""
@@ -68,8 +71,12 @@ def run(options: Namespace) -> Exit:
 
 def is_foreign(path: str) -> bool:
     """Tell whether a file is neither a trace nor a recording of ours: a telemetry log, or AIS."""
-    first = read_bytes(path, 64).lstrip()[:1]
-    return path.endswith(TELEMETRY) or (first != b"" and first in b"!$\\#")
+    if path.endswith((TELEMETRY, *AIS)):
+        return True
+    begins = read_bytes(path, 4_096).lstrip()
+    return begins[:1] in (b"!", b"$", b"\\", b"#") or (
+        begins[:1] not in (b"", b"{", b"[") and has_frame(begins)
+    )
 
 
 def show_foreign(options: Namespace) -> Exit:
@@ -84,18 +91,18 @@ def show_foreign(options: Namespace) -> Exit:
     for finding in shown.findings:
         tell(finding.message, "not as the mission says:")
     say(f"c{len(shown.trace)} shows")
-    say(indent(draw_text(as_it_is(shown.trace.configurations[-1]).structure.logical.bigraph()), "  "))
+    say(indent(draw_text(all_as_it_is(shown.trace.configurations[-1]).structure.logical.bigraph()), "  "))
     changes = counted(len(shown.trace), "change")
     say(f"{options.trace}: {counted(shown.positions, 'position')}, {changes} of the bigraph")
-    _account_for(options.trace, shown)
+    _account_for(options.trace, shown, say)
     return Exit.HOLDS
 
 
-def _account_for(path: str, shown: Shown) -> None:
+def _account_for(path: str, shown: Shown, write: Callable[[str], None]) -> None:
     """Say what was in a recording of others, and what of it does not count."""
     for tally in shown.tallies:
         for row in tally.summary():
-            say(f"{path}: {row}")
+            write(f"{path}: {row}")
 
 
 def _watched(
@@ -123,6 +130,7 @@ def read_trace(
         return _read_recording(path, mission_file, open_mission)
     if is_foreign(path):
         mission, shown = _watched(path, mission_file, open_mission, names or {})
+        _account_for(path, shown, tell)
         return Replayed(mission, shown.trace, times=shown.times)
     data = read_json(path)
     named = data.get("mission") if isinstance(data, dict) else None

@@ -1,6 +1,6 @@
 """The abstraction A(P): the paper's Bigraph Driver (3.2.2), and the merging of several stations' observations."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from bigraphs import Bigraph
 from physical import PhysicalProperty
@@ -11,7 +11,7 @@ from semantics.state.initial import initial
 from semantics.state.logical_model import links_cell, parent_cell
 from semantics.state.physical_model import Carried, Placed, Placement
 from semantics.state.setting import Setting
-from semantics.state.signature import Signature
+from semantics.state.signature import Name, Signature
 
 
 def merged(*sources: Iterable[PhysicalProperty]) -> tuple[PhysicalProperty, ...]:
@@ -54,8 +54,18 @@ def abstraction(properties: Iterable[PhysicalProperty], signature: Signature) ->
 def as_it_is(c: Configuration) -> Configuration:
     """Return a configuration in which L is A(P), the belief of an observer of everything."""
     physical = c.structure.physical
+    return _with_parents(c, physical.abstract_parent)
+
+
+def all_as_it_is(c: Configuration) -> Configuration:
+    """Return what `as_it_is` does; thousands of places are quick, but every placement is read."""
+    return _with_parents(c, c.structure.physical.abstract_parents().__getitem__)
+
+
+def _with_parents(c: Configuration, parent: Callable[[Name], Name]) -> Configuration:
+    physical = c.structure.physical
     slots: Changes = {}
     for name in c.setting.kinds:
-        slots[parent_cell(name)] = physical.abstract_parent(name) if name in physical else None
+        slots[parent_cell(name)] = parent(name) if name in physical else None
         slots[links_cell(name)] = physical.links(name) if name in physical else ()
     return c.with_(slots)

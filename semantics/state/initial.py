@@ -80,10 +80,10 @@ def _remembered(clause: Clause) -> Changes:
 def _believing(c: Configuration, beliefs: Beliefs) -> Configuration:
     physical = c.structure.physical
     slots: Changes = {}
+    parents = physical.abstract_parents()
     for name in c.setting.kinds:
-        present = name in physical
-        slots[parent_cell(name)] = physical.abstract_parent(name) if present else None
-        slots[links_cell(name)] = physical.links(name) if present else ()
+        slots[parent_cell(name)] = parents.get(name)
+        slots[links_cell(name)] = physical.links(name) if name in parents else ()
     slots |= {parent_cell(name): parent for name, parent in beliefs.parents.items()}
     slots |= {links_cell(name): tuple(sorted(links)) for name, links in beliefs.links.items()}
     slots |= {links_cell(name): () for name, parent in beliefs.parents.items() if parent is None}

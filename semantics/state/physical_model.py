@@ -1,12 +1,12 @@
 """The physical model P as a view over cells: placements, and σ_P = {contains, carries, connected}."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import takewhile
 from typing import NamedTuple
 
-from physical import Band, Geometry, area, band_contains, contains, point, share_interior
+from physical import Band, Geometry, PlaceIndex, area, band_contains, contains, point, share_interior
 from semantics.state.cells import NAMES, Cell, Cells, Changes, is_something
 from semantics.state.signature import REGION, Name, Sorting
 
@@ -214,6 +214,33 @@ class PhysicalModel:
             return REGION
         is_within = self._is_within(entity)
         return next((place for _, place, at in holders if is_within(place, at)), REGION)
+
+    def abstract_parents(self) -> dict[Name, Name]:
+        """Return the parents in A(P) of all entities that are there: an index tells which places are near each."""
+        entities = self.entities()
+        standing = ((name, self._standing(name)) for name in entities)
+        places = {name: at for name, at in standing if at is not None and not at.geometry.is_point}
+        index = PlaceIndex({name: at.geometry for name, at in places.items()})
+        containers = cache(lambda kind: frozenset(self.sorting.containers(kind)))
+        return {name: self._parent_among(name, places, index, containers) for name in entities}
+
+    def _parent_among(
+        self,
+        entity: Name,
+        places: Mapping[Name, Placed],
+        index: PlaceIndex,
+        containers: Callable[[Name], frozenset[Name]],
+    ) -> Name:
+        """Return what `abstract_parent` does, of places that stand by themselves."""
+        if (by := self.carrier(entity)) is not None:
+            return by
+        inner = self.position(entity)
+        allowed, is_within = containers(self.sorting.kind(entity)), self._is_within(entity)
+        near = () if inner is None else index.near(inner.geometry)
+        around = (
+            name for name in near if name != entity and name in allowed and is_within(name, places[name])
+        )
+        return min(around, key=lambda name: (measure(places[name].geometry), name), default=REGION)
 
     def is_in(self, entity: Name, place: Name) -> bool:
         """Tell whether an entity's parent in A(P) is a place; only that is asked of where it stands."""

@@ -13,10 +13,10 @@ from enum import Enum
 from functools import partial
 from typing import Final
 
-from physical import Geometry, Waypoint
+from physical import Geometry
 from physical.extents import Extent, extent, span
 from semantics.behaviours.reaction_rules import moved
-from semantics.brr_driver import mobility_commands
+from semantics.brr_driver import stops
 from semantics.control import commits
 from semantics.environment import Drifts
 from semantics.state.cells import VOYAGE, Cell, Changes
@@ -265,8 +265,10 @@ def travelling(c: Configuration, fly: FLY) -> tuple[tuple[Name, Name], ...]:
 def waypoints(c: Configuration, fly: FLY, vehicle: Name) -> tuple[Geometry, ...]:
     """Return the points to which a vehicle is sent now, as the runtime sends it; none where it can't arrive now."""
     found = commits(c, fly)
-    told = () if found is None else mobility_commands(c, found)
-    return tuple(each.point for each in told if isinstance(each, Waypoint) and each.entity == vehicle)
+    if found is None:
+        return ()
+    flying = (pair for pair in found.flying if pair[0] == vehicle)
+    return tuple(stop.point for pair in flying for stop in stops(c, found, *pair))
 
 
 def circle(setting: Setting, vehicle: Name) -> float:

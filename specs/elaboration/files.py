@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
 
-from physical import GeoJSONError, Geometry, PhysicalError, PhysicalProperty, contains, open_file
+from physical import GeoJSONError, Geometry, PhysicalError, PhysicalProperty, circle, contains, open_file
 from physical.geojson import MAX_BYTES as MAX_GEOJSON
 from physical.mmsi import KINDS
 from physical.place_files import PLACES, read_place_file
-from physical.tally import Read
+from physical.tally import Counting, Read
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import shorten
@@ -85,14 +85,16 @@ def read_source(
         names.findings.unread.update(_GIVEN_BY_FILES)
         return ()
     found = read.properties
-    if missing := read.missing():
-        notes.append(f"{entry.file.value}: {'; '.join(missing)}")
     _check_keep(entry, found, names)
-    kept = tuple(_kept(found, entry.keep, area))
-    limited = kept if entry.limit is None else kept[: entry.limit]
-    if len(limited) < len(kept):
+    counting = Counting()
+    kept = tuple(_kept(found, entry.keep, area, counting))
+    if missing := (*read.missing(), *counting.tally(len(found), "entity", "entities").missing()):
+        notes.append(f"{entry.file.value}: {'; '.join(missing)}")
+    places = _as_places(_prefixed(kept, entry.prefix), entry, names, notes)
+    limited = places if entry.limit is None else places[: entry.limit]
+    if len(limited) < len(places):
         notes.append(
-            f"of the {len(kept)} entities in {entry.file.value} the first {len(limited)} are in the world"
+            f"of the {len(places)} entities in {entry.file.value} the first {len(limited)} are in the world"
         )
     usable = tuple(item for item in limited if _usable(item, entry, names))
     if len(usable) < len(limited):
@@ -178,12 +180,64 @@ def _check_keep(entry: s.FromSource, found: tuple[PhysicalProperty, ...], names:
 
 
 def _kept(
-    found: tuple[PhysicalProperty, ...], keep: tuple[s.Keep, ...], area: Geometry | None
-) -> Iterator[PhysicalProperty]:
-    kinds = {each.recorded.text: each.kind.text for each in keep}
+    found: tuple[PhysicalProperty, ...], keep: tuple[s.Keep, ...], area: Geometry | None, counting: Counting
+) -> Iterator[tuple[PhysicalProperty, s.Keep | None]]:
+    """Yield what is kept, of the kind that the mission calls it, with what says so; count the rest."""
+    kinds = {each.recorded.text: each for each in keep}
     for item in found:
-        if (not keep or item.kind in kinds) and (area is None or contains(area, item.geometry)):
-            yield replace(item, kind=kinds.get(item.kind, item.kind))
+        as_kind = kinds.get(item.kind)
+        if keep and as_kind is None:
+            counting.leave(f"{shorten(item.kind)} not asked for")
+        elif area is not None and not contains(area, item.geometry):
+            counting.leave(f"{shorten(item.kind)} outside the area")
+        else:
+            yield (item if as_kind is None else replace(item, kind=as_kind.kind.text)), as_kind
+
+
+Kept = Iterable[tuple[PhysicalProperty, s.Keep | None]]
+
+
+def _prefixed(found: Kept, prefix: s.Name | None) -> Kept:
+    """Put what a mission calls a file before the names in it."""
+    if prefix is None:
+        return found
+    begin = f"{prefix.text}_"
+    return (
+        (
+            replace(
+                item,
+                entity=begin + item.entity,
+                carried_by=None if item.carried_by is None else begin + item.carried_by,
+            ),
+            keep,
+        )
+        for item, keep in found
+    )
+
+
+def _as_places(
+    found: Kept, entry: s.FromSource, names: Names, notes: list[str]
+) -> tuple[PhysicalProperty, ...]:
+    """Make circles of points where the mission says a radius; of several at one spot the first is one."""
+    made: dict[Geometry, str] = {}
+    places = []
+    for item, keep in found:
+        if keep is None or keep.radius is None or not item.geometry.is_point:
+            places.append(item)
+            continue
+        try:
+            round_it = circle(item.geometry.vertices[0], keep.radius.metres)
+        except PhysicalError as error:
+            names.findings.add(Code.BAD_GEOMETRY, keep.radius, error.message, error.hint)
+            continue
+        if round_it in made:
+            notes.append(
+                f"{entry.file.value}: {item.entity} lies where {made[round_it]} does: it is left out"
+            )
+            continue
+        made[round_it] = item.entity
+        places.append(replace(item, geometry=round_it))
+    return tuple(places)
 
 
 def _usable(item: PhysicalProperty, entry: s.FromSource, names: Names) -> bool:

@@ -71,7 +71,13 @@ class Names:
     lacking: set[str] = field(default_factory=set)
     demands: list[Demand] = field(default_factory=list)
 
-    def declare(self, sort: str, name: str, where: s.Node | s.Span) -> bool:
+    def declare(
+        self,
+        sort: str,
+        name: str,
+        where: s.Node | s.Span,
+        hint: str = "choose another name for one of the two",
+    ) -> bool:
         """Give a name its meaning; reports one that has a meaning already, and tells whether all is well."""
         span = where if isinstance(where, s.Span) else where.span
         clashing = EXCLUSIVE if sort in EXCLUSIVE else (sort,)
@@ -89,7 +95,7 @@ class Names:
                 Code.DUPLICATE_NAME,
                 span,
                 f"'{name}' {problem}{line}",
-                "choose another name for one of the two",
+                hint,
             )
             return False
         self.spans[sort, name] = span

@@ -128,7 +128,7 @@ class Ground:
         if not isinstance(target, Placed) or target.geometry.is_point:
             return (
                 f"'{place.name}' is a point, and has no room for '{node.name}'",
-                "give it a border: box, circle or polygon",
+                "give it a border: box, circle or polygon; points of a file: keep Waypoint as Location radius 50 m",
             )
         if not band_contains(target.altitude, shape.altitude):
             message = f"the altitudes of '{node.name}' are not within those of '{place.name}'"

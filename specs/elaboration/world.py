@@ -16,7 +16,7 @@ from specs.elaboration.geometry import elaborate_placement
 from specs.elaboration.names import Names
 
 MOST_ENTITIES: Final = 2_000
-MOST_PAIRS: Final = 100_000
+MOST_PAIRS: Final = 1_200_000
 """How often it may be asked whether a place contains an entity."""
 
 _NOWHERE: Final = point(0, 0)
@@ -146,8 +146,9 @@ def _whereabouts(entry: s.Entity) -> tuple[str, str] | None:
 
 def _from_file(entry: s.FromSource, names: Names, world: World, library: Library) -> Iterator[_Load]:
     found = read_source(entry, library, names, world.notes)
+    hint = 'let the names of the file begin otherwise: from "FILE" as second has second_NAME'
     for item in found:
-        if names.declare("entity", item.entity, entry.file):
+        if names.declare("entity", item.entity, entry.file, hint):
             names.kinds[item.entity] = item.kind
             world.channels[item.entity] = item.channels
             placed = Placed(item.geometry, item.altitude)

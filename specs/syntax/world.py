@@ -156,11 +156,13 @@ class ChannelDeclaration(Node):
 class Keep(Node):
     """`BaseStation as Station`, or `Vessel` for `Vessel as Vessel`.
 
-    Keep a kind of the recording, as a kind of the mission.
+    Keep a kind of the recording, as a kind of the mission. `Waypoint as Location radius 50 m` makes circles of points,
+    so that they are places.
     """
 
     recorded: Name
     kind: Name
+    radius: Length | None = None
 
 
 @node
@@ -168,10 +170,13 @@ class FromSource(Node):
     """`from "workum.nmea" at "2020-04-07T21:42:00Z" within box (53.1, 5.3) (52.9, 5.5) limit 12`.
 
     Entities from a file beside the mission: places (GeoJSON, a waypoint file, a plan) or an AIS recording. Everything
-    after the file is optional: the time, an area, the kinds (`keep Vessel, BaseStation as Station`) and a number.
+    after the file is optional: what its names begin with (`from "survey.plan" as survey` has `survey_waypoint1`), the
+    time, an area, the kinds (`keep Vessel, BaseStation as Station`, `keep Waypoint as Location radius 50 m`) and a
+    number.
     """
 
     file: TextLiteral
+    prefix: Name | None = None
     time: TextLiteral | None = None
     within: Geometry | None = None
     keep: tuple[Keep, ...] = ()

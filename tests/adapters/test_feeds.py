@@ -229,6 +229,78 @@ def test_the_missions_table_names_a_transponder():
     run(main())
 
 
+COARSE = b"!AIVDM,1,1,,A,K39>JhChGASrwP00,0*50"
+FINE = b"!AIVDM,1,1,,A,139>JhOP000eM?@N`o:00001P000,0*53"
+BINARY = b"!AIVDM,1,1,,A,85Mwp`1Kf3aCnsNvBWLi=wQuNhA5t43N`5nCuI=p<IBfVqnMgPGs,0*47"
+
+
+def test_a_coarse_position_does_not_move_who_was_heard_finely():
+    async def main():
+        world, feed = World(), AisFeed("ais", "udp:0")
+        async with running(feed.run(world)):
+            await until(lambda: feed.local)
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+                for line in (COARSE, FINE, COARSE, FINE, COARSE):
+                    link.sendto(line, feed.local)
+                    await wait()
+        tens = [round(published.property.geometry.vertices[0][0], 4) for published in world.published]
+        assert tens == [53.545, 53.5446, 53.5446]
+        assert (
+            troubles(world)["position to a tenth of a minute, of a station with a finer one, not read in all"]
+            == 2
+        )
+
+    run(main())
+
+
+def test_what_brings_no_position_is_told_by_kind_at_once_and_in_all_at_the_end():
+    async def main():
+        world, feed = World(), AisFeed("ais", "udp:0")
+        async with running(feed.run(world)):
+            await until(lambda: feed.local)
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+                for line in (BINARY, VESSEL, BINARY, b"$GPGSV,3,1,10*00", b"# a comment", BINARY):
+                    link.sendto(line, feed.local)
+                    await wait()
+        told = troubles(world)
+        assert told["message of type 8, without a position of its sender: such are not read"] == 1
+        assert told["message of type 8, without a position of its sender, not read in all"] == 3
+        assert told["sentence GPGSV, not read in all"] == 1
+        assert len(told) == 4
+
+    run(main())
+
+
+def test_ais_comes_as_loggers_write_it():
+    async def main():
+        world, feed = World(), AisFeed("ais", "udp:0")
+        async with running(feed.run(world)):
+            await until(lambda: feed.local)
+            now = int(world.now())
+            lines = (
+                b"%d.5 %s" % (now - 1, VESSEL),
+                b"%s ( MSG: 1, ppm: 1.9 )" % VESSEL,
+                b'{"class":"AIS","rxuxtime":%d,"nmea":["%s"]}' % (now, VESSEL),
+                VESSEL + FINE,
+            )
+            with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+                for line in lines:
+                    link.sendto(line, feed.local)
+                    await wait()
+        assert len(world.published) == 5
+        assert troubles(world) == {}
+
+    run(main())
+
+
+def troubles(world):
+    found = {}
+    for report in world.reports:
+        if isinstance(report, Trouble):
+            found[report.what] = found.get(report.what, 0) + report.count
+    return found
+
+
 # --- lines ------------------------------------------------------------------------------------------
 
 
@@ -249,6 +321,20 @@ def test_a_line_without_end_is_handed_on_and_passed_over_to_its_end():
 
 
 # --- static places ----------------------------------------------------------------------------------
+
+
+def test_what_is_not_read_of_a_file_of_places_is_reported_by_kind(tmp_path):
+    plan = json.loads(write_plan([point(37.0, -8.6)], 100.0))
+    plan["rallyPoints"]["points"] = [[37.0, -8.6, 20], [37.1, -8.6, 20]]
+    (tmp_path / "survey.plan").write_text(json.dumps(plan))
+
+    async def main():
+        world = World()
+        async with running(StaticPlaces("places", tmp_path / "survey.plan").run(world)):
+            await until(lambda: troubles(world), 5)
+        assert troubles(world) == {"survey.plan: 2 x rally point, not read": 1}
+
+    run(main())
 
 
 def test_places_are_published_and_again_when_their_file_changes(tmp_path):

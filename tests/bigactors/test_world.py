@@ -1,10 +1,13 @@
 import json
+from collections import Counter
 from pathlib import Path
 
 import pytest
 from shapely.geometry import shape
 
 from physical import point, write_plan, write_waypoints
+from semantics.state import physical_model
+from semantics.state.physical_model import encloses
 
 NMEA = Path(__file__).parents[2] / "specs" / "missions" / "harbour_watch.nmea"
 
@@ -91,6 +94,27 @@ def test_a_time_before_the_recording_shows_nobody(bigactors):
     assert code == 0
     assert "\n0 entities\n" in out
     assert "it runs from 2020-04-07T21:40:33Z to 2020-04-07T21:42:30Z" in err
+
+
+def test_many_places_are_not_compared_pair_by_pair(missions, bigactors, monkeypatch):
+    asked = Counter()
+
+    def counting(*pair):
+        asked["encloses"] += 1
+        return encloses(*pair)
+
+    monkeypatch.setattr(physical_model, "encloses", counting)
+    cells = [
+        feature(f"c_{i}_{j}", "Cell", square(i + 0.1, j + 0.1, i + 0.9, j + 0.9))
+        for i in range(40)
+        for j in range(40)
+    ]
+    vessels = [feature(f"v{i}", "Vessel", [i + 0.5, i + 0.5]) for i in range(40)]
+    write(missions / "grid.geojson", *cells, *vessels, feature("sea", "Sea", square(-1, -1, 41, 41)))
+    code, out, err = bigactors("world", "grid.geojson")
+    assert (code, err) == (0, "")
+    assert "│  └─ v39: Vessel" in out or "   └─ v39: Vessel" in out
+    assert asked["encloses"] < 5 * 1641
 
 
 @pytest.mark.usefixtures("missions")

@@ -59,6 +59,13 @@ def test_every_message_with_a_position_reports_it(msg_type):
     assert (report.msg_type, report.lat, report.lon) == (msg_type, -33.5, 151.25)
 
 
+@pytest.mark.parametrize(("said", "altitude"), [(0, 0.0), (600, 600.0), (4094, 4094.0), (4095, None)])
+def test_an_aircraft_reports_its_altitude(said, altitude):
+    report = only(parts_of(type=9, mmsi=111232512, lat=52.0, lon=5.0, alt=said))
+    assert report.altitude == altitude
+    assert only(parts_of(type=1, mmsi=244660274, lat=52.0, lon=5.0)).altitude is None
+
+
 @pytest.mark.parametrize(("lat", "lon"), [(91, 181), (91, 5), (52, 181)])
 def test_what_is_not_available_is_no_position(lat, lon):
     assert decode(parts_of(type=1, mmsi=244660274, lat=lat, lon=lon), None) == ((), Reason.NOT_AVAILABLE)

@@ -181,7 +181,7 @@ def test_the_account_is_printed_reason_by_reason():
     assert str(recording.tally).splitlines() == [
         "6 sentences and other lines: 1 comment, 1 position",
         "1 x line without a sentence, not read",
-        "1 x message of type 8, which has no position, not read",
+        "1 x message of type 8, without a position of its sender, not read",
         "1 x part of an incomplete message, not read",
         "1 x sentence GPGSV, not read",
     ]

@@ -114,7 +114,7 @@ def test_all_positions_are_accounted_for():
         "position of a station with a newer one": 1,
         COARSE: 1,
         "position after the time": 1,
-        "BaseStation, not asked for": 1,
+        "BaseStation not asked for": 1,
         "station outside the area": 1,
     }
     assert tally.adds_up

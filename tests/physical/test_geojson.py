@@ -267,7 +267,7 @@ def test_a_bad_feature_is_refused_by_index_and_name(item, message):
         ('{"type": "Feature"}', "the text is no FeatureCollection"),
         ('{"type": "FeatureCollection"}', "the collection has no list of features"),
         (" " * 10_000_001, "the text is over 10,000,000 bytes"),
-        (collection(*[0] * 10_001), "the collection has over 10,000 features"),
+        (collection(*[0] * 20_001), "the collection has over 20,000 features"),
         (collection(feature("Polygon", [[[0, 0]] * 100_001])), "the collection has over 100,000 vertices"),
         (
             '{"type": "FeatureCollection", "crs": {"properties": {"name": "EPSG:28992"}}, "features": []}',

@@ -66,7 +66,7 @@ bands = st.tuples(st.floats(-500, 9000), st.floats(0, 500)).map(lambda each: Ban
 )
 def test_what_is_written_within_a_band_is_read_back_within_it(stops, write):
     points, wanted = zip(*stops, strict=True)
-    text = write(points, 100.0, None, wanted, 12.0)
+    text = write(points, 100.0, None, 12.0, wanted)
     read = read_waypoints if write is write_waypoints else read_plan
     home, *places = waypoint_places(read(text))
     assert home.altitude == Band(12, 12)

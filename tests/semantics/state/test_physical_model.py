@@ -5,6 +5,7 @@ from small_missions import SHAPES, SIGNATURE, aboard, mission
 
 from physical import Band, area, contains, point, translate_to
 from semantics import strategies
+from semantics.state.abstraction import all_as_it_is, as_it_is
 from semantics.state.physical_model import Carried, InTransit, PhysicalModel, Placed
 from semantics.state.signature import REGION, Kind, Signature
 
@@ -45,6 +46,15 @@ def test_the_abstraction_is_the_one_that_brute_force_finds(c):
     physical = c.structure.physical
     for entity in physical.entities():
         assert physical.abstract_parent(entity) == brute_force_parent(physical, entity)
+
+
+@given(reached)
+def test_the_parents_of_all_are_those_of_each(c):
+    physical = c.structure.physical
+    assert physical.abstract_parents() == {
+        name: physical.abstract_parent(name) for name in physical.entities()
+    }
+    assert all_as_it_is(c) == as_it_is(c)
 
 
 @given(reached)
