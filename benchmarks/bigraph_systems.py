@@ -8,11 +8,9 @@ that two programs on a busy machine can be compared.
 import argparse
 import json
 import multiprocessing
-import os
 import resource
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import time
@@ -23,7 +21,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from bigraph_shapes import SHAPES, Model
-from machine import describe
+from machine import describe, run_peer
 from uav_family import Case, counts, text
 
 from bigraphs.exploration import explore
@@ -119,24 +117,13 @@ def beside(model: Model, program: str | None, limit: int) -> Peer | None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "case.big"
         path.write_text(model.text, encoding="utf-8")
-        before = os.times()
-        done = subprocess.run(
-            ["sh", "-c", f'ulimit -t {limit}; exec "$@"', "sh", program, "full", "-M", "1000000", str(path)],
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-    ended = done.returncode == 0
+        ran = run_peer([program, "full", "-M", "1000000", str(path)], seconds=limit)
+    ended = ran.status == 0
     if ended:
-        _check_peer(model, done.stdout)
-    elif done.returncode not in (-signal.SIGXCPU, -signal.SIGKILL):
-        raise SystemExit(f"{model.title}: BigraphER ended with {done.returncode}:\n{done.stderr}")
-    return Peer(_children(before), ended, "measured")
-
-
-def _children(before: os.times_result) -> float:
-    after = os.times()
-    return after.children_user - before.children_user + after.children_system - before.children_system
+        _check_peer(model, ran.printed)
+    elif ran.status not in (-signal.SIGXCPU, -signal.SIGKILL):
+        raise SystemExit(f"{model.title}: BigraphER ended with {ran.status}:\n{ran.printed}")
+    return Peer(ran.seconds, ended, "measured")
 
 
 def _check_peer(model: Model, printed: str) -> None:

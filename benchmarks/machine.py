@@ -1,15 +1,90 @@
 """Describe the machine of a measurement: figures of two machines cannot be compared."""
 
 import importlib.metadata
+import json
 import os
 import platform
 import shutil
 import subprocess
+import sys
+import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 PACKAGES = ("numba", "numpy")
+
+LAUNCHER = """
+import json, os, resource, sys
+told, limit, *command = sys.argv[1:]
+child = os.fork()
+if not child:
+    if limit != "-":
+        resource.setrlimit(resource.RLIMIT_CPU, (int(limit), int(limit) + 5))
+    try:
+        os.execvp(command[0], command)
+    except OSError as error:
+        os.write(2, f"{command[0]}: {error.strerror}\\n".encode())
+        os._exit(127)
+with open(told + ".new", "w") as file:
+    file.write(str(child))
+os.replace(told + ".new", told + ".pid")
+_, status, used = os.wait4(child, 0)
+with open(told, "w") as file:
+    json.dump([os.waitstatus_to_exitcode(status), used.ru_utime + used.ru_stime, used.ru_maxrss], file)
+"""
+"""Runs a program as a child of a small process.
+
+What a system calls the peak of a process counts that of the one that it was forked from, until it became another
+program: of one that a benchmark starts itself it was the benchmark's own, with Python's libraries.
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """A program that was run: what it printed, its exit status, processor seconds and peak memory in MB.
+
+    Less than some 9 MB, the launcher's own, are not told from it.
+    """
+
+    printed: str
+    status: int
+    seconds: float
+    memory: float
+
+
+def run_peer(
+    command: Sequence[str],
+    *,
+    folder: Path | None = None,
+    seconds: int | None = None,
+    output: Path | None = None,
+    while_it_runs: Callable[[int], None] = lambda _: None,
+) -> Ended:
+    """Run another program as a process of its own, and measure that alone.
+
+    Args:
+        command: The program and its arguments.
+        folder: Where it runs.
+        seconds: How much processor time it gets; then a signal ends it.
+        output: Where all that it prints goes; read from there by `while_it_runs`.
+        while_it_runs: Is called once with the number of the process, and may wait for it or signal it.
+    """
+    with tempfile.TemporaryDirectory() as own:
+        told, printed = Path(own) / "told", output or Path(own) / "printed"
+        limit = "-" if seconds is None else str(seconds)
+        launcher = [sys.executable, "-I", "-S", "-c", LAUNCHER, str(told), limit, *command]
+        with printed.open("wb") as out:
+            process = subprocess.Popen(launcher, cwd=folder, stdout=out, stderr=subprocess.STDOUT)
+            number = told.with_suffix(".pid")
+            while not number.exists() and process.poll() is None:
+                time.sleep(0.001)
+            while_it_runs(int(number.read_text(encoding="utf-8")))
+            process.wait()
+        status, used, peak = json.loads(told.read_text(encoding="utf-8"))
+        unit = 1 << 20 if sys.platform == "darwin" else 1 << 10
+        return Ended(printed.read_text(encoding="utf-8", errors="replace"), status, used, peak / unit)
 
 
 def describe() -> dict[str, object]:

@@ -12,15 +12,13 @@ import json
 import os
 import re
 import shutil
-import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from math import ceil
 from pathlib import Path
 
-from machine import describe
+from machine import describe, run_peer
 
 RESULTS = Path(__file__).parent / "results" / "real_bigraphs.json"
 PRINTED = re.compile(r"(States|Transitions):\D*?(\d+)\s*$", re.MULTILINE)
@@ -70,14 +68,8 @@ def bigrapher(program: str, path: Path, seconds: int, states: int) -> Run:
 
 def _ended(command: Sequence[str], seconds: int) -> tuple[str, float, float, int]:
     """Run a command within seconds of processor time; return what it printed, its seconds, megabytes and status."""
-    limited = ["sh", "-c", f'ulimit -t {seconds}; exec "$@"', "sh", *command]
-    with tempfile.TemporaryFile() as out:
-        child = subprocess.Popen(limited, stdout=out, stderr=subprocess.STDOUT)
-        _, status, used = os.wait4(child.pid, 0)
-        child.returncode = os.waitstatus_to_exitcode(status)
-        out.seek(0)
-        printed = COLOURS.sub("", out.read().decode(errors="replace"))
-    return printed, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, child.returncode
+    ran = run_peer(command, seconds=seconds)
+    return COLOURS.sub("", ran.printed), ran.seconds, ran.memory, ran.status
 
 
 def _first_line(printed: str, path: Path) -> str:

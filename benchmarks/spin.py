@@ -9,11 +9,12 @@ import subprocess
 import sys
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from machine import resident
+from machine import resident, run_peer
 
 TRANSLATE = ("spin", "-a", "-o3", "model.pml")
 """Statements are not merged: each is a step of its own."""
@@ -266,30 +267,31 @@ def _verify(folder: Path, depth: int, bounds: Bounds | None = None) -> _Report:
     """Run the verifier once."""
     report = folder / "report.txt"
     began = time.monotonic()
-    with report.open("w", encoding="utf-8") as output:
-        verifier = subprocess.Popen(
-            ["./pan", "-E", f"-m{depth}"], cwd=folder, stdout=output, stderr=subprocess.STDOUT
-        )
-        met = "" if bounds is None else _watch(verifier.pid, report, bounds)
-        _, status, usage = os.wait4(verifier.pid, 0)
-        verifier.returncode = os.waitstatus_to_exitcode(status)
+    met = ""
+
+    def watch(verifier: int) -> None:
+        nonlocal met
+        met = "" if bounds is None else _watch(verifier, report, bounds)
+
+    ran = run_peer(["./pan", "-E", f"-m{depth}"], folder=folder, output=report, while_it_runs=watch)
     seconds = time.monotonic() - began
-    text = report.read_text(encoding="utf-8")
-    if verifier.returncode or "errors: 0" not in text:  # the verifier exits 0 on a violation too
+    text = ran.printed
+    if ran.status or "errors: 0" not in text:  # the verifier exits 0 on a violation too
         raise SpinError(f"the search failed: {text}")
-    return _Report(text, seconds, usage.ru_maxrss / 1024, met if "not completed" in text else "")
+    return _Report(text, seconds, ran.memory, met if "not completed" in text else "")
 
 
 def _watch(verifier: int, report: Path, bounds: Bounds) -> str:
     """Wait for a verifier to end, and interrupt it at a bound, upon which it reports; return what was met."""
     began = time.monotonic()
-    while os.waitid(os.P_PID, verifier, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None:
+    while Path(f"/proc/{verifier}/stat").exists():
         time.sleep(EVERY)
         seconds = time.monotonic() - began
         stored = _last_stored(report) if bounds.configurations < math.inf else 0
         met = bounds.met(seconds, resident("VmRSS", str(verifier)), stored)
         if met and seconds > GRACE:
-            os.kill(verifier, signal.SIGINT)
+            with suppress(ProcessLookupError):  # it has just ended
+                os.kill(verifier, signal.SIGINT)
             return met
     return ""
 

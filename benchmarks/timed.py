@@ -11,12 +11,12 @@ import argparse
 import os
 import re
 import resource
-import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
+from machine import run_peer
 from timed_family import text
 
 from checker import Limits
@@ -99,12 +99,11 @@ def beside(uavs: int, places: int, folder: Path) -> str:
         return ""
     model = folder / "network.tck"
     model.write_text(network(uavs, places, folder), encoding="utf-8")
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    said = subprocess.run([program, "-a", "covreach", str(model)], capture_output=True, text=True, check=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    told = dict(re.findall(r"^([A-Z_]+) (\S+)$", said.stdout, re.MULTILINE))
-    zones, peak = int(told["VISITED_STATES"]), int(told["MEMORY_MAX_RSS"]) >> 10
+    ran = run_peer([program, "-a", "covreach", str(model)])
+    if ran.status:
+        raise SystemExit(f"TChecker ended with {ran.status}:\n{ran.printed}")
+    told = dict(re.findall(r"^([A-Z_]+) (\S+)$", ran.printed, re.MULTILINE))
+    zones, seconds, peak = int(told["VISITED_STATES"]), ran.seconds, round(ran.memory)
     return f"; TChecker: {zones:,} zones in {seconds:.2f} s, {zones / seconds:,.0f} zones/s, {peak:,} MiB"
 
 

@@ -559,6 +559,13 @@ class Code(Enum):
         from where it is restored to any other place.""",
     )
 
+    HIDES_AN_ENTITY = (
+        "LS708",
+        "pattern that takes anything for an entity's name",
+        """A name in a pattern is a new variable, which takes any value. One that is called like an entity looks as if
+        it compared with that entity, and hides it in the case. `=spill` compares; another name takes any value.""",
+    )
+
     # --- LS8: timing
     BAD_DURATION = (
         "LS801",

@@ -15,10 +15,11 @@ from bigraphs.notation.spelling import did_you_mean, nearest
 from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS, VIA, WAY
 from semantics.behaviours.durations import UNITS
 from semantics.behaviours.observations import QueryOperator
+from specs.autopilot_words import called_with_a_unit, ordered
 from specs.building import ANGLES
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
-from specs.foreign_words import ASKED, foreign_form, foreign_operator, foreign_word, operator_first
+from specs.foreign_words import ASKED, DONE, foreign_form, foreign_operator, foreign_word, operator_first
 from specs.grammar import (
     PROPERTY_WORDS,
     QUERY_WORDS,
@@ -65,9 +66,15 @@ _NAMES_AFTER: Final = re.compile(r"\b(\w+)\s+((?:\w+\s*,\s*)*\w+)\s*\Z")
 _MOST_NAMES: Final = 200
 """So many characters of quantified names are looked through."""
 _GUARDS: Final = frozenset({"and", "or", "&&", "||", "when", "where", "with"})
+_WHERE: Final = re.compile(r"\b(?:in|within|inside|at|on|to|of)\s+([^\W\d]\w*)")
 _SYMBOL: Final = re.compile(r"[\w\s\"()\[\]{},;:.=<>!&|+\-]")
 
 FAMILY: Final = "a family is written BigActor patrol[i] for u in UAV hosted_at u with_behavior { ... }"
+
+
+def flown(at: Situation) -> Diagnostic | None:
+    """`control(LAND)`, `wait(10 min)`, `takeoff(50 m)`."""
+    return ordered(at) or called_with_a_unit(at, DONE)
 
 
 def misplaced_header(at: Situation) -> Diagnostic | None:
@@ -253,7 +260,8 @@ def missing_parenthesis(at: Situation) -> Diagnostic | None:
         hint = f"write {at.before.text} {at.following.text}, without brackets"
         return at.mistake(Code.UNEXPECTED, "expected a name, found '('", hint)
     waiting = open_brackets(at.prepared.text, at.found.span.start)
-    alone = at.accepted == {")"} and at.found.text not in (",", ";", ".")
+    named = "NAME" in at.sorts and at.found.text in RESERVED
+    alone = at.accepted == {")"} and at.found.text not in (",", ";", ".") and not named
     over = ")" in at.accepted and at.is_first and at.found.text in STATEMENTS | {"}", "case"}
     if (alone or over) and waiting:
         opening, message = waiting[-1], f"'(' is not closed before {at.found.shown}"
@@ -488,6 +496,45 @@ def missing_recipient(at: Situation) -> Diagnostic | None:
     return None
 
 
+def several_sent(at: Situation) -> Diagnostic | None:
+    """`send "found", spill to desk`."""
+    if at.found.text != "," or "to" not in at.accepted:
+        return None
+    text, start = at.prepared.text, at.found.span.start
+    begun = text.rfind("send", max(0, start - _MOST_NAMES), start)
+    if begun < 0:
+        return None
+    first, rest = text[begun + len("send") : start].strip(), text[at.found.span.end :].partition("\n")[0]
+    others, found, receiver = rest.partition(" to ")
+    to = receiver.split()[0] if found and receiver.split() else "bigActor"
+    more = others.strip() if found else "..."
+    message = "a message is one value, and here are several"
+    return at.mistake(Code.UNEXPECTED, message, f"write send ({first}, {more}) to {to}, in brackets")
+
+
+def someone_says(at: Situation) -> Diagnostic | None:
+    """`operator says "go"`."""
+    if at.found.text != "says" or not _in_environment(at) or not at.before.is_name:
+        return None
+    message = f"expected 'someone' before 'says', found {at.before.shown}"
+    hint = 'write someone says "go": operators and others who are no bigActors have no names'
+    return Diagnostic(Code.UNEXPECTED, at.before.span, message, hint)
+
+
+def hyphenated(at: Situation) -> Diagnostic | None:
+    """`uav-1: UAV`, `BigActor desk-1 hosted_at ...`."""
+    joined = at.before.is_name and at.before.span.end == at.found.span.start == at.following.span.start - 1
+    ends = at.following.is_number or at.following.is_name
+    if at.found.text != "-" or not joined or not ends or at.in_expression or "-" in at.accepted:
+        return None
+    whole = at.before.span.to(at.following.span)
+    written = f"{at.before.text}-{at.following.text}"
+    hint = f"write {at.before.text}_{at.following.text}"
+    return Diagnostic(
+        Code.UNKNOWN_CHARACTER, whole, f"'{written}' is no name: '-' is not part of names", hint
+    )
+
+
 def missing_value(at: Situation) -> Diagnostic | None:
     """`match { case ... }`."""
     if at.found.text == "case" and at.before.text == "{" and at.at_expression:
@@ -541,9 +588,17 @@ def equals_of_places(at: Situation) -> Diagnostic | None:
 
 
 def drift_without_spot(at: Situation) -> Diagnostic | None:
-    """`uav drifts to sea`."""
+    """`uav drifts to sea`, `spill drifts 3 km in sea`."""
     if at.accepted != {"among", "within"}:
         return None
+    if at.found.is_number:
+        line = at.prepared.text[at.found.span.start :].partition("\n")[0]
+        named = _WHERE.search(line)
+        where = named[1] if named else "place"
+        hint = (
+            f"write drifts within {where}, anywhere in which it may then be, or drifts among {where}, others"
+        )
+        return at.mistake(Code.UNEXPECTED, "a drift has no distance and no direction", hint)
     where = at.following.text if at.following.is_name else "place"
     hint = f"write drifts within {where}, or drifts among {where}, others"
     return at.mistake(Code.UNEXPECTED, f"expected 'among' or 'within', found {at.found.shown}", hint)
@@ -623,13 +678,17 @@ MISTAKES: Final[tuple[Callable[[Situation], Diagnostic | None], ...]] = (
     equals_of_places,
     single_equals,
     *TIMING_MISTAKES,
+    flown,
+    hyphenated,
     bad_number,
     foreign_word,
     foreign_form,
     missing_dot,
+    several_sent,
     misspelt_word,
     missing_at_most,
     misspelt_word_before,
+    someone_says,
     misplaced_statement,
     misplaced_command,
     misplaced_query,

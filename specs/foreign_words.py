@@ -7,7 +7,7 @@ from typing import Final
 
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
-from specs.parse_error import Situation, Word
+from specs.parse_error import Situation, Word, word_before
 
 _BEHAVIOUR: Final = "a behaviour is defined by def name(parameters) = { ... }"
 _ACTOR: Final = "write BigActor name hosted_at host with_behavior { ... }"
@@ -57,9 +57,12 @@ DONE: Final[Mapping[str, str]] = {
 """What other languages do something with."""
 
 CHOSEN: Final[Mapping[str, str]] = {
-    **dict.fromkeys(("when", "on", "of", "default", "otherwise"), "write case pattern => statements"),
+    **dict.fromkeys(("when", "on", "of"), "write case pattern => statements"),
+    **dict.fromkeys(("default", "otherwise", "else"), "write case _ => statements"),
     **dict.fromkeys(("timeout", "wait", "delay", "within", "until"), "write after 10 min => statements"),
 }
+_OTHERS: Final = frozenset({"default", "otherwise", "else", "other", "others"})
+"""What other languages call the case that takes what no other takes."""
 ASKED: Final[Mapping[str, str]] = {
     **dict.fromkeys(("always", "never", "safety", "assert"), 'write invariant "name": formula'),
     **dict.fromkeys(("sometime", "possible", "cover"), 'write reachable "name": formula'),
@@ -203,6 +206,8 @@ def foreign_operator(at: Situation) -> Diagnostic | None:
         asked = "of an entity an observation tells: parent(uav0, obs); functions are called like size(obs)"
         ranges = "there are no ranges of numbers: for goes through a set, {a, b}, or a route, [a, b]"
         hint = ranges if behind == "." else asked
+    elif found == ">" and at.before.text == "=" and at.before.span.end == at.found.span.start:
+        return _arrow(at)
     elif found == ":" and behind == "=" and "=" in at.accepted:
         hint = "write ="
     elif found == "=" and at.before.text == "=" and at.before.span.end == at.found.span.start:
@@ -211,6 +216,17 @@ def foreign_operator(at: Situation) -> Diagnostic | None:
     elif not hint or not (symbol or at.in_expression or in_formula or at.accepted & {"=>", "directly"}):
         return None
     return at.mistake(Code.UNKNOWN_CHARACTER if symbol else Code.MISSPELT_KEYWORD, _no_operator(at), hint)
+
+
+def _arrow(at: Situation) -> Diagnostic:
+    """`default => skip`, where a word was taken for a variable that is given a value."""
+    word = word_before(at.prepared.text, at.before.span.start)
+    both = at.before.span.to(at.found.span)
+    if word.text in _OTHERS:
+        message = f"{word.shown} is not a word of the language here"
+        return Diagnostic(Code.MISSPELT_KEYWORD, word.span, message, "write case _ => statements")
+    hint = "write case pattern => statements"
+    return Diagnostic(Code.UNEXPECTED, both, f"'=>' stands behind a case, and {word.shown} is none", hint)
 
 
 def foreign_form(at: Situation) -> Diagnostic | None:

@@ -22,6 +22,7 @@ MAX_WORDS: Final = 60_000
 
 _SCAN: Final = re.compile(
     r"""(?P<comment>(?://|\#)[^\n]*)
+      | (?P<block>/\*)
       | [NSEW]?[0-9.]{1,30}+\s?[°º][^,()\n]*  # an angle, whose marks are no quotes
       | (?P<string>"(?:[^"\\\n]|\\.)*+")
       | (?P<unclosed>"[^\n]*)
@@ -30,6 +31,7 @@ _SCAN: Final = re.compile(
       | \w+ | [^\w\s]""",
     re.VERBOSE,
 )
+_UNSEEN: Final = re.compile(r"[^\n]")
 _RUN: Final = re.compile(r"""[^\s"()\[\]{},;/\#]+""")
 _CONTROL: Final = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
 _NUMBERED: Final = re.compile(r"[ \t]*(?P<number>[0-9]{1,6})(?=\s|$)")
@@ -54,7 +56,7 @@ class Prepared:
     Attributes:
         text: As it was written, with spaces for all that the grammar is not to see.
         comments: What was blanked out and may be written again.
-        mistakes: Strings that do not end.
+        mistakes: Strings that do not end, and comments of other languages.
         unmatched: Where the first bracket that fits no other was noticed, and what to say of it.
         open_at_end: Where the brackets are that nothing closes.
     """
@@ -137,19 +139,26 @@ def _too_long(start: int, end: int) -> Diagnostic:
 
 def _scan(text: str) -> Prepared:
     comments: list[Comment] = []
-    unclosed: list[Diagnostic] = []
+    mistakes: list[Diagnostic] = []
     unmatched: tuple[int, Diagnostic] | None = None
     waiting: list[int] = []
-    words = 0
+    words = behind = 0
+    last = text.rfind("*/")
     for found in _SCAN.finditer(text):
         start, end, sort = found.start(), found.end(), found.lastgroup
+        if start < behind:
+            continue
+        if sort == "block":
+            behind = text.find("*/", end) + len("*/") if end <= last else _line_end(text, end)
+            mistakes.append(_block(start, behind))
+            continue
         if sort == "comment":
             comments.append(Comment(Span(start, end), found.group().rstrip()))
             continue
         words += 1
         _refuse(sort, start, end, words, len(waiting))
         if sort == "unclosed":
-            unclosed.append(_unclosed(start, end))
+            mistakes.append(_unclosed(start, end))
         elif sort == "open":
             waiting.append(start)
         elif sort == "close":
@@ -157,12 +166,22 @@ def _scan(text: str) -> Prepared:
                 waiting.pop()
             elif unmatched is None:
                 unmatched = start, _mismatch(text, waiting, start)
-    return Prepared(text, tuple(comments), tuple(unclosed), unmatched, tuple(waiting))
+    return Prepared(text, tuple(comments), tuple(mistakes), unmatched, tuple(waiting))
 
 
 def _unclosed(start: int, end: int) -> Diagnostic:
     message = "the string that begins here does not end on its line"
     return Diagnostic(Code.UNCLOSED_STRING, Span(start, end), message, _CLOSE)
+
+
+def _line_end(text: str, start: int) -> int:
+    end = text.find("\n", start)
+    return len(text) if end < 0 else end
+
+
+def _block(start: int, end: int) -> Diagnostic:
+    hint = "write // before each line of the comment"
+    return Diagnostic(Code.UNKNOWN_CHARACTER, Span(start, end), "'/*' begins no comment here", hint)
 
 
 def _refuse(sort: str | None, start: int, end: int, words: int, depth: int) -> None:
@@ -195,7 +214,7 @@ def _mismatch(text: str, waiting: list[int], start: int) -> Diagnostic:
 def _blank(text: str, spans: list[Span]) -> str:
     pieces, last = [], 0
     for span in spans:
-        pieces += [text[last : span.start], " " * (span.end - span.start)]
+        pieces += [text[last : span.start], _UNSEEN.sub(" ", text[span.start : span.end])]
         last = span.end
     return "".join([*pieces, text[last:]])
 

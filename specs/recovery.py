@@ -124,7 +124,9 @@ class _Reading:
                 at = len(self.text) if word.start_pos is None else word.start_pos
                 self.run.feed_token(word)
         except Mistake as mistake:
-            self.go_on(mistake.diagnostic, at)
+            from specs.autopilot_words import sent_to_a_point  # noqa: PLC0415 - as below
+
+            self.go_on(sent_to_a_point(mistake.diagnostic, self.text), at)
         except UnexpectedInput as stopped:
             from specs.syntax_errors import explain_syntax_error  # noqa: PLC0415 - most texts have no mistake
 

@@ -3,14 +3,16 @@
 A pure function of the mission and of what was visited, whatever explored it.
 """
 
-from collections.abc import Iterable, Iterator, Set
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
+from typing import Final
 
 from checker.properties.visited import Visited, passages
 from semantics.behaviours.computation import STEPPED, Passage
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import (
     Block,
+    Call,
     Choose,
     ChooseFrom,
     ControlBy,
@@ -20,6 +22,7 @@ from semantics.behaviours.statements import (
     Loop,
     Match,
     React,
+    Spawn,
     Statement,
     Tested,
     While,
@@ -121,6 +124,25 @@ def _with_loops(program: Program, reached: Set[int]) -> frozenset[int]:
     return frozenset(found)
 
 
+_NOTHING_FITS: Final[Mapping[type, str]] = {
+    React: "no case of this react is ever taken: it waits for ever",
+    Match: "no case of this match is ever taken",
+}
+
+
+def _inside(program: Program, block: Block) -> Iterator[int]:
+    """Yield the numbers of the statements of a block, and of what is in them."""
+    waiting = list(block)
+    while waiting:
+        number = waiting.pop()
+        yield number
+        statement = program.statements[number]
+        if isinstance(statement, For):
+            waiting.append(statement.each)
+        waiting += statement.body if isinstance(statement, Loop) else ()
+        waiting += [each for branch in branches(statement) for each in branch]
+
+
 class Reached:
     """A program, and the numbers and branches of its statements that were reached; a family's text counts once."""
 
@@ -145,16 +167,41 @@ class Reached:
         """Yield the gaps of agents' bodies and of behaviours."""
         for start in starts:
             yield from self.within(tuple(number for number in start if number not in self.program.copies))
+        called = self.called()
         for name, behaviour in sorted(self.program.behaviours.items()):
             if behaviour.body and behaviour.body[0] not in self.numbers:
+                if name in called:
+                    continue  # what calls it is never reached, and that is told
                 line = self.program.declared.get(("behaviour", name), self.program.line(behaviour.body[0]))
                 yield Gap(line, "behaviour", f"behaviour '{name}' is never run")
             else:
                 yield from self.within(behaviour.body)
 
+    def called(self) -> frozenset[str]:
+        """Return the behaviours that an agent's text calls, itself or by what it calls."""
+        program = self.program
+        calls = [
+            (number, statement.behaviour)
+            for number, statement in enumerate(program.statements)
+            if isinstance(statement, Call | Spawn)
+        ]
+        within = {
+            number: name
+            for name, behaviour in program.behaviours.items()
+            for number in _inside(program, behaviour.body)
+        }
+        found: set[str] = set()
+        grown = True
+        while grown:
+            more = {name for number, name in calls if number not in within or within[number] in found}
+            grown = not more <= found
+            found |= more
+        return frozenset(found)
+
     def idle(self) -> Iterator[Gap]:
-        """Yield the mission's rules that no control that is reached names."""
-        for name in self.rules - self.used:
+        """Yield the mission's rules that no control names."""
+        named = {each.name for each in self.program.statements if isinstance(each, ControlBy)}
+        for name in self.rules - self.used - named:
             yield Gap(self.program.declared["rule", name], "rule", f"rule '{name}' is never used")
 
     def within(self, block: Block) -> Iterator[Gap]:
@@ -164,10 +211,24 @@ class Reached:
                 yield Gap(self.program.line(number), "statement", "this is never reached")
                 return
             statement = self.program.statements[number]
-            if not isinstance(statement, Loop):
-                yield from self.below(number, statement)
-            else:
+            if isinstance(statement, Loop):
                 yield from self.within(statement.body)
+            elif isinstance(statement, React | Match) and self.is_end(number, statement):
+                yield self.end(number, statement)
+                return
+            else:
+                yield from self.below(number, statement)
+
+    def is_end(self, number: int, statement: Statement) -> bool:
+        """Say whether no run that comes here goes on."""
+        ranks = range(len(branches(statement)))
+        return bool(ranks) and not any((number, rank) in self.taken for rank in ranks)
+
+    def end(self, number: int, statement: Statement) -> Gap:
+        """Return the gap of a statement from which no run goes on: one, however many cases it has."""
+        if len(branches(statement)) == 1:
+            return self.untaken(number, statement, 0)
+        return Gap(self.program.line(number), "statement", _NOTHING_FITS[type(statement)])
 
     def below(self, number: int, statement: Statement) -> Iterator[Gap]:
         """Yield the gaps of a statement's branches."""

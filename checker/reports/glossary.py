@@ -32,6 +32,9 @@ WORDS: Final[Mapping[str, str]] = {
     "vacuous": """
         The property holds, but says less than it seems to: what it speaks of never happens, or a
         part of it is never needed. Look for a mistake in it, or in the mission.""",
+    "never needed": """
+        The property holds whatever stands in the place of that part, so the part says nothing. Usually its condition
+        is never true, or another part says it already. Look for a mistake in it, or leave it out.""",
     "by ownership": """
         Race-freedom was shown without a search: no bigActor may write what another's control reads,
         tests or writes. It holds whatever the order of steps.""",

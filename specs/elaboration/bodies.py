@@ -14,6 +14,7 @@ from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.actors import Actor
 from specs.elaboration.names import Names
+from specs.elaboration.patterns import warn_of_hiding
 from specs.elaboration.rule_schemas import Checked, Maker, Schema
 from specs.elaboration.statements import Body, Numbering, SpawnSite
 
@@ -117,6 +118,7 @@ def elaborate_bodies(
         bodies.parameters.setdefault(name, tuple(parameters.values()))
         program.body(body, definition.body, parameters, {})
     _check_recursion(bodies, names)
+    warn_of_hiding(names)
     for number in _outermost(bodies):
         loop = program.statements[number]
         if isinstance(loop, Loop):

@@ -56,6 +56,7 @@ class Names:
         channels: All channels.
         lacking: Kinds that were reported as undeclared.
         families: For each family its members by their entities, in turn.
+        hiding: Where patterns have a variable that is called like an entity or a bigActor, by its name.
         demands: What the values of expressions are needed for, judged when all types are known.
     """
 
@@ -69,6 +70,7 @@ class Names:
     families: dict[str, dict[str, str]] = field(default_factory=dict)
     channels: set[str] = field(default_factory=set)
     lacking: set[str] = field(default_factory=set)
+    hiding: dict[str, list[s.Span]] = field(default_factory=dict)
     demands: list[Demand] = field(default_factory=list)
 
     def declare(

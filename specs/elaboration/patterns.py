@@ -42,6 +42,28 @@ def elaborate_pattern(node: s.Pattern, names: Names, scope: Scope, bind: Bind, *
             return Elements(tuple(found))
 
 
+def note_hiding(node: s.Pattern, names: Names) -> None:
+    """Note the variables of a pattern that are called like an entity or a bigActor."""
+    for part in s.walk(node):
+        if isinstance(part, s.VariablePattern) and (
+            part.variable.text in names.kinds or part.variable.text in names.agents
+        ):
+            places = names.hiding.setdefault(part.variable.text, [])
+            if part.span not in places:  # a family's text is read for each of its members
+                places.append(part.span)
+
+
+def warn_of_hiding(names: Names) -> None:
+    """Warn once of each entity or bigActor that patterns hide."""
+    for name, places in names.hiding.items():
+        meant = "entity" if name in names.kinds else "bigActor"
+        more = len(places) - 1
+        also = f" and in {more} more {'pattern' if more == 1 else 'patterns'}" if more else ""
+        hint = f"write ={name} to compare with the {meant}, or give the variable another name"
+        message = f"'{name}' takes any value here{also}, and hides the {meant} '{name}'"
+        names.findings.warn(Code.HIDES_AN_ENTITY, min(places, key=lambda span: span.start), message, hint)
+
+
 def check_distinct(node: s.Pattern, names: Names) -> None:
     """Report a variable that a pattern binds twice."""
     seen: set[str] = set()

@@ -15,6 +15,7 @@ from semantics.behaviours.expressions import Expression, Literal, Variable
 from semantics.behaviours.reaction_rules import PlaceTerm
 from semantics.behaviours.values import Value
 from specs import syntax as s
+from specs.autopilot_words import ORDERS
 from specs.codes import Code
 from specs.elaboration.expressions import (
     check_arity,
@@ -26,7 +27,7 @@ from specs.elaboration.expressions import (
 from specs.elaboration.findings import Findings
 from specs.elaboration.names import Names
 from specs.elaboration.needs import COLLECTION, CONDITION, CONDITIONAL, FILLED, Choice, Need
-from specs.elaboration.patterns import check_distinct, elaborate_pattern
+from specs.elaboration.patterns import check_distinct, elaborate_pattern, note_hiding
 from specs.elaboration.rule_regions import regions_of
 from specs.elaboration.rule_schemas import Parameter, Schema
 from specs.elaboration.rules import elaborate_rule, word_of
@@ -355,7 +356,9 @@ class _Statements:
     def called(self, node: s.Call) -> None:
         behaviour = self.names.behaviours.get(node.behaviour.text)
         if behaviour is None:
-            instead = DONE.get(node.behaviour.text, "define it: def name(parameters) = { ... }")
+            name = node.behaviour.text
+            order = ORDERS.get(name.lower(), "define it: def name(parameters) = { ... }")
+            instead = DONE.get(name, order)
             known = self.names.behaviours
             self.names.findings.unknown(node.behaviour, known, sort="behaviour", otherwise=instead)
         else:
@@ -369,6 +372,7 @@ class _Statements:
             self.program.branch(number, rank, case)
             inner = place.scope.inner()
             check_distinct(case.pattern, self.names)
+            note_hiding(case.pattern, self.names)
             bind = partial(self.bind, inner)
             pattern = elaborate_pattern(case.pattern, self.names, place.scope, bind, react=react)
             guard = None

@@ -94,9 +94,9 @@ def test_a_case_that_is_never_taken_is_told_at_its_line_and_what_lies_within_is_
     assert found.unreached == (FIRST + 3, FIRST + 5)
 
 
-def test_what_stands_after_something_for_ever_is_never_reached_and_told_once():
+def test_what_stands_after_something_for_ever_is_told_by_that_alone():
     body = 'react {\n  case "go" => skip\n}\ncontrol(MOVE_HOST_TO gate0)\nobserve(ALL)'
-    assert gaps(agent(body)) == [(3, "this case is never taken"), (5, "this is never reached")]
+    assert gaps(agent(body)) == [(3, "this case is never taken")]
 
 
 TESTS = {
@@ -244,3 +244,23 @@ def test_coverage_reads_projections_alone():
     assert coverage(mission.initial, rebuilt, complete=True) == coverage(
         mission.initial, visited, complete=True
     )
+
+
+ONE_CAUSE = """def visit(p) = { control(MOVE_HOST_TO p) rest(p) }
+def rest(p) = { control(MOVE_HOST_TO p) }
+def nobody(p) = { rest(p) }
+BigActor a hosted_at uav0 with_behavior {
+  react { case "x" => skip case "y" => visit(gate0) case ("z", n) => visit(gate0) }
+  visit(gate0)
+}
+"""
+
+
+def test_one_cause_makes_one_gap():
+    """A react that waits for ever: not its cases, what follows, nor what is called from there."""
+    mission = load(ONE_CAUSE)
+    found = check(mission.initial, mission.properties).coverage
+    assert [(gap.line, gap.message) for gap in found.gaps] == [
+        (FIRST + 2, "behaviour 'nobody' is never run"),
+        (FIRST + 4, "no case of this react is ever taken: it waits for ever"),
+    ]

@@ -1,0 +1,48 @@
+"""Peers are measured as processes of their own: nothing of the benchmark is in their figures."""
+
+import os
+import signal
+import sys
+
+import pytest
+from scripts import script
+
+machine = script("machine")
+
+
+def test_a_peers_memory_is_its_own_and_not_that_of_what_started_it():
+    ballast = bytearray(200 << 20)
+    ballast[:: os.sysconf("SC_PAGE_SIZE")] = b"x" * len(ballast[:: os.sysconf("SC_PAGE_SIZE")])
+    small = machine.run_peer(["true"])
+    large = machine.run_peer([sys.executable, "-I", "-S", "-c", "held = bytearray(50 << 20)"])
+    assert small.memory < 20
+    assert 50 < large.memory < 90
+    assert len(ballast) > 0
+
+
+def test_what_a_peer_printed_and_how_it_ended_is_told(tmp_path):
+    ran = machine.run_peer(["sh", "-c", "pwd; echo wrong >&2; exit 3"], folder=tmp_path)
+    assert (ran.printed.splitlines(), ran.status) == ([str(tmp_path), "wrong"], 3)
+    missing = machine.run_peer(["no_such_program"])
+    assert (missing.status, missing.printed) == (127, "no_such_program: No such file or directory\n")
+
+
+@pytest.mark.long
+def test_a_peer_ends_with_its_time():
+    ran = machine.run_peer(["sh", "-c", "while :; do :; done"], seconds=1)
+    assert ran.status == -signal.SIGXCPU
+    assert 0.9 < ran.seconds < 3
+
+
+def test_a_peer_is_told_by_its_number_and_its_output_while_it_runs(tmp_path):
+    printed = tmp_path / "printed"
+
+    def interrupt(number):
+        while not printed.read_text(encoding="utf-8"):
+            pass
+        os.kill(number, signal.SIGINT)
+
+    program = "import time\nprint('begun', flush=True)\ntime.sleep(60)"
+    ran = machine.run_peer([sys.executable, "-c", program], output=printed, while_it_runs=interrupt)
+    assert ran.status in (-signal.SIGINT, 130)
+    assert ran.printed.startswith("begun\n")
