@@ -71,6 +71,10 @@ class Names:
     lacking: set[str] = field(default_factory=set)
     demands: list[Demand] = field(default_factory=list)
 
+    def is_taken(self, sort: str, name: str) -> bool:
+        """Tell whether a name has a meaning already that it can't have beside one of this sort."""
+        return any((other, name) in self.spans for other in (EXCLUSIVE if sort in EXCLUSIVE else (sort,)))
+
     def declare(
         self,
         sort: str,
