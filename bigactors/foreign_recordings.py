@@ -112,7 +112,7 @@ def _ais(path: str, names: dict[str, str], accounts: list[Tally]) -> Iterator[tu
         if finest.supersedes(report, time):
             counting.leave(COARSE)
             continue
-        counting.take("position")
+        counting.take("position shown")
         said = physical_property(report)
         yield time, replace(said, entity=naming.name(f"mmsi:{digits(report.mmsi)}"), time=time)
     accounts += (recording.tally, counting.tally(len(positions), "position"))

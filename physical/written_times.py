@@ -13,7 +13,7 @@ _UNITS: Final = ((10**11, 1), (10**14, 10**3), (10**17, 10**6), (10**20, 10**9))
 """A number below the first is a time in the unit of which a second has the second."""
 
 _EPOCH: Final = re.compile(r"(\d{1,20})(?:\.(\d{1,12}))?")
-_COMPACT: Final = r"(?:19|20)\d{12}"
+_COMPACT: Final = r"(?:19|20)\d{6}T?\d{6}(?:\.\d{1,9})?Z?"
 _CLOCK: Final = r"\d{4}[-/]\d\d[-/]\d\d[T ]\d\d:?\d\d:?\d\d(?:[.,]\d{1,9})?(?: ?(?:Z|UTC|[+-]\d\d:?\d\d))?"
 _DIGITS: Final = r"\d{16}|\d{19}|\d{13}|\d{10}"
 _TIME: Final = re.compile(
@@ -67,7 +67,9 @@ def _time(found: re.Match[str]) -> float | None:
         if found["epoch"]:
             time = epoch_seconds(found["epoch"])
         elif found["compact"]:
-            time = datetime.strptime(found["compact"], "%Y%m%d%H%M%S").replace(tzinfo=UTC).timestamp()
+            digits, _, part = found["compact"].replace("T", "").rstrip("Z").partition(".")
+            whole = datetime.strptime(digits, "%Y%m%d%H%M%S").replace(tzinfo=UTC).timestamp()
+            time = whole + float(f"0.{part or 0}")
         else:
             time = _clock(found["clock"])
     except (ValueError, OverflowError):

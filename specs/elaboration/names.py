@@ -73,6 +73,10 @@ class Names:
     hiding: dict[str, list[s.Span]] = field(default_factory=dict)
     demands: list[Demand] = field(default_factory=list)
 
+    def is_taken(self, sort: str, name: str) -> bool:
+        """Tell whether a name has a meaning already that it can't have beside one of this sort."""
+        return any((other, name) in self.spans for other in (EXCLUSIVE if sort in EXCLUSIVE else (sort,)))
+
     def declare(
         self,
         sort: str,

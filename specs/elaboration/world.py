@@ -147,7 +147,11 @@ def _whereabouts(entry: s.Entity) -> tuple[str, str] | None:
 def _from_file(entry: s.FromSource, names: Names, world: World, library: Library) -> Iterator[_Load]:
     found = read_source(entry, library, names, world.notes)
     hint = 'let the names of the file begin otherwise: from "FILE" as second has second_NAME'
+    _, *others = [item.entity for item in found if names.is_taken("entity", item.entity)] or [""]
+    told = frozenset(others)
     for item in found:
+        if item.entity in told:
+            continue  # one finding for a file: its remedy is one for all of its names
         if names.declare("entity", item.entity, entry.file, hint):
             names.kinds[item.entity] = item.kind
             world.channels[item.entity] = item.channels

@@ -83,8 +83,8 @@ def test_a_point_that_has_no_room_hints_at_a_radius(folder):
 
 def test_names_of_two_files_are_told_apart_by_their_beginnings(folder):
     found = mistakes('from "survey.plan" from "way.waypoints"', folder)
-    assert {code for code, *_ in found} == {"LS203"}
-    assert all("as second" in hint for *_, hint in found)
+    assert [code for code, *_ in found] == ["LS203"]  # one cause, one finding
+    assert "as second" in found[0][2]
     mission = elaborated('from "survey.plan" as survey from "way.waypoints" as way limit 1', folder)
     names = [f"survey_waypoint{number}" for number in range(4)]
     assert sorted(mission.setting.kinds) == [*names, "way_waypoint0"]
