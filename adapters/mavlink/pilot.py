@@ -310,8 +310,9 @@ def _untold(pilot: Pilot) -> Iterator[Message]:
 
 def is_known(pilot: Pilot) -> bool:
     """Tell whether a vehicle has reported all requested parameters, or was asked for long enough."""
-    known = pilot.known.profile is not None and pilot.known.home is not None
-    return known and not any(_untold(pilot))
+    known = pilot.known
+    placed = known.profile is not None and known.home is not None and known.position is not None
+    return placed and not any(_untold(pilot))
 
 
 def _spoken(pilot: Pilot, sent: tuple[Message, ...]) -> tuple[Message, ...]:
