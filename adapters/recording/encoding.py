@@ -81,7 +81,8 @@ def seen_json(seen: Seen) -> tuple[str, dict[str, Any]]:
     data = {each.name: _plain(getattr(seen, each.name)) for each in fields(seen)}
     match seen:
         case Status():
-            return "status", data
+            more = {name: data.pop(name) for name in ("lacks", "follows")}
+            return "status", data | {name: each for name, each in more.items() if each}
         case StatusText():
             return "said", data
         case Presence():

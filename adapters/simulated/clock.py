@@ -15,7 +15,7 @@ from typing import Any, Final, TypeVar
 
 Result = TypeVar("Result")
 
-MADE_UP: Final = 0.05
+MADE_UP: Final = 1.0
 """Seconds on the wall of lost time that a faster clock makes up for."""
 
 

@@ -349,7 +349,7 @@ def test_an_upload_ends_where_the_vehicle_was_handed_to_a_station_that_is_not_ou
             await f.plugin.command(HandOver("r2", "uav0", "control:gcs0", "control:gcs1"))
             end = await f.ended("r1", 20)
             assert isinstance(end, Rejected)
-            assert end.reason == "it obeys gcs1, not gcs0"
+            assert end.reason == "it obeys gcs1, not gcs0: its SYSID_MYGCS is 254, and gcs0 has 255"
 
     run(main())
 

@@ -14,7 +14,7 @@ from live_missions import LIVE, verify
 from test_resuming import MISSION, SIMULATOR, free_port, rules, started, until
 from worlds import ROUND
 
-from adapters.live.operator_socket import acknowledge, give_back, order, say
+from adapters.live.operator_socket import acknowledge, fates, give_back, order, say
 from adapters.live.state import Bidden
 from adapters.plugin import Hold
 from adapters.recording.mcap_files import RecordingError
@@ -184,3 +184,29 @@ def test_a_killed_run_holds_its_vehicle_still_when_it_is_resumed(tmp_path, capsy
     assert held is not None, out
     assert "requests\n  FLY(a, MOVE_HOST_TO east0)\nmay be said\n  op status (2 times more)\n" in out
     assert told(second, "orders", "by") == ["Ana"]
+
+
+def test_what_a_vehicle_under_a_foreign_authority_refuses_it_does_once_it_obeys_us_again(flying):
+    refusal = "it obeys system 252, not gcs0: its SYSID_MYGCS is 252, and gcs0 has 255"
+    refused = ("refused", f"refuses to hold, as the operator (Ana) ordered: {refusal}")
+    came = []
+
+    async def becomes(fate):
+        while (became := (await fates(SOCKET))["uav0"])[0] != fate:
+            await asyncio.sleep(0.5)
+        came.append(became)
+
+    async def operator(_flight, _simulator, witness):
+        await comes(lambda: "command" in witness.rules and witness.vehicle.flies)
+        witness.vehicle.parameters["SYSID_MYGCS"] = 252.0
+        await comes(lambda: "refused" in witness.kinds())  # the fallback, since the authority was lost
+        assert await order(SOCKET, "hold", "uav0", "Ana") == ("", {}, ())
+        await becomes("refused")
+        witness.vehicle.parameters["SYSID_MYGCS"] = 255.0
+        await becomes("confirmed")
+
+    copter = Vehicle(Kind.COPTER, (37.0, -8.6, 20.0), enforce=False)
+    flown = flying(copter, foe=operator, seconds=300)
+    assert came == [refused, ("confirmed", "held by the operator (Ana)")]
+    assert flown.ending.state.taken == {"uav0": "held by the operator (Ana)"}
+    assert mode(flown.vehicle) == "BRAKE"
