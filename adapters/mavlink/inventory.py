@@ -117,10 +117,29 @@ def with_known(pilot: Pilot, known: Telemetry) -> Pilot:
     if known.boots != before.boots:
         return changed(pilot, on_board={}, survey=Survey(), questions=0)
     if known.profile is not None and known.mode == known.profile.auto != before.mode:
-        pilot = changed(pilot, survey=surveys.soon(pilot.survey, MissionType.MISSION))
+        pilot = _flies_it(pilot)
     if (known.total, known.numbers) == (before.total, before.numbers):
         return pilot
     return unsure(pilot, tuple(_renumbered(pilot, before)), quiet=True)
+
+
+def _flies_it(pilot: Pilot) -> Pilot:
+    """Read the mission again that a vehicle flies from now on; before it is armed for it, nothing else is believed."""
+    if _is_pending(pilot):
+        return unsure(pilot, (MissionType.MISSION,), quiet=True)
+    return changed(pilot, survey=surveys.soon(pilot.survey, MissionType.MISSION))
+
+
+def about_to_fly(pilot: Pilot) -> Pilot:
+    """Read the mission again that begins at its first item now, before the vehicle is told to fly it."""
+    profile, known = pilot.known.profile, pilot.known
+    if profile is None or known.mode == profile.auto:
+        return pilot
+    return unsure(pilot, (MissionType.MISSION,), quiet=True)
+
+
+def _is_pending(pilot: Believer) -> bool:
+    return pilot.moving is not None and not pilot.moving.accepted and not pilot.moving.over
 
 
 def _renumbered(pilot: Believer, before: Telemetry) -> Iterator[MissionType]:
@@ -155,8 +174,7 @@ def surveyed(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
     profile, known = pilot.known.profile, pilot.known
     if profile is None or _uploads(pilot):
         return pilot, ()
-    pending = pilot.moving is not None and not pilot.moving.accepted and not pilot.moving.over
-    mission = HEADING if pending else FLOWN if known.mode == profile.auto else NOW_AND_THEN
+    mission = HEADING if _is_pending(pilot) else FLOWN if known.mode == profile.auto else NOW_AND_THEN
     every = {
         MissionType.MISSION: mission,
         MissionType.FENCE: NOW_AND_THEN / 2,

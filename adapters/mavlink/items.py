@@ -48,14 +48,19 @@ def route(
     takeoff: bool,
     home: bool = True,
     above: float | None = None,
+    near: tuple[float, ...] = (),
 ) -> Items:
     """Return the mission that visits points at a height above home and stays at the last.
 
     Where `home` is an item, it is item 0, which the vehicle overwrites. Where the altitude of home is given, heights
-    are `above` that, whatever becomes of the vehicle's home.
+    are `above` that, whatever becomes of the vehicle's home. `near`: acceptance radii of all points but the last.
     """
     z, frame = (height, Frame.HOME) if above is None else (round(height + above, 2), Frame.SEA_LEVEL)
-    ways = [Item(Cmd.WAYPOINT, *e7(at), z, frame) for at in path[:-1]]
+    radii = near or (0.0,) * (len(path) - 1)
+    ways = [
+        Item(Cmd.WAYPOINT, *e7(at), z, frame, (0.0, radius, 0.0, 0.0))
+        for at, radius in zip(path[:-1], radii, strict=True)
+    ]
     stay = Item(Cmd.LOITER_UNLIMITED, *e7(path[-1]), z, frame)
     first = (
         [Item(Cmd.TAKEOFF, *e7(path[0]), z, frame, parameters=(TAKEOFF_PITCH, 0.0, 0.0, 0.0))]

@@ -14,6 +14,7 @@ from adapters.mavlink.items import Items, e7, fence, route
 from adapters.mavlink.loiter_radius import goal, stay
 from adapters.mavlink.merging import OnBoard, is_on_board, landing_now, merged
 from adapters.mavlink.message import Message
+from adapters.mavlink.passing import acceptance
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.refuges import ARMING_ITEMS, refuges
 from adapters.mavlink.telemetry import Position, Telemetry
@@ -305,8 +306,15 @@ def _targets(known: Telemetry, at: Geometry) -> bool:
 
 def _path_items(command: Follow, vehicle: Vehicle) -> Items:
     profile, path = vehicle.profile, (*map(waypoint, command.path[:-1]), _stay(command, vehicle))
-    home = profile.dialect.home_is_item
-    return route(path, vehicle.height, takeoff=_by_item(profile), home=home, above=vehicle.above)
+    usual = vehicle.known.parameters.get("WP_RADIUS", 0.0)
+    return route(
+        path,
+        vehicle.height,
+        takeoff=_by_item(profile),
+        home=profile.dialect.home_is_item,
+        above=vehicle.above,
+        near=tuple(acceptance(place, usual) for place in command.path[:-1]),
+    )
 
 
 def _by_item(profile: Profile) -> bool:

@@ -100,7 +100,6 @@ def impassable(
     reasons = chain(
         beyond(own, known, waypoint(place), 0.0, None, name),
         (barred(zone, waypoint(place), 0.0, name) for zone in zones),
-        [_missed(place, known, name)],
     )
     return next(filter(None, reasons), None)
 
@@ -126,7 +125,6 @@ def _of_place(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]
     if isinstance(command, GoTo | Follow) and known.profile is not None:
         yield from _of_size(command, craft, known.profile, known)
         yield from _of_own_fences(command, craft, known.profile, known)
-        yield from _of_gates(command, known)
 
 
 def not_ours(stations: Stations, known: Telemetry) -> str | None:
@@ -234,23 +232,6 @@ def _of_legs(command: GoTo | Follow, craft: Craft, known: Telemetry, on_board: O
         yield from filter(
             None, [crossed(zone, start, end, name if end is points[-1] else "a point of its way")]
         )
-
-
-def _of_gates(command: GoTo | Follow, known: Telemetry) -> Iterator[str]:
-    """Object to places of a path that are too small to be seen in when they are passed."""
-    for place in _path(command)[:-1]:
-        yield from filter(None, [_missed(place, known, "a place of its way")])
-
-
-def _missed(place: Geometry, known: Telemetry, name: str) -> str:
-    """Return why a vehicle would turn away before it is in a place, or an empty text."""
-    radius = known.parameters.get("WP_RADIUS", 0.0)
-    if radius <= 0.0 or holds_circle(place, radius):
-        return ""
-    return (
-        f"{name} is too small to be passed: the vehicle turns to the next point {radius:g} m before it (WP_RADIUS); "
-        "set that to less, or make the place larger"
-    )
 
 
 def _of_items(command: GoTo | Follow, profile: Profile, known: Telemetry, on_board: OnBoard) -> Iterator[str]:

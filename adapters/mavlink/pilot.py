@@ -365,6 +365,8 @@ def _advance(pilot: Pilot, now: float) -> Outcome:
             survey = surveys.settle(pilot.survey, kind, items, now)
             pilot = changed(pilot, on_board={**pilot.on_board, kind: items}, survey=survey)
         pilot = _onwards(pilot, slot, progress.task)
+        if progress.task.begun and not task.begun:
+            pilot = inventory.about_to_fly(pilot)
         sent += progress.sent
         reports += [progress.report] if progress.report else []
     pilot, published, trouble = _publication(pilot, now)

@@ -63,7 +63,8 @@ def _done(vehicle: State, item: Item) -> bool:
         return vehicle.body.height >= _height(vehicle, item) - 1.0
     if item.command not in _FLOWN:
         return True
-    return item.command == Cmd.WAYPOINT and _away(vehicle, item) <= vehicle.kind.radius
+    asked = item.parameters[1] if vehicle.kind.limits.must_move else 0.0
+    return item.command == Cmd.WAYPOINT and _away(vehicle, item) <= (asked or vehicle.kind.radius)
 
 
 def _next(vehicle: State, item: Item) -> None:

@@ -111,6 +111,25 @@ def test_a_copter_that_has_landed_is_not_armed_for_a_mission_that_somebody_loade
     run(main())
 
 
+@pytest.mark.parametrize("moment", ["begun", "auto"])
+def test_a_mission_that_somebody_loads_at_the_last_moment_is_not_armed_for(moment):
+    async def main():
+        async with flight() as f:
+            await f.plugin.command(Follow("r1", "uav0", WAY))
+            auto = f.vehicle.kind.profile.auto
+            await until(
+                lambda: f.vehicle.mode == auto if moment == "auto" else f.plugin.pilot("uav0").moving.begun,
+                every=0.02,
+            )
+            assert not f.vehicle.armed
+            ours = mission(f)
+            theirs(f)
+            await until(lambda: f.vehicle.armed)
+            assert same(ours, mission(f), MissionType.MISSION)
+
+    run(main())
+
+
 @pytest.mark.parametrize("kind", PLANES)
 @pytest.mark.parametrize("path", [AWAY, (*AWAY, point(36.92, -8.6))], ids=["as long", "longer"])
 def test_a_mission_that_somebody_loads_while_ours_is_flown_is_a_take_over(kind, path):
@@ -171,15 +190,14 @@ def test_a_mission_that_is_set_back_is_a_take_over():
     run(main())
 
 
-def test_a_place_that_the_vehicle_would_turn_before_is_refused_with_the_figures():
+def test_a_place_that_the_vehicle_would_turn_before_is_entered_all_the_same():
     async def main():
-        async with flight(parameters={"WP_RADIUS": 90.0}) as f:
-            await until(f.plugin.is_known, 60)
-            small = circle((37.012, -8.6), 80)
-            assert "90 m before it (WP_RADIUS)" in f.plugin.bar("uav0", small, "gate0")
-            with pytest.raises(Refused, match="too small to be passed"):
-                await f.plugin.command(Follow("r1", "uav0", (small, WAY[-1])))
-            assert f.plugin.bar("uav0", circle((37.012, -8.6), 100), "gate0") is None
+        async with flight() as f:
+            small = circle((37.012, -8.6), 20)
+            await f.plugin.command(Follow("r1", "uav0", (small, WAY[-1])))
+            await until(lambda: inside(f, small), every=0.1)
+            assert isinstance(await f.ended("r1"), Arrived)
+            assert mission(f)[2].parameters[1] == 12.5  # instead of WP_RADIUS, 50 m
 
     run(main())
 
