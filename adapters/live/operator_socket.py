@@ -47,12 +47,14 @@ async def listening(path: Path, listener: Listener, describe: Callable[[], str] 
     """
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        with suppress(OSError, ValueError, TimeoutError, asyncio.IncompleteReadError):
-            async with asyncio.timeout(PATIENCE):
-                line = await reader.readuntil()
-            writer.write(json.dumps(await _answer(line, listener, describe)).encode() + b"\n")
-            await writer.drain()
-        writer.close()
+        try:
+            with suppress(OSError, ValueError, TimeoutError, asyncio.IncompleteReadError):
+                async with asyncio.timeout(PATIENCE):
+                    line = await reader.readuntil()
+                writer.write(json.dumps(await _answer(line, listener, describe)).encode() + b"\n")
+                await writer.drain()
+        finally:
+            writer.close()
         with suppress(OSError):
             await writer.wait_closed()
 
