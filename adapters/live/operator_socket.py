@@ -64,16 +64,17 @@ async def listening(
     """
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        with suppress(OSError, ValueError, TimeoutError, asyncio.IncompleteReadError):
-            async with asyncio.timeout(PATIENCE):
-                line = await reader.readuntil()
-            by = _starter(line)
-            answer = (
-                {"refusal": start(by)} if by is not None else await _answer(line, listener, describe, fates)
-            )
-            writer.write(json.dumps(answer).encode() + b"\n")
-            await writer.drain()
-        writer.close()
+        try:
+            with suppress(OSError, ValueError, TimeoutError, asyncio.IncompleteReadError):
+                async with asyncio.timeout(PATIENCE):
+                    line = await reader.readuntil()
+                by = _starter(line)
+                starts = None if by is None else {"refusal": start(by)}
+                answer = starts or await _answer(line, listener, describe, fates)
+                writer.write(json.dumps(answer).encode() + b"\n")
+                await writer.drain()
+        finally:
+            writer.close()
         with suppress(OSError):
             await writer.wait_closed()
 

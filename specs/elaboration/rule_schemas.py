@@ -204,11 +204,12 @@ def _put(pattern: Pattern, values: Mapping[str, Name]) -> Pattern:
 
 def _stand_for(schema: Pattern, pattern: Pattern) -> dict[str, Name]:
     """Return what stands in a pattern where a schema has each of its names."""
-    pairs = [
-        *zip(schema.nodes, pattern.nodes, strict=False),
-        *zip(schema.closed, pattern.closed, strict=False),
-    ]
-    for mine, theirs in zip(schema.parents, pattern.parents, strict=False):
-        pairs += zip(mine, theirs, strict=True)
-    pairs += [(mine[1], theirs[1]) for mine, theirs in zip(schema.links, pattern.links, strict=False)]
-    return {mine: theirs for mine, theirs in pairs if isinstance(mine, str) and isinstance(theirs, str)}
+    mine, theirs = _node_terms(schema), _node_terms(pattern)
+    pairs = zip(mine, theirs, strict=False)
+    return {term: name for term, name in pairs if isinstance(term, str) and isinstance(name, str)}
+
+
+def _node_terms(pattern: Pattern) -> list[PlaceTerm]:
+    """Return the terms of a pattern that stand for nodes and places, in the order in which it is written."""
+    related: list[PlaceTerm] = [term for pair in pattern.parents for term in pair]
+    return [*pattern.nodes, *pattern.closed, *related, *(point for _, point in pattern.links)]

@@ -6,7 +6,8 @@ that came to the same.
 """
 
 import math
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -26,6 +27,9 @@ from semantics.state.canonical import canonical
 SCHEMA = "bigactors.checkpoint/5"
 KEPT = (EXPANDED, SIZE, CUT, CROWDS)
 """What of the loops' state goes on; the rest follows from the mission."""
+
+RECOUNTED = 1 << 22
+"""Of how many rows the transitions are taken once more: some seconds' work."""
 
 KINDS: Final[Kinds] = {
     "rows": np.uint64,
@@ -121,7 +125,9 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
             raise ValueError("some row was reached from a later one")
         space.restore(where, rows, size, learned)
         _check_counts(space, arrays["counts"], arrays["state"])
-        space.counts.used[:] = arrays["counts"]
+        if space.choosing is None and space.compact is None:
+            _recount(space, arrays["counts"], arrays["state"])
+        space.counts.used[: len(arrays["counts"])] = arrays["counts"]
         space.state[list(KEPT)] = arrays["state"]
     except (ValueError, IndexError, KeyError, TypeError) as error:
         raise CheckpointError(f"{path}: this checkpoint is damaged: {error}") from error
@@ -149,6 +155,41 @@ def _check_counts(space: Space, counts: NDArray[np.int64], state: NDArray[np.int
         raise ValueError("its transitions were not taken so often")
     if int(counts.sum()) < size - 1:
         raise ValueError("it has more rows than transitions")
+
+
+def _recount(space: Space, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
+    """Take the transitions of rows that were expanded once more, and hold counts and rows to them; raises ValueError.
+
+    What was learned of them may have been forgotten since, so transitions are compared by what they are called. Of many
+    rows the first and the last are taken: transitions were taken at least as often.
+    """
+    expanded, size, cut = map(int, state[:3])
+    half = RECOUNTED // 2
+    parts = (range(expanded),) if expanded <= RECOUNTED else (range(half), range(expanded - half, expanded))
+    found, reached = Counter[int](), np.zeros(size, np.bool_)
+    reached[0] = True
+    for _, steps, targets in (each for part in parts for each in space.edges(part)):
+        taken = np.bincount(steps)
+        found.update({int(step): int(taken[step]) for step in np.flatnonzero(taken)})
+        if not cut and np.any(targets < 0):
+            raise ValueError("it lacks what follows from its rows")
+        reached[targets[targets >= 0]] = True
+    rest = expanded - sum(map(len, parts))
+    told, again = _by_label(space, dict(enumerate(counts.tolist()))), _by_label(space, found)
+    if told != again and not (rest and told >= again):
+        raise ValueError("its transitions were not taken so often")
+    if not rest and not reached.all():
+        raise ValueError("some row follows from none before it")
+
+
+def _by_label(space: Space, counts: Mapping[int, int]) -> Counter[tuple[int, str]]:
+    """Return how often transitions were taken, by their rules and labels."""
+    rules, steps = space.learner.leaves.rule.room, space.learner.steps
+    found = Counter[tuple[int, str]]()
+    for step, count in counts.items():
+        if count:
+            found[int(rules[step]), str(steps.get(step))] += count
+    return found
 
 
 def _digest_of_columns(space: Space) -> str:

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from semantics.admission.objections import text_objection
 from semantics.admission.value_flow import flow_of
+from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault
 from semantics.state.parcel_serialization import parcel_json, parcel_of
 from semantics.state.partition import Parting, enter, is_here, leave, objection, parted, sent_cell, station_of
@@ -279,3 +280,41 @@ def test_every_configuration_of_a_shipped_mission_can_be_sent(name):
             if step.target not in seen:
                 seen.add(step.target)
                 waiting.append(step.target)
+
+
+RULES = """
+signature {
+  kind Location contains UAV, Station
+  kind UAV driven
+  kind Station
+}
+world {
+  west0: Location = box (37.10, -8.70) (37.00, -8.80)
+  east0: Location = box (37.10, -8.50) (37.00, -8.60)
+  gcs0: Station = point (37.05, -8.55) linked internet, control:gcs0
+  uav0: UAV = point (37.05, -8.75) linked internet, control:gcs0
+}
+rule carry(u: UAV, here: Location, there: Location) {
+  HOST || here.(u | $0) || there.$1 -> HOST || here.$0 || there.(u | $1) }
+rule claim(u: UAV) { u[c] || HOST[d] -> u[d] || HOST[d] }
+BigActor op0 hosted_at gcs0 with_behavior {
+  for u in {uav0} { control(carry(u, west0, east0))
+                    control(claim(u))
+                    control({ HOST || west0.(u | $0) || east0.$1 -> HOST || west0.$0 || east0.(u | $1) }) }
+  control(MOVE uav0 TO east0 VIA west0)
+}
+"""
+
+
+def test_what_a_command_or_a_rule_has_made_is_known_by_its_arguments():
+    source = Source("rules.mission", RULES)
+    program = elaborate(parse(source), source, Path()).setting.program
+    several = {"carry": ("uav0", "west0", "east0"), "claim": ("uav0",), "MOVE": ("uav0", "east0", "west0")}
+    for name, make in program.reactions.items():
+        given = several.get(name, ("uav0",) if name not in COMMANDS else None)
+        if given is None:
+            continue
+        made = make("gcs0", *given)
+        assert make.made_from(made, "gcs0")[1:] == given
+        assert make(*make.made_from(made, "gcs0")) == made
+        assert [other for other, each in program.reactions.items() if each.made_from(made, "gcs0")] == [name]

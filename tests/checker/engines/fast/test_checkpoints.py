@@ -199,6 +199,38 @@ def test_numbers_that_no_search_has_are_told(part, number):
         resumed("fast", kept_fast(), alter)
 
 
+@pytest.mark.parametrize("at", range(40))
+def test_counts_that_are_not_those_of_the_rows_are_told(at):
+    """Whoever alters a count and works out the digest anew changes no report."""
+
+    def alter(folder):
+        path = folder / "exploration.checkpoint"
+        head, arrays = read_archive(path, checkpoint.SCHEMA, checkpoint.KINDS)
+        taken = np.flatnonzero(arrays["counts"])
+        arrays["counts"][taken[at % len(taken)]] += 1 - 2 * (at % 2)
+        write_archive(path, head, checkpoint.KINDS, list(arrays.values()))
+
+    with pytest.raises(CheckpointError, match="this checkpoint is damaged"):
+        resumed("fast", kept_fast(), alter)
+
+
+def test_a_count_that_was_moved_to_another_transition_is_told():
+    def alter(folder):
+        path = folder / "exploration.checkpoint"
+        head, arrays = read_archive(path, checkpoint.SCHEMA, checkpoint.KINDS)
+        first, second = np.flatnonzero(arrays["counts"])[:2]
+        arrays["counts"][[first, second]] += (-1, 1)
+        write_archive(path, head, checkpoint.KINDS, list(arrays.values()))
+
+    with pytest.raises(CheckpointError, match="its transitions were not taken so often"):
+        resumed("fast", kept_fast(), alter)
+
+
+def test_of_many_rows_the_first_and_the_last_bound_the_counts(monkeypatch):
+    monkeypatch.setattr(checkpoint, "RECOUNTED", 6)
+    assert len(resumed("fast", kept_fast()).configurations) == whole()
+
+
 def test_a_pipe_in_the_place_of_a_checkpoint_is_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "exploration.checkpoint")
     with pytest.raises(CheckpointError, match="this checkpoint can't be read: this is a pipe, not a file"):
