@@ -157,6 +157,8 @@ def _reduced(
 
 def reductions_of(start: Checkable) -> tuple[Reduction, ...]:
     """Return the reductions that a mission allows; none refuses another."""
+    if start.initial.setting.timing is not None:
+        return ()
     formulas = [each.formula for each in start.properties if each.kind.has_proposition]
     initial, sound = watching(start.initial, start.properties), list[Reduction]()
     for reduction in Reduction:

@@ -53,8 +53,13 @@ def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Op
     """Visit everything that is reachable as options say.
 
     Raises:
-        EngineError: The mission says how long things take, of which the engine, or its checkpoints, know nothing.
+        EngineError: The mission says how long things take, of which the engine, or its checkpoints, know nothing; or
+            the engine keeps nothing in files.
     """
+    if options.engine is Engine.REFERENCE and _is_kept(options):
+        raise EngineError(
+            "the engine 'reference' explores in memory, without checkpoints, spilling and hash compaction"
+        )
     if initial.setting.timing is not None:
         return _explore_in_time(initial, inspect, options)
     match options.engine:
@@ -68,6 +73,11 @@ def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Op
             return explore_with_ray(initial, inspect, options)
         case _:
             assert_never(options.engine)
+
+
+def _is_kept(options: Options) -> bool:
+    kept = options.keeping
+    return kept.folder is not None or kept.compact is not None or options.limits.spill is not None
 
 
 def _explore_in_time(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:

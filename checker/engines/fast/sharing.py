@@ -139,7 +139,7 @@ class Sharing:
         except NoImage:
             return
         asked = (each.ask.cell for each in stages if each.ask is not None)
-        if not self.varying.isdisjoint(lesson.taken) or not self.varying.issuperset(asked):
+        if not self.varying.isdisjoint(lesson.taken) or any(cell not in self.varying for cell in asked):
             return  # the first of them would ask otherwise
         kin.lessons.begin(self.forgotten)
         kin.lessons.learn(stages, lesson)

@@ -71,6 +71,15 @@ def test_nothing_lies_outside_in_generated_missions(text, scheduler):
     assert outside_of(initial, [Inside("uav0", "gate0", actually=True), Ended("a")]) == set()
 
 
+def test_what_is_carried_moves_and_vanishes_with_its_carrier():
+    text = """
+    BigActor a hosted_at vessel0 with_behavior { control(MOVE_HOST_TO gate0) control(PUT drifter0 IN gate0) }
+    BigActor b hosted_at gcs0 with_behavior { observe(CHILDREN(gate0)) react { case o if drifter0 in o => skip } }
+    environment { vessel0 vanishes }
+    """
+    assert outside_of(start(text), count=200) == set()
+
+
 MOVED_AND_HANDED = """
 BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }
 BigActor b hosted_at gcs0 with_behavior {

@@ -1,0 +1,110 @@
+"""Features two by two: each is decided as the reference engine decides it without options, or refused by name.
+
+A row of a covering array chooses features of a mission and options of a check, so that every two meet. What is asked
+of a row holds for all: the same configurations and verdicts (with times, those of whole ticks), everything shown
+replays, what is not supported is refused with a reason, and nothing raises.
+"""
+
+from dataclasses import replace
+
+import pytest
+from checked_missions import interrupted_at, load
+from covering import covering_array, pairs_of
+from features import LANGUAGE, NO, OPTIONS, YES, text_of
+from replaying import assert_replays
+from scale import IS_WHOLE
+
+from checker import Engine, Keeping, Limits, Outcome, Reduction, check
+from checker.check import reductions_of
+from checker.engines.contract import EngineError
+from checker.reduction.refusals import RefusedError
+from specs.diagnostics import MissionError
+
+MOST = Limits(configurations=20_000)
+REDUCTIONS = {NO: (), "por": (Reduction.POR,), "symmetry": (Reduction.SYMMETRY,), "both": tuple(Reduction)}
+OF_RUNS = {"ltl": NO, "ctl": NO, "progress": NO}
+ARRAY = covering_array({**LANGUAGE, **OPTIONS}, seed=0)
+SEEDS = range(6)
+CASES = [(number, seed) for seed in SEEDS for number in range(len(ARRAY))]
+
+
+def test_every_two_choices_meet_in_some_row():
+    factors = {**LANGUAGE, **OPTIONS}
+    met = set().union(*map(pairs_of, ARRAY))
+    assert len(met) == sum(len(factors[a]) * len(factors[b]) for a in factors for b in factors if a < b)
+
+
+def supported(row):
+    """Return the row without what its mission may not have; each of that is refused by name."""
+    if row["timing"] == YES and row["control"] == "atomic":
+        refused_by_name(row, "a mission with 'timing' has control that takes time")
+        row = {**row, "control": "timed"}
+    if row["timing"] == YES and row != {**row, **OF_RUNS}:
+        refused_by_name(row, "timing")
+        row = {**row, **OF_RUNS}
+    return row
+
+
+def refused_by_name(row, words):
+    with pytest.raises(MissionError) as refused:
+        load(text_of(row, 0), "")
+    assert any(words in each.message for each in refused.value.diagnostics)
+
+
+def reduced(mission, row):
+    """Return the reductions that a mission allows; what is refused says so with its reason."""
+    asked = REDUCTIONS[row["reduction"]]
+    allowed = []
+    for each in asked:
+        if each in reductions_of(mission):
+            allowed.append(each)
+            continue
+        with pytest.raises(RefusedError, match=f"the reduction '{each}' is refused: "):
+            check(mission, limits=MOST, reduce=[each])
+    return tuple(allowed)
+
+
+def checked(mission, row, reductions, folder):
+    """Check a mission as a row says."""
+    engine = Engine(row["engine"])
+    options = {"engine": engine, "reduce": reductions, "threads": int(row["threads"])}
+    limits = replace(MOST, memory=64 << 30) if row["memory"] == YES else MOST
+    timed = mission.setting.timing is not None
+    if timed or engine is Engine.REFERENCE:
+        for more in (
+            {"keeping": Keeping(str(folder), digest="d")},
+            {"limits": replace(limits, spill=str(folder))},
+        ):
+            with pytest.raises(EngineError, match="in memory, without checkpoints"):
+                check(mission, **{"limits": limits, **options, **more})
+        return check(mission, limits=limits, **options)
+    if row["spill"] == YES:
+        (folder / "spill").mkdir()
+        limits = replace(limits, spill=str(folder / "spill"))
+    if row["resumed"] == YES and not reductions:
+        kept = Keeping(str(folder), digest="d", every=0.0)
+        early, stop = interrupted_at(15, limits)
+        check(mission, limits=early, report=stop, keeping=kept, **options)
+        options["keeping"] = replace(kept, resumed=(folder / "exploration.checkpoint").exists())
+    return check(mission, limits=limits, **options)
+
+
+@pytest.mark.fuzz
+@pytest.mark.parametrize(("number", "seed"), CASES if IS_WHOLE else CASES[: len(ARRAY) : 6])
+def test_features_that_meet_are_decided_as_each_alone(number, seed, tmp_path):
+    row = supported(ARRAY[number])
+    mission = load(text_of(row, seed), "")
+    right = check(mission, engine=Engine.REFERENCE, limits=MOST)
+    assert right.complete, "too large for this suite"
+    reductions = reduced(mission, row)
+    found = checked(mission, row, reductions, tmp_path)
+    assert_replays(right)
+    assert_replays(found)
+    if not reductions:
+        assert (found.configurations, found.transitions) == (right.configurations, right.transitions)
+        assert found.rules == right.rules
+    for one, other in zip(found.verdicts, right.verdicts, strict=True):
+        undecided = bool(reductions) and one.outcome is Outcome.INCOMPLETE
+        assert undecided or one.outcome is other.outcome, one.property.name
+        if not reductions:
+            assert (one.count, one.examined, one.note) == (other.count, other.examined, other.note)
