@@ -1,3 +1,4 @@
+from bigactors.mission_check import check as check
 from bigactors.pictures import draw_configuration as draw_configuration
 from bigactors.pictures import draw_trace as draw_trace
 from checker import Exploration as Exploration
@@ -11,7 +12,6 @@ from checker import Trace as Trace
 from checker import Verdict as Verdict
 from checker import Verdicts as Verdicts
 from checker import Violation as Violation
-from checker import check as check
 from checker import explore as explore
 from checker import owned as owned
 from checker import print_trace as print_trace
@@ -44,5 +44,6 @@ from specs import MissionError as MissionError
 from specs import format_mission as format_mission
 from specs.elaboration import ElaboratedMission as ElaboratedMission
 from specs.elaboration import load_mission as load_mission
+from specs.elaboration import read_mission as read_mission
 
 __version__: str

@@ -31,6 +31,7 @@ class Watch:
         self.name = name
         self.stream = stream
         self.shown = 0
+        self.is_told = False
         self.interruption = interruption or Interruption()
 
     @property
@@ -39,9 +40,12 @@ class Watch:
         return self.interruption.is_due()
 
     def __call__(self, progress: Progress) -> None:
-        """Show the progress."""
+        """Show the progress; elsewhere than on a terminal say once that loops are compiled, which takes its time."""
         if is_terminal(self.stream):
             self.rewrite(describe(self.name, progress))
+        elif progress.compiling and not self.is_told:
+            self.is_told = True
+            write(self.stream, f"{self.name}: {COMPILING}\n", flush=True)
 
     def rewrite(self, text: str) -> None:
         """Replace the last text."""
@@ -121,7 +125,7 @@ def rounded_time(seconds: float) -> str:
 
 @contextmanager
 def watching(name: str, interruption: Interruption | None = None) -> Iterator[Watch]:
-    """Watch a check: progress on a terminal, quiet in a pipe; Ctrl-C makes the check incomplete."""
+    """Watch a check: progress on a terminal, a word on compiling elsewhere; Ctrl-C makes the check incomplete."""
     watch = Watch(name, sys.stderr, interruption)
     main = threading.current_thread() is threading.main_thread()
     before = signal.signal(signal.SIGINT, watch.interrupt) if main else None

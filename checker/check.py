@@ -221,7 +221,7 @@ class _Check:
             self.remembered = self.search()
         later = self.remembered.bounds if self.remembered else []
         seconds = self.found.seconds + (self.remembered.seconds if self.remembered else 0.0)
-        with bounded(replace(whole, spent=options.limits.spent + seconds)):
+        with bounded(replace(whole, spent=options.limits.spent + seconds - self.compiling())):
             verdicts = Verdicts(map(self.decide, self.properties))
             schedule = self.schedule()
         return Report(
@@ -242,6 +242,10 @@ class _Check:
             flights=self.deadlines.longest_flights() if self.deadlines else (),
         )
 
+    def compiling(self) -> float:
+        """Return how many seconds of both explorations loops were compiled."""
+        return self.found.compiling + (self.remembered.compiling if self.remembered else 0.0)
+
     def schedule(self) -> Schedule | None:
         """Return when flights may begin and end, if that is asked for, and time does not stop."""
         if not self.times or self.deadlines is None:
@@ -257,7 +261,9 @@ class _Check:
         if any(bound.stop is Stop.INTERRUPTION for bound in self.found.bounds):
             return None
         options, start, reduce = self.options, monitored(self.initial), None
-        limits = replace(options.limits, spent=options.limits.spent + self.found.seconds)
+        limits = replace(
+            options.limits, spent=options.limits.spent + self.found.seconds - self.found.compiling
+        )
         if options.reduce is not None and options.reduce.putting_off:  # symmetry would lose whose a memory is
             reduce = _reduced(start, [Reduction.POR])
         remembered = explore_by(start, (self.stale,), replace(options, limits=limits, reduce=reduce))

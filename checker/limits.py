@@ -87,6 +87,13 @@ class Interruption:
         return self.wished is not None and monotonic() - self.wished >= grace
 
 
+class Uncounted:
+    """How many seconds of an exploration count to no limit: loops are compiled once after an installation."""
+
+    def __init__(self) -> None:
+        self.seconds = 0.0
+
+
 @dataclass(frozen=True, slots=True)
 class Limits:
     """Where an exploration stops: then it is *incomplete*, and says so.
@@ -99,6 +106,7 @@ class Limits:
         memory: How many bytes the process may take; looked at now and then, so that it may be a little more.
         spill: The folder in which the fast explorer has files for its rows when memory ends; None for nowhere.
         interruption: Whether the user has asked for the end.
+        uncounted: The seconds of the exploration that are not counted.
     """
 
     configurations: int | None = 2_000_000
@@ -108,6 +116,7 @@ class Limits:
     memory: int | None = None
     spill: str | None = None
     interruption: Interruption = field(default_factory=Interruption, compare=False, repr=False)
+    uncounted: Uncounted = field(default_factory=Uncounted, compare=False, repr=False)
 
     def bound(self, stop: Stop) -> Bound:
         """Return the bound that is met at one of these limits."""
@@ -126,7 +135,8 @@ class Limits:
         """
         if self.interruption.is_due(grace):
             return Bound(Stop.INTERRUPTION)
-        is_over = self.seconds is not None and seconds + self.spent > share * self.seconds
+        counted = seconds + self.spent - self.uncounted.seconds
+        is_over = self.seconds is not None and counted > share * self.seconds
         return self.bound(Stop.TIME) if is_over else None
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TypeVar
 
+from hypothesis import reject
 from hypothesis import strategies as st
 
 from physical import Band, box, circle, point
@@ -32,7 +33,7 @@ from semantics.properties.kinds import Asked, asked_by
 from semantics.properties.property import Property
 from semantics.random_programs import AGENT_NAMES, random_program
 from semantics.state.agents import Code
-from semantics.state.configuration import Configuration
+from semantics.state.configuration import Configuration, Transition
 from semantics.state.initial import Beliefs, initial
 from semantics.state.physical_model import Carried, Placed, Placement
 from semantics.state.setting import Control, Scheduler, Setting
@@ -372,6 +373,8 @@ def initial_configurations(
 ) -> Configuration:
     """Yield whole first configurations, with programs, an environment, any of the schedulers and controls.
 
+    Some compute what fails: `expand` has their faults, `successors` raises one.
+
     Args:
         draw: Given by hypothesis.
         schedulers: The schedulers to draw from.
@@ -420,14 +423,28 @@ def missions(start: st.SearchStrategy[Configuration] | None = None) -> st.Search
 def configurations(
     draw: st.DrawFn, start: st.SearchStrategy[Configuration] | None = None, steps: int = 16
 ) -> Configuration:
-    """Yield configurations reached by a random run of at most so many steps, none of them into a fault."""
+    """Yield configurations reached by a random run of at most so many steps; `successors` of none raises a Fault.
+
+    A first configuration in which something fails at once is drawn anew.
+    """
     c = draw(initial_configurations() if start is None else start)
+    allowed = _steps(c)
+    if allowed is None:
+        reject()
     for turn in [draw(_numbers(16)) for _ in range(pick(draw, range(steps + 1)))]:
-        try:
-            allowed = successors(c)
-        except Fault:
-            break
         if not allowed:
             break
-        c = allowed[max(0, turn - 6) % len(allowed)].target  # often the first: what serves a request
+        after = allowed[max(0, turn - 6) % len(allowed)].target  # often the first: what serves a request
+        following = _steps(after)
+        if following is None:
+            break
+        c, allowed = after, following
     return c
+
+
+def _steps(c: Configuration) -> Sequence[Transition] | None:
+    """Return what can happen, None where a computation fails."""
+    try:
+        return successors(c)
+    except Fault:
+        return None

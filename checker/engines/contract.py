@@ -184,6 +184,7 @@ class Exploration:
         rules: How many transitions each rule has.
         bounds: Those that were met; empty where the exploration is complete.
         seconds: How long it took.
+        compiling: How much of that loops were compiled, which counts to no limit.
         rule_runs: How often an actor's rules were run in Python, where they were learned.
         edges: Every transition, where they were asked for and the reference explorer kept them.
         survey: What explorers with rows can be asked; None of the reference explorer.
@@ -201,6 +202,7 @@ class Exploration:
     rules: Counter[str] = field(default_factory=Counter)
     bounds: list[Bound] = field(default_factory=list)
     seconds: float = 0.0
+    compiling: float = 0.0
     rule_runs: int | None = None
     edges: Edges | None = None
     survey: Surveyed | None = None

@@ -6,6 +6,7 @@ from semantics.behaviours.values import Value, order_key
 from semantics.races.provenance import NOTHING, Provenance
 from semantics.state.cells import AGENTS, MONITOR, Cell, Cells, Changes, has
 from semantics.state.signature import Name
+from semantics.state.views import View
 
 Code = tuple[int, ...]
 """What is left to run: statements by number in the program, the next one first."""
@@ -73,10 +74,11 @@ def watch_cell(agent: Name) -> Cell:
     return (MONITOR, "agent", agent)
 
 
-class Agents:
+class Agents(View):
     """α over the cells of a configuration."""
 
     __slots__ = ("cells",)
+    SORTS = frozenset({"agents", "host", "code", "store", "mailbox"})
 
     def __init__(self, cells: Cells) -> None:
         self.cells = cells

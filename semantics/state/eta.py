@@ -8,6 +8,7 @@ from semantics.state.cells import AGENTS, MONITOR, QUEUE, Cell, Cells, Changes, 
 from semantics.state.requests import FLY, READY, SND, Request, request_key
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
+from semantics.state.views import View
 
 if TYPE_CHECKING:
     from semantics.state.setting import Setting
@@ -32,7 +33,7 @@ class Pending(NamedTuple):
     rests_on: Provenance
 
 
-class Eta:
+class Eta(View):
     """η over the cells of a configuration.
 
     Under `program_order` each agent has a line, under `unordered` a multiset. Under `fcfs` all share one queue of
@@ -41,6 +42,7 @@ class Eta:
     """
 
     __slots__ = ("cells", "setting")
+    SORTS = frozenset({"line", "sends", "queue"})
 
     def __init__(self, cells: Cells, setting: "Setting") -> None:
         self.cells = cells

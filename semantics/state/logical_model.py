@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from bigraphs import Bigraph, from_relations, open_signature
 from semantics.state.cells import NAMES, Cell, Cells, Changes, is_, is_something
 from semantics.state.signature import REGION, Name, Sorting
+from semantics.state.views import View
 
 
 def parent_cell(node: Name) -> Cell:
@@ -17,10 +18,11 @@ def links_cell(node: Name) -> Cell:
     return ("links", node)
 
 
-class LogicalModel:
+class LogicalModel(View):
     """L over the cells of a configuration."""
 
     __slots__ = ("cells", "sorting")
+    SORTS = frozenset({"parent", "links"})
 
     def __init__(self, cells: Cells, sorting: Sorting) -> None:
         self.cells = cells

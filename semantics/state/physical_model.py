@@ -9,6 +9,7 @@ from typing import NamedTuple
 from physical import Band, Geometry, PlaceIndex, area, band_contains, contains, point, share_interior
 from semantics.state.cells import NAMES, Cell, Cells, Changes, is_something
 from semantics.state.signature import REGION, Name, Sorting
+from semantics.state.views import View
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,10 +102,11 @@ def stands_outside(placement: Placement | None, places: tuple[Placed, ...]) -> b
     return isinstance(placement, Placed) and not any(encloses(at, placement) for at in places)
 
 
-class PhysicalModel:
+class PhysicalModel(View):
     """P and σ_P over the cells of a configuration."""
 
     __slots__ = ("cells", "sorting")
+    SORTS = frozenset({"placement", "channels", "down"})
 
     def __init__(self, cells: Cells, sorting: Sorting) -> None:
         self.cells = cells

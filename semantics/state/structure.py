@@ -18,6 +18,14 @@ class Structure:
         self.logical = LogicalModel(cells, sorting)
         self.physical = PhysicalModel(cells, sorting)
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Structure):
+            return NotImplemented
+        return self.logical == other.logical and self.physical == other.physical
+
+    def __hash__(self) -> int:
+        return hash((self.logical, self.physical))
+
     def beta(self, node: Name) -> Name | None:
         """Return β(node): the naming service gives an entity its node's name; what vanished has no image."""
         return node if node in self.physical else None

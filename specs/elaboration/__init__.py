@@ -12,6 +12,7 @@ from specs.elaboration.mission import (
     files_named,
     find_mission,
     load_mission,
+    read_mission,
     require_bigactor,
 )
 from specs.elaboration.variation import Variation
@@ -25,5 +26,6 @@ __all__ = [
     "files_named",
     "find_mission",
     "load_mission",
+    "read_mission",
     "require_bigactor",
 ]

@@ -229,11 +229,25 @@ def load_mission(mission: str | Path, variation: Variation = AS_WRITTEN) -> Elab
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise _unreadable(str(path), f"the file cannot be read: {reason}", "check its path") from error
-    source = decode(str(path), data)
+    return _elaborated(decode(str(path), data), path.parent, variation)
+
+
+def read_mission(
+    text: str, directory: str | Path = ".", *, name: str = "<text>", variation: Variation = AS_WRITTEN
+) -> ElaboratedMission:
+    """Parse and elaborate the text of a mission; files that it names with `from` are sought in a folder.
+
+    Raises:
+        MissionError: It has mistakes; all of them, at places in the `name`.
+    """
+    return _elaborated(decode(name, text.encode("utf-8", "surrogatepass")), Path(directory), variation)
+
+
+def _elaborated(source: Source, directory: Path, variation: Variation) -> ElaboratedMission:
     found = read(source)
     if not found.mistakes:
         _check_sources(found.mission, source, variation)
-    diagnosis = diagnose(found, source, path.parent, variation)
+    diagnosis = diagnose(found, source, directory, variation)
     if diagnosis.elaborated is None:
         raise MissionError(source, diagnosis.mistakes)
     return diagnosis.elaborated

@@ -180,3 +180,13 @@ def test_deciding_may_take_longer_than_the_patience_with_the_first_explorer(cloc
     report = check(mission.initial, mission.properties)
     assert "not decided" not in " ".join(each.note for each in report.verdicts)
     assert Outcome.INCOMPLETE not in {each.outcome for each in report.verdicts}
+
+
+def test_what_is_not_counted_puts_the_end_off():
+    limits = Limits(seconds=2.0, spent=0.5)
+    assert limits.end(1.4) is None
+    assert limits.end(1.6) is not None
+    limits.uncounted.seconds = 20.0
+    assert limits.end(21.4) is None
+    assert limits.end(21.6) is not None
+    assert Limits(seconds=2.0).uncounted.seconds == 0

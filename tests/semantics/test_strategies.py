@@ -93,3 +93,9 @@ def test_programs_are_written_from_any_source_of_choices():
     for _ in range(50):
         program, (code,) = random_program(dice.randrange, ["base", "u0"])
         assert all(number < len(program.statements) for number in code)
+
+
+@examples(80)
+@given(strategies.configurations())
+def test_no_computation_fails_in_a_generated_configuration(configuration):
+    successors(configuration)

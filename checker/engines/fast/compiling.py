@@ -2,36 +2,50 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from time import monotonic
 
 from numba.core.event import Event, Listener, register, unregister
 
-from checker.engines.contract import Progress, Reporter
+from checker.engines.contract import Options, Progress, Reporter
+from checker.limits import Uncounted
 
 KIND = "numba:compile"
 
 
 class _Compiling(Listener):
-    def __init__(self, report: Reporter) -> None:
-        self.report = report
-        self.functions = 0
+    """Counts functions and seconds; one function may be compiled while another one is."""
+
+    def __init__(self, report: Reporter | None, uncounted: Uncounted) -> None:
+        self.report, self.uncounted = report, uncounted
+        self.functions = self.depth = 0
+        self.began = 0.0
 
     def on_start(self, event: Event) -> None:  # noqa: ARG002 - as numba calls it
+        self.depth += 1
+        if self.depth == 1:
+            self.began = monotonic()
         self.functions += 1
-        self.report(Progress(0, 0, 0, 0, 0.0, compiling=self.functions))
+        if self.report is not None:
+            self.report(Progress(0, 0, 0, 0, 0.0, compiling=self.functions))
 
-    def on_end(self, event: Event) -> None:
+    def on_end(self, event: Event) -> None:  # noqa: ARG002 - as numba calls it
         """Nothing is told of the end: the next progress says that it goes on."""
+        self.depth -= 1
+        if self.depth == 0:
+            self.uncounted.seconds += monotonic() - self.began
 
 
 @contextmanager
-def compilation_reported(report: Reporter | None) -> Iterator[None]:
-    """Report each function that numba compiles; what it has kept is loaded, and not reported."""
-    if report is None:
-        yield
-        return
-    listener = _Compiling(report)
+def compilation_uncounted(options: Options) -> Iterator[Options]:
+    """Report each function that numba compiles, and count its time to no limit of the options that are given back.
+
+    What numba has kept is loaded, and not reported.
+    """
+    uncounted = Uncounted()
+    listener = _Compiling(options.report, uncounted)
     register(KIND, listener)  # type: ignore[no-untyped-call]  # numba ships no types
     try:
-        yield
+        yield replace(options, limits=replace(options.limits, uncounted=uncounted))
     finally:
         unregister(KIND, listener)  # type: ignore[no-untyped-call]

@@ -15,7 +15,7 @@ from bigraphs.workers import cores
 from checker.engines.contract import Exploration, Inspect, Options, Progress
 from checker.engines.estimate import estimate
 from checker.engines.fast.checkpoint import Journey, resume, save
-from checker.engines.fast.compiling import compilation_reported
+from checker.engines.fast.compiling import compilation_uncounted
 from checker.engines.fast.graph import GraphSurvey
 from checker.engines.fast.inspecting import inspect_fast
 from checker.engines.fast.learner import Learner
@@ -88,8 +88,10 @@ def explore_fast(initial: Configuration, inspect: tuple[Inspect, ...], options: 
     Raises:
         CheckpointError: There is none to go on from, or it is of something else.
     """
-    with compilation_reported(options.report), seldom_disturbed():
-        return _Explorer(initial, options).run(inspect)
+    with compilation_uncounted(options) as counted, seldom_disturbed():
+        found = _Explorer(initial, counted).run(inspect)
+        found.compiling = counted.limits.uncounted.seconds
+        return found
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError
-from checker.engines.fast.compiling import compilation_reported
+from checker.engines.fast.compiling import compilation_uncounted
 from checker.engines.zones.automaton import TooLargeError
 from checker.engines.zones.inspecting import inspect_zones
 from checker.engines.zones.network import Network
@@ -38,13 +38,14 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
         TickError: A constant is too large.
     """
     started = time.monotonic()
-    found = Exploration([], [])
+    found, uncounted = Exploration([], []), options.limits.uncounted
     try:
-        with compilation_reported(options.report):
+        with compilation_uncounted(options) as counted:
+            uncounted = counted.limits.uncounted
             network = Network(initial, options.limits.pending)
             search = _Learning(network)
-            with bounded(options.limits, started):
-                _visit_all(network, search, found, options, started)
+            with bounded(counted.limits, started):
+                _visit_all(network, search, found, counted, started)
     except BoundMet as met:  # while it learned
         found.bounds.append(met.bound)
     except TooLargeError as error:
@@ -54,7 +55,7 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
         found.bounds.append(options.limits.bound(Stop.PENDING))
     _summarise(times, found)
     inspect_zones(times, inspect)
-    found.seconds = time.monotonic() - started
+    found.seconds, found.compiling = time.monotonic() - started, uncounted.seconds
     return found
 
 

@@ -36,6 +36,21 @@ def run(program, **environment):
     )
 
 
+LIMITED = """
+import sys
+from bigactors.cli import main
+sys.exit(main(["check", "--engine", "fast", "--max-time", "2", "oil_spill"]))
+"""
+
+
+def test_compiling_counts_to_no_limit_of_time_and_is_said_off_a_terminal(tmp_path):
+    first, second = (run(LIMITED, NUMBA_CACHE_DIR=str(tmp_path)) for _ in range(2))
+    assert (first.returncode, second.returncode) == (0, 0)
+    assert "complete" in first.stdout
+    assert first.stderr == "oil_spill: compiling loops, some seconds once after an installation\n"
+    assert second.stderr == ""
+
+
 def test_compiling_is_reported_once_after_an_installation(tmp_path):
     first, second = (run(PROGRAM, NUMBA_CACHE_DIR=str(tmp_path)) for _ in range(2))
     assert (first.stderr, second.stderr) == ("", "")
