@@ -238,10 +238,10 @@ WAYS = {
     "an if around an if": """
       react { case obs => if not (uav1 in obs) { if true { control(MOVE_HOST_TO gate0) } } }""",
     "a match": """
-      react { case obs => match size(obs) { case 1 => control(MOVE_HOST_TO gate0) case _ => skip } }""",
+      react { case obs => match size(obs) { case 0 => control(MOVE_HOST_TO gate0) case _ => skip } }""",
     "a guard in a match": """
       react { case obs => match 0 { case n if not (uav1 in obs) => control(MOVE_HOST_TO gate0) case _ => skip } }""",
-    "a for": "react { case obs => for x in obs { control(MOVE_HOST_TO gate0) } }",
+    "a for": "react { case obs => for x in nodes(obs) { control(MOVE_HOST_TO gate0) } }",
     "a choice": "react { case obs => choose x in nodes(obs) { control(MOVE_HOST_TO gate0) } }",
     "a stored value": """
       let clear = false
@@ -653,7 +653,7 @@ TELLING = {
     + 'BigActor c hosted_at uav1 with_behavior { react { case m: Message => send(m, b) } }\n',
     "the observation": FREE.replace("size(o of UAV)", "o").replace("n == 0", "not (uav0 in n)"),
     "a member that it goes through": FREE.replace(
-        'send(("free", size(o of UAV)), b)', 'for x in o { send(("free", size({x} of UAV)), b) }'
+        'send(("free", size(o of UAV)), b)', 'for x in nodes(o) { send(("free", size({x} of UAV)), b) }'
     ),
     "a member that it chooses": FREE.replace(
         'send(("free", size(o of UAV)), b)', 'choose x in nodes(o) { send(("free", size({x} of UAV)), b) }'
@@ -961,7 +961,7 @@ TWINS = """
 def enter(place) = {
   observe(CHILDREN(place))
   react {
-    case o: Observation if size(o) == 1 => control(MOVE_HOST_TO place)
+    case o: Observation if size(o) == 0 => control(MOVE_HOST_TO place)
     case o: Observation => skip
   }
 }
