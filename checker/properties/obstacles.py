@@ -85,7 +85,8 @@ def _unrealised(c: Configuration, request: CTR | FLY) -> Iterator[str]:
                 yield f"P does not show {node if node not in physical else place}"
             elif place == REGION:
                 yield f"{node} is to be in no place: nothing is sent there"
-            elif not setting.signature[setting.kind(node)].driven and physical.carrier(node) is None:
-                yield f"nothing drives {node}"
+            elif not setting.signature[setting.kind(node)].driven:
+                by = physical.carrier(node)
+                yield f"nothing drives {node}" + (f", and {by}, which carries it, is not there" if by else "")
             else:
                 yield f"{node} can be put nowhere in {place} so that it is in {place}, and in no smaller place"
