@@ -253,7 +253,8 @@ def missing_parenthesis(at: Situation) -> Diagnostic | None:
         hint = f"write {at.before.text} {at.following.text}, without brackets"
         return at.mistake(Code.UNEXPECTED, "expected a name, found '('", hint)
     waiting = open_brackets(at.prepared.text, at.found.span.start)
-    alone = at.accepted == {")"} and at.found.text not in (",", ";", ".")
+    is_name = at.found.text in RESERVED and "NAME" in at.sorts and at.before.text in ("(", ",")
+    alone = at.accepted == {")"} and at.found.text not in (",", ";", ".") and not is_name
     over = ")" in at.accepted and at.is_first and at.found.text in STATEMENTS | {"}", "case"}
     if (alone or over) and waiting:
         opening, message = waiting[-1], f"'(' is not closed before {at.found.shown}"
