@@ -21,7 +21,8 @@ from checker.properties.inspections import (
     Reachability,
 )
 from checker.properties.ownership import owned
-from checker.properties.races import ControlRaces, StaleObservationRaces
+from checker.properties.races import STALE, ControlRaces, StaleObservationRaces
+from checker.properties.stale_steps import stale_steps
 from checker.properties.visited import Visited
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.reduction.unfolding import told
@@ -419,7 +420,7 @@ class _Check:
                 each.kind,
                 told(each.message),
                 trace,
-                tuple(map(told, each.details)),
+                (*map(told, each.details), *(stale_steps(trace) if each.kind == STALE else ())),
                 told(each.subject),
                 collected.alike(each),
             )

@@ -11,6 +11,7 @@ from semantics.state.physical_model import (
     PhysicalModel,
     Placed,
     down_cell,
+    left_cell,
 )
 from semantics.state.signature import Name
 
@@ -89,7 +90,7 @@ class Leaves:
     @property
     def left(self) -> Cell:
         """The cell that says whether it was by leaving that the entity is off the channel."""
-        return ("left", self.entity, self.channel)
+        return left_cell(self.entity, self.channel)
 
     @property
     def words(self) -> tuple[str, ...]:
@@ -98,7 +99,7 @@ class Leaves:
         return both[: 1 + self.returns]
 
     def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
-        """Yield the entity's leaving; its return only where it had left, not where a control took it off."""
+        """Yield the entity's leaving; its return only where it has left, and has not joined since."""
         channels = frozenset(physical.channels(self.entity))
         if self.entity not in physical:
             return
@@ -106,8 +107,7 @@ class Leaves:
             left = physical.joining(self.entity, channels - {self.channel})
             yield self.words[0], left | {self.left: True}
         elif self.returns and physical.cells.read(self.left):
-            back = physical.joining(self.entity, channels | {self.channel})
-            yield self.words[1], back | {self.left: False}
+            yield self.words[1], physical.joining(self.entity, channels | {self.channel})
 
 
 @dataclass(frozen=True, slots=True)

@@ -559,8 +559,23 @@ class Code(Enum):
         from where it is restored to any other place.""",
     )
 
-    HIDES_AN_ENTITY = (
+    NEVER_WAITS = (
         "LS708",
+        "loop that asks and never waits",
+        """A loop asks for something in each turn and goes on at once, so what it asks for piles up. An exploration
+        stops at more than 64 requests of one bigActor (`--max-pending`). Let each turn wait for what it asks for.""",
+    )
+
+    MAY_CROSS = (
+        "LS709",
+        "flight that may cross a forbidden place",
+        """An invariant keeps a vehicle out of a place, and the straight way of one of its flights may lead through it.
+        In transit a vehicle is in no place that it only crosses, so the invariant says nothing of that. Lead the flight
+        around by VIA, or in several moves.""",
+    )
+
+    HIDES_AN_ENTITY = (
+        "LS710",
         "pattern that takes anything for an entity's name",
         """A name in a pattern is a new variable, which takes any value. One that is called like an entity looks as if
         it compared with that entity, and hides it in the case. `=spill` compares; another name takes any value.""",

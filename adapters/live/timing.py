@@ -225,7 +225,9 @@ def too_late(timers: Timers, now: float) -> Iterator[Broken]:
     for vehicle, end, lasts in _batteries(timers):
         if now > end + GRACE:
             words = _line_of(situation, f"{vehicle} lasts ", f"{situation.c.setting.kind(vehicle)} lasts ")
-            yield Broken(vehicle, f"{vehicle} is aloft for longer than {_text(lasts)}{_because(words)}")
+            yield Broken(
+                vehicle, f"{vehicle} goes unrestored for longer than {_text(lasts)}{_because(words)}"
+            )
     for number, end, within in _windows(timers):
         if now > end + GRACE:
             yield _of_clause(timers, number, f"later than {_text(within)} after the start")

@@ -14,6 +14,7 @@ from bigactors.arguments.values import (
     size,
     tag_bits,
 )
+from checker.limits import MOST_PENDING
 
 
 def fill(parser: Parser) -> None:
@@ -128,6 +129,14 @@ def _limits(parser: Parser) -> None:
         type=at_least_one,
         help="visit no more than N configurations (default 100,000,000, of which each takes some 30 bytes, for each "
         "worker of --engine ray; 2,000,000 with --engine reference)",
+    )
+    group.add_argument(
+        "--max-pending",
+        metavar="N",
+        type=at_least_one,
+        default=MOST_PENDING,
+        help="follow no configuration in which one bigActor has more than N requests or messages pending "
+        f"(default {MOST_PENDING})",
     )
     group.add_argument(
         "--max-time",

@@ -20,6 +20,7 @@ from bigactors.terminal import paint, say, tell
 from checker import Cluster, Engine, Interruption, Keeping, Limits, Reduction, report_text
 from checker.check import reductions_of
 from checker.engines.fast.loading import ALONE
+from checker.limits import Stop
 from checker.reports.report import MARKS, coverage_text
 from checker.reports.results import caution_text
 from checker.verdicts import Outcome, Report
@@ -116,7 +117,8 @@ def limits_of(options: Namespace) -> Limits:
         if options.engine in ("reference", "ray"):
             raise Mistake("--spill is of the fast explorer", "leave --engine out")
         make_folder(options.spill)
-    return Limits(most_of(options), options.max_time, memory=options.max_memory, spill=options.spill)
+    most, memory = most_of(options), options.max_memory
+    return Limits(most, options.max_time, pending=options.max_pending, memory=memory, spill=options.spill)
 
 
 def most_of(options: Namespace) -> int:
@@ -199,6 +201,9 @@ def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
 
 def remedies(mission: ElaboratedMission, report: Report) -> str:
     """Return what may let an exploration that was cut off come to its end."""
+    if all(bound.stop is Stop.PENDING for bound in report.bounds):
+        waits = "let each loop wait for what it asks for (LS708 names those that don't)"
+        return f"{waits}, or raise the limit that stopped it: --max-pending"
     less: tuple[str, ...] = ()
     if mission.setting.timing is not None:
         less = ("give timing a larger tick, of which all durations are whole numbers",)

@@ -157,7 +157,7 @@ class Deadlines:
     # --- endurance
 
     def endurance(self, asked: Property) -> Verdict:
-        """Return whether no vehicle is ever aloft for longer than it lasts."""
+        """Return whether no vehicle is ever away from where it is restored for longer than it lasts."""
         runs, count = self.times.exhausted()
         examined = len(self.times.situations)
         if not runs:
@@ -169,7 +169,9 @@ class Deadlines:
 
     def _exhausted(self, vehicle: str, run: Run) -> Violation:
         lasts, trace = dict(self.timing.endurances)[vehicle].lasts, dated_trace(self.times, run)
-        message = f"{vehicle} lasts {self.text(lasts)}, and is aloft for longer at {self.clock(run.end)}"
+        message = (
+            f"{vehicle} lasts {self.text(lasts)}, and goes unrestored for longer at {self.clock(run.end)}"
+        )
         details = tuple(self._unsaid(trace.configurations[-1]))
         since = run.end - lasts - 1
         path = self._path(run, lambda c: is_restored(c, vehicle), since)

@@ -10,6 +10,7 @@ from typing import ClassVar, NamedTuple
 from checker.properties.causes import causes
 from checker.properties.control_sites import common_sites
 from checker.properties.findings import MOST_VIOLATIONS, Collected, Key, Seen
+from checker.properties.obstacles import lacking
 from checker.properties.vacuity import Valuations
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.patterns import bind
@@ -124,7 +125,7 @@ def _hindered(c: Configuration, request: CTR | FLY, by: Obstacle) -> Seen:
         (by.value, str(request)),
         None,
         message,
-        partial(disagreements, c, request),
+        lambda: (*lacking(c, request, by), *disagreements(c, request)),
         lambda: common_sites(c, request),
     )
 

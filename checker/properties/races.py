@@ -19,6 +19,9 @@ from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
 from semantics.successors import served
 
+STALE: Final = "stale-observation race"
+"""What a violation is called."""
+
 
 class ControlRaces(Inspection):
     """Two enabled controls, where serving one disables the other, or the two orders end differently."""
@@ -140,7 +143,7 @@ def _resting_on(c: Configuration, stale: Dependency, by: Transition) -> Seen:
     request = _request(by)
     changed = "that answer" if stale.stale else "a relation that it uses"
     message = f"{request} rests on {asked_in_words(stale)}, and another agent has changed {changed} since it was sensed"
-    return Seen(("stale-observation race", str(request)), by, message, alike=lambda: common_sites(c, request))
+    return Seen((STALE, str(request)), by, message, alike=lambda: common_sites(c, request))
 
 
 _QUESTIONS: Final[Mapping[str, str]] = {

@@ -141,8 +141,8 @@ class Footprints:
                 return self.slots.footprint([("placement", entity)], [("placement", entity)])
             case Drops(channel):
                 return self.slots.footprint([("down", channel)], [("down", channel)])
-            case Leaves(entity, channel):
-                own: list[Slot] = [("channels", entity), ("left", entity, channel)]
+            case Leaves(entity):
+                own: list[Slot] = [("channels", entity)]
                 return self.slots.footprint([("present", entity), *own], own)
             case Appears(entity, placements):
                 by = (placement.by for placement in placements if isinstance(placement, Carried))

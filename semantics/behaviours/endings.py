@@ -86,7 +86,7 @@ def _passed(program: Program, statement: Statement, owed: int, calls: Calls) -> 
         case ForEach(_, _, body):
             return _repeated(program, body, owed, calls)
         case While(test, body):
-            return _repeated(program, body, owed, calls) if _counts_up(program, test, body) else None
+            return _repeated(program, body, owed, calls) if counts_up(program, test, body) else None
         case Loop():
             return None
         case Call(behaviour):
@@ -130,7 +130,7 @@ def _least(ways: Iterable[int | None]) -> int | None:
     return None if None in found else min(each for each in found if each is not None)
 
 
-def _counts_up(program: Program, test: Expression, body: Block) -> bool:
+def counts_up(program: Program, test: Expression, body: Block) -> bool:
     """Tell whether each turn of a loop adds to a number that its test keeps below a constant."""
     match test:
         case Apply("<" | "<=", (Variable(name), Literal(int()))):

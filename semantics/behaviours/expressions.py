@@ -268,7 +268,7 @@ class Operator:
 
 def _members(value: Value) -> frozenset[Value]:
     if isinstance(value, Observation):
-        return frozenset(value.shown) | frozenset(value.agents)
+        return frozenset(value.members) | frozenset(value.agents)
     if isinstance(value, frozenset | Route):
         return frozenset(within(value))
     raise TypeError("a set, a route or an observation was expected")

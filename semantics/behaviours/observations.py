@@ -76,11 +76,13 @@ class Swept:
         places: Places whose children were all listed; sorted, as the others are.
         nodes: Nodes whose links were all listed.
         links: Links whose points were all listed.
+        around: Places whose children are the answer; they are shown, too, and are no members of it by themselves.
     """
 
     places: tuple[Name, ...] = ()
     nodes: tuple[Name, ...] = ()
     links: tuple[Name, ...] = ()
+    around: tuple[Name, ...] = ()
 
 
 NOTHING_SWEPT = Swept()
@@ -156,6 +158,16 @@ class Observation:
     def shown(self) -> tuple[Name, ...]:
         """The nodes denoted, with the places whose children were asked for; sorted."""
         return tuple(name for name, fact in self.facts if fact.shown and not name.startswith(AGENT))
+
+    @property
+    def members(self) -> tuple[Name, ...]:
+        """The nodes that answer the query, sorted: of `CHILDREN(x)` the children, and not x."""
+        return tuple(filter(self.has_member, self.shown))
+
+    def has_member(self, node: Name) -> bool:
+        """Tell whether a node is shown, and not only as a place whose children were asked for."""
+        fact = self.fact(node)
+        return fact.shown and (node not in self.swept.around or fact.parent in self.swept.around)
 
     @property
     def agents(self) -> tuple[Name, ...]:

@@ -95,7 +95,10 @@ class _Looking:
 
     def swept(self) -> Swept:
         nodes = self.to[QueryOperator.LINKED_TO] - {REGION}
-        return Swept(*(tuple(sorted(each)) for each in (self.to[QueryOperator.CHILDREN], nodes, self.links)))
+        operator, inner = self.applied[-1]
+        around = inner if operator == QueryOperator.CHILDREN else frozenset[Name]()
+        listed = (self.to[QueryOperator.CHILDREN], nodes, self.links, around)
+        return Swept(*(tuple(sorted(each)) for each in listed))
 
     def fact(self, name: Name) -> Fact:
         """Return what is answered of one name."""

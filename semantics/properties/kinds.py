@@ -160,7 +160,7 @@ ABOUT: Final = {
         counted=False,
     ),
     PropertyKind.ENDURANCE: About(
-        "No vehicle is ever aloft for longer than it lasts.",
+        "No vehicle is ever away from where it is restored for longer than it lasts.",
         Asked.OF_TIMED_MISSIONS,
         CONFIGURATIONS,
         reducible=False,

@@ -63,7 +63,7 @@ def marked(c: Configuration, transition: Transition) -> Transition:
 
     def marking(holder: Name) -> Changes:
         """Return the marks in the memory of one agent and in its requests; nobody's are those of the common queue."""
-        again = cache(partial(_asked_again, c, after))
+        again = cache(partial(asked_again, c, after))
         memory = {} if holder == NOBODY else _mark_memory(after, holder, author, again)
         return memory | merged(
             _mark_requests(after, cell, author, again) for cell in _request_cells(after, holder)
@@ -88,7 +88,7 @@ class Again(NamedTuple):
     steps: Steps
 
 
-def _asked_again(before: Configuration, after: Configuration, steps: Steps, asked: Questions) -> Again:
+def asked_again(before: Configuration, after: Configuration, steps: Steps, asked: Questions) -> Again:
     """Ask the slots that a query looked at again, after a transition."""
     names = touched(before, after)
     slots = changed_slots(before, after, names, asked)

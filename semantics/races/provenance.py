@@ -137,9 +137,12 @@ def differences(
     gained = 0
     for name in sorted(about):
         old, new = before.fact(name), after.fact(name)
+        was, now = before.has_member(name), after.has_member(name)
         if old.shown != new.shown:
-            keys |= {("in", name.removeprefix(AGENT)), MEMBERS}
-            gained += 1 if new.shown else -1
+            keys.add(("in", name.removeprefix(AGENT)))
+        if was != now:
+            keys.add(MEMBERS)
+            gained += now - was
         if old.parent != new.parent:
             places = {place for place in (old.parent, new.parent) if place is not None}
             keys |= {("parent", name), *(("children", place) for place in places)}

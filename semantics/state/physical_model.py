@@ -65,6 +65,11 @@ def channels_cell(entity: Name) -> Cell:
     return ("channels", entity)
 
 
+def left_cell(entity: Name, channel: Name) -> Cell:
+    """Address whether it was by leaving that an entity is off a channel (`environment.Leaves`)."""
+    return ("left", entity, channel)
+
+
 def down_cell(channel: Name) -> Cell:
     """Address whether a channel that may drop is down."""
     return ("down", channel)
@@ -300,8 +305,10 @@ class PhysicalModel(View):
         return {placement_cell(entity): placement}
 
     def joining(self, entity: Name, channels: frozenset[Name]) -> Changes:
-        """Write the channels that an entity is on."""
-        return {channels_cell(entity): tuple(sorted(channels))}
+        """Write the channels that an entity is on; where it joins one, it has not left that any more."""
+        joined = sorted(channels.difference(self.channels(entity)))
+        back = {left_cell(entity, each): False for each in joined if self.cells.read(left_cell(entity, each))}
+        return {channels_cell(entity): tuple(sorted(channels))} | back
 
 
 @lru_cache(maxsize=1 << 14)

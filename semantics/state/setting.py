@@ -10,7 +10,10 @@ from semantics.timing.timing import Timing
 
 
 class Scheduler(Enum):
-    """Which pending request may be served next; each refines the one before."""
+    """Which pending request may be served next; each refines the one before where no `react` has an `after`.
+
+    A timeout asks that nothing in line fits, and under an order less is in line.
+    """
 
     UNORDERED = "unordered"
     PROGRAM_ORDER = "program_order"

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Expression, Literal
-from semantics.behaviours.program import Behaviour, Program
-from semantics.behaviours.statements import Loop
+from semantics.behaviours.pacing import unpaced
+from semantics.behaviours.program import Behaviour, Program, reachable
+from semantics.behaviours.statements import Block, Loop
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.actors import Actor
@@ -141,7 +142,38 @@ def elaborate_bodies(
     whole = Program(
         statements, behaviours, reactions, lines, program.branch_lines, declared, begun, homes, copies
     )
+    if not names.findings:
+        _warn_of_unpaced(bodies, whole, program.nodes, names)
     return bodies, whole
+
+
+def _warn_of_unpaced(bodies: Bodies, program: Program, written: Sequence[s.Node], names: Names) -> None:
+    """Warn of loops that ask and never wait, once for each, with all bigActors that run it."""
+    found: dict[s.Span, tuple[s.Node, int, list[str]]] = {}
+    for agent, block in _running(bodies):
+        for loop in sorted(reachable(program, block)):
+            asked = unpaced(program, loop)
+            if asked:
+                first = written[min(asked)]
+                found.setdefault(first.span, (first, program.line(loop), []))[2].append(agent)
+    for node, line, agents in found.values():
+        several = sorted(set(agents))
+        who = ", ".join(several[:3]) + (" and others" if len(several) > 3 else "")
+        message = f"{who} {'asks' if len(several) == 1 else 'ask'} for this in a loop that never waits (line {line})"
+        names.findings.warn(Code.NEVER_WAITS, node, message, _LET_WAIT)
+
+
+_LET_WAIT = "let each turn wait: observe(PARENT(HOST)) react { case here: Observation => skip }"
+
+
+def _running(bodies: Bodies) -> Iterator[tuple[str, Block]]:
+    """Yield who runs what: the bigActors that are there at first, and those that are spawned."""
+    yield from ((name, body.block) for name, body in bodies.agents.items())
+    for name, sites in bodies.spawned.items():
+        for site in sites:
+            body = bodies.behaviours.get(site.behaviour)
+            if body is not None:
+                yield name, body.block
 
 
 def _parameters(definition: s.Definition, names: Names) -> dict[str, str]:

@@ -31,6 +31,7 @@ from specs.elaboration.live import elaborate_live
 from specs.elaboration.mobility import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
 from specs.elaboration.names import Names
 from specs.elaboration.needs import check_types
+from specs.elaboration.overflights import warn_of_overflights
 from specs.elaboration.realisability import Ground, check_controls
 from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
@@ -151,6 +152,7 @@ def elaborate(
         begin = partial(begin, beliefs=settled(beliefs, begin(setting)))
         check_forest(mission, begin(setting), names)
     _stop(names.findings)
+    warn_of_overflights(setting, partial(begin, setting), properties, names.findings)
     called = mission.name.text if mission.name is not None else Path(source.name).stem
     return ElaboratedMission(
         called,

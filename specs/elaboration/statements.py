@@ -95,7 +95,7 @@ class Body:
 
 @dataclass(slots=True)
 class Numbering:
-    """The statements of a mission so far, each with its line."""
+    """The statements of a mission so far, each with its line and as it was written."""
 
     names: Names
     schemas: dict[str, Schema]
@@ -104,6 +104,7 @@ class Numbering:
     variables: Variables = field(default_factory=Variables)
     starts: list[int] = field(default_factory=list)
     branch_lines: dict[tuple[int, int], int] = field(default_factory=dict)
+    nodes: list[s.Node] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         text = self.names.findings.source.text
@@ -113,6 +114,7 @@ class Numbering:
         """Return the number of one more statement."""
         self.statements.append(_FILLED_LATER)
         self.lines.append(self.line(node))
+        self.nodes.append(node)
         return len(self.statements) - 1
 
     def line(self, node: s.Node) -> int:

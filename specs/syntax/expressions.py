@@ -123,7 +123,8 @@ class QueryApplication(Node):
     """`PARENT(q)`, `CHILDREN(q)`, `LINKED_TO(q)` or `HOSTED_AT(q)`.
 
     A relation, applied to each node that the inner query yields. `PARENT_HOST`, `CHILDREN_HOST`, `LINKED_TO_HOST` and
-    `HOSTED_AT_HOST` are short for the relation applied to `HOST`.
+    `HOSTED_AT_HOST` are short for the relation applied to `HOST`. An observation of `CHILDREN(x)` shows x, too, so that
+    `x in o` is true. `size`, `empty`, `first`, `of`, `for` and `choose` go through its members: the children alone.
     """
 
     relation: QueryOperator

@@ -67,6 +67,14 @@ def test_an_entity_does_not_return_to_a_channel_that_it_never_left():
     assert effects(mission(["u0"], channels={"u0": ["v"]}, environment=(clause,)), clause) == []
 
 
+def test_what_a_control_has_brought_back_and_taken_off_does_not_return():
+    clause = Leaves("u0", "w", returns=True)
+    c = after(mission(["u0"], channels={"u0": ["v", "w"]}, environment=(clause,)), clause)
+    for channels in (("v", "w"), ("v",)):
+        c = c.with_(c.structure.physical.joining("u0", frozenset(channels)))
+    assert effects(c, clause) == []
+
+
 def test_an_absent_entity_appears_with_its_channels_and_a_present_one_does_not():
     clause = Appears("u0", (SHAPES["u0"], SHAPES["u1"]), ("w",))
     c = mission(["base", "u0"], placed={"u0": None})

@@ -87,7 +87,7 @@ def test_a_vehicle_that_is_aloft_for_longer_than_it_lasts_breaks_its_assumption(
     assert broken(run) == []
     run.turn(601.0, seen("uav0", EAST, 601.0))
     assert broken(run) == [
-        "uav0 is aloft for longer than 10 min; the mission says: uav0 lasts 10 min, restored in west0 (line 22)"
+        "uav0 goes unrestored for longer than 10 min; the mission says: uav0 lasts 10 min, restored in west0 (line 22)"
     ]
 
 
@@ -324,7 +324,7 @@ def test_a_flight_goes_on_while_the_run_does_not_and_is_held_to_its_whole_time(t
     assert [each[:46] for each in broken(again)] == ["the flight of uav0 to east0 takes longer than "]
     third = again.goes_on(tmp_path / "third.mcap")
     third.turn(601.0, seen("uav0", BETWEEN, 601.0))
-    assert "uav0 is aloft for longer than 10 min" in broken(third)[-1]
+    assert "uav0 goes unrestored for longer than 10 min" in broken(third)[-1]
 
 
 def test_what_a_run_does_itself_stands_still_while_it_does(tmp_path):

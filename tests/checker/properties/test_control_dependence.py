@@ -67,7 +67,7 @@ RESTS = {
       react { case o => if uav1 in o { choose { skip } or { NEVER } } } ENTER""",
     "an if whose other way is told": 'react { case o => if uav1 in o { react { case "free" => skip } } } ENTER',
     "a behaviour that may wait": "react { case o => hold(o) } ENTER",
-    "a match whose other case waits": "react { case o => match size(o) { case 1 => skip case _ => NEVER } } ENTER",
+    "a match whose other case waits": "react { case o => match size(o) { case 0 => skip case _ => NEVER } } ENTER",
     "a for whose body waits": "react { case o => for x in o of UAV { NEVER } } ENTER",
     "a case beside an end of the wait that waits": """
       react { case o if not uav1 in o => skip after 5 s => NEVER } ENTER""",
@@ -91,7 +91,7 @@ FREE = {
     "an if whose other way looks and goes on": """
       react { case o => if uav1 in o { LOOKS react { case p => skip } } } ENTER""",
     "an if whose other way counts": "react { case o => if uav1 in o { let n = 0 while n < 2 { n = n + 1 } } } ENTER",
-    "a match whose other case ends": "react { case o => match size(o) { case 1 => skip case _ => skip } } ENTER",
+    "a match whose other case ends": "react { case o => match size(o) { case 0 => skip case _ => skip } } ENTER",
     "an if whose other way gives up": """
       react { case o => if uav1 in o { react { case "free" => skip after 5 s => skip } } } ENTER""",
 }  # fmt: skip

@@ -220,6 +220,11 @@ def test_a_stale_observation_is_told_with_the_query_and_the_test_and_a_shortest_
         "CTR(b, MOVE_HOST_TO gate0) rests on whether observe(CHILDREN(gate0)) shows uav0, "
         "and another agent has changed that answer since it was sensed"
     )
+    assert race.details == (
+        "sensed in step 7: ⟨sense : OBS(b, CHILDREN(gate0))⟩",
+        "changed by a in step 11: ⟨actuate : CTR(a, MOVE_HOST_TO gate0)⟩",
+        "acted on in step 12: ⟨actuate : CTR(b, MOVE_HOST_TO gate0)⟩",
+    )
     assert len(race.trace) == 12  # each looks and asks in 5 steps, then both are served
     assert rules_of(race.trace).count("actuate") == 2
     assert rules_of(race.trace)[-1] == "actuate"
@@ -238,10 +243,10 @@ WAYS = {
     "an if around an if": """
       react { case obs => if not (uav1 in obs) { if true { control(MOVE_HOST_TO gate0) } } }""",
     "a match": """
-      react { case obs => match size(obs) { case 1 => control(MOVE_HOST_TO gate0) case _ => skip } }""",
+      react { case obs => match size(obs) { case 0 => control(MOVE_HOST_TO gate0) case _ => skip } }""",
     "a guard in a match": """
       react { case obs => match 0 { case n if not (uav1 in obs) => control(MOVE_HOST_TO gate0) case _ => skip } }""",
-    "a for": "react { case obs => for x in obs { control(MOVE_HOST_TO gate0) } }",
+    "a for": "react { case obs => for x in nodes(obs) { control(MOVE_HOST_TO gate0) } }",
     "a choice": "react { case obs => choose x in nodes(obs) { control(MOVE_HOST_TO gate0) } }",
     "a stored value": """
       let clear = false
@@ -653,7 +658,7 @@ TELLING = {
     + 'BigActor c hosted_at uav1 with_behavior { react { case m: Message => send(m, b) } }\n',
     "the observation": FREE.replace("size(o of UAV)", "o").replace("n == 0", "not (uav0 in n)"),
     "a member that it goes through": FREE.replace(
-        'send(("free", size(o of UAV)), b)', 'for x in o { send(("free", size({x} of UAV)), b) }'
+        'send(("free", size(o of UAV)), b)', 'for x in nodes(o) { send(("free", size({x} of UAV)), b) }'
     ),
     "a member that it chooses": FREE.replace(
         'send(("free", size(o of UAV)), b)', 'choose x in nodes(o) { send(("free", size({x} of UAV)), b) }'
@@ -961,7 +966,7 @@ TWINS = """
 def enter(place) = {
   observe(CHILDREN(place))
   react {
-    case o: Observation if size(o) == 1 => control(MOVE_HOST_TO place)
+    case o: Observation if size(o) == 0 => control(MOVE_HOST_TO place)
     case o: Observation => skip
   }
 }

@@ -1,0 +1,130 @@
+"""Ways: what flights may cross on their way, where an invariant keeps a vehicle out of a place.
+
+An invariant speaks of the places in which vehicles are, and in transit a vehicle is in none that it only crosses. So an
+invariant that keeps it out of a place holds though its way leads through. Until a property asks that, this is warned of
+wherever the hull of where a flight may begin and where it may end, or be sent by, meets the place.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from itertools import islice, pairwise, product
+
+from physical import Geometry
+from physical.extents import extent, least_distance, span
+from semantics.behaviours.program import reachable
+from semantics.behaviours.statements import ControlBy
+from semantics.environment import Appears, Drifts
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
+from semantics.properties.propositions import And, Inside, Not, Or, Proposition
+from semantics.races.relevance import hosts_of, instances
+from semantics.state.configuration import Configuration
+from semantics.state.physical_model import Carried
+from semantics.state.setting import Setting
+from semantics.state.signature import REGION, Name
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.findings import Findings
+
+Leg = tuple[Name, tuple[Name, ...]]
+"""A vehicle, with what it is sent by and to."""
+
+MOST_PARTS = 2_000
+"""So many operands of a quantifier are looked at."""
+
+HINT = "an invariant is about where it is, not about its way; lead it around: MOVE_HOST_TO place VIA gate0, gate1"
+
+
+def warn_of_overflights(
+    setting: Setting, begin: Callable[[], Configuration], properties: Iterable[Property], findings: Findings
+) -> None:
+    """Warn of each invariant that keeps a vehicle out of a place that a flight of it may cross, once."""
+    forbidden = [(each, *pair) for each in properties for pair in _kept_out(setting, each)]
+    if not forbidden:
+        return
+    c = begin()
+    legs = frozenset(_legs(c))
+    for invariant, vehicle, place in forbidden:
+        ways = (_crossing(c, leg, legs, place) for leg in sorted(legs) if leg[0] == vehicle)
+        found = next((way for way in ways if way is not None), None)
+        if found is not None:
+            message = f"{vehicle} may cross {place} on its way from {found[0]} to {found[1]}"
+            findings.warn(Code.MAY_CROSS, _line(findings, invariant.line), message, HINT)
+
+
+def _line(findings: Findings, number: int) -> s.Span:
+    lines = findings.source.text.split("\n")
+    start = sum(len(line) + 1 for line in lines[: number - 1])
+    text = lines[number - 1]
+    return s.Span(start + len(text) - len(text.lstrip()), start + len(text.rstrip()))
+
+
+def _kept_out(setting: Setting, asked: Property) -> Iterator[tuple[Name, Name]]:
+    """Yield which vehicles an invariant keeps out of which places, as P has them."""
+    if asked.kind is not PropertyKind.INVARIANT or asked.line == 0:
+        return
+    for atom in dict.fromkeys(_denied(asked.formula, negated=False)):
+        known = atom.node in setting.kinds and atom.place in setting.kinds
+        if atom.actually and known and setting.signature[setting.kind(atom.node)].driven:
+            yield atom.node, atom.place
+
+
+def _denied(formula: Proposition, *, negated: bool) -> Iterator[Inside]:
+    """Yield what a formula denies whatever else is true: no operand of which another one may be denied instead."""
+    match formula:
+        case Inside() if negated:
+            yield formula
+        case Not(inner):
+            yield from _denied(inner, negated=not negated)
+        case And(parts) if not negated:
+            for part in islice(parts, MOST_PARTS):
+                yield from _denied(part, negated=negated)
+        case Or(parts) if negated:
+            for part in islice(parts, MOST_PARTS):
+                yield from _denied(part, negated=negated)
+
+
+def _legs(c: Configuration) -> Iterator[Leg]:
+    """Yield all flights that some bigActor may ask for."""
+    program = c.setting.program
+    for agent in c.alpha.names():
+        for number in sorted(reachable(program, c.alpha.code(agent))):
+            statement = program.statements[number]
+            if isinstance(statement, ControlBy):
+                for reaction in instances(c.setting, statement, hosts_of(c, agent)) or ():
+                    for node, place in reaction.moves:
+                        if isinstance(node, str) and isinstance(place, str):
+                            yield node, (*reaction.via, place)
+
+
+def _crossing(c: Configuration, leg: Leg, legs: Iterable[Leg], place: Name) -> tuple[Name, Name] | None:
+    """Return between which two places of a flight, wherever it may begin, another one may be crossed."""
+    vehicle, stops = leg
+    begins = [vehicle, *sorted({each[1][-1] for each in legs if each[0] == vehicle} - {stops[-1]})]
+    ways = [(begin, stops[0]) for begin in begins] + list(pairwise(stops))
+    shapes = _shapes(c, place)
+    for one, other in ways:
+        if place not in (one, other) and _meets(_shapes(c, one), _shapes(c, other), shapes):
+            return ("its start" if one == vehicle else one), other
+    return None
+
+
+def _meets(begins: list[Geometry], ends: list[Geometry], places: list[Geometry]) -> bool:
+    """Tell whether some way meets a place that neither of its ends is in, or around."""
+    for begin, end, place in product(begins, ends, places):
+        there = extent(place)
+        if any(least_distance(extent(each), there) == 0 for each in (begin, end)):
+            continue  # then the invariant itself speaks of it
+        if least_distance(span([extent(begin), extent(end)]), there) == 0:
+            return True
+    return False
+
+
+def _shapes(c: Configuration, entity: Name) -> list[Geometry]:
+    """Return where something may be, as far as that is listed: now, and where it drifts to or appears."""
+    if entity == REGION:
+        return []
+    at = c.structure.physical.position(entity)
+    clauses = [each for each in c.setting.environment if isinstance(each, Drifts | Appears)]
+    listed = [where for each in clauses if each.entity == entity for where in each.placements]
+    found = [where.geometry for where in listed if not isinstance(where, Carried)]
+    return ([] if at is None else [at.geometry]) + found
