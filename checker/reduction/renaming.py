@@ -143,7 +143,8 @@ def _observation(renaming: Renaming, seen: Observation) -> Observation:
         _sorted(renaming, seen.agents),
         map(renaming.value, seen.relations),
         Swept(
-            *(_sorted(renaming, each) for each in (swept.places, swept.nodes)),
+            _sorted(renaming, swept.places),
+            _sorted(renaming, swept.nodes),
             swept.links,
             _sorted(renaming, swept.around),
         ),
