@@ -121,8 +121,7 @@ def _each_reply(texts: list[str], files: dict[str, str]) -> list[dict[str, Any]]
 
 def _without_answer(text: str, error: str, system: System) -> str:
     """Return why there is no answer, and what to do."""
-    rewards = [each.reward for each in system.predicates], [each.reward for each in system.actions]
-    rewarded = any(map(any, rewards))
+    rewarded = any(each.reward for each in system.predicates) or any(each.reward for each in system.actions)
     if text.lstrip().startswith("R") and not rewarded:
         return "no answer: the system has no rewards; give a predicate one, as in preds = { p[2] }"
     return f"no answer: {_said(error)}"
