@@ -34,6 +34,7 @@ LIBRARIES = {
     "pandas": ("checker/transition_system.py", "checker/engines/contract.py"),  # there for types
     "networkx": ("bigraphs/", "checker/", "specs/elaboration/bodies.py"),  # where a graph is a graph
     "numpy": (
+        "bigraphs/simulation.py",  # independent streams of random numbers
         "checker/",
         "bigactors/big/temporal.py",
         "adapters/camera/",
