@@ -220,7 +220,7 @@ def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:
             did_you_mean(unknown[0], ids) or "see its channels",
         )
     own = own_station(options)
-    return Stations(ids, (own,) if own in ids else tuple(ids)) if ids else Stations()
+    return Stations(ids, (own,) if own in ids else tuple(ids)) if ids else Stations(in_mission=False)
 
 
 def _is_authority(channel: str) -> bool:

@@ -48,10 +48,17 @@ class Craft:
 
 @dataclass(frozen=True, slots=True)
 class Stations:
-    """The ground stations: their names in the mission and their MAVLink system ids; `own` are those of this run."""
+    """The ground stations of a run.
+
+    Attributes:
+        ids: Their names in the mission, and their MAVLink system ids.
+        own: Those for which this run speaks.
+        in_mission: Whether the mission has channels of control authority; else a vehicle's is not shown as one.
+    """
 
     ids: Mapping[str, int] = field(default_factory=lambda: {"gcs0": 255})
     own: tuple[str, ...] = ("gcs0",)
+    in_mission: bool = True
 
     def __post_init__(self) -> None:
         if len(set(self.ids.values())) < len(self.ids) or not all(

@@ -533,8 +533,9 @@ def _channels(pilot: Pilot) -> tuple[str, ...]:
     """Return the channels that it is on: none while it is not heard."""
     if pilot.link.lost:
         return ()
-    station = pilot.stations.name_of(_authority(pilot))
-    return (*pilot.craft.channels, *([] if station is None else [CONTROL + station]))
+    station = pilot.stations.name_of(_authority(pilot)) if pilot.stations.in_mission else None
+    authority = () if station is None else (CONTROL + station,)
+    return (*pilot.craft.channels, *authority)
 
 
 def _authority_trouble(pilot: Pilot, now: float) -> tuple[Report, ...]:

@@ -64,6 +64,15 @@ def test_a_vehicle_circles_in_its_place_and_out_of_the_smaller_places_in_it(tmp_
     assert not overlaps(circle((37.0315, -8.6), 120), around)
 
 
+def test_a_mission_without_control_authority_flies_a_vehicle_that_obeys_some_station(tmp_path, capsys):
+    asked = bay(tmp_path, "")
+    path = tmp_path / "bay.mission"
+    path.write_text(path.read_text().replace(" linked control:gcs0", ""))
+    _, terminal, _ = flight(asked, Kind.COPTER)
+    assert "⟨commit" in capsys.readouterr().out
+    assert not terminal.broken
+
+
 @pytest.mark.parametrize(
     ("slick", "more", "widest"),
     [
