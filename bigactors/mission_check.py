@@ -4,8 +4,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, TypeAlias
 
-import checker
+from checker import Limits, Report
 from checker.check import Checkable
+from checker.check import check as check_properties
 from semantics import Configuration, Property
 
 Start: TypeAlias = Configuration | Checkable | str | Path
@@ -14,9 +15,9 @@ Start: TypeAlias = Configuration | Checkable | str | Path
 def check(
     start: Start,
     properties: Iterable[Property] | None = None,
-    limits: checker.Limits | None = None,
+    limits: Limits | None = None,
     **options: Any,
-) -> checker.Report:
+) -> Report:
     """Explore everything that is reachable and decide the properties.
 
     Args:
@@ -35,4 +36,4 @@ def check(
         from specs.elaboration import load_mission  # noqa: PLC0415 - who has a mission has read it
 
         start = load_mission(start)
-    return checker.check(start, properties, limits, **options)
+    return check_properties(start, properties, limits, **options)

@@ -59,6 +59,7 @@ NOT_RUN = {
     "docs/how-to/connect-a-vehicle.md": 2,
     "docs/how-to/console.md": 5,
     "docs/how-to/editors.md": 6,
+    "docs/how-to/geojson.md": 1,
     "docs/how-to/own-rule.md": 1,
     "docs/how-to/ros.md": 2,
     "docs/how-to/stations.md": 1,

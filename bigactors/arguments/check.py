@@ -14,7 +14,6 @@ from bigactors.arguments.values import (
     size,
     tag_bits,
 )
-from checker.limits import MOST_PENDING
 
 
 def fill(parser: Parser) -> None:
@@ -134,9 +133,8 @@ def _limits(parser: Parser) -> None:
         "--max-pending",
         metavar="N",
         type=at_least_one,
-        default=MOST_PENDING,
         help="follow no configuration in which one bigActor has more than N requests or messages pending "
-        f"(default {MOST_PENDING})",
+        "(default: 64)",
     )
     group.add_argument(
         "--max-time",

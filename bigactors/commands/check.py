@@ -20,7 +20,7 @@ from bigactors.terminal import paint, say, tell
 from checker import Cluster, Engine, Interruption, Keeping, Limits, Reduction, report_text
 from checker.check import reductions_of
 from checker.engines.fast.loading import ALONE
-from checker.limits import Stop
+from checker.limits import MOST_PENDING, Stop
 from checker.reports.report import MARKS, coverage_text
 from checker.reports.results import caution_text
 from checker.verdicts import Outcome, Report
@@ -118,7 +118,8 @@ def limits_of(options: Namespace) -> Limits:
             raise Mistake("--spill is of the fast explorer", "leave --engine out")
         make_folder(options.spill)
     most, memory = most_of(options), options.max_memory
-    return Limits(most, options.max_time, pending=options.max_pending, memory=memory, spill=options.spill)
+    pending = options.max_pending or MOST_PENDING
+    return Limits(most, options.max_time, pending=pending, memory=memory, spill=options.spill)
 
 
 def most_of(options: Namespace) -> int:

@@ -1,6 +1,5 @@
 import socket
 import sys
-import threading
 
 from bigactors import live_demo
 
@@ -15,17 +14,9 @@ def test_a_folder_into_which_another_demonstration_flies_is_left_alone(tmp_path,
     with socket.socket(socket.AF_UNIX) as run:
         run.bind(str(tmp_path / live_demo.SOCKET))
         run.listen()
-        threading.Thread(target=answers, args=(run,), daemon=True).start()
         assert demonstrate(monkeypatch, tmp_path) == 2
     assert "a demonstration flies into this folder" in capsys.readouterr().err
     assert (tmp_path / "run.mcap").read_bytes() == b"the flight of now"
-
-
-def answers(run):
-    asked, _ = run.accept()
-    with asked:
-        asked.recv(100)
-        asked.sendall(b'{"refusal": "it says nothing"}\n')
 
 
 def test_a_folder_that_cannot_be_is_a_mistake_and_no_bug(tmp_path, monkeypatch, capsys):

@@ -54,6 +54,7 @@ OWN = {
     "bigactors/api_pages.py",
     "bigactors/big/storm.py",
     "bigactors/big/storm_worker.py",
+    "bigactors/build.py",
     "bigactors/commands/new.py",
     "bigactors/docs.py",
     "bigactors/lsp/server.py",

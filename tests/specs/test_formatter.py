@@ -149,9 +149,10 @@ entries = st.one_of(
     st.builds(
         s.FromSource,
         strings,
+        maybe(names),
         maybe(strings),
         maybe(geometries),
-        tuples(st.builds(s.Keep, names, names)),
+        tuples(st.builds(s.Keep, names, names, maybe(lengths))),
         maybe(st.integers(0, 10**6)),
     ),
 )

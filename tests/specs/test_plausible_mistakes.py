@@ -234,7 +234,10 @@ IN_PORT = [
     (
         "BigActor q hosted_at uav with_behavior { control(FLY_TO sea) }",
         "FLY_TO",
-        "control actions are MOVE_HOST_TO place, MOVE entity TO place, HAND entity TO station, CONNECT_HOST_TO node",
+        (
+            "a vehicle is sent to an entity: declare target: Kind = circle (37.08, -8.55) radius 100 m, "
+            "and write control(MOVE_HOST_TO target)"
+        ),
     ),
     (
         "BigActor q hosted_at uav with_behavior { display(nothing) }",
