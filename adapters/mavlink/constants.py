@@ -65,6 +65,7 @@ class Estimate(IntFlag):
     POS_HORIZ_REL = 8
     POS_HORIZ_ABS = 16
     CONST_POS_MODE = 128
+    PRED_POS_HORIZ_ABS = 512
     UNINITIALIZED = 1024
 
 

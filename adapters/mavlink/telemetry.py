@@ -268,8 +268,11 @@ def _second_fix(known: Telemetry, said: Mapping[str, Any], now: float) -> Teleme
 
 
 def _estimate(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
+    """Note whether its filter has a position: one that is only predicted counts until it is armed, as for ArduPilot."""
     flags = Estimate(said["flags"] & KNOWN_FLAGS)
-    good = Estimate.POS_HORIZ_ABS in flags and not flags & (Estimate.CONST_POS_MODE | Estimate.UNINITIALIZED)
+    predicted = known.armed is False and Estimate.PRED_POS_HORIZ_ABS in flags
+    placed = Estimate.POS_HORIZ_ABS in flags and Estimate.CONST_POS_MODE not in flags
+    good = (predicted or placed) and Estimate.UNINITIALIZED not in flags
     return changed(known, estimate=(good, now))
 
 

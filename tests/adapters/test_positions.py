@@ -17,7 +17,7 @@ from adapters.simulated.reporting import Reporter
 from physical import Band, box, point
 
 NO_FIX, FIX = 1, 3
-GOOD, CONSTANT = 831, 165
+GOOD, CONSTANT, PREDICTED = 831, 165, 933
 NEAR = box((37.003, -8.601), (37.002, -8.603))
 
 
@@ -55,6 +55,22 @@ def filters(flags):
 )
 def test_a_position_counts_by_the_vehicles_own_estimate_or_else_by_the_fix_of_any_receiver(messages, lacks):
     assert told(*messages).lacks(3.0) == lacks
+
+
+@pytest.mark.parametrize(
+    ("base_mode", "flags", "placed"),
+    [
+        (1, PREDICTED, True),  # disarmed
+        (129, PREDICTED, False),
+        (129, GOOD, True),
+        (1, CONSTANT, False),
+        (1, PREDICTED | 1024, False),  # not initialised
+    ],
+)
+def test_a_position_that_a_filter_predicts_counts_until_the_vehicle_is_armed(base_mode, flags, placed):
+    beat = {"type": 2, "autopilot": 3, "base_mode": base_mode, "custom_mode": 0, "system_status": 3}
+    known = told(receiver("GPS_RAW_INT", FIX), ("HEARTBEAT", beat), filters(flags))
+    assert known.is_placed(3.0) == placed
 
 
 def test_what_a_receiver_does_not_tell_any_more_does_not_count():

@@ -150,8 +150,7 @@ def test_a_long_text_comes_whole_over_a_link_and_a_flood_of_texts_is_rationed():
                 f.vehicle.words.append((6, f"text {number}"))
             await asyncio.sleep(5)
             texts = [each for each in f.world.of(StatusText) if each.text.startswith("text")]
-            (trouble,) = f.world.of(Trouble)
-            assert trouble.what == "texts of uav0 left out"
+            (trouble,) = f.world.of(Trouble, what="texts of uav0 left out")
             assert trouble.detail == f"{500 - len(texts)} texts, over 10 in a second"
             assert 9 <= len(texts) <= 20
 

@@ -35,5 +35,5 @@ def test_a_json_file_of_another_encoding_is_told(tmp_path):
 def test_huge_numbers_in_json_are_told(tmp_path):
     path = tmp_path / "x.json"
     path.write_text("9" * 10_000)
-    with pytest.raises(Mistake, match="not JSON: a number of 10,000 digits is longer than 400"):
+    with pytest.raises(Mistake, match="not JSON: a number of 10,000 digits is longer than 300"):
         read_json(str(path))

@@ -18,8 +18,9 @@ from adapters.live.loop import Ending
 from adapters.live.state import Finding, LiveState, Turn
 from adapters.plugin import TakenOver
 from adapters.recording.writing import Recorder
+from bigactors.arguments import parse_arguments
 from bigactors.cli import main
-from bigactors.commands.run import conclude
+from bigactors.commands.run import conclude, prepare, record
 from bigactors.foreign_recordings import watched
 from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
@@ -30,6 +31,15 @@ from bigactors.watchers import Terminal
 from specs.elaboration import Variation
 
 UAV = "--vehicle=uav0=udp:127.0.0.1:0"
+
+DESK = """
+mission desk
+signature { kind Station }
+world { gcs0: Station = point (37.05, -8.63) }
+BigActor op hosted_at gcs0 with_behavior { loop { react { case "status" => display("well") } } }
+environment { says "status" to op at most 2 times }
+"""
+"""A mission without vehicles: its run begins at once."""
 
 
 @pytest.fixture
@@ -118,16 +128,32 @@ def test_a_feed_from_a_pipe_is_refused(there, capsys, feed):
     assert "this is a pipe, not a file: save what it yields, and give that" in told
 
 
-def test_a_vehicle_that_is_not_heard_ends_the_run_and_its_recording(there, capsys):
-    assert main(["run", "oil_spill", UAV, "--unverified", "--wait", "0.2", "--record", "run.mcap"]) == 2
-    told = capsys.readouterr().err
-    assert "nothing was verified of this run" in told
-    assert "nothing was heard of uav0" in told
+def test_a_vehicle_that_is_not_heard_ends_the_run_which_leaves_no_recording(there, capsys):
+    line = ["run", "oil_spill", UAV, "--unverified", "--wait", "0.2", "--record", "run.mcap"]
+    for _ in range(2):  # the name is free for the next one
+        assert main(line) == 2
+        told = capsys.readouterr().err
+        assert "nothing was verified of this run" in told
+        assert "nothing was heard of uav0" in told
+        assert not (there / "run.mcap").exists()
+    assert not list((there / "runtime" / "bigactors").iterdir())
+
+
+def recorded(*line):
+    """Record the beginning of a run, and no step of it."""
+    flight = prepare(parse_arguments(line))
+    with record(flight):
+        flight.start.begun = True
+
+
+@pytest.mark.usefixtures("there")
+def test_a_run_without_a_verdict_is_replayed_as_such(capsys):
+    recorded("run", "oil_spill", UAV, "--unverified", "--record", "run.mcap")
+    capsys.readouterr()
     assert main(["replay", "run.mcap"]) == 0
     shown = capsys.readouterr()
     assert "nothing was verified of this run" in shown.err
     assert "0 steps replayed on oil_spill" in shown.out
-    assert not list((there / "runtime" / "bigactors").iterdir())
 
 
 @pytest.mark.parametrize(
@@ -141,24 +167,15 @@ def test_a_vehicle_that_is_not_heard_ends_the_run_and_its_recording(there, capsy
     ids=["SIGINT", "SIGTERM", "SIGHUP", "SIGTERM without SIGINT"],
 )
 def test_a_run_that_is_asked_to_end_closes_its_recording(there, number, shell):
-    line = [
-        *shell,
-        sys.executable,
-        "-m",
-        "bigactors",
-        "run",
-        "oil_spill",
-        UAV,
-        "--unverified",
-        "--record",
-        "run.mcap",
-    ]
-    with begun(line, stderr=subprocess.PIPE, text=True) as run:
-        until = time.monotonic() + 120
-        while not (there / "run.mcap").exists() or not (there / "run.mcap").stat().st_size:
-            assert time.monotonic() < until, "it did not begin in time"
-            time.sleep(0.05)
-        time.sleep(0.5)
+    (there / "desk.mission").write_text(DESK)
+    line = ["run", "desk.mission", "--unverified", "--record", "run.mcap"]
+    with begun(
+        [*shell, sys.executable, "-um", "bigactors", *line],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as run:
+        assert "desk begins" in run.stdout.readline()
         run.send_signal(number)
         told = run.communicate(timeout=120)[1]
     assert run.returncode == 3
@@ -166,6 +183,21 @@ def test_a_run_that_is_asked_to_end_closes_its_recording(there, number, shell):
     recording = open_recording("run.mcap")
     assert not recording.torn
     assert [message.data for message in recording.of("end")] == [{"reason": "interrupted"}]
+
+
+def test_a_run_that_is_asked_to_end_before_it_begins_leaves_no_recording(there):
+    line = ["run", "oil_spill", UAV, "--unverified", "--record", "run.mcap"]
+    with begun([sys.executable, "-m", "bigactors", *line], stderr=subprocess.PIPE, text=True) as run:
+        until = time.monotonic() + 120
+        while not (there / "run.mcap").exists():
+            assert time.monotonic() < until, "it was not there in time"
+            time.sleep(0.05)
+        time.sleep(0.5)
+        run.send_signal(signal.SIGTERM)
+        told = run.communicate(timeout=120)[1]
+    assert run.returncode == 3
+    assert "interrupted" in told
+    assert not (there / "run.mcap").exists()
 
 
 @pytest.mark.usefixtures("there")
@@ -301,7 +333,7 @@ taken over: uav0: it is in RTL; nobody here commands it until `bigactors give-ba
 @pytest.mark.usefixtures("there")
 def test_a_run_that_is_resumed_says_what_broke_before_and_who_is_taken_over(capsys):
     line = ["run", "oil_spill", UAV, "--unverified", "--wait", "0.2"]
-    assert main([*line, "--record", "first.mcap"]) == 2  # no vehicle is heard
+    recorded(*line, "--record", "first.mcap")
     recorder = Recorder(Path("broken.mcap"), open_recording("first.mcap").run, 0.0)
     late = Finding("late", "a", "CTR(a, MOVE_HOST_TO p) waits for 9 s", 2.0, "hold")
     trouble = Finding("trouble", "ais", "ais: bad checksum", 2.0)
@@ -309,16 +341,17 @@ def test_a_run_that_is_resumed_says_what_broke_before_and_who_is_taken_over(caps
     recorder.turn(Turn(state, findings=(BREACH, trouble, late, BREACH)), 2.0, lambda _: ())
     recorder.report(TakenOver("uav0", 3.0, "it is in RTL"), 3.0)
     recorder.close("killed", 4.0)
-    for before, after in (("broken.mcap", "second.mcap"), ("second.mcap", "third.mcap")):
+    recorded(*line, "--resume", "broken.mcap", "--record", "second.mcap")
+    for before in ("broken.mcap", "second.mcap"):
         capsys.readouterr()
-        assert main([*line, "--resume", before, "--record", after]) == 2
+        assert main([*line, "--resume", before, "--record", "third.mcap"]) == 2  # no vehicle is heard
         assert RESUMED in capsys.readouterr().err
 
 
 @pytest.mark.usefixtures("there")
 def test_a_run_that_goes_on_from_a_recording_without_a_beginning_says_that_its_clocks_begin_anew(capsys):
     line = ["run", "oil_spill_timed", UAV, "--unverified", "--wait", "0.2"]
-    assert main([*line, "--record", "first.mcap"]) == 2  # no vehicle is heard, so it has not begun
+    recorded(*line, "--record", "first.mcap")  # as one that was killed before it began
     assert "clocks" not in capsys.readouterr().err
     assert main([*line, "--resume", "first.mcap"]) == 2
     said = "the recording does not say when the mission began: all clocks begin anew"

@@ -97,11 +97,12 @@ def test_a_vehicle_whose_station_is_not_reached_is_wrong(mission, tmp_path):
 
 def test_a_flight_that_another_station_has_ordered_is_known_as_a_flight(mission, tmp_path):
     first = parted(mission.initial, PART)
-    run = Run(Plan(first, {"uav0": "autopilot"}, mission.precautions, peers="stations"))
-    recorder = Recorder(tmp_path / "r.mcap", header(mission), 1000.0, mission.setting.kinds)
+    run = Run(Plan(first, {"uav0": "stations"}, mission.precautions, peers="stations"))
+    said = header(mission) | {"vehicles": {"uav0": "stations"}}
+    recorder = Recorder(tmp_path / "r.mcap", said, 1000.0, mission.setting.kinds)
     place = next(name for name, kind in mission.setting.kinds.items() if kind == "Location")
     at = first.structure.physical.position("uav0").geometry.ring[0]
-    heard = seen("uav0", (at[0] / 1e7, at[1] / 1e7), 1001.0)
+    heard = seen("uav0", (at[0] / 1e7, at[1] / 1e7), 1001.0, "stations")
     recorder.turn(run.turn(1001.0, heard), 1001.0, lambda _: ())
     recorder.turn(run.turn(1002.0, reports=[Underway("uav0", 1002.0, place, 1002.0)]), 1002.0, lambda _: ())
     recorder.close("done", 1003.0)

@@ -130,7 +130,7 @@ def test_a_vehicle_is_aloft_from_when_the_other_station_says_that_it_was_sent(do
     run.plan = replace(run.plan, vehicles={"uav0": "autopilot"})  # it is handed over to this one
     for now in (801.0, 802.0):
         run.turn(now, seen("uav0", EAST, now, channels=("control:gcs1",)))
-    assert len([each for each in untimely(run) if "aloft for longer" in each]) == said
+    assert len([each for each in untimely(run) if "unrestored for longer" in each]) == said
 
 
 def test_a_parcel_that_cannot_enter_is_said_once_and_nothing_after_it_enters():
