@@ -116,7 +116,7 @@ class Expedition:
             rules,
             sorted(self.bounds + self.met(), key=str),
             time.monotonic() - self.began,
-            sum(standing.runs for standing in self.standings),
+            rule_runs=sum(standing.runs for standing in self.standings),
             survey=Survey(found),
             allowed=rules.total(),
         )

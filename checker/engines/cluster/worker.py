@@ -206,7 +206,7 @@ class Worker:
     def _found(self, count: int) -> NDArray[np.int64]:
         """Return which of its rows each of the batch is, less than 0 where it is none."""
         shard, found = self.shard, np.zeros(count, np.int64)
-        loops.look_up(shard.rows.words, shard.table.room, shard.batch, found, shard.state)
+        loops.look_up(shard.rows.words, shard.table.room, None, None, shard.batch, found, shard.state)
         return found
 
     def _edges(self, found: Sequence[tuple[NDArray[Any], ...]]) -> Edges:

@@ -180,7 +180,7 @@ class _Explorer:
             rules,
             sorted(self.bounds + self.met(), key=str),
             time.monotonic() - began,
-            self.learner.runs,
+            rule_runs=self.learner.runs,
             survey=survey,
             allowed=int(space.met.used.sum()),
             reducer=self.reduce,

@@ -232,6 +232,23 @@ def seek_piece(f: Folded, piece: int) -> None:
         f.sought[k] = f.pieces.words[begin + k]
 
 
+@njit(cache=True, inline="always")
+def seek_piece_of_row(f: Folded, piece: int) -> None:
+    """Copy the words of a piece of the row that was unfolded to where what is looked up stands."""
+    begin = f.begins[piece]
+    for k in range(f.pieces.counts[WIDE]):
+        f.sought[k] = f.whole[begin + k]
+
+
+@njit(cache=True, inline="always")
+def put_sought(f: Folded, piece: int, touched: int) -> int:
+    """Let a piece of the successor be what was sought, where that is not the row's; return which are its own."""
+    differs, begin = False, f.begins[piece]
+    for k in range(f.pieces.counts[WIDE]):
+        differs = differs or f.sought[k] != f.whole[begin + k]
+    return put_piece(f, piece, intern(f.pieces, f.sought, False), touched) if differs else touched
+
+
 @njit(cache=True)
 def fold_rows(f: Folded, words: Words, width: int, kept: Words, begin: int) -> int:
     """Fold rows, from one on, and write what is kept of them; return up to which there was room."""

@@ -16,13 +16,16 @@ from checker.engines.fast.compacting import find_tag, places_behind, tag_of
 from checker.engines.fast.folding import (
     MEMORY,
     NO_ROOM,
+    NOWHERE,
     UNMET,
     Folded,
     fold,
     intern,
     leave_open,
     put_piece,
+    put_sought,
     seek_piece,
+    seek_piece_of_row,
     step_left_open,
     unfold,
 )
@@ -190,19 +193,25 @@ def write_part(columns: Words, writes: Ints, steps: Ints, step: int, target: Wor
         target[word] = (target[word] & ~(mask << shift)) | (np.uint64(writes[PAIR * k + 1]) << shift)
 
 
-@inner(cache=True)
-def change_piece(
-    columns: Words, writes: Ints, steps: Ints, step: int, f: Folded, piece: int, adding: bool
-) -> int:
-    """Return what a transition, or a part of one, makes of a piece of the successor."""
+@njit(cache=True, inline="always")
+def write_piece(columns: Words, writes: Ints, steps: Ints, step: int, f: Folded, piece: int) -> None:
+    """Write what a transition, or a part of one, writes into a piece whose words are being sought."""
     record = STEP * step
-    seek_piece(f, piece)
     for k in range(steps[record + WRITES], steps[record + WRITES_END]):
         where = PLACE * writes[PAIR * k]
         word, shift, mask = np.int64(columns[where]), columns[where + 1], columns[where + 2]
         if f.piece_of[word] == piece:
             word -= f.begins[piece]
             f.sought[word] = (f.sought[word] & ~(mask << shift)) | (np.uint64(writes[PAIR * k + 1]) << shift)
+
+
+@inner(cache=True)
+def change_piece(
+    columns: Words, writes: Ints, steps: Ints, step: int, f: Folded, piece: int, adding: bool
+) -> int:
+    """Return what a transition, or a part of one, makes of a piece of the successor."""
+    seek_piece(f, piece)
+    write_piece(columns, writes, steps, step, f, piece)
     return np.int64(intern(f.pieces, f.sought, adding))
 
 
@@ -341,6 +350,33 @@ def make_folded(m: Model, f: Folded, step: int, adding: bool, kept: Words, to: i
         touched = change_pieces(m.columns, m.writes, m.steps, m.masks, own, f, touched, adding)
     least = fold(f, touched, adding, kept, to)
     return least if own >= 0 else own
+
+
+@inner(cache=True)
+def make_whole(m: Model, f: Folded, step: int, kept: Words, to: int, state: State) -> int:
+    """Fold as `make_folded` does, but look up each piece once all is written into it; return less than 0 likewise.
+
+    What a transition makes of a piece before its parts write there too may be a piece of no row: it is forgotten where
+    rows are packed anew. Then a successor has pieces that were met though something on the way to them was not.
+    """
+    record, touched = STEP * step, np.int64(0)
+    for piece in range(len(f.below)):
+        seek_piece_of_row(f, piece)
+        write_piece(m.columns, m.writes, m.steps, step, f, piece)
+        for k in range(m.steps[record + COPIES], m.steps[record + COPIES_END]):
+            where = PLACE * m.copies[PAIR * k]
+            word, shift, mask = np.int64(m.columns[where]), m.columns[where + 1], m.columns[where + 2]
+            if f.piece_of[word] == piece:
+                code = np.uint64(code_at(f.whole, 0, m.columns, m.copies[PAIR * k + 1]))
+                word -= f.begins[piece]
+                f.sought[word] = (f.sought[word] & ~(mask << shift)) | (code << shift)
+        for part in range(m.steps[record + PARTS], m.steps[record + PARTS_END]):
+            own = part_step(m, f.whole, 0, part, state)
+            if own < 0:
+                return own  # at the first piece, before any is put
+            write_piece(m.columns, m.writes, m.steps, own, f, piece)
+        touched = put_sought(f, piece, touched)
+    return fold(f, touched, False, kept, to)
 
 
 @njit(cache=True, nogil=True)
@@ -601,11 +637,19 @@ def classify(
 
 
 @njit(cache=True)
-def look_up(words: Words, table: Any, batch: Batch, targets: Any, state: State) -> None:
-    """Note the row that each successor of the batch is."""
+def look_up(
+    words: Words, table: Any, m: Model | None, f: Folded | None, batch: Batch, targets: Any, state: State
+) -> None:
+    """Note the row that each successor of the batch is; adds no piece where rows are folded (`f`, by the model)."""
     target, hashes = batch.kept, batch.hashes
     width = state[KEPT]
     bits = np.uint32(bits_for(len(table)))
+    if f is not None:
+        for k in range(len(targets)):
+            if target[width * k] == NOWHERE:
+                unfold(f, words, batch.origins[k])
+                make_whole(m, f, batch.steps[k], target, width * k, state)
+                hashes[k] = hashed(target, width * k, width)
     for k in range(len(targets)):
         fetch(words, table, hashes, k, len(targets), width, bits)
         targets[k] = find(words, table, target, k, hashes[k], width, bits)

@@ -289,8 +289,9 @@ class Space:
             look()
             known = self._gather(rows.stop)
             count, self.state[GATHERED] = int(self.state[GATHERED]), 0
-            targets = np.zeros(count, np.int64)
-            kernel.look_up(self.rows.words, self.table.room, self.batch, targets, self.state)
+            targets, folded = np.zeros(count, np.int64), self.rows.folded
+            model = None if folded is None else self.model
+            kernel.look_up(self.rows.words, self.table.room, model, folded, self.batch, targets, self.state)
             yield self.batch.origins[:count].copy(), self.batch.steps[:count].copy(), targets
             if not known:
                 self._miss()

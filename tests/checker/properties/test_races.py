@@ -222,10 +222,10 @@ def test_a_stale_observation_is_told_with_the_query_and_the_test_and_a_shortest_
     )
     assert race.details == (
         "sensed in step 7: ⟨sense : OBS(b, CHILDREN(gate0))⟩",
-        "changed by a in step 11: ⟨actuate : CTR(a, MOVE_HOST_TO gate0)⟩",
+        "changed by a in step 8: ⟨actuate : CTR(a, MOVE_HOST_TO gate0)⟩",
         "acted on in step 12: ⟨actuate : CTR(b, MOVE_HOST_TO gate0)⟩",
     )
-    assert len(race.trace) == 12  # each looks and asks in 5 steps, then both are served
+    assert len(race.trace) == 12  # each looks and asks in 5 steps, and both are served
     assert rules_of(race.trace).count("actuate") == 2
     assert rules_of(race.trace)[-1] == "actuate"
 

@@ -121,9 +121,10 @@ def test_an_argument_computed_from_an_observation_carries_it():
 
 
 def test_going_through_an_observation_carries_it():
+    members = Apply("nodes", (Variable("o"),))  # the place that is looked at, too
     ways = (
-        (For(Variable("o"), "#x", 3), ForEach("x", "#x", (4,))),
-        (ChooseFrom("x", Variable("o"), (4,)), Assign("unused", Literal(1))),
+        (For(members, "#x", 3), ForEach("x", "#x", (4,))),
+        (ChooseFrom("x", members, (4,)), Assign("unused", Literal(1))),
     )
     for way in ways:
         statements = (

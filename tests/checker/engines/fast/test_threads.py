@@ -205,6 +205,14 @@ def test_other_threads_go_on_from_a_checkpoint(tmp_path, before, after):
 
 
 @pytest.mark.usefixtures("kept")
+def test_every_transition_leads_to_a_row_though_rows_were_packed_anew_meanwhile():
+    inner = explore(start("rendezvous"), engine=Engine.FAST).survey.space
+    found = [targets for _, _, targets in inner.edges(range(inner.expanded))]
+    assert sum(map(len, found)) == 73_275
+    assert all(np.all(targets >= 0) for targets in found)
+
+
+@pytest.mark.usefixtures("kept")
 def test_a_checkpoint_at_the_end_is_the_same_whoever_wrote_it(tmp_path):
     read = []
     for threads in (1, 4):
