@@ -92,10 +92,16 @@ def _programs(row, draw):
         base = ["migrate(uav0)", *base]
     if row["spawn"] == YES:
         base = ["spawn look0 hosted_at HOST with_behavior look()", *base]
-    if base:
-        programs.append(f"BigActor base hosted_at gcs0 with_behavior {{ {' '.join(base)} }}")
-    if row["cargo"] == YES:
-        programs.append("BigActor crew hosted_at boat0 with_behavior { control(PUT drum0 IN sea0) }")
+    crew = ["control(PUT drum0 IN sea0)"] if row["cargo"] == YES else []
+    if crew and base and row["timing"] == YES:  # one agent does both: ticks count each moment of each agent
+        programs.append(f"BigActor base hosted_at boat0 with_behavior {{ {' '.join(crew + base)} }}")
+    else:
+        hosts = {"base": ("gcs0", base), "crew": ("boat0", crew)}
+        programs += [
+            f"BigActor {name} hosted_at {host} with_behavior {{ {' '.join(does)} }}"
+            for name, (host, does) in hosts.items()
+            if does
+        ]
     looks = "def look() = { observe(LINKED_TO(HOST)) }" if row["spawn"] == YES else ""
     return "\n".join([looks, *programs, ""])
 
@@ -124,7 +130,7 @@ def _timing(row):
     }
     drops = {"drop": "wifi drops at most every 10 s", "return": "wifi drops and returns within 5 s"}
     drops["leave"] = "uav1 leaves wifi at most every 10 s"
-    return f"""timing {{
+    text = f"""timing {{
   tick 5 s
   UAV flies at 20 m/s to 25 m/s
   agents react within 5 s
@@ -135,6 +141,13 @@ def _timing(row):
   {drops.get(row["channels"], "")}
 }}
 """
+    if row["families"] == row["spawn"] == row["cargo"] == YES:  # many agents: ticks count each moment of each
+        text = (
+            text.replace("tick 5 s", "tick 10 s")
+            .replace("5 s to 10 s", "10 s")
+            .replace("within 5 s", "within 10 s")
+        )
+    return text
 
 
 def _asked(row):
