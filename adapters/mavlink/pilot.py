@@ -246,7 +246,7 @@ def _ticked(pilot: Pilot, now: float) -> Outcome:
     link, change = watch(pilot.link, pilot.craft.entity, pilot.known, now)
     pilot = changed(pilot, link=link)
     if isinstance(change, LinkRestored):
-        pilot = inventory.unsure(pilot)
+        pilot = inventory.unsure(pilot, quiet=True)
     questions: tuple[Message, ...] = ()
     before = pilot.unanswered
     if pilot.known.heard is not None and not link.lost:
