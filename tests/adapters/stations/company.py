@@ -47,7 +47,7 @@ def free_port():
             return port
 
 
-def until(what, seconds=60.0):
+def until(what, seconds=180.0):
     """Look until something is so; looks that take long are taken less often, so that the stations can go on."""
     end = time.monotonic() + seconds
     while True:
