@@ -35,7 +35,7 @@ test: lint types $(STAMP) $(PARTS)  ## what must hold at each change; of generat
 	$(BIN)/python -m pytest -n 3 --dist worksteal -q -m "not long"
 
 test-long: $(STAMP) $(PARTS)  ## whole flights, killed processes, workers, compilations (some 10 minutes)
-	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m long
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m long --timeout 1500
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
@@ -52,7 +52,7 @@ wheel: $(STAMP) $(PARTS)  ## what is released, into dist/: the source, and the w
 test-wheel: wheel  ## a quick part of the suite against the installed wheel, with the repository out of its reach
 	rm -rf $(WHEEL)
 	$(PYTHON) -m venv $(WHEEL)
-	$(WHEEL)/bin/python -m pip install --quiet --disable-pip-version-check "$$(ls dist/*.whl)[ais,live,lsp,strategies]" pytest pytest-asyncio pytest-xdist
+	$(WHEEL)/bin/python -m pip install --quiet --disable-pip-version-check "$$(ls dist/*.whl)[ais,live,lsp,strategies]" pytest pytest-asyncio pytest-timeout pytest-xdist
 	$(BIN)/python hatch_build.py tests $(WHEEL)/suite/tests
 	mkdir $(WHEEL)/suite/specs
 	cp -r specs/missions $(WHEEL)/suite/specs
@@ -70,7 +70,7 @@ storm: $(STAMP)  ## the model checker Storm, for `big check --storm` and its tes
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --only-binary stormpy --editable '.[storm]'
 
 fuzz: $(STAMP)  ## the long tests whole, 100,000 mutated missions, a million mutated packets and sentences (nightly: an hour or more)
-	BIGACTORS_FUZZ=100000 BIGACTORS_FUZZ_PACKETS=1000000 $(BIN)/python -m pytest -n 2 -q -m "fuzz or hypothesis"
+	BIGACTORS_FUZZ=100000 BIGACTORS_FUZZ_PACKETS=1000000 $(BIN)/python -m pytest -n 2 -q --timeout 0 -m "fuzz or hypothesis"
 
 mutants: $(STAMP)  ## change semantics/ and the reductions one operator at a time: which changes does no test notice? (nightly; MUTANTS=semantics.control* for a part)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'mutmut>=3.8'
@@ -79,7 +79,7 @@ mutants: $(STAMP)  ## change semantics/ and the reductions one operator at a tim
 	$(BIN)/python -m mutmut export-cicd-stats && cat mutants/mutmut-cicd-stats.json
 
 bounds: $(STAMP)  ## the compiled loops with checks of bounds over all missions, cut and gone on with at many sizes (nightly: some 40 minutes)
-	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q -m bounds
+	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q --timeout 0 -m bounds
 	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q $(COMPILED)
 
 bench: $(STAMP)  ## the explorer beside SPIN, its growth, the largest and the widest missions; writes docs/explanation/performance.md (some 30 minutes)

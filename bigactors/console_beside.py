@@ -9,6 +9,7 @@ from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from queue import Empty, SimpleQueue
 from subprocess import PIPE
 from tempfile import TemporaryDirectory
 from typing import Final
@@ -48,10 +49,10 @@ def console_beside(options: Namespace, recording: Path | None, socket: Path) -> 
     process = subprocess.Popen(
         _line(options, recording, socket), stdin=PIPE, stdout=PIPE, start_new_session=True
     )
-    linked, leaving = threading.Event(), threading.Event()
-    threading.Thread(target=_relay, args=(process, linked), daemon=True).start()
-    if not linked.wait(STARTING) or process.poll() is not None:
-        process.kill()
+    links, leaving = SimpleQueue[bool](), threading.Event()
+    threading.Thread(target=_relay, args=(process, links), daemon=True).start()
+    if not _has_started(links):
+        _end(process, 0)
         hint = "it has said why; nothing has been commanded. Mend that, or leave --console out"
         raise Mistake("the console does not start", hint)
     threading.Thread(target=_watch, args=(process, leaving), daemon=True).start()
@@ -59,14 +60,19 @@ def console_beside(options: Namespace, recording: Path | None, socket: Path) -> 
         yield
     finally:
         leaving.set()
-        assert process.stdin is not None
-        with suppress(OSError):
-            process.stdin.close()
-        try:
-            process.wait(PATIENCE)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+        _end(process, PATIENCE)
+
+
+def _end(process: subprocess.Popen[bytes], patience: float) -> None:
+    """Close a console's input, which ends it; kill it where it has not ended in time."""
+    assert process.stdin is not None
+    with suppress(OSError):
+        process.stdin.close()
+    try:
+        process.wait(patience)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
 
 
 def _line(options: Namespace, recording: Path, socket: Path) -> list[str]:
@@ -82,15 +88,22 @@ def _line(options: Namespace, recording: Path, socket: Path) -> list[str]:
     return line + (["--insecure"] if options.insecure else [])
 
 
-def _relay(process: subprocess.Popen[bytes], linked: threading.Event) -> None:
-    """Say what a console says, and note that its last link was said, or that it says no more."""
+def _has_started(links: SimpleQueue[bool]) -> bool:
+    with suppress(Empty):
+        return links.get(timeout=STARTING)
+    return False
+
+
+def _relay(process: subprocess.Popen[bytes], links: SimpleQueue[bool]) -> None:
+    """Print the lines of a console; report True at its last link, and False at the end of its output."""
     assert process.stdout is not None
-    for line in process.stdout:
-        say(line.decode(errors="replace").rstrip())
-        sys.stdout.flush()
-        if line.startswith(LAST.encode()):
-            linked.set()
-    linked.set()
+    with process.stdout:
+        for line in process.stdout:
+            say(line.decode(errors="replace").rstrip())
+            sys.stdout.flush()
+            if line.startswith(LAST.encode()):
+                links.put(True)
+    links.put(False)  # a console without links closes its output before its process has ended
 
 
 def _watch(process: subprocess.Popen[bytes], leaving: threading.Event) -> None:

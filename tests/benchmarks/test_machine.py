@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+import time
 
 import pytest
 from scripts import script
@@ -38,8 +39,8 @@ def test_a_peer_is_told_by_its_number_and_its_output_while_it_runs(tmp_path):
     printed = tmp_path / "printed"
 
     def interrupt(number):
-        while not printed.read_text(encoding="utf-8"):
-            pass
+        while not printed.read_text(encoding="utf-8").endswith("\n"):  # it may be interrupted within a line
+            time.sleep(0.01)
         os.kill(number, signal.SIGINT)
 
     program = "import time\nprint('begun', flush=True)\ntime.sleep(60)"

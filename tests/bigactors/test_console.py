@@ -6,9 +6,11 @@ import os
 import signal
 import socket
 import ssl
+import sys
 import time
 import urllib.error
 import urllib.request
+from argparse import Namespace
 from contextlib import ExitStack, contextmanager, suppress
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -23,8 +25,10 @@ from cryptography.x509.oid import NameOID
 
 from adapters.console.requests import PROTOCOL
 from adapters.recording.reading import read_recording
+from bigactors import console_beside
 from bigactors.cli import main
 from bigactors.commands.console import PORT
+from bigactors.mistakes import Mistake
 
 MISSION = """
 mission tour
@@ -316,6 +320,19 @@ def test_a_run_whose_console_does_not_start_commands_nothing(tmp_path):
             assert process.wait(60) == 2
     assert "the console does not start" in said
     assert not (tmp_path / "run.mcap").exists()
+
+
+def test_a_console_that_closes_its_output_without_a_link_has_not_started_though_it_lives_on(
+    tmp_path, monkeypatch
+):
+    silent = [sys.executable, "-c", "import os, time; os.close(1); time.sleep(60)"]
+    monkeypatch.setattr(console_beside, "_line", lambda *_: silent)
+    options = Namespace(console=("127.0.0.1", 0))
+    with (
+        pytest.raises(Mistake, match="the console does not start"),
+        console_beside.console_beside(options, tmp_path / "run.mcap", tmp_path / "s"),
+    ):
+        pytest.fail("the run has begun")
 
 
 def test_a_console_says_that_its_run_was_killed_and_ends_with_it(tmp_path):
