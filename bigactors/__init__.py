@@ -14,6 +14,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, Final
 
+from bigactors.checkout import share_rooms
+
+share_rooms()
+
 __version__ = "0.2.0"
 
 HOMES: Final = {
