@@ -379,7 +379,7 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
     if profile is None:
         return pilot, ()
     if not _is_ours(pilot):
-        pilot = inventory.unsure(pilot) if pilot.on_board or known.polygon else pilot
+        pilot = inventory.unsure(pilot, quiet=True) if pilot.on_board else pilot
         return changed(pilot, helm=Helm(boots=known.boots)), ()
     command = None if pilot.moving is None else pilot.moving.command
     undone = _undone(pilot, profile, now)

@@ -22,6 +22,7 @@ from adapters.plugin import (
     Refused,
     Rejected,
     Return,
+    Status,
     TakenOver,
     Trouble,
 )
@@ -218,6 +219,22 @@ def test_a_fence_that_somebody_clears_while_others_are_on_is_noticed_and_is_ther
             await f.plugin.command(GiveBack("r2", "uav0"))
             await in_the_air(f, GoTo("r3", "uav0", WAY[-1]))
             assert f.vehicle.fence is not None
+
+    run(main())
+
+
+@pytest.mark.parametrize("away", [6, 40])
+def test_a_fenced_vehicle_that_obeyed_somebody_else_for_a_while_goes_on_with_its_flight(away):
+    async def main():
+        async with flight(craft=Craft("uav0", fence=WIDE), enforce=False) as f:
+            await in_the_air(f, GoTo("r1", "uav0", WAY[-1]))
+            ours, f.vehicle.parameters["SYSID_MYGCS"] = f.vehicle.parameters["SYSID_MYGCS"], 252.0
+            await asyncio.sleep(away)
+            assert f.world.of(Status)[-1].authority == ("system 252",)
+            f.vehicle.parameters["SYSID_MYGCS"] = ours
+            end = await f.ended("r1")
+            assert isinstance(end, Arrived), end
+            assert not f.world.of(TakenOver)
 
     run(main())
 
