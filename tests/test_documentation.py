@@ -1,6 +1,7 @@
 """Every block of every page is run, and does what the page shows.
 
-A page is one session: its blocks run in their order, in a folder of their own, with the package as it is installed.
+A page is one session: its blocks run in their order, in a folder of their own, by the names of an installation
+(`bigactors/checkout.py`).
 Comments above a block say what is special about it:
 
     <!-- file: patrol.mission -->    the block is the content of this file
@@ -23,12 +24,10 @@ from subprocess import DEVNULL, PIPE, STDOUT, CompletedProcess, Popen
 
 import pytest
 import yaml
-from once import once
 
 from bigactors import Limits, check, load_mission
 from bigactors.docs import GENERATED
 from bigraphs.notation import read_system
-from hatch_build import PACKAGE, write_package
 from specs.missions import shipped_missions
 
 ROOT = Path(__file__).parents[1]
@@ -242,47 +241,24 @@ def is_run(block):
     return "not run" not in block.notes
 
 
-@pytest.fixture(scope="session")
-def installed(tmp_path_factory):
-    """Return the variables with which the package is found as it is installed, and its command.
-
-    All workers share it: of each package the loops are compiled anew.
-    """
-    folder = once(tmp_path_factory, "installed", install)
-    commands = folder / "bin"
+def variables(site):
+    """Return the environment of a page's blocks: the checkout, and what the page itself installs into a folder."""
     hidden = ("CI", "PYTEST", "PYTHON")  # in CI pytest prints its summary in full, and no page shows that
     kept = {name: value for name, value in os.environ.items() if not name.startswith(hidden)}
-    kept |= {"PIP_NO_INDEX": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
-    path = f"{commands}{os.pathsep}{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    return kept | {"PATH": path, "PYTHONPATH": str(folder), "PYTHONUTF8": "1", "COLUMNS": "100"}
-
-
-def install(folder):
-    """Write the package as it is installed, and its command, into a folder."""
-    write_package(folder / PACKAGE)
-    write_metadata(folder / f"{PACKAGE}-0.dist-info")
-    commands = folder / "bin"
-    commands.mkdir()
-    for name, arguments in {"bigactors": "-m bigactors ", "python": ""}.items():
-        (commands / name).write_text(
-            f'#!/bin/sh\nexec "{sys.executable}" {arguments}"$@"\n', encoding="utf-8"
-        )
-        (commands / name).chmod(0o755)
-
-
-def write_metadata(folder):
-    """Write what tells other programs of the package: its plugin of pytest."""
-    folder.mkdir()
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    (folder / "METADATA").write_text(f"Name: {PACKAGE}\nVersion: 0\n", encoding="utf-8")
-    plugins = "".join(f"{name} = {module}\n" for name, module in project["entry-points"]["pytest11"].items())
-    (folder / "entry_points.txt").write_text(f"[pytest11]\n{plugins}", encoding="utf-8")
+    return kept | {
+        "COLUMNS": "100",
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+        "PIP_DISABLE_PIP_VERSION_CHECK": "1",
+        "PIP_NO_INDEX": "1",
+        "PIP_TARGET": str(site),
+        "PYTHONPATH": f"{ROOT}{os.pathsep}{site}",
+        "PYTHONUTF8": "1",
+    }
 
 
 @pytest.mark.parametrize("page", list(map(by_length, PAGES)), ids=name_of)
-def test_the_blocks_of_a_page_do_what_it_shows(page, installed, tmp_path):
-    own = {"PIP_TARGET": "site", "PYTHONPATH": f"{installed['PYTHONPATH']}{os.pathsep}{tmp_path / 'site'}"}
-    session = Session(tmp_path, installed | own)  # what a page installs is there for it alone
+def test_the_blocks_of_a_page_do_what_it_shows(page, tmp_path):
+    session = Session(tmp_path, variables(tmp_path / "site"))
     shown = list(filter(is_run, blocks(page)))
     for block in reversed(shown):
         if block.notes.keys() & {"file", "frame"} == {"file"}:
