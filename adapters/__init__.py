@@ -1,6 +1,7 @@
 """Live vehicles and feeds: plugins that publish physical properties and subscribe mobility commands (paper §3.2.1).
 
-`plugin` is their interface, `mavlink` and `ros` are vehicles, and `ais`, `static_places`, `detections`, `location` and
-`camera` are feeds. `naming` maps identities to names; `simulated` has vehicles for tests and demonstrations. Plugins
+`plugin` is their interface. `mavlink` and `ros` drive vehicles; `ais`, `static_places`, `detections`, `location` and
+`camera` are feeds; `simulated` has vehicles for tests and demonstrations. `naming` maps identities to names. `live` is
+the loop that runs a mission with plugins, `stations` joins several runs, `recording` and `console` show a run. Plugins
 know nothing of agents or missions.
 """

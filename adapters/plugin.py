@@ -146,7 +146,7 @@ class Return:
 
 @dataclass(frozen=True, slots=True)
 class Rebind:
-    """Move a vehicle's source to a new address (`HOST:PORT`), confirmed by an operator."""
+    """Accept a vehicle's messages from a new address (`HOST:PORT`), confirmed by an operator."""
 
     request: str
     entity: str
@@ -532,7 +532,7 @@ class Plugin(Protocol):
 
 @runtime_checkable
 class Preflight(Protocol):
-    """The reports of a plugin of vehicles before take-off, as far as the vehicles have reported."""
+    """The checks before take-off of a plugin with vehicles, as far as the vehicles have reported."""
 
     @property
     def fences(self) -> Mapping[str, Geometry]:

@@ -26,7 +26,7 @@ STRAYED: Final = "wind, or another operator"
 def broken_by_place(
     plan: Plan, c: Configuration, entity: Name, seen: Placement | None, cause: str = STRAYED
 ) -> str:
-    """Return the assumption that a sighting of an entity breaks, or an empty text; `cause` moved a vehicle."""
+    """Return the assumption that a sighting of an entity breaks, or an empty text; `cause` explains a stray vehicle."""
     before = c.structure.physical.placement(entity)
     if seen is None:
         allowed = _clause(plan, Vanishes, entity) is not None

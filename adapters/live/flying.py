@@ -91,7 +91,7 @@ def refuse(turning: Turning, entity: Name, request: str) -> None:
 
 def ask_anew(turning: Turning, entity: Name) -> None:
     """Command a vehicle again after it was given back, if its request is still pending."""
-    turning.handing.pop(entity, None)  # sent again in its turn
+    turning.handing.pop(entity, None)  # the hand-over is ordered again in its turn
     order = turning.orders.get(entity)
     fly = None if order is None else _flight(turning, order)
     if order is None or fly is None or isinstance(order.command, HandOver) or turning.stops(order.agent):

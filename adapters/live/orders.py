@@ -30,8 +30,8 @@ def destination(
 ) -> GoTo | None:
     """Return the command to go into a place at its current position, or to the node's future carrier.
 
-    The vehicle must keep to the surroundings of the point that `drive` found. Then no rule can distinguish its position
-    from its position in P.
+    The vehicle must keep to the surroundings of the point that `drive` found. Then no rule can distinguish its real
+    position from its point in P.
     """
     spot = found.physical.get(placement_cell(node))
     target = c.structure.physical.position(place)

@@ -79,8 +79,8 @@ def _it(told: list[Name]) -> str:
 def _objection(turning: Turning, entity: Name, said: Ordering) -> str:
     """Return the reason why a vehicle does not get an order, or an empty text.
 
-    An order to all overrules no pilot and no fail-safe; an order to one overrules a take-over that the operator can
-    know.
+    An order to all overrules no pilot and no fail-safe; an order to one overrules only a take-over from an
+    earlier turn, which the operator can know.
     """
     if entity not in turning.plan.vehicles:
         return _no_vehicle(turning, entity)
@@ -147,7 +147,7 @@ def _bid(turning: Turning, entity: Name, said: Ordering) -> str:
 
 
 def _take_back(turning: Turning, said: GivingBack) -> Answer:
-    """Take back a vehicle, or move its source to another address."""
+    """Take back a vehicle, or accept its messages from another address."""
     if said.vehicle not in turning.plan.vehicles:
         return Answer(said, _no_vehicle(turning, said.vehicle))
     return Answer(said, _rebind(turning, said.vehicle, said.at)) if said.at else _give_back(turning, said)
@@ -209,7 +209,7 @@ def say_to(turning: Turning, saying: Saying) -> None:
 
 
 def _rebind(turning: Turning, entity: Name, at: str) -> str:
-    """Move a vehicle's source to another address; return the reason of a refusal, or an empty text."""
+    """Accept a vehicle's messages from another address; return the reason of a refusal, or an empty text."""
     found = _ADDRESS.fullmatch(at)
     if found is None or not _is_number(found[1]) or int(found[2]) > MOST_PORT:
         return (

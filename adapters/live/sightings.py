@@ -28,7 +28,7 @@ class Refusal:
 
 
 def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) -> Sighting | Refusal | None:
-    """Return the sighting in a message, None if a newer one is known."""
+    """Return the sighting in a message, a Refusal if it is rejected, None if a newer sighting is known."""
     published = heard.published
     said = published.property if isinstance(published, Aged) else published
     owner = plan.vehicles.get(said.entity)
@@ -118,7 +118,7 @@ def bounds(geometry: Geometry) -> Bounds | None:
 
 
 Fence = tuple[Name, Placed, Bounds | None]
-"""A placed place, with its bounds."""
+"""A place with a position, and its bounds."""
 
 
 class Fences:
@@ -139,7 +139,7 @@ class Fences:
         found = []
         for place, position, limits in self._fences(kind):
             if limits and not (limits[0] < north < limits[1] and limits[2] < east < limits[3]):
-                continue  # excludes most places
+                continue  # the bounds exclude most places
             if place != entity and encloses(position, placement):
                 found.append(place)
         return frozenset(found)

@@ -1,4 +1,4 @@
-"""The surroundings of a vehicle in flight: places of its point in P, to stay in, and all others, to stay out of."""
+"""The surroundings of a vehicle in flight: it stays in the places of its point in P, and out of all others."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def _placements(setting: Setting, place: Name) -> tuple[Placed, ...]:
 
 @lru_cache(maxsize=1 << 6)
 def _movers(setting: Setting, kind: str) -> tuple[Name, ...]:
-    """Return the containers for an entity of a kind that may move."""
+    """Return the movable containers for entities of a kind."""
     return tuple(name for name in sorted(setting.containers(kind)) if _placements(setting, name))
 
 

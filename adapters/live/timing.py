@@ -192,7 +192,7 @@ def too_soon(timers: Timers, transition: Transition, after: Timers, now: float) 
 
 
 def _untimely(timers: Timers, number: int, now: float) -> Iterator[Broken]:
-    """Yield that a clause has taken its step too soon; a message with a last moment, also that it was too late."""
+    """Yield a violation if a clause has taken its step too soon, or if a message came too late."""
     match timers.situation.timing.clause(number).step:
         case Every(least):
             elapsed = now - timers.since[Clock(Sort.EVERY, number)][0]

@@ -130,7 +130,7 @@ class Turning:
         return Turn(state, *gathered, tuple(self.parcels), again)
 
     def find(self, kind: str, about: Name, message: str, fallback: str = "", *, once: bool = False) -> bool:
-        """Report a finding; with `once` not a second time, and no more troubles after too many."""
+        """Report a finding, with `once` not twice, and at most so many troubles; return whether it was reported."""
         if once:
             full = kind == "trouble" and len(self.reported) >= MOST_REPORTED
             if full or message in self.reported:
@@ -428,7 +428,7 @@ class Turning:
             command = stopping(fallback, self.request_of("fallback"), entity)
             self.owed[entity] = Bidden(command, by=None)
             self.commands.append(command)
-            if self.handing.pop(entity, None) is not None:  # its agent may order the hand-over again
+            if self.handing.pop(entity, None) is not None:  # ends the hand-over; its agent may order it again
                 self.quiet = None
 
     def due_fallback(self, entity: Name) -> Fallback:

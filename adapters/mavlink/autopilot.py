@@ -255,7 +255,7 @@ class Autopilot:
         return False
 
     def _rebind(self, pilot: Pilot, source: str) -> None:
-        """Move a vehicle's source to another address, if the old one is silent."""
+        """Accept a vehicle's messages from another address, if the old one is silent."""
         host, _, port = source.rpartition(":")
         bound = self._routes.get(pilot.system)
         entity = pilot.craft.entity

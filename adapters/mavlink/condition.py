@@ -27,7 +27,7 @@ class Condition:
 def look(
     before: Condition, entity: str, known: Telemetry, now: float, *, lost: bool
 ) -> tuple[Condition, tuple[Trouble, ...]]:
-    """Report changes of a vehicle's position and home, each once."""
+    """Report the new and the ended troubles of a vehicle, each once."""
     if lost:
         return before, ()
     told = bool(known.fixes) or known.estimate is not None

@@ -27,7 +27,7 @@ _NEEDED: Final[Mapping[int, tuple[Cmd, str]]] = {
 
 
 def refuges(known: Telemetry, on_board: OnBoard) -> tuple[Geometry, ...]:
-    """Return the points of which a vehicle chooses one when it returns from its position."""
+    """Return the possible points of return from a vehicle's position."""
     home = () if known.home is None else (point(*known.home),)
     rally = tuple(at for at in rally_points(on_board) if _is_near(at, known))
     only = known.profile is not None and known.profile.dialect.home_is_item

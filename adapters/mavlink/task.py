@@ -33,7 +33,7 @@ class Task:
         height: Metres above the mission's home at which it is carried out, once known.
         above: Metres above sea level of that home, if commanded heights are above sea level.
         step: The current step.
-        since: Start of the step, of the vehicle's return to the link, or time of an upload's last progress.
+        since: Time of the step's start, of the vehicle's return to the link, or of an upload's last progress.
         reached: The progress of an upload.
         doing: The step's exchange of messages.
         accepted: Whether the state has shown that the vehicle follows it.

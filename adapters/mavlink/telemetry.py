@@ -99,7 +99,7 @@ class Telemetry:
         healthy: Whether it could be armed, and accepts missions.
         current: The number of its current mission item.
         total: Its own count of the mission's items; None if it reports none.
-        numbers: Version numbers of its mission, fence and rally points; None if it reports none.
+        numbers: The ids of its mission, fence and rally points, which change with them; None if it reports none.
         target: Its target in degrees.
         aim: Its target's altitude in metres above sea level.
         home: Its home in degrees.

@@ -110,12 +110,12 @@ def answer_json(answer: Answer) -> tuple[str, dict[str, Any]] | None:
 
 
 def clocks_json(timers: Timers | None) -> dict[str, float]:
-    """Return the bases of the mission's clocks as plain data; empty for a mission without timing."""
+    """Return the start and the standstill of the mission's clocks as plain data; empty without timing."""
     return {} if timers is None else {"began": timers.began, "rested": timers.rested}
 
 
 def flights_json(timers: Timers | None) -> dict[Name, dict[str, Any]]:
-    """Return the start and duration of each flight under way as plain data."""
+    """Return the destination, start and durations of each flight under way as plain data."""
     under_way = () if timers is None else flying(timers)
     return {
         each.vehicle: {"to": each.destination, "since": each.since, "least": each.least, "most": each.most}

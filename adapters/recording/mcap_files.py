@@ -111,7 +111,7 @@ class Place(NamedTuple):
     Attributes:
         offset: The byte of the file, between two records; 0 before the beginning.
         within: The number of messages read of a chunk at that byte.
-        room: The bytes that chunks may yield beyond the allowed multiple.
+        room: The remaining allowance of decompressed bytes, beyond each chunk's own multiple.
     """
 
     offset: int = 0

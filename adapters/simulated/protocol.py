@@ -31,7 +31,7 @@ CHANGE_MODE: Final = 1
 """MAV_DO_REPOSITION_FLAGS: into guided mode from any other."""
 
 FLAGS: Final = 0xFFFF
-"""The largest accepted set of flags; excludes NaN."""
+"""The largest accepted set of flags; NaN is rejected, too."""
 
 HIGHEST: Final = 10_000.0
 LARGEST: Final = 1e6

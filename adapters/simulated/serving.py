@@ -27,7 +27,7 @@ STEP: Final = 0.1
 class Simulator:
     """Vehicles on one address, such as `udpout:127.0.0.1:14550`.
 
-    Time is the event loop's plus `epoch`, the loop's start in seconds since 1970. `disturbance` affects every packet,
+    Time is the event loop's plus `epoch`, the loop's time 0 in seconds since 1970. `disturbance` affects every packet,
     in both directions.
     """
 
