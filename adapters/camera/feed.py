@@ -183,7 +183,7 @@ class CameraFeed(Feed):
     # --- regions ----------------------------------------------------------------------------------
 
     def _publish(self, world: World, found: tuple[Region, ...]) -> None:
-        """Publish the complete and certain regions: again only if they change, or their time runs out."""
+        """Publish the complete regions of sufficient confidence: again only if they change, or their time runs out."""
         now = world.now()
         for region in found:
             if not region.whole or region.confidence < SURE:

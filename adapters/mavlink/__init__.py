@@ -1,4 +1,4 @@
-"""Autopilots over MAVLink: state, links and control authority are published; places, paths and hand-overs are taken.
+"""Autopilots over MAVLink: they publish state, links and authority, and take places, paths and hand-overs.
 
 `pilot` is the behaviour towards one vehicle: a pure state machine made of smaller ones (`telemetry`, `next_step`,
 `task`, `sync`, `upload`, `download`, `command`, `streams`, `link`, `signing`). `autopilot` is the plugin that gives it

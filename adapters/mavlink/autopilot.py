@@ -49,13 +49,13 @@ AT_ONCE: Final = 8
 
 HEARTBEAT: Final = 1.0
 MAX_REMOTES: Final = 64
-"""Remote addresses with a parser; beyond it, the longest unheard address without a vehicle is dropped."""
+"""The most remote addresses with a parser; beyond it, the longest unheard address without a vehicle is dropped."""
 
 MOST_LOGGED: Final = 1_000
-"""Received packets logged in a second."""
+"""The most received packets logged in a second."""
 
 MOST_TEXTS: Final = 10
-"""Texts of a vehicle that are reported in a second."""
+"""The most texts of a vehicle reported in a second."""
 
 Tap = Callable[[float, bytes], None]
 Listener = Callable[[str, Mapping[str, Any], float], None]

@@ -67,7 +67,7 @@ NOW_AND_THEN: Final = 60.0
 def unsure(
     pilot: Pilot, kinds: Collection[MissionType] = tuple(MissionType), *, quiet: bool = False
 ) -> Pilot:
-    """Return a pilot without beliefs about the items on board, until they are read again.
+    """Return a pilot that no longer believes its items of some kinds, until they are read again.
 
     `quiet`: the polygon fence still counts as switched on.
     """

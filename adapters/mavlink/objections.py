@@ -49,7 +49,7 @@ def objection(
 ) -> str | None:
     """Return the objection in the operator's words; None if none is known.
 
-    `again`: the command was taken on before the items on board were known, so only objections to them are new.
+    `again`: the command was taken on before the items on board were known, so only objections to those items are new.
     """
     first = () if again else _objections(command, craft, stations, known)
     return next(chain(first, _of_on_board(command, craft, known, on_board)), None)

@@ -99,7 +99,7 @@ class Pilot:
         asked: Time of the last request for its authority.
         unanswered: The number of requests for it since the last answer.
         questions: The number of requests for its parameters since it booted.
-        since: Start of the time with a position.
+        since: Time of its first position.
         shown: The basis of the last publication.
         status: Its last reported status.
         condition: The troubles of its position and home, with those already reported.

@@ -1,7 +1,7 @@
 """Read the items on board: missions, fences and rally points, before the first command and repeatedly.
 
-Anybody may change them at any time, on the ground and in the air, and a vehicle informs only the author. So only items
-read back since the last possible change count as on board.
+Anybody may change them at any time, on the ground and in the air, and a vehicle reports a change only to its author. So
+only items read back since the last possible change count as on board.
 """
 
 from __future__ import annotations

@@ -50,7 +50,8 @@ MAP: Final = "map"
 class Position:
     """A position; its time is 0 if the message has none.
 
-    Heights in messages are above the ellipsoid, those in P above sea level: they are only sent back to their robot.
+    Heights in messages are above the ellipsoid, those in P above sea level: a message's height is only sent back to
+    its robot.
     """
 
     geometry: Geometry
