@@ -287,7 +287,7 @@ class RosVehicles:
         return self._session.liveliness().declare_subscriber(tokens, changed, history=True)
 
     def _takers(self, robot: Robot, order: GoTo | Follow) -> list[Topic]:
-        """Return a goal's topic once for each subscribed hash of its type that equals ours."""
+        """Return a goal's topic once for each subscribed hash of its type that is ours, or ROS 2 Humble's."""
         name, kind = _goal_of(robot, order)
         hashes = {token.split("/")[-2] for token in tuple(self._tokens) if f"/{_mangled(name)}/" in token}
         return [Topic(name, kind, each) for each in sorted(hashes & {hash_of(kind), UNHASHED})]

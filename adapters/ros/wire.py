@@ -11,7 +11,7 @@ from physical import PhysicalError
 LIVELINESS: Final = "@ros2_lv"
 NODE: Final = "bigactors"
 UNHASHED: Final = "TypeHashNotSupported"
-"""The type hash of ROS 2 Humble, which has none."""
+"""ROS 2 Humble's placeholder for a type's hash."""
 
 
 @dataclass(frozen=True, slots=True)
