@@ -1,6 +1,6 @@
 """Addresses of links as text: `udp:127.0.0.1:14550`, `tcp:host:port`, `serial:/dev/ttyUSB0:57600`.
 
-Who listens does so on this machine only, unless another address is written out.
+A listening address without a host is on this machine only.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ DEFAULT_BAUD: Final = 57_600
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """A parsed address: `scheme` says which of the other fields are used."""
+    """A parsed address; the used fields depend on `scheme`."""
 
     scheme: str
     host: str = ""
@@ -48,7 +48,7 @@ def parse_address(text: str) -> Address:
     >>> str(parse_address("udp:14550")), str(parse_address("serial:/dev/ttyACM0"))
     ('udp:127.0.0.1:14550', 'serial:/dev/ttyACM0:57600')
 
-    Raises PhysicalError with the forms that there are.
+    Raises PhysicalError with the known forms.
     """
     scheme, _, rest = text.strip().partition(":")
     match scheme:

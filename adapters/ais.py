@@ -1,7 +1,7 @@
 """The AIS plugin: vessels, base stations and buoys from a receiver or a recording, named by their MMSI.
 
-`physical.ais_receiver` decodes lines; this module receives, filters and stamps them. A transponder's time is not
-believed beyond the receiver's clock.
+`physical.ais_receiver` decodes lines; this module receives, filters and stamps them. A transponder's time counts only
+up to the receiver's clock.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _REASONS: Final = frozenset(reason.value for reason in Reason)
 
 
 class AisFeed(Feed):
-    """A plugin that hears AIS.
+    """A plugin that receives AIS.
 
     Arguments:
         name: Its name in reports.
@@ -48,7 +48,7 @@ class AisFeed(Feed):
         naming: The naming service.
         area: Positions outside are ignored.
         kinds: Kinds of stations that count; all if None.
-        time_to_live: Seconds for which a position counts.
+        time_to_live: Seconds for which a position is valid.
 
     Raises AisError for an unknown kind.
     """
@@ -85,11 +85,11 @@ class AisFeed(Feed):
 
     @property
     def local(self) -> Remote | None:
-        """Where it listens, once it does."""
+        """Its local address, once it listens."""
         return self._port.local if self._port else None
 
     async def run(self, world: World) -> None:
-        """Hear until cancelled."""
+        """Receive until cancelled."""
         self._world = world
         hear(Ear(), b"")  # report a missing extra at once
         try:
@@ -107,7 +107,7 @@ class AisFeed(Feed):
             await asyncio.sleep(REPORT)
             self._troubles.report(world)
 
-    # --- what arrives -----------------------------------------------------------------------------
+    # --- received lines ---------------------------------------------------------------------------
 
     def _receive(self, remote: Remote, data: bytes) -> None:
         assert self._world is not None
@@ -125,7 +125,7 @@ class AisFeed(Feed):
         return self._streams[remote]
 
     def _line(self, ear: Ear, line: bytes, now: float, shift: float = 0.0) -> Ear:
-        """Hear one line; `shift` moves the times of a recording to today."""
+        """Decode one line; `shift` moves the times of a recording to today."""
         heard = hear(ear, line, None if shift else now)
         for reason in heard.reasons:
             self._troubles.note(reason.value, repr(line[:100]))
@@ -138,7 +138,7 @@ class AisFeed(Feed):
         return heard.ear
 
     def _leave(self, kind: str) -> None:
-        """Count what brings no position though nothing is wrong with it; it is reported once, and at the end."""
+        """Count a valid line without a position; its kind is reported once, and its number at the end."""
         if kind not in self._counting.left_out:
             self._troubles.note(f"{kind}: such are not read", "how many there were is told at the end")
         self._counting.leave(kind)
@@ -213,7 +213,7 @@ def _shifted(report: PositionReport, shift: float, now: float) -> PositionReport
 
 
 def _clock(ear: Ear, line: bytes) -> float | None:
-    """Return what a line says of the time: of its own reports, or of those to come."""
+    """Return the time that a line implies: of its own reports, or of the next ones."""
     heard = hear(ear, line, None)
     times = [report.time for report in heard.reports if report.time is not None]
     return times[0] if times else (heard.ear.clock if heard.ear.clock != ear.clock else ear.clock)

@@ -1,4 +1,4 @@
-"""What a run tells an installed plugin of the vehicles that it shall drive."""
+"""The vehicles of a run that an installed plugin drives."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from physical import Geometry
 
 @dataclass(frozen=True, slots=True)
 class Assigned:
-    """A vehicle of the mission that a plugin shall drive.
+    """A vehicle of the mission that a plugin drives.
 
     Attributes:
         entity: Its name in the mission.
         kind: Its kind there.
-        channels: The channels that the mission gives it: publish those that it is on.
-        fence: The polygon that it must stay in, None for none: refuse what lies outside.
-        time_to_live: The seconds for which a position of it counts.
+        channels: Its channels in the mission: publish those that it is on.
+        fence: The polygon that it must stay in, None for none: refuse positions outside.
+        time_to_live: The seconds for which its position is valid.
     """
 
     entity: str

@@ -26,10 +26,10 @@ from physical.tally import Counting
 
 EVERY: Final = 1.0
 MAX_FILES: Final = 1_000
-"""How many files of a folder are read: the newest."""
+"""The most files of a folder that are read: the newest."""
 
 MAX_KNOWN: Final = 10_000
-"""How many detections can be withdrawn: the newest."""
+"""The most detections that can be withdrawn: the newest."""
 
 PATH: Final = "/detections"
 
@@ -39,11 +39,11 @@ class Detections(Feed):
 
     Arguments:
         name: Its name in reports.
-        listen: Where to take posts; nowhere if None.
-        folder: Where files `*.geojson` are put; each is read again when it changes.
+        listen: The address for posts; None for no posts.
+        folder: The folder of files `*.geojson`; each is read again when it changes.
         kinds: Kinds that may be detected; all if None.
-        naming: Whose names are taken already.
-        time_to_live: Seconds for which a detection counts.
+        naming: The naming service, with the reserved names.
+        time_to_live: Seconds for which a detection is valid.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class Detections(Feed):
         self._taking = asyncio.Lock()
         self._known: OrderedDict[str, None] = OrderedDict()
         self.port: int | None = None
-        """Where it listens, once it does."""
+        """Its port, once it listens."""
 
     async def run(self, world: World) -> None:
         """Take detections until cancelled."""
@@ -125,7 +125,7 @@ class Detections(Feed):
         return len(found)
 
     def _tell_unread(self, counting: Counting) -> None:
-        """Report what is not read of features, each kind once: a vision system says the same every second."""
+        """Report the ignored parts of features, each kind once: a vision system repeats them every second."""
         for kind, count in sorted(counting.asides.items()):
             if kind not in self._unread:
                 self._unread.add(kind)

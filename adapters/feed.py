@@ -1,4 +1,4 @@
-"""What plugins have in common that only hear: nobody is theirs to command."""
+"""The common part of plugins that only listen: they command no entity."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ class Feed:
 
     Arguments:
         name: Its name in reports.
-        heard: How it comes to know of entities, said of one: "was detected".
+        heard: Its source of entities, as a predicate for messages: "was detected".
     """
 
     def __init__(self, name: str, heard: str) -> None:
@@ -19,13 +19,13 @@ class Feed:
 
     @property
     def name(self) -> str:
-        """What reports call it."""
+        """Its name in reports."""
         return self._name
 
     def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
-        """Nobody is owned by whom he is only heard."""
+        """Return False: a feed takes no commands for any entity."""
         return False
 
     async def command(self, command: Command) -> None:
-        """Refuse."""
+        """Refuse the command."""
         raise Refused(f"{command.entity} {self._heard}, and takes no commands")

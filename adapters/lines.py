@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Final
 
 MAX_LINE: Final = 8_192
-"""Bytes of a line beyond which it is handed on as it is, for its reader to refuse."""
+"""The longest line in bytes; the beginning of a longer one is passed on, for its reader to refuse."""
 
 
 class Lines:
-    """One stream of lines; `whole` where a chunk's end ends a line, as a datagram's does."""
+    """One stream of lines; `whole` if a chunk's end ends a line, as a datagram's does."""
 
     def __init__(self, *, whole: bool = False) -> None:
         self._rest = b""
@@ -17,7 +17,7 @@ class Lines:
         self._skipping = False
 
     def feed(self, chunk: bytes) -> list[bytes]:
-        """Return the lines that are complete by now, without their ends."""
+        """Return the complete lines, without their ends."""
         *lines, rest = (self._rest + chunk).split(b"\n")
         if self._skipping and lines:
             lines, self._skipping = lines[1:], False
@@ -35,5 +35,5 @@ class Lines:
 
     @property
     def held(self) -> int:
-        """How many bytes wait for the rest of their line."""
+        """The number of bytes that wait for the rest of their line."""
         return len(self._rest)

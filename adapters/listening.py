@@ -1,7 +1,7 @@
 """The time that this process has listened: its own stalls do not count as the silence of others.
 
 When a process is stopped, or its machine is suspended or overloaded, the clock jumps, and messages wait unread or are
-lost. So of the time between two readings of the clock only a little counts.
+lost. So only a bounded part of the time between two readings of the clock counts.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ class Listening:
     """A clock that counts the time without listening.
 
     Attributes:
-        looked: When the clock was read last.
+        looked: The last reading of the clock.
         missed: The seconds without listening so far.
     """
 

@@ -37,7 +37,7 @@ class LocationService(Feed):
         url: The service's URL.
         every: Seconds between two requests.
         naming: The naming service.
-        time_to_live: Seconds for which a position counts.
+        time_to_live: Seconds for which a position is valid.
     """
 
     def __init__(
@@ -126,7 +126,7 @@ def _number(entry: Mapping[str, Any], name: str) -> float:
     value = entry.get(name)
     if (
         isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST
-    ):  # NaN is not
+    ):  # excludes NaN
         raise PhysicalError(name, f"the {name} {value!r:.60} is no number", "write degrees, metres or m/s")
     return float(value)
 

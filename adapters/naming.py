@@ -1,10 +1,9 @@
 """The naming service: maps identities of the world to entities of the mission, each name to one identity.
 
-An identity is a kind of number and the number: `mavlink:1` (a system id), `serial:2F003B` (an autopilot's own),
-`mmsi:244660274`, or `name:oilSpill1` for an entity with a name. The mission's own table goes first; other entities are
-named by their identity. The names of own vehicles, stations and places that never move are reserved from the start.
-
-Names outside the table follow a rule without state, so a flood of invented identities exhausts nothing.
+An identity is a scheme and a number: `mavlink:1` (a system id), `serial:2F003B` (an autopilot's own), `mmsi:244660274`,
+or `name:oilSpill1` for an entity with a name. The mission's own table takes precedence; other entities are named by
+their identity. The names of own vehicles, stations and static places are reserved from the start. Names outside the
+table follow a rule without state, so a flood of invented identities exhausts nothing.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ _NUMBERED: Final = re.compile(r"(mavlink|mmsi)[0-9]+|serial[0-9A-F]+")
 
 
 class NameClash(PhysicalError):
-    """Two identities with one name: an own vehicle's name, for instance, taken by an AIS transponder."""
+    """Two identities with one name: for instance, an AIS transponder with an own vehicle's name."""
 
 
 class NamingService:

@@ -1,10 +1,11 @@
 """The plugin's interface: subscribe mobility commands, publish physical properties (paper §3.2.1).
 
-A plugin represents something outside: an autopilot, a receiver, a file of places. It publishes into a `World`, and gets
-commands for its vehicles. It decides nothing: the rules decide what follows for the logical model.
+A plugin represents a part of the outside world: an autopilot, a receiver, a file of places. It publishes into a
+`World`, and gets commands for its vehicles. It makes no decisions: the rules decide the consequences for the logical
+model.
 
-Time is the world's: `World.now()` gives time stamps, and plugins wait by `asyncio.sleep`, so that an event loop with
-another clock (`adapters.simulated.clock`) runs every plugin faster.
+Time is the world's: `World.now()` gives time stamps, and plugins wait by `asyncio.sleep`. So an event loop with another
+clock (`adapters.simulated.clock`) runs every plugin faster.
 """
 
 from __future__ import annotations
@@ -16,14 +17,14 @@ from typing import Any, Final, Protocol, runtime_checkable
 
 from physical import Band, Geometry, PhysicalError, PhysicalProperty, Surroundings
 
-# --- what a plugin publishes ------------------------------------------------------------------------
+# --- publications -----------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Gone:
     """An entity is gone: a place was removed from its file, a detection withdrawn.
 
-    An entity that is merely no longer heard is not gone: it exceeds its time to live (see `Aged`).
+    An entity that is merely silent is not gone: it exceeds its time to live (see `Aged`).
     """
 
     entity: str
@@ -33,11 +34,11 @@ class Gone:
 
 @dataclass(frozen=True, slots=True)
 class Aged:
-    """A physical property that holds for a while only.
+    """A physical property that is valid for a while only.
 
     Attributes:
-        property: What was observed; its `time` is set.
-        time_to_live: The seconds from its `time` for which it may stay in P, if nothing newer comes.
+        property: The observation; its `time` is set.
+        time_to_live: The seconds from its `time` for which it may stay in P, if no newer one comes.
         clock: Its time by the entity's own clock, in milliseconds, which orders the reports of several links.
     """
 
@@ -51,14 +52,14 @@ Published = PhysicalProperty | Aged | Gone
 
 
 def entity_of(published: Published) -> str:
-    """Return whom a publication is about."""
+    """Return the entity of a publication."""
     return published.property.entity if isinstance(published, Aged) else published.entity
 
 
 NOWHERE_ELSE: Final = Surroundings()
-"""No places beside the one in which a vehicle is to stay."""
+"""No places beside the one in which a vehicle stays."""
 
-# --- what a plugin is told --------------------------------------------------------------------------
+# --- commands ---------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,13 +69,13 @@ class GoTo:
     The same request with another geometry means that the place has moved: go to its current position.
 
     Attributes:
-        request: Names the request in reports; unique in a run.
-        entity: Who shall go.
-        place: The polygon (or point) as it is now. The waypoint is the point nearest its centroid around which the
-            vehicle keeps to its surroundings (`physical.standing`).
+        request: Identifies the request in reports; unique in a run.
+        entity: The vehicle.
+        place: The polygon (or point) at its current position. The waypoint is the point nearest its centroid around
+            which the vehicle keeps to its surroundings (`physical.standing`).
         altitude: The band to be in, in metres above sea level; the vehicle's own choice if None.
         name: The place's name, for messages.
-        around: What to stay in, and out of, beside the place.
+        around: The other places to stay in, and out of.
         shape: The vehicle's extent; None for a point.
     """
 
@@ -95,13 +96,13 @@ class Follow:
     path.
 
     Attributes:
-        request: Names the request in reports; unique in a run.
-        entity: Who shall go.
-        path: The polygons (or points) as they are now; the waypoint of each is `physical.waypoint(place)`, of the last
-            as in GoTo.
+        request: Identifies the request in reports; unique in a run.
+        entity: The vehicle.
+        path: The polygons (or points) at their current positions. The waypoint of each is `physical.waypoint(place)`;
+            that of the last is as in GoTo.
         altitude: The band to be in, in metres above sea level; the vehicle's own choice if None.
         name: The last place's name, for messages.
-        around: What to stay in, and out of, in the last place.
+        around: The other places to stay in, and out of, in the last place.
         shape: The vehicle's extent; None for a point.
     """
 
@@ -129,7 +130,7 @@ class HandOver:
 
 @dataclass(frozen=True, slots=True)
 class Hold:
-    """Stay where you are, as well as you can: a plane circles."""
+    """Stay in place, as well as possible: a plane circles."""
 
     request: str
     entity: str
@@ -145,7 +146,7 @@ class Return:
 
 @dataclass(frozen=True, slots=True)
 class Rebind:
-    """Believe a vehicle at a new address (`HOST:PORT`), confirmed by an operator."""
+    """Accept a vehicle's messages from a new address (`HOST:PORT`), confirmed by an operator."""
 
     request: str
     entity: str
@@ -176,12 +177,12 @@ class Refused(Exception):  # an answer, not an error
         self.hint = hint
 
 
-# --- what a plugin reports --------------------------------------------------------------------------
+# --- reports ----------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Sent:
-    """A plugin has taken on a command, and tells the vehicle; the vehicle has shown nothing yet."""
+    """A plugin has taken on a command, and sends it; the vehicle has shown nothing yet."""
 
     request: str
     entity: str
@@ -195,9 +196,9 @@ class Accepted:
     Attributes:
         request: The request.
         entity: The vehicle.
-        time: When it was shown.
-        place: The last place of the command that it follows, which may have moved since; None if that is not told.
-        waypoint: Around which point it will stay; None if that is not told.
+        time: Time of that state.
+        place: The last place of the command that it follows, which may have moved since; None if unknown.
+        waypoint: The point around which it will stay; None if unknown.
     """
 
     request: str
@@ -235,9 +236,9 @@ class Rejected:
 
 @dataclass(frozen=True, slots=True)
 class Doubted:
-    """The vehicle may have been taken over, or a message of it was late: it gets no commands until that is certain.
+    """The vehicle may have been taken over, or a message was late: it gets no commands until that is certain.
 
-    `TakenOver` follows, or `Accepted` again; until then nothing that it does is an arrival.
+    `TakenOver` follows, or `Accepted` again; until then no move of the vehicle is an arrival.
     """
 
     entity: str
@@ -246,9 +247,9 @@ class Doubted:
 
 @dataclass(frozen=True, slots=True)
 class TakenOver:
-    """The vehicle does what was not ordered here: a pilot, another station, a fail-safe or a reboot controls it.
+    """The vehicle deviates from its orders: a pilot, another station, a fail-safe or a reboot controls it.
 
-    Until `GiveBack` commands are refused, and nothing that it does is an arrival.
+    Until `GiveBack` commands are refused, and no move of the vehicle is an arrival.
     """
 
     entity: str
@@ -258,7 +259,7 @@ class TakenOver:
 
 @dataclass(frozen=True, slots=True)
 class LinkLost:
-    """Nothing was heard from the vehicle for a while; `since` is when it was last heard."""
+    """The vehicle was silent for a while; `since` is the time of its last message."""
 
     entity: str
     time: float
@@ -280,10 +281,10 @@ class Trouble:
 
     Attributes:
         source: The plugin's name.
-        time: When it was noticed.
+        time: Time of its discovery.
         what: A short name by which equal troubles are counted, such as `bad checksum`.
         detail: One more line, with the remedy if there is one.
-        count: How often since the last such report; plugins collect them, so a flood is one report a second.
+        count: Its number since the last such report; plugins collect them, so a flood is one report a second.
     """
 
     source: str
@@ -295,14 +296,14 @@ class Trouble:
 
 @dataclass(frozen=True, slots=True)
 class Delivered:
-    """A parcel has come from another station: messages for an agent, or an agent (see `semantics.state.partition`).
+    """A parcel from another station: messages for an agent, or an agent (see `semantics.state.partition`).
 
     Attributes:
         station: The sender.
-        time: When it came.
+        time: Time of its arrival.
         number: Its index among the sender's parcels; it may come again.
         parcel: Its content, as plain data.
-        done: When it left, by the clock here; None where that is not known.
+        done: Time of its departure, by the clock here; None if unknown.
     """
 
     station: str
@@ -318,9 +319,9 @@ class Underway:
 
     Attributes:
         entity: The vehicle.
-        time: When that came.
+        time: Time of the report's arrival.
         to: The node.
-        done: When it was so, by the clock here; None where that is not known.
+        done: Time of the event itself, by the clock here; None if unknown.
     """
 
     entity: str
@@ -331,7 +332,7 @@ class Underway:
 
 @dataclass(frozen=True, slots=True)
 class Hosts:
-    """A bigActor that runs at another station is hosted there at `host`."""
+    """The host, at another station, of a bigActor that runs there."""
 
     agent: str
     time: float
@@ -359,12 +360,12 @@ class Broken:
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """Something that a run needs has failed: its recording, a log, a plugin.
+    """A necessary part of a run has failed: its recording, a log, a plugin.
 
     Attributes:
-        source: What failed: a file, or a plugin's name.
-        reason: Why, such as `No space left on device`.
-        time: When.
+        source: The failed part: a file, or a plugin's name.
+        reason: The reason, such as `No space left on device`.
+        time: Its time.
     """
 
     source: str
@@ -373,13 +374,13 @@ class Failed:
 
     @classmethod
     def by(cls, error: OSError | ValueError, source: str, time: float) -> Failed:
-        """Say that something fails by an error; a file that the error names is what failed."""
+        """Return the failure for an error; if the error names a file, that is the source."""
         failed = error.filename if isinstance(error, OSError) and error.filename else source
         return cls(str(failed), _reason(error), time)
 
 
 def _reason(error: OSError | ValueError) -> str:
-    """Return why something fails, in one line, with the remedy where there is one."""
+    """Return the reason of an error, in one line, with the remedy if there is one."""
     match error:
         case OSError(errno=errno.EADDRINUSE):
             return "something else listens there: end it, or give another port"
@@ -398,7 +399,7 @@ Elsewhere = Delivered | Underway | Hosts | Believes | Broken
 
 @dataclass(frozen=True, slots=True)
 class Battery:
-    """A battery: percent that remain, volts; None is *not told*."""
+    """A battery: percent that remain, volts; None is *unknown*."""
 
     percent: int | None = None
     volts: float | None = None
@@ -406,23 +407,23 @@ class Battery:
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """What a vehicle says of itself; None is *not told*.
+    """A vehicle's report on itself; None is *unknown*.
 
     Attributes:
         entity: The vehicle.
-        time: When this was reported.
+        time: Time of the report.
         plugin: The plugin that hears it.
-        heard: When its last message came.
+        heard: Time of its last message.
         mode: Its mode's name.
         armed: Whether its motors may turn.
         battery: Its battery.
-        heading: Where its nose points, in degrees from true north.
+        heading: Its heading, in degrees from true north.
         authority: The stations that it obeys.
         height: Metres above its home.
         home: Its home, in degrees.
         returning: Whether it is in the mode in which it flies home.
-        lacks: Why it has no position that counts; empty if it has one.
-        follows: Whether it is under way in the mode in which it follows the mission that is on board.
+        lacks: The reason why it has no valid position; empty if it has one.
+        follows: Whether it is under way in the mode in which it follows the mission on board.
     """
 
     entity: str
@@ -443,7 +444,7 @@ class Status:
 
 @dataclass(frozen=True, slots=True)
 class StatusText:
-    """A text that a vehicle has said; its severity is MAVLink's, from 0 (emergency) to 7 (debug)."""
+    """A text from a vehicle; its severity is MAVLink's, from 0 (emergency) to 7 (debug)."""
 
     entity: str
     time: float
@@ -453,7 +454,7 @@ class StatusText:
 
 @dataclass(frozen=True, slots=True)
 class Presence:
-    """Whether another station is reached, and when it answered last; None is *not known yet*, and *never*."""
+    """Whether another station is reached, and the time of its last answer; None is *not known yet*, and *never*."""
 
     station: str
     time: float
@@ -462,7 +463,7 @@ class Presence:
 
 
 Seen = Status | StatusText | Presence
-"""Reports for people alone: a run records them, and does nothing by them."""
+"""Reports for people alone: a run records them, without any reaction."""
 
 Report = (
     Sent
@@ -479,11 +480,11 @@ Report = (
     | Seen
 )
 
-# --- the interfaces ---------------------------------------------------------------------------------
+# --- interfaces -------------------------------------------------------------------------------------
 
 
 class World(Protocol):
-    """What a plugin is given. No method blocks, and all are called in the event loop's thread."""
+    """The interface of a run to its plugins. No method blocks, and all are called in the event loop's thread."""
 
     def publish(self, published: Published) -> None:
         """Take a publication on an entity."""
@@ -502,12 +503,13 @@ class World(Protocol):
 class Plugin(Protocol):
     """A vehicle, a feed, or a service.
 
-    `run` opens its resources (an OSError or `PhysicalError` says what is wrong with them), serves until it is
-    cancelled, and then closes everything. `command` may be called from then on, also before the vehicle is heard. It
-    returns as soon as the command is accepted, and raises Refused if it never can be. Reports follow: any number of
-    Accepted, then one Arrived or Rejected, unless another command replaces it. A rejected request is refused from then
-    on: to repeat it, make a new request. Hold and Return are owed until they are confirmed: the same request may come
-    again after it was rejected, and begins anew.
+    `run` opens its resources (with OSError or `PhysicalError` on failure), serves until it is cancelled, and then
+    closes everything. `command` may be called from then on, also before the vehicle is heard. It returns as soon as the
+    command is accepted, and raises Refused if it never can be.
+
+    Reports follow: any number of Accepted, then one Arrived or Rejected, unless another command replaces it. A rejected
+    request is refused from then on: a repetition needs a new request. Hold and Return are owed until they are
+    confirmed: the same request may come again after it was rejected, and begins anew.
     """
 
     @property
@@ -530,7 +532,7 @@ class Plugin(Protocol):
 
 @runtime_checkable
 class Preflight(Protocol):
-    """What a plugin of vehicles can say of them before take-off, as far as they have told."""
+    """The checks before take-off of a plugin with vehicles, as far as the vehicles have reported."""
 
     @property
     def fences(self) -> Mapping[str, Geometry]:
@@ -538,11 +540,11 @@ class Preflight(Protocol):
         ...
 
     def owns(self, entity: str) -> bool:
-        """Whether it speaks of a vehicle."""
+        """Return whether the vehicle is the plugin's."""
         ...
 
     def is_known(self) -> bool:
-        """Whether all vehicles have told of themselves, or were asked for long enough."""
+        """Return whether all vehicles have reported their state, or were asked for long enough."""
         ...
 
     def remarks(self) -> Iterable[str]:
@@ -550,16 +552,16 @@ class Preflight(Protocol):
         ...
 
     def objection(self, entity: str, place: Geometry, name: str, around: Surroundings) -> str | None:
-        """Return why a vehicle can't stay at a place and keep to its surroundings; None if it can."""
+        """Return the reason why a vehicle can't stay at a place and keep to its surroundings; None if it can."""
         ...
 
     def bar(self, entity: str, place: Geometry, name: str) -> str | None:
-        """Return why a vehicle can't pass a place; None if it can."""
+        """Return the reason why a vehicle can't pass a place; None if it can."""
         ...
 
 
 def preflights(plugins: Iterable[Plugin]) -> tuple[Preflight, ...]:
-    """Return those of some plugins that can speak of vehicles before take-off, or what these wrap as `plugin`."""
+    """Return the plugins that have checks before take-off; a wrapper's `plugin` counts in its place."""
     own = (getattr(plugin, "plugin", plugin) for plugin in plugins)
     return tuple(plugin for plugin in own if isinstance(plugin, Preflight))
 

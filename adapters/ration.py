@@ -1,4 +1,4 @@
-"""Rations: of what anybody may send as often as they like, so many a second are kept, and the others counted."""
+"""Rate limits: of input from any source, a bounded number a second is kept, and the rest is counted."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from typing import Generic, TypeVar
 Source = TypeVar("Source", bound=Hashable)
 
 LONGEST_PAUSE = 10.0
-"""Seconds; what a longer pause has piled up is counted as of one so long."""
+"""Seconds; longer pauses count as this long."""
 
 
 class Ration(Generic[Source]):
-    """How much of each source is kept in a second, and how much was not.
+    """Counts of kept and dropped input by source, for each second.
 
-    What comes at once after a pause in which nobody asked came during it: the pause's seconds count too.
+    Input that arrives at once after a pause without readings came during the pause: its seconds count too.
     """
 
     def __init__(self, most: int) -> None:
@@ -28,17 +28,17 @@ class Ration(Generic[Source]):
         self._left_out: Counter[Source] = Counter()
 
     def takes(self, source: Source, now: float) -> bool:
-        """Count one of a source, and tell whether it is kept."""
+        """Count one input of a source, and return whether it is kept."""
         self._end_second(now)
         self._met[source] += 1
         return self._met[source] <= self._kept
 
     def leave_out(self, source: Source) -> None:
-        """Count one of a source that is not kept, with those of this second."""
+        """Count one input of a source as dropped, with those of this second."""
         self._passed[source] += 1
 
     def left_out(self, now: float = math.inf) -> tuple[tuple[Source, int], ...]:
-        """Return, once, how many of each source were not kept in the seconds that are over."""
+        """Return, once, the number dropped of each source in the completed seconds."""
         self._end_second(now)
         if not self._left_out:
             return ()
@@ -56,7 +56,7 @@ class Ration(Generic[Source]):
 
 
 class Turns(Generic[Source]):
-    """So many a second of all sources together: whoever had a turn is passed over until the others had theirs."""
+    """A common limit a second for all sources; a source that had its turn waits until the others had theirs."""
 
     def __init__(self, most: int) -> None:
         self._most = most
@@ -67,7 +67,7 @@ class Turns(Generic[Source]):
         self._kept: dict[Source, float] = {}
 
     def takes(self, source: Source, now: float) -> bool:
-        """Tell whether one of a source is kept."""
+        """Return whether one input of a source is kept."""
         if now >= self._end:
             self._begin_second(now)
         self._met.add(source)
@@ -78,7 +78,7 @@ class Turns(Generic[Source]):
         return True
 
     def _begin_second(self, now: float) -> None:
-        """Begin to count anew; turns are as far apart as those who came in the last second need."""
+        """Begin a new second; the interval of turns fits the number of sources in the last second."""
         self._apart = len(self._met) / self._most if len(self._met) > self._most else 0.0
         self._kept = {source: at for source, at in self._kept.items() if now - at < self._apart}
         self._met, self._end, self._left = set(), now + 1.0, self._most

@@ -12,7 +12,7 @@ Item = TypeVar("Item")
 
 
 async def in_slices(items: Iterable[Item]) -> AsyncIterator[Item]:
-    """Yield the items, and let the event loop go on after every 50 of them."""
+    """Yield the items, and let the event loop continue after every 50 of them."""
     for number, item in enumerate(items, 1):
         yield item
         if number % AT_ONCE == 0:

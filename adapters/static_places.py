@@ -21,8 +21,7 @@ MAX_BYTES: Final = 10_000_000
 class StaticPlaces(Feed):
     """A plugin for the places of a file: GeoJSON, or by its ending `.waypoints` or `.plan` (waypoint0, waypoint1, ...).
 
-    A file that becomes unreadable is reported, and its last places stay. What is not taken of a file is reported by
-    kind.
+    A file that becomes unreadable is reported, and its last places stay. Ignored parts of a file are reported by kind.
     """
 
     def __init__(self, name: str, path: Path) -> None:

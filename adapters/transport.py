@@ -1,7 +1,7 @@
 """Bytes from and to UDP, TCP and serial lines by asyncio; readers get chunks with their source addresses.
 
-A broken connection is reopened until the port is closed. Beyond a bound, data that can't be sent at once is dropped:
-all protocols here repeat their messages.
+A broken connection is reopened until the port is closed. Beyond a bound, unsent data is dropped: all protocols here
+repeat their messages.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ BURST: Final = 1_048_576
 """The requested size of a socket's buffer in bytes; systems give less."""
 
 MAX_AT_ONCE: Final = 8
-"""How many datagrams are read at once, up to `CHUNK` bytes: about a millisecond's work, then the loop serves others."""
+"""Datagrams read at once, up to `CHUNK` bytes: about a millisecond's work, then the loop serves others."""
 
 MAX_PEERS: Final = 64
-"""Connections of one port; where there are more, the one that was silent for longest is closed."""
+"""The most connections of one port; beyond it the one that was silent for longest is closed."""
 
 BACKLOG: Final = 16
-"""Connections that are accepted at once."""
+"""Connections accepted at once."""
 
 Remote = tuple[str, int]
 Receive = Callable[[Remote, bytes], None]
@@ -44,12 +44,12 @@ class Port(Protocol):
     """A port that can send to the remotes that it has heard."""
 
     def send(self, data: bytes, remote: Remote | None = None) -> None:
-        """Send to a remote; to the one that we connect to if None."""
+        """Send to a remote; if None, to the one that we connect to."""
         ...
 
     @property
     def local(self) -> Remote:
-        """Where it listens, once it is open."""
+        """Its local address, once it is open."""
         ...
 
 
@@ -101,7 +101,7 @@ class _Datagrams:
             self._receive((sender[0], sender[1]), data)
 
     def send(self, data: bytes, remote: Remote | None = None) -> None:
-        with suppress(OSError):  # what can't be sent now is dropped
+        with suppress(OSError):  # data that can't be sent now is dropped
             if self._connected:
                 self._link.send(data)
             elif remote is not None:
@@ -156,7 +156,7 @@ class _Streams:
         self.local: Remote = ("", 0)
 
     async def carry(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, remote: Remote) -> None:
-        """Read a connection to its end; where there are too many, the one that was silent for longest is closed."""
+        """Read a connection to its end; if there are too many, the one that was silent for longest is closed."""
         if len(self._writers) >= MAX_PEERS:
             self._drop(min(self._heard, key=self._heard.__getitem__))
         self._writers[remote], self._heard[remote] = writer, time.monotonic()

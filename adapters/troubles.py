@@ -8,7 +8,7 @@ from adapters.plugin import Trouble, World
 
 EVERY: Final = 1.0
 MAX_KINDS: Final = 64
-"""How many different troubles are counted apart; others are counted together."""
+"""The most kinds of troubles that are counted apart; others are counted together."""
 
 
 class Troubles:
@@ -20,7 +20,7 @@ class Troubles:
         self._reported: float | None = None
 
     def note(self, what: str, detail: str = "", count: int = 1) -> None:
-        """Count one, or several; the first detail of its kind is kept."""
+        """Count one trouble, or several; the first detail of its kind is kept."""
         kind = what if what in self._found or len(self._found) < MAX_KINDS else "other troubles"
         first, before = self._found.get(kind, (detail, 0))
         self._found[kind] = (first, before + count)

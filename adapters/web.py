@@ -22,13 +22,13 @@ MAX_BODY: Final = 1_000_000
 TIMEOUT: Final = 10.0
 
 MOST_CONNECTIONS: Final = 64
-"""Connections of all clients; the one that has been sending its request for longest makes room for another."""
+"""The most connections of all clients; the one with the oldest unfinished request makes room for another."""
 
 BACKLOG: Final = 16
-"""Connections that are accepted at once, before those that are too many are closed: each takes a descriptor."""
+"""Connections accepted at once, before excess ones are closed: each takes a descriptor."""
 
 IN_TIME: Final = 15.0
-"""Seconds in which a request comes, as a whole. Each has a connection of its own."""
+"""Seconds for a whole request to arrive. Each has a connection of its own."""
 
 JSON: Final = ("application/json", "application/geo+json")
 
@@ -38,7 +38,7 @@ Handler = Callable[[str, str, bytes], Awaitable[tuple[int, str]]]
 
 @dataclass(frozen=True, slots=True)
 class Listen:
-    """Where to listen: any free port if it is 0; on this machine only unless another address is written out.
+    """A listening address: port 0 is any free one; the default host is this machine only.
 
     With a token, requests need it (`Authorization: Bearer ...`).
     """
@@ -50,11 +50,11 @@ class Listen:
 
 @asynccontextmanager
 async def serve(handler: Handler, where: Listen) -> AsyncIterator[int]:
-    """Serve HTTP until the context is left, and say at which port.
+    """Serve HTTP until the context is left; yield the port.
 
     Only JSON is accepted, and only requests to this machine's address, so that no web page in a browser here can post
-    (DNS rebinding). Connections are bounded in number, and in how long a request may take to come. Raises OSError if it
-    can't listen there.
+    (DNS rebinding). The number of connections and the time for a request are bounded. Raises OSError if it can't listen
+    there.
     """
     web = library().web
     door: Door | None = None
@@ -88,12 +88,12 @@ async def serve(handler: Handler, where: Listen) -> AsyncIterator[int]:
 
 
 class Door:
-    """Lets so many connections in, and gives each so long to send its request.
+    """Limits the number of connections, and the time of each for its request.
 
     Arguments:
         http: aiohttp's server.
         most: The most connections at once.
-        seconds: The time in which a request has to have come; None for no bound.
+        seconds: The time in which a request must arrive; None for no bound.
     """
 
     def __init__(self, http: Any, most: int, seconds: float | None = None) -> None:
@@ -107,7 +107,7 @@ class Door:
         return _Entering(self)
 
     def enter(self, transport: asyncio.Transport) -> None:
-        """Hand a connection to the HTTP server, or close it where there are too many."""
+        """Pass a connection to the HTTP server, or close it if there are too many."""
         if len(self._http.connections) >= self._most and not self._makes_room():
             transport.abort()
             return
@@ -119,13 +119,13 @@ class Door:
         handler.connection_made(transport)
 
     def has_come(self, transport: asyncio.Transport | None) -> None:
-        """Note that the request of a connection has come, or comes no more."""
+        """Record that the request of a connection has arrived, or will never arrive."""
         timer = None if transport is None else self._coming.pop(transport, None)
         if timer is not None:
             timer.cancel()
 
     def _makes_room(self) -> bool:
-        """Cut off who has been sending a request for longest; tell whether somebody was."""
+        """Close the connection with the oldest unfinished request; return whether there was one."""
         for transport in [each for each in self._coming if each.is_closing()]:
             self.has_come(transport)
         oldest = next(iter(self._coming), None)
@@ -172,7 +172,7 @@ async def _read(request: Any) -> bytes | None:
 
 
 def is_meant(header: str, listening: str) -> bool:
-    """Tell whether a request's Host is an address that is listened on; a rebound DNS name is not.
+    """Return whether a request's Host is an address that is listened on; a rebound DNS name is not.
 
     >>> is_meant("127.0.0.1:8080", "127.0.0.1"), is_meant("[::1]", "::1"), is_meant("evil.example:8080", "127.0.0.1")
     (True, True, False)
@@ -195,9 +195,9 @@ def _number(host: str) -> IPv4Address | IPv6Address | None:
 
 @asynccontextmanager
 async def fetching() -> AsyncIterator[Callable[[str], Awaitable[bytes]]]:
-    """Hand out a function that gets the answer at an address.
+    """Yield a function that fetches a URL.
 
-    It raises OSError if there is none, or if it is too long or not 200.
+    It raises OSError if there is no answer, or if it is too long or not 200.
     """
     aiohttp = library()
     async with aiohttp.ClientSession(timeout=aiohttp.ClientTimeout(total=TIMEOUT)) as session:
@@ -225,7 +225,7 @@ async def _body(answer: Any) -> bytes:
 
 @cache
 def quiet_log() -> logging.Logger:
-    """Return the logger of aiohttp, without clients' mistakes, which they get as answers."""
+    """Return aiohttp's logger without clients' mistakes, which they get as answers."""
 
     def is_ours(record: logging.LogRecord) -> bool:
         return not (record.exc_info and isinstance(record.exc_info[1], _spoilt()))
@@ -243,7 +243,7 @@ def _spoilt() -> tuple[type[Exception], ...]:
 
 @cache
 def library() -> Any:
-    """Return aiohttp; raises PhysicalError where it is not installed."""
+    """Return aiohttp; raises PhysicalError if it is not installed."""
     try:
         import aiohttp  # noqa: PLC0415 - an extra
         import aiohttp.web  # noqa: PLC0415 - an extra

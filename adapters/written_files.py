@@ -1,4 +1,4 @@
-"""Files that are written: readable by their owner only (recordings, logs, keys), and named by the errors of writing."""
+"""Private files (recordings, logs, keys), readable by their owner only; errors of writing have the file's name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ OWNER: Final = 0o600
 
 
 def open_private(path: Path, mode: str, buffering: int = -1) -> BinaryIO:
-    """Open a file of bytes that only its owner may read and write; one that was there becomes so before it is used.
+    """Open a binary file that only its owner may read and write; an existing file is restricted before it is used.
 
     Raises:
         OSError: It can't be opened, or is a symbolic link.
@@ -24,7 +24,7 @@ def open_private(path: Path, mode: str, buffering: int = -1) -> BinaryIO:
 
 
 def others_may_read(path: Path) -> str:
-    """Return the mode of a file that others than its owner have a right to, as `chmod` writes it; else nothing."""
+    """Return the mode of a file if others may access it, in the form of `chmod`; else an empty text."""
     mode = stat.S_IMODE(path.stat().st_mode)
     return f"{mode:04o}" if mode & 0o077 else ""
 
@@ -42,7 +42,7 @@ def _opened(path: str, flags: int) -> int:
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Give an OSError inside the name of the file that could not be written."""
+    """Add the name of the unwritten file to an OSError inside."""
     try:
         yield
     except OSError as error:

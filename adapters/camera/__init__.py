@@ -1,5 +1,6 @@
-"""The camera plugin (paper §3.2.1): frames in, the polygons of what floats on the sea out.
+"""The camera plugin (paper §3.2.1): frames in, polygons of slicks on the sea out.
 
-`view` says where on the sea a pixel is, `slick` finds slicks in a frame, `votes` merges frames, `poses` and `frames`
-read folders, videos and satellite pictures, `sightings` puts these together.
+`view` maps a pixel to its position on the sea, `slick` finds slicks in a frame, and `votes` merges frames. `poses` and
+`frames` read folders, videos and satellite pictures, and `sightings` puts these together. `sources` and `feed` do the
+same in flight.
 """

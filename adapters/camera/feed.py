@@ -1,7 +1,7 @@
-"""The camera plugin: what a camera in flight sees is found, followed from frame to frame, and published.
+"""The camera plugin: finds regions in the frames of a camera in flight, tracks them, and publishes them.
 
-Each frame is decoded, searched and merged by a thread, one after the other: the run never waits for it. A region is
-published once its whole border was in view, under a name that it keeps.
+A thread decodes, searches and merges the frames, one after the other: the run never waits for it. A region is published
+once its whole border was in view, under a name that it keeps.
 """
 
 from __future__ import annotations
@@ -29,44 +29,44 @@ from physical import Geometry, PhysicalError, PhysicalProperty
 DOWN: Final = Lens()
 
 LOOKS: Final = 0.2
-"""Seconds between two looks for frames."""
+"""Seconds between two checks for new frames."""
 
 PATIENCE: Final = 2.0
-"""Seconds for which a frame waits for the pose at its time."""
+"""Seconds for which a frame waits for its pose."""
 
 MOST_WAITING: Final = 20
-"""Frames that wait for their pose, or to be looked at: the newest."""
+"""The most frames that wait for their pose or the search: the newest."""
 
 SURE: Final = 0.3
-"""The confidence from which a region is published."""
+"""The least confidence of a published region."""
 
 SAME: Final = 0.9
-"""How much of two outlines is common (intersection over union) where the first goes on to be published."""
+"""The least overlap (intersection over union) of two outlines at which the first one stays published."""
 
 SETTLES: Final = 20.0
 """Seconds between two outlines of one region: each is a step of the run."""
 
 RELATED: Final = 0.1
-"""How much, where one is taken for the other, grown."""
+"""The least overlap at which a new outline continues a known region."""
 
 AGAIN: Final = 0.25
-"""The part of its time to live after which a region that is still seen is published again."""
+"""The fraction of its time to live after which a visible region is published again."""
 
 Result = TypeVar("Result")
 
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """A camera, and what is looked for with it.
+    """A camera and its detector.
 
     Attributes:
-        vehicle: What carries it.
+        vehicle: The vehicle that carries it.
         lens: Its field of view and its angles.
-        every: Seconds between two frames that are looked at.
-        delay: Seconds from when a frame is taken to when it comes.
-        kind: The kind of what is found.
-        called: What it is called, with a number.
-        detector: What finds it in a frame.
+        every: Seconds between two searched frames.
+        delay: Seconds from the exposure of a frame to its arrival.
+        kind: The kind of its findings.
+        called: The prefix of their names, before a number.
+        detector: The detector that finds them in a frame.
     """
 
     vehicle: str
@@ -80,7 +80,7 @@ class Camera:
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """What is known of one region: its outline as it was published last, and when."""
+    """One region: its last published outline, and the time of that."""
 
     geometry: Geometry
     time: float
@@ -92,10 +92,10 @@ class CameraFeed(Feed):
     Arguments:
         name: Its name in reports.
         camera: The camera.
-        source: Where its frames come from.
-        poses: Where its vehicle is.
-        naming: Whose names are taken already.
-        time_to_live: Seconds for which what was seen counts.
+        source: The source of its frames.
+        poses: The poses of its vehicle.
+        naming: The naming service, with the reserved names.
+        time_to_live: Seconds for which a sighting is valid.
     """
 
     def __init__(
@@ -119,10 +119,10 @@ class CameraFeed(Feed):
         self._newest = float("-inf")
         self._troubles = Troubles(name)
         self.in_thread = True
-        """Whether a thread looks: not where time is simulated, and would go on meanwhile."""
+        """Whether a thread does the search; False in simulated time, which would go on meanwhile."""
 
     async def run(self, world: World) -> None:
-        """Look at frames until cancelled."""
+        """Search frames until cancelled."""
         self._source.begin()
         try:
             while True:
@@ -140,7 +140,7 @@ class CameraFeed(Feed):
     # --- frames -----------------------------------------------------------------------------------
 
     def _take(self, now: float) -> None:
-        """Let new frames wait, but for those that come sooner than they are wanted."""
+        """Queue new frames, except those that come too soon after the last one."""
         for shot in self._source.taken(now):
             at = shot.time - self._camera.delay
             if at - self._newest < self._camera.every:
@@ -151,7 +151,7 @@ class CameraFeed(Feed):
             self._waiting.append(Shot(at, shot.name, shot.pixels))
 
     def _ready(self, now: float) -> tuple[Shot, Pose] | None:
-        """Return the next frame whose pose is known; those whose pose does not become known are left out."""
+        """Return the next frame with a known pose; frames whose pose never comes are left out."""
         while self._waiting:
             shot = self._waiting[0]
             if shot.time > self._poses.until and now - shot.time < PATIENCE:
@@ -169,7 +169,7 @@ class CameraFeed(Feed):
             self._looked, found = await self._worked(work)
         except PhysicalError as problem:
             self._leave_out(problem.message)
-        except Exception as problem:  # a detector is anybody's
+        except Exception as problem:  # a detector is the user's own code
             self._leave_out(f"{shot.name}: {type(problem).__name__}: {problem}"[:200])
         else:
             self._publish(world, found)
@@ -180,10 +180,10 @@ class CameraFeed(Feed):
     def _leave_out(self, why: str) -> None:
         self._troubles.note("frame left out", why)
 
-    # --- what they show ---------------------------------------------------------------------------
+    # --- regions ----------------------------------------------------------------------------------
 
     def _publish(self, world: World, found: tuple[Region, ...]) -> None:
-        """Publish what is seen whole and surely: again only where it is another, or its time runs out."""
+        """Publish the complete regions of sufficient confidence: again only if they change, or their time runs out."""
         now = world.now()
         for region in found:
             if not region.whole or region.confidence < SURE:
@@ -207,7 +207,7 @@ class CameraFeed(Feed):
             world.publish(Aged(seen_at, self._time_to_live))
 
     def _name_of(self, geometry: Geometry) -> str:
-        """Return the name of the sighting that a region is, else a new one."""
+        """Return the name of the known region that this one continues, else a new name."""
         shares = {name: share(known.geometry, geometry) for name, known in self._known.items()}
         nearest = max(shares, key=shares.__getitem__, default="")
         called = self._camera.called
@@ -215,6 +215,6 @@ class CameraFeed(Feed):
 
 
 def looked_at(before: Looked, shot: Shot, pose: Pose, camera: Camera) -> tuple[Looked, tuple[Region, ...]]:
-    """Return what is known after one more frame, and what that shows; raises what decoding and detectors raise."""
+    """Return the state and the regions after one more frame; raises the errors of decoding and detectors."""
     after = look(before, frame_of(shot.pixels(), pose, camera.lens, shot.name), camera.detector)
     return after, after.regions

@@ -27,7 +27,7 @@ SATELLITE_SIDE: Final = 2_048
 
 @dataclass(frozen=True, slots=True)
 class Referenced:
-    """The view of a picture that brings its own georeference: the scaling of its coordinates, and their system.
+    """The view of a picture with its own georeference: the transform of its pixels, and their coordinate system.
 
     A pixel's coordinates are a·x + b·y + c and d·x + e·y + f of the six numbers.
     """
@@ -46,7 +46,7 @@ class Referenced:
 
 
 def frames_of(path: Path, lens: Lens, left_out: Counter[str], every: float = 1.0) -> Iterator[Frame]:
-    """Yield the frames of a folder, a video or a GeoTIFF; what cannot be used is counted by its reason.
+    """Yield the frames of a folder, a video or a GeoTIFF; unusable frames are counted by their reason.
 
     Raises:
         PhysicalError: There is no such file, or no log of poses.
@@ -68,7 +68,7 @@ def frames_of(path: Path, lens: Lens, left_out: Counter[str], every: float = 1.0
 
 
 def log_of(path: Path) -> Path:
-    """Return where the poses of a folder or a video are: poses.csv in it, VIDEO.csv beside it."""
+    """Return the path of a source's poses: poses.csv in a folder, VIDEO.csv beside a video."""
     log = path / LOG if path.is_dir() else path.with_suffix(".csv")
     if not log.is_file():
         hint = "write one: file,time,latitude,longitude,altitude,roll,pitch,yaw (docs/how-to/camera.md)"
@@ -150,7 +150,7 @@ def _of_folder(path: Path, lens: Lens, left_out: Counter[str]) -> Iterator[Frame
             if isinstance(problem, PhysicalError) and problem.code == "camera-extra":
                 raise
             left_out[f"unreadable: {problem}".partition("\n")[0][:200]] += 1
-    left_out += Counter()  # without zeros
+    left_out += Counter()  # drops zeros
 
 
 def _of_video(path: Path, lens: Lens, left_out: Counter[str], every: float) -> Iterator[Frame]:

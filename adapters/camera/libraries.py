@@ -1,4 +1,4 @@
-"""The libraries of the extra `camera`, loaded when they are needed, with bounds on what they decode."""
+"""The libraries of the extra `camera`, loaded when they are needed, with bounds on decoded sizes."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ MOST_PIXELS: Final = 100_000_000
 
 @cache
 def opencv() -> Any:
-    """Return OpenCV; raises PhysicalError where it is not installed."""
+    """Return OpenCV; raises PhysicalError if it is not installed."""
     os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(MOST_PIXELS))  # read when it is loaded
-    os.environ.setdefault("OPENCV_LOG_LEVEL", "SILENT")  # what it cannot decode is counted
+    os.environ.setdefault("OPENCV_LOG_LEVEL", "SILENT")  # undecodable pictures are counted
     try:
         import cv2  # noqa: PLC0415 - an extra, and slow to load
     except ImportError as missing:
         raise PhysicalError("camera-extra", "cameras need OpenCV", install_extra("camera")) from missing
-    cv2.setNumThreads(1)  # a run has other things to do
+    cv2.setNumThreads(1)  # a run needs the other cores
     return cv2
 
 
 @cache
 def geotiffs() -> Any:
-    """Return rasterio; raises PhysicalError where it is not installed."""
+    """Return rasterio; raises PhysicalError if it is not installed."""
     try:
         import rasterio  # noqa: PLC0415 - an extra, and slow to load
         import rasterio.warp  # noqa: PLC0415

@@ -1,4 +1,4 @@
-"""What was found, drawn over the frame, so that people can look."""
+"""Found patches, drawn over their frame for people."""
 
 from __future__ import annotations
 

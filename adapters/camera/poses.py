@@ -1,4 +1,4 @@
-"""Poses: a flight log as CSV, what a vehicle tells in flight, and the pose at a time between two that are known."""
+"""Poses: a flight log as CSV, a vehicle's messages in flight, and interpolation between two poses."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ ANGLES: Final = ("roll", "pitch", "yaw")
 MOST_POSES: Final = 1_000_000
 MOST_BYTES: Final = 200_000_000
 MOST_KEPT: Final = 300
-"""In flight: of each sort, those of a minute."""
+"""In flight: the most poses of each sort, about a minute's."""
 
 MOST_APART: Final = 2.0
-"""Seconds between two poses; of a longer gap nothing is known."""
+"""Seconds between two poses for interpolation; a longer gap stays unknown."""
 
 
 def read_poses(path: Path) -> tuple[tuple[str, Pose], ...]:
@@ -72,14 +72,14 @@ def _time(text: str) -> float:
 
 
 class PoseLog:
-    """The newest poses of a vehicle in flight: positions and attitudes come apart, by MAVLink's messages."""
+    """The newest poses of a vehicle in flight: MAVLink sends positions and attitudes in separate messages."""
 
     def __init__(self) -> None:
         self._positions: list[Pose] = []
         self._attitudes: list[Pose] = []
 
     def hear(self, name: str, said: Mapping[str, Any], now: float) -> None:
-        """Keep what a message tells of the pose."""
+        """Record the position or attitude in a message."""
         if name == "GLOBAL_POSITION_INT" and (said["lat"], said["lon"]) != (0, 0):
             latitude, longitude, altitude = said["lat"] / E7, said["lon"] / E7, said["alt"] / 1000
             if abs(latitude) <= 89.9 and abs(longitude) <= 180:
@@ -94,7 +94,7 @@ class PoseLog:
         return min((each[-1].time if each else -math.inf) for each in (self._positions, self._attitudes))
 
     def at(self, time: float) -> Pose | None:
-        """Return the pose at a time, None where it is not known."""
+        """Return the pose at a time, None if it is unknown."""
         where, how = pose_at(self._positions, time), pose_at(self._attitudes, time)
         return (
             None
@@ -104,14 +104,14 @@ class PoseLog:
 
 
 def _keep(poses: list[Pose], pose: Pose) -> None:
-    """Keep one more, unless a clock went back, and not the oldest of too many."""
+    """Add a pose, unless its clock went back; drop the oldest beyond the limit."""
     if not poses or pose.time > poses[-1].time:
         poses.append(pose)
         del poses[:-MOST_KEPT]
 
 
 def pose_at(poses: Sequence[Pose], time: float) -> Pose | None:
-    """Return the pose at a time, between the two around it; None if they are too far apart."""
+    """Return the pose at a time, interpolated from the two around it; None if they are too far apart."""
     after = bisect_left(poses, time, key=lambda pose: pose.time)
     if after < len(poses) and poses[after].time == time:
         return poses[after]

@@ -16,12 +16,12 @@ from physical import PhysicalError, PhysicalProperty
 
 @dataclass(frozen=True, slots=True)
 class Looked:
-    """What frames have shown so far.
+    """The accumulated result of frames.
 
     Attributes:
-        votes: What they say of the grid's cells.
-        sea: The colour of the sea, as frames have it.
-        count: How many there were.
+        votes: Their votes on the grid's cells.
+        sea: The colour of the sea in them.
+        count: Their number.
     """
 
     votes: Votes | None = None
@@ -30,12 +30,12 @@ class Looked:
 
     @property
     def regions(self) -> tuple[Region, ...]:
-        """What they together show, the largest first."""
+        """The merged regions, the largest first."""
         return regions(self.votes)
 
 
 def look(before: Looked, frame: Frame, detector: Detector) -> Looked:
-    """Return what is known after one more frame; raises TooWide."""
+    """Return the result with one more frame; raises TooWide."""
     frame = replace(frame, sea=before.sea)
     patches = detector(frame)
     return Looked(vote(before.votes, frame, patches), sea_colour(frame, patches), before.count + 1)
@@ -44,7 +44,7 @@ def look(before: Looked, frame: Frame, detector: Detector) -> Looked:
 def sightings(
     frames: Iterable[Frame], left_out: Counter[str], detector: Detector = find_slicks
 ) -> tuple[int, tuple[Region, ...]]:
-    """Return how many frames were used, and what they together show, the largest first; others are counted."""
+    """Return the number of used frames and their merged regions, the largest first; unusable frames are counted."""
     found = Looked()
     for frame in frames:
         try:

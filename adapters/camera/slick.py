@@ -1,7 +1,7 @@
-"""Slicks on water, by colour: what differs from the sea around it and is no rougher.
+"""Slicks on water, by colour: areas that differ from the sea around them and are no rougher.
 
-The sea's colour is fitted over the picture as a surface of second degree, so that the sun's gradient belongs to it. Oil
-damps small waves; glint and land are rougher than the sea, and left out by that.
+The sea's colour is fitted over the picture as a surface of second degree, so that it includes the sun's gradient. Oil
+damps small waves; glint and land are rougher than the sea, and excluded by that.
 """
 
 from __future__ import annotations
@@ -16,29 +16,29 @@ from adapters.camera.libraries import opencv
 from adapters.camera.view import Array, Frame
 
 LARGEST_SIDE: Final = 480
-"""Pixels to which a picture is reduced."""
+"""The longer side in pixels to which a picture is reduced."""
 
 DIFFERS: Final = 5.0
-"""How many times the sea's own spread a slick differs from it, at least."""
+"""The least difference of a slick from the sea, in multiples of the sea's own spread."""
 
 ALIKE: Final = 12.0
-"""How far a colour may be from the sea's (the sum over L*, a*, b*) to be taken for it."""
+"""The largest distance of a colour from the sea's (the sum over L*, a*, b*) that counts as sea."""
 
 SMALL: Final = 120
-"""Pixels to which a picture is reduced to see the sea's colour alone."""
+"""The longer side in pixels to which a picture is reduced for the sea's colour."""
 
 LEARNS: Final = 0.2
-"""By which part of the difference the sea's colour follows each frame."""
+"""The weight of each new frame in the sea's colour."""
 
 LEAST_SPREAD: Final = 1.5
 ROUGHER: Final = 2.2
-"""How many times as rough as the sea what is no slick is."""
+"""The least roughness, in multiples of the sea's, that excludes a slick."""
 
 WIDER: Final = 21
-"""Pixels over which what is rough is more than an edge."""
+"""Pixels over which roughness is more than an edge."""
 
 LEAST_PART: Final = 0.002
-"""Of the picture's pixels, the least that are a slick."""
+"""The least fraction of the picture's pixels for a slick."""
 
 LEAST_SEA: Final = 0.05
 MOST_PATCHES: Final = 20
@@ -48,14 +48,14 @@ ROUNDS: Final = 6
 
 @dataclass(frozen=True, slots=True)
 class Patch:
-    """A polygon in a frame, in its pixels (x to the right, y down), and how sure it is: 0 to 1."""
+    """A polygon in a frame, in its pixels (x to the right, y down), and its confidence: 0 to 1."""
 
     corners: tuple[tuple[float, float], ...]
     confidence: float
 
 
 Detector = Callable[[Frame], tuple[Patch, ...]]
-"""A pure function that finds in a frame what a mission looks for."""
+"""A pure function that finds a mission's targets in a frame."""
 
 
 def find_slicks(frame: Frame) -> tuple[Patch, ...]:
@@ -87,7 +87,7 @@ def find_slicks(frame: Frame) -> tuple[Patch, ...]:
 
 
 def _sea(frame: Frame, size: tuple[int, int], wide: float, high: float) -> Array:
-    """Return where a reduced picture shows what is below the horizon, and not nothing (a satellite's black border)."""
+    """Return the pixels of a reduced picture below the horizon, without empty ones (a satellite's black border)."""
     x, y = np.meshgrid((np.arange(size[0]) + 0.5) * wide - 0.5, (np.arange(size[1]) + 0.5) * high - 0.5)
     latitude, _ = frame.view.ground(x, y)
     within = frame.image[y.astype(int), x.astype(int)].any(axis=2)
@@ -95,7 +95,7 @@ def _sea(frame: Frame, size: tuple[int, int], wide: float, high: float) -> Array
 
 
 def sea_colour(frame: Frame, patches: Sequence[Patch]) -> tuple[float, ...] | None:
-    """Return the colour of the sea beside the patches of a frame; that of before where too little of it is seen."""
+    """Return the colour of the sea beside the patches of a frame; the former colour if too little sea is in view."""
     cv2 = opencv()
     height, width = frame.image.shape[:2]
     scale = min(1.0, SMALL / max(height, width))
@@ -113,7 +113,7 @@ def sea_colour(frame: Frame, patches: Sequence[Patch]) -> tuple[float, ...] | No
 
 
 def _apart(colours: Array, sea: Array, expected: tuple[float, ...] | None) -> Array:
-    """Return how many times the sea's spread each pixel is away from the sea's colour there."""
+    """Return each pixel's distance from the sea's colour there, in multiples of the sea's spread."""
     rows, columns = np.mgrid[-1 : 1 : colours.shape[0] * 1j, -1 : 1 : colours.shape[1] * 1j]
     terms = np.stack([np.ones_like(rows), rows, columns, rows * rows, rows * columns, columns * columns], -1)
     step = max(1, int(np.sqrt(sea.sum() / 4_000)))
@@ -135,13 +135,13 @@ def _apart(colours: Array, sea: Array, expected: tuple[float, ...] | None) -> Ar
 
 
 def _near(values: Array, expected: Array, limit: float) -> Array:
-    """Return which colours are the nearer ones to what is expected of the sea, or as good as they; none is too far."""
+    """Return a mask of the colours nearest to the sea's expected colour; none of them is too far."""
     distance = np.abs(values - expected).sum(axis=-1)
     return distance <= max(min(float(np.quantile(distance, 0.6)), limit), 2 * LEAST_SPREAD)
 
 
 def _roughness(light: Array, sea: Array) -> Array:
-    """Return how many times as rough as the sea each pixel's surroundings are."""
+    """Return the roughness of each pixel's surroundings, in multiples of the sea's."""
     cv2 = opencv()
     fine = (light - cv2.GaussianBlur(light, (0, 0), 2.0)) ** 2
     around = np.sqrt(cv2.blur(fine, (9, 9)))

@@ -1,4 +1,4 @@
-"""Where a camera's frames come from in flight: a folder into which they are put, or a stream of video."""
+"""The sources of a camera's frames in flight: a folder of new pictures, or a stream of video."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from adapters.camera.libraries import opencv
 from adapters.camera.view import Array
 
 MOST_FILES: Final = 100
-"""New pictures of a folder at one look: the newest."""
+"""The most new pictures of a folder at one check: the newest."""
 
 PAUSES: Final = (1.0, 2.0, 5.0, 10.0, 30.0)
-"""Seconds before a stream that was lost is tried again; the last is repeated."""
+"""Seconds before a lost stream is tried again; the last value is repeated."""
 
 OPENS: Final = 10_000
-"""Milliseconds in which a stream opens, and in which a frame of it comes."""
+"""Milliseconds for a stream to open, and for its next frame."""
 
 STAMP: Final = re.compile(r"[0-9]{9,11}(\.[0-9]{1,6})?")
-"""The name of a picture that says when it was taken: seconds since 1970."""
+"""The name of a picture with its time: seconds since 1970."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """A picture: when it was taken, what it is called, how its pixels are read (raises PhysicalError, OSError)."""
+    """A picture: its time, its name, and a function that reads its pixels (raises PhysicalError, OSError)."""
 
     time: float
     name: str
@@ -38,23 +38,23 @@ class Shot:
 
 
 class Source(Protocol):
-    """What shots come from."""
+    """A source of shots."""
 
     def begin(self) -> None:
-        """Begin to look."""
+        """Begin to look for shots."""
 
     def taken(self, now: float) -> list[Shot]:
-        """Return what is new, in the order of time; `now` is the time of the run."""
+        """Return the new shots, in the order of time; `now` is the time of the run."""
 
     def trouble(self) -> str:
-        """Return why nothing comes; nothing where it does."""
+        """Return the reason why no shots come; an empty text if they do."""
 
     def end(self) -> None:
-        """End."""
+        """Release all resources."""
 
 
 class Folder:
-    """A folder into which pictures are put, best by renaming: what is half written cannot be decoded."""
+    """A folder of new pictures, best added by renaming: half written ones cannot be decoded."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -62,11 +62,11 @@ class Folder:
         self._trouble = ""
 
     def begin(self) -> None:
-        """Pass over what is there already."""
+        """Ignore the present pictures."""
         self._seen = self._listed()
 
     def taken(self, now: float) -> list[Shot]:
-        """Return the new pictures: taken when their name says, else when they were written."""
+        """Return the new pictures, at the times in their names, else at the times of their files."""
         listed = self._listed()
         new = [path for path, written in listed.items() if self._seen.get(path) != written]
         self._seen = listed
@@ -74,11 +74,11 @@ class Folder:
         return sorted(shots, key=lambda shot: shot.time)[-MOST_FILES:]
 
     def trouble(self) -> str:
-        """Return why the folder cannot be read."""
+        """Return the reason why the folder cannot be read, or an empty text."""
         return self._trouble
 
     def end(self) -> None:
-        """Nothing is open."""
+        """Do nothing: no resource is open."""
 
     def _shot(self, path: Path, written: int, now: float) -> Shot:
         stamp = STAMP.fullmatch(path.stem)
@@ -125,11 +125,11 @@ class Stream:
         return [Shot(now - (time.monotonic() - grabbed), f"frame {self._number}", lambda: image)]
 
     def trouble(self) -> str:
-        """Return why nothing comes."""
+        """Return the reason why no frames come, or an empty text."""
         return f"{self._called}: {self._trouble}" if self._trouble else ""
 
     def end(self) -> None:
-        """Let the thread end."""
+        """Stop the thread."""
         self._ends.set()
 
     def _read(self) -> None:
@@ -153,6 +153,6 @@ class Stream:
 
 
 def source_of(address: str) -> Source:
-    """Return what an address stands for: `folder:PATH`, else what OpenCV opens."""
+    """Return the source at an address: `folder:PATH`, else one for OpenCV."""
     scheme, _, rest = address.partition(":")
     return Folder(Path(rest)) if scheme == "folder" else Stream(address)

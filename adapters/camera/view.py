@@ -1,4 +1,4 @@
-"""Where on the sea a pixel is: the flat-sea projection of a camera, and the georeference of a picture."""
+"""The position of a pixel on the sea: the flat-sea projection of a camera, and the georeference of a picture."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ LEAST_DEPRESSION: Final = 10.0
 HIGHEST: Final = 20_000.0
 
 Array = Any
-"""An array of numpy, which says nothing of its shape to a type checker."""
+"""An array of numpy, without its shape for a type checker."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Where a vehicle is: degrees, metres above the sea; degrees of roll (right wing down), pitch (nose up), yaw."""
+    """A vehicle's pose: degrees, metres above the sea; degrees of roll (right wing down), pitch (nose up), yaw."""
 
     time: float
     latitude: float
@@ -34,7 +34,7 @@ class Pose:
 
 @dataclass(frozen=True, slots=True)
 class Lens:
-    """A camera without distortion, and how it is mounted.
+    """A camera without distortion, and its mount.
 
     Attributes:
         fov: The horizontal field of view in degrees.
@@ -60,18 +60,18 @@ class Lens:
 
 
 class View(Protocol):
-    """What knows the position of a frame's pixels."""
+    """The positions of a frame's pixels."""
 
     def ground(self, x: Array, y: Array) -> tuple[Array, Array]:
-        """Return the latitudes and longitudes of pixels; NaN where there is no sea, or too oblique a view of it."""
+        """Return the latitudes and longitudes of pixels; NaN without sea, or for too oblique a view of it."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A picture: an array of rows of pixels (blue, green, red; 0 to 255), when it was taken, where its pixels are.
+    """A picture: an array of rows of pixels (blue, green, red; 0 to 255), its time, and the positions of its pixels.
 
-    `sea` is the colour that the sea had in the frames before (CIE L*a*b*): most of this one may be something else.
+    `sea` is the colour of the sea in earlier frames (CIE L*a*b*): most of this frame may not be sea.
     """
 
     image: Array
@@ -123,7 +123,7 @@ class Projection:
 
 
 def _turn(yaw: float, pitch: float, roll: float) -> Array:
-    """Return the rotation from forward, right, down to what they are relative to: yaw first, then pitch, then roll."""
+    """Return the rotation from forward, right, down to the reference axes: yaw first, then pitch, then roll."""
     (cy, cp, cr), (sy, sp, sr) = (
         np.cos(np.radians([yaw, pitch, roll])),
         np.sin(np.radians([yaw, pitch, roll])),

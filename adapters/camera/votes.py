@@ -1,6 +1,6 @@
-"""Frames merged by a vote on a grid: how often each cell of the sea was seen, and how surely it was found covered.
+"""Frames merged by a vote on a grid: for each cell of the sea the number of views, and the confidence of findings.
 
-What was not seen is known, too: a region whose border was never in view is said to be a part.
+Unseen cells are known, too: a region whose border was never in view is marked as a part.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ SIDE: Final = 64
 """Cells along a tile of the grid."""
 
 MOST_TILES: Final = 1_024
-"""Of a grid: what was seen first is forgotten first."""
+"""The most tiles of a grid; the oldest are dropped first."""
 
 MOST_CELLS: Final = 1_000_000
-"""In the view of one frame; a wider view is not taken."""
+"""The most cells in the view of one frame; a wider view is rejected."""
 
 MOST_REGIONS: Final = 20
 LEAST_CELLS: Final = 12
@@ -38,12 +38,12 @@ Tile = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class Votes:
-    """What frames say of the cells of a grid.
+    """The votes of frames on the cells of a grid.
 
     Attributes:
         origin: The grid's centre.
         cell: The side of a cell in metres.
-        tiles: Two layers of a tile's cells: how often each was seen, and the sum of the confidences of findings.
+        tiles: Two layers of a tile's cells: the number of views of each, and the sum of the confidences of findings.
     """
 
     origin: PositionE7
@@ -53,7 +53,7 @@ class Votes:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """What frames together found: a polygon, how sure it is (0 to 1), its square metres, whether all of it was seen."""
+    """A merged finding: a polygon, its confidence (0 to 1), its square metres, and whether all of it was seen."""
 
     geometry: Geometry
     confidence: float
@@ -92,7 +92,7 @@ def vote(votes: Votes | None, frame: Frame, patches: Sequence[Patch]) -> Votes:
 
 
 def regions(votes: Votes | None) -> tuple[Region, ...]:
-    """Return what most frames that saw it found, the largest first."""
+    """Return the regions that most of their views found, the largest first."""
     rows = [] if votes is None else [box for tile in sorted(votes.tiles) for box in _rows(votes, tile)]
     if votes is None or not rows:
         return ()
@@ -115,7 +115,7 @@ def _border(frame: Frame) -> tuple[Array, Array] | None:
 
 
 def _begun(border: tuple[Array, Array]) -> Votes:
-    """Return an empty grid around what a frame shows, of cells that a frame has some 150 of along its side."""
+    """Return an empty grid around a frame's view, with some 150 cells along the view's side."""
     origin = rounded(float(np.mean(border[0])), float(np.mean(border[1])))
     side = np.sqrt(shapely.area(_metres(Votes(origin, 1.0), *border)))
     return Votes(origin, float(np.clip(side / 150, 0.25, 100.0)))
@@ -142,7 +142,7 @@ def _tiles(west: float, south: float, east: float, north: float) -> Iterator[Til
 
 
 def _cells(votes: Votes, tile: Tile, shape: shapely.Geometry) -> Array:
-    """Return which cells of a tile have their centre in a shape."""
+    """Return a mask of a tile's cells with their centres in a shape."""
     x = (tile[0] * SIDE + np.arange(SIDE) + 0.5) * votes.cell
     y = (tile[1] * SIDE + np.arange(SIDE) + 0.5) * votes.cell
     shapely.prepare(shape)
@@ -153,7 +153,7 @@ def _cells(votes: Votes, tile: Tile, shape: shapely.Geometry) -> Array:
 
 
 def _rows(votes: Votes, tile: Tile) -> Iterator[tuple[int, int, int, int]]:
-    """Yield the boxes, in cells, of the cells of a tile that most frames found covered, row by row."""
+    """Yield the boxes, in cells, of a tile's cells that most of their views found covered, row by row."""
     seen, covered = votes.tiles[tile]
     taken = (covered >= MAJORITY * seen / 2) & (covered > 0)
     for row in np.flatnonzero(taken.any(axis=1)):

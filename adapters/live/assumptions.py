@@ -1,7 +1,7 @@
 """The assumption monitor: compares the world with the mission's environment section.
 
-A verdict depends on that section. Placements are compared by their relations: an entity may be anywhere where its
-containers and contents, in the current world, are those of one of the mission's listed placements.
+A verdict depends on that section. Placements are compared by their relations in the current world. An entity may be
+anywhere with the containers and contents of one of the mission's listed placements.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from semantics.state.physical_model import Placement
 from semantics.state.signature import Name
 
 Relations = tuple[frozenset[Name], frozenset[Name]]
-"""What contains an entity, and what it contains."""
+"""The containers of an entity, and its contents."""
 
 
 STRAYED: Final = "wind, or another operator"
-"""Why a vehicle may be where it was not sent, if nobody is known to have taken it."""
+"""The likely cause of a stray vehicle, if no take-over is known."""
 
 
 def broken_by_place(
     plan: Plan, c: Configuration, entity: Name, seen: Placement | None, cause: str = STRAYED
 ) -> str:
-    """Return the assumption that breaks when an entity is seen somewhere, or an empty text; `cause` moved a vehicle."""
+    """Return the assumption that a sighting of an entity breaks, or an empty text; `cause` explains a stray vehicle."""
     before = c.structure.physical.placement(entity)
     if seen is None:
         allowed = _clause(plan, Vanishes, entity) is not None
@@ -54,7 +54,7 @@ def _broken_by_appearing(plan: Plan, c: Configuration, entity: Name, now: Relati
     clause = _clause(plan, Appears, entity)
     first = plan.first.structure.physical.placement(
         entity
-    )  # an entity that is heard again may be where it was
+    )  # an entity that is heard again may be at its first place
     places = (
         *([first] if first is not None else ()),
         *(clause.placements if isinstance(clause, Appears) else ()),
@@ -68,7 +68,7 @@ def _broken_by_appearing(plan: Plan, c: Configuration, entity: Name, now: Relati
 
 
 def relations(c: Configuration, entity: Name, placement: Placement) -> Relations:
-    """Return what contains an entity at a placement, and what it contains, in the current world."""
+    """Return the containers and contents of an entity at a placement, in the current world."""
     physical = c.structure.physical
     around = Fences(c).holders(entity, c.setting.kind(entity), placement)
     return around, contents(physical, entity, placement)

@@ -1,7 +1,7 @@
-"""One turn of a live run: take in what arrived, then make every step that follows, by the checked rules.
+"""One turn of a live run: take in the arrivals, then make every step that follows, by the checked rules.
 
-`advance` is a function of a state, a batch and a time. It knows no clock, no device and no file: tests, replays and
-the loop call the same.
+`advance` is a function of a state, a batch and a time. It knows no clock, no device and no file: tests, replays and the
+loop all call it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from semantics.state.requests import READY
 from semantics.state.signature import Name
 
 MOST_STEPS = 400
-"""How many steps one turn takes at the most."""
+"""The most steps of one turn."""
 
 LONG = 5.0
 """Seconds without listening that are reported."""
@@ -43,7 +43,7 @@ def advance(plan: Plan, state: LiveState, batch: Batch, now: float, most: int = 
 
 
 def _timed(state: LiveState, now: float) -> LiveState:
-    """Return a state in which everything is timed: from now on, or further where the run goes on."""
+    """Return a state with running timers: begun now, or resumed."""
     if state.timers is None:
         return state.with_(timers=begun(state.configuration, now), stopped=None)
     if state.stopped is None:
@@ -66,13 +66,13 @@ def _taken_in(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turning
 
 
 def obeying(plan: Plan, state: LiveState) -> frozenset[Name]:
-    """Return the vehicles that this station commands: those of others answer nothing that it asks."""
+    """Return the vehicles that this station commands: those of other stations never answer it."""
     turning = Turning(plan, state, 0.0)
     return frozenset(filter(turning.answers_for, plan.vehicles))
 
 
 def is_over(state: LiveState) -> bool:
-    """Tell whether the run is over: all agents have ended, no request of theirs is pending, no vehicle owes a stop.
+    """Return whether all agents have ended, none of their requests is pending, and no vehicle owes a stop.
 
     With several stations this is never known: the others may still send something.
     """
@@ -85,9 +85,9 @@ def is_over(state: LiveState) -> bool:
 
 
 def is_refused(state: LiveState) -> bool:
-    """Tell whether all remaining requests were refused, and no operator and no other station can change that.
+    """Return whether all remaining requests were refused, with no change possible by operators or stations.
 
-    An operator may give a vehicle back, or say something that the mission allows.
+    An operator may give a vehicle back, or send a message that the mission allows.
     """
     c = state.configuration
     told = (*state.orders.values(), *state.handing.values())
@@ -106,7 +106,7 @@ def _may_be_said(c: Configuration) -> bool:
 
 
 def resumed(plan: Plan, state: LiveState, now: float) -> LiveState:
-    """Return the state that resumes a killed run from what is known of it: its commands to vehicles are outstanding."""
+    """Return the state that resumes a killed run: its commands to vehicles are outstanding."""
     turning = Turning(plan, state, now)
     for pending in in_turn(state.configuration):
         remember(turning, pending.request)

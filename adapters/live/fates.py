@@ -1,7 +1,7 @@
 """The fate of orders to hold or to return: asked, sent, confirmed or refused.
 
-An operator orders one, or the mission falls back. The vehicle owes it until its state shows that it does it. It is told
-again what it has refused: the reason may pass, such as the authority of another station.
+An operator gives such an order, or the mission falls back. The vehicle owes it until its state shows it. A refused
+order is repeated: the reason may pass, such as the authority of another station.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from adapters.live.turn import Turning
 from semantics.state.signature import Name
 
 RETRY: Final = 5.0
-"""Seconds after a refusal until the vehicle is told again."""
+"""Seconds after a refusal until the order is repeated."""
 
 
 def sent(turning: Turning, entity: Name, request: str) -> None:
-    """Note that a plugin tells a vehicle an order."""
+    """Record that a plugin has sent an order to a vehicle."""
     for bidden in _ordered(turning, entity, request):
         if bidden.fate is Fate.ASKED:
             _becomes(turning, entity, replace(bidden, fate=Fate.SENT))
 
 
 def confirm(turning: Turning, entity: Name, request: str) -> None:
-    """Report, once, that a vehicle does what was ordered."""
+    """Report, once, that a vehicle carries out an order."""
     for bidden in _ordered(turning, entity, request):
         if bidden.owed:
             _becomes(turning, entity, replace(bidden, fate=Fate.CONFIRMED, refusal=""))
@@ -35,7 +35,7 @@ def confirm(turning: Turning, entity: Name, request: str) -> None:
 
 
 def refused(turning: Turning, entity: Name, request: str, reason: str) -> bool:
-    """Note that a vehicle refuses an order, and report each reason once; tell whether it was such an order."""
+    """Record a vehicle's refusal, and report each reason once; return whether the request was such an order."""
     found = False
     for bidden in _ordered(turning, entity, request):
         found = True
@@ -49,7 +49,7 @@ def refused(turning: Turning, entity: Name, request: str, reason: str) -> bool:
 
 
 def tell_again(turning: Turning) -> None:
-    """Tell vehicles again what they have refused."""
+    """Repeat refused orders to their vehicles."""
     for entity, bidden in (*sorted(turning.owed.items()), *sorted(turning.bidden.items())):
         if bidden.fate is not Fate.REFUSED:
             continue
@@ -61,7 +61,7 @@ def tell_again(turning: Turning) -> None:
 
 
 def _ordered(turning: Turning, entity: Name, request: str) -> Iterator[Bidden]:
-    """Yield the order that a request is; it stands for its vehicle."""
+    """Yield the standing order of a vehicle with this request."""
     both = (turning.owed.get(entity), turning.bidden.get(entity))
     return (each for each in both if each is not None and each.command.request == request)
 

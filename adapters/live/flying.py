@@ -18,11 +18,11 @@ from semantics.state.signature import Name
 
 
 def arrive(turning: Turning, entity: Name) -> bool:
-    """Commit the flight of a vehicle if it and all that fly with it were seen at their destinations.
+    """Commit the flight of a vehicle if it and all its companions were seen at their destinations.
 
     A vehicle may cross its destination for other reasons, such as a return to its home. So it must show that it follows
-    its command. A vehicle on a path must have reported the end of the path. The way on to its waypoint must lead
-    straight: what has arrived crosses no border any more.
+    its command. A vehicle on a path must have reported the end of the path. The remaining way to its waypoint must be
+    straight: after the arrival it crosses no border.
     """
     transit, order = turning.c.structure.physical.transit(entity), turning.orders.get(entity)
     at = turning.where_seen(entity)
@@ -31,7 +31,7 @@ def arrive(turning: Turning, entity: Name) -> bool:
     if not order.obeyed or (isinstance(order.command, Follow) and not order.through):
         return False
     if transit.to not in turning.around(entity, turning.c.setting.kind(entity), at):
-        return False  # most positions are of vehicles on their way: nothing is asked of the others for them
+        return False  # most positions are of vehicles on their way: don't check their companions
     together = sorted(other for other, told in turning.orders.items() if told.agent == order.agent)
     if not all(turning.flies(other) and turning.orders[other].obeyed for other in together):
         return False
@@ -48,7 +48,7 @@ def arrive(turning: Turning, entity: Name) -> bool:
 
 
 def _is_there(turning: Turning, entity: Name) -> bool:
-    """Tell whether the way from where a vehicle was seen to its waypoint keeps to its surroundings."""
+    """Return whether the straight way from a vehicle's last position to its waypoint keeps to its surroundings."""
     order, at = turning.orders[entity], turning.where_seen(entity)
     if not isinstance(at, Placed) or not isinstance(order.command, GoTo | Follow):
         return True
@@ -59,9 +59,9 @@ def _is_there(turning: Turning, entity: Name) -> bool:
 
 
 def obey(turning: Turning, entity: Name, report: Accepted | Arrived) -> None:
-    """Note that a vehicle shows that it follows the command of a request, or has completed it.
+    """Record that a vehicle follows the command of a request, or has completed it.
 
-    What it reports of a place that has moved since counts for nothing: it is told of that.
+    A report about a place that has moved since is ignored: the vehicle gets a new command.
     """
     order = turning.orders.get(entity)
     if order is None or order.command.request != report.request:
@@ -75,14 +75,14 @@ def obey(turning: Turning, entity: Name, report: Accepted | Arrived) -> None:
 
 
 def doubt(turning: Turning, entity: Name) -> None:
-    """Note that it is unknown whether a vehicle still follows its command."""
+    """Record that it is unknown whether a vehicle still follows its command."""
     order = turning.orders.get(entity)
     if order is not None:
         turning.orders[entity] = replace(order, obeyed=False)
 
 
 def refuse(turning: Turning, entity: Name, request: str) -> None:
-    """Note that the command of a request was refused."""
+    """Record that the command of a request was refused."""
     for orders in (turning.orders, turning.handing):
         order = orders.get(entity)
         if order is not None and order.command.request == request:
@@ -90,8 +90,8 @@ def refuse(turning: Turning, entity: Name, request: str) -> None:
 
 
 def ask_anew(turning: Turning, entity: Name) -> None:
-    """Command a vehicle that was given back again, if its request is still pending."""
-    turning.handing.pop(entity, None)  # it is told again in its turn
+    """Command a vehicle again after it was given back, if its request is still pending."""
+    turning.handing.pop(entity, None)  # the hand-over is ordered again in its turn
     order = turning.orders.get(entity)
     fly = None if order is None else _flight(turning, order)
     if order is None or fly is None or isinstance(order.command, HandOver) or turning.stops(order.agent):
@@ -105,7 +105,7 @@ def ask_anew(turning: Turning, entity: Name) -> None:
 def renew(turning: Turning, place: Name) -> None:
     """Redirect vehicles when a place on their path, or one that they must keep out of, has moved.
 
-    A place that has moved over a vehicle is reached when the vehicle shows that it goes to where the place is now.
+    If a place has moved over a vehicle, the vehicle arrives once it shows that it goes to the place's new position.
     """
     for entity, order in sorted(turning.orders.items()):
         if turning.c.structure.physical.transit(entity) is not None and turning.flies(entity):
@@ -117,7 +117,7 @@ def _send_on(turning: Turning, entity: Name, order: Order, place: Name) -> None:
     if fly is None or transit is None or isinstance(order.command, HandOver):
         return
     if place not in (transit.to, *fly.reaction.via) and isinstance(order.command, Follow):
-        return  # it would fly all of its way again
+        return  # it would fly its whole way again
     command = renewed(turning.c, fly, order.command, turning.plan.first)
     if command is not None:
         turning.orders[entity] = Order(command, order.agent, order.since)
@@ -130,7 +130,7 @@ def _flight(turning: Turning, order: Order) -> FLY | None:
 
 
 def remember(turning: Turning, request: Request) -> None:
-    """Adopt the command that another run gave for a request; a vehicle that confirms it is not commanded again."""
+    """Adopt another run's command for a request; a vehicle that confirms it is not commanded again."""
     if isinstance(request, FLY):
         _remember_flight(turning, request)
     elif isinstance(request, CTR):

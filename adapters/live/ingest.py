@@ -1,4 +1,4 @@
-"""Take in the world: sightings become `env` and `commit`, reports findings."""
+"""Take in the world: sightings become `env` and `commit` steps, reports become findings."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ from semantics.state.signature import REGION, Name
 
 
 def take_in(turning: Turning, batch: Batch) -> None:
-    """Take in observations and reports: take-overs first, so that nothing that those vehicles do is an arrival."""
+    """Take in observations and reports: take-overs first, so that no move of those vehicles is an arrival."""
     for report in batch.reports:
         if isinstance(report, TakenOver | Doubted):
             note(turning, report)
@@ -113,7 +113,7 @@ def _place(turning: Turning, entity: Name) -> None:
 
 
 def _check_covered(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> None:
-    """Report a vehicle that stands where something may come over it that cannot come over its point in P."""
+    """Report a vehicle if a place, at a listed position, holds either its seen point or its point in P, not both."""
     if turning.suspended or not isinstance(here, Placed) or not isinstance(seen, Placed):
         return
     place = told_apart(turning.c, entity, here, seen, turning.plan.first)
@@ -125,7 +125,7 @@ def _check_covered(turning: Turning, entity: Name, here: Placement | None, seen:
 
 
 def _same_place(turning: Turning, entity: Name, here: Placement | None, seen: Placement) -> bool:
-    """Tell whether A(P) is the same for two points: no rule depends on a point's exact position within its place."""
+    """Return whether A(P) is the same for two points: no rule depends on a point's exact position within its place."""
     if not isinstance(here, Placed) or not isinstance(seen, Placed) or not seen.geometry.is_point:
         return False
     kind = turning.c.setting.kind(entity)
@@ -150,7 +150,7 @@ def _move(turning: Turning, entity: Name, here: Placement | None, seen: Placemen
 
 
 def _is_back(turning: Turning, entity: Name, seen: Placement) -> bool:
-    """Tell whether an entity is back where it vanished, which broke an assumption already."""
+    """Return whether an entity is back at its last place, after its absence already broke an assumption."""
     before = turning.missing.pop(placement_cell(entity), None)
     c = turning.c
     return isinstance(before, Placed | Carried) and relations(c, entity, before) == relations(c, entity, seen)
@@ -293,7 +293,7 @@ def _refuse(turning: Turning, rejected: Rejected) -> None:
     refuse(turning, entity, request)
     if refused(turning, entity, request, reason):
         return
-    if entity not in turning.taken:  # else that is what was said
+    if entity not in turning.taken:  # else its take-over was already reported
         message = f"{entity} refuses {request}: {reason}; the request stays pending"
         turning.find("refused", entity, message)
 

@@ -15,7 +15,7 @@ from semantics.state.requests import SND
 
 
 def check_limits(turning: Turning) -> None:
-    """Report the requests that have waited too long, and fall back as the mission says."""
+    """Report the requests that have waited too long, and take the mission's fallback."""
     limits = turning.plan.precautions.limits
     if not limits:
         return
@@ -27,7 +27,7 @@ def check_limits(turning: Turning) -> None:
 
 
 def heads_of(c: Configuration, known: Mapping[str, Waiting], now: float) -> dict[str, Waiting]:
-    """Return since when each request is at the head of its agent's line, and each message in transit."""
+    """Return the start of each request's wait at the head of its agent's line, and of each message in transit."""
     found = {}
     for pending in in_turn(c):
         request = pending.request

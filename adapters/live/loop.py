@@ -1,9 +1,9 @@
 """The live loop: plugins publish into it, `advance` moves the configuration, commands go out; it never blocks.
 
-Input is checked where it enters (`admission`); after that no input ends a run. If the recording or a plugin fails, the
+Input is checked at the entry (`validation`); after that no input ends a run. If the recording or a plugin fails, the
 mission's response to a broken assumption follows.
 
-Between two turns only the newest position of each entity is kept; all reports and messages are.
+Between two turns only the newest position of each entity is kept, but all reports and messages.
 """
 
 from __future__ import annotations
@@ -43,30 +43,30 @@ from adapters.troubles import Troubles
 from physical import is_text
 
 GATHER = 0.002
-"""Seconds for which arrivals are gathered before the next turn."""
+"""Seconds of gathering arrivals before the next turn."""
 
 SLICE = 2
-"""How many steps are taken before the loop reads new input."""
+"""Steps taken before the loop reads new input."""
 
 IDLE = 0.5
-"""Seconds after which there is a turn without input: outdated positions leave P."""
+"""Seconds until a turn without input: outdated positions leave P."""
 
 AHEAD = 1.0
 """Seconds by which the system's clock may be ahead of the loop's: less is an ordinary clock adjustment."""
 
 AT_ONCE = 200
-"""How many positions of entities that the mission does not name (strangers) one turn takes in."""
+"""Positions of entities that the mission does not name (strangers) in one turn."""
 
 MOST_WAITING = 20_000
-"""How many of them may wait; beyond that the oldest are dropped, and that is reported."""
+"""Waiting positions of strangers; beyond it the oldest are dropped, and that is reported."""
 
 MOST_SAYINGS = 1_000
-"""How many messages may wait; more are refused, and their senders are told."""
+"""Waiting messages of operators; more are refused, with an answer to their senders."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """How a run ended: a reason in words, and the last state."""
+    """The end of a run: a reason in words, and the last state."""
 
     reason: str
     state: LiveState
@@ -88,7 +88,7 @@ class NotHeard(Exception):
     """Vehicles of the mission were not heard before the start of the run, or have no position.
 
     Attributes:
-        vehicles: Which.
+        vehicles: Their names.
         heard: Whether all of them were heard at all.
     """
 
@@ -105,7 +105,7 @@ class NotHeard(Exception):
 
 
 class PluginFailed(Exception):
-    """A plugin or the recording failed before the run began; the message says which, and why."""
+    """A plugin or the recording failed before the run began; the message has its name and the reason."""
 
 
 @dataclass(slots=True)
@@ -114,7 +114,7 @@ class Inbox:
 
     Attributes:
         named: The entities of the mission; a turn takes all of their positions, and a slice of the strangers'.
-        said: What each vehicle said of itself last.
+        said: Each vehicle's last status.
     """
 
     watchers: Watchers
@@ -152,7 +152,7 @@ class Inbox:
         if isinstance(report, Status):
             self.said[report.entity] = report
         if isinstance(report, Seen):
-            return  # no turn comes of it
+            return  # it causes no turn
         self.reports.append(report)
         self.awake.set()
 
@@ -170,7 +170,7 @@ class Inbox:
         return answer
 
     def take(self, missed: float = 0.0) -> tuple[Batch, list[asyncio.Future[Answer]]]:
-        """Return the waiting input, and forget it; of the strangers only the oldest slice.
+        """Remove and return the waiting input; of the strangers only the oldest slice.
 
         `missed` are the seconds in which this process did not listen.
         """
@@ -260,7 +260,7 @@ class LiveRun:
             ear = Ear(plugin.name, self.inbox)
             self._tasks.append(asyncio.create_task(plugin.run(ear), name=plugin.name))
         self._tasks.append(asyncio.create_task(self._telling(), name="orders"))
-        for bidden in self.state.bidden.values():  # else what a resumed run finds held looks taken over
+        for bidden in self.state.bidden.values():  # else a vehicle that was held looks taken over
             self._orders.put_nowait(bidden.command)
         return self
 
@@ -274,7 +274,7 @@ class LiveRun:
     async def begin(
         self, patience: float, *, forced: bool = False, start: asyncio.Event | None = None
     ) -> None:
-        """Wait until every vehicle is heard and the world satisfies the mission's environment section, and for `start`.
+        """Wait for every vehicle, for a world that satisfies the mission's environment section, and for `start`.
 
         Raises:
             NotHeard: A vehicle was not heard in time.
@@ -318,7 +318,7 @@ class LiveRun:
         self._listening.looked = (
             self.clock()
         )  # since `begin` arrivals were gathered, though there was no turn
-        elapsed = asyncio.get_running_loop().time  # no date: whoever sets the system's clock ends no run
+        elapsed = asyncio.get_running_loop().time  # no date: a change of the system's clock ends no run
         end = None if seconds is None else elapsed() + seconds
         again: float | None = self.clock()
         while True:
@@ -351,7 +351,7 @@ class LiveRun:
         return turn
 
     def _unrecorded(self) -> tuple[Command, ...]:
-        """Take in at once that a turn could not be recorded: its commands are sent only if the mission continues."""
+        """Take in a failure to record a turn at once: its commands are sent only if the mission continues."""
         failures = self._watchers.failures()
         if not failures:
             return ()
@@ -375,7 +375,7 @@ class LiveRun:
             self._listening.look(self.clock())
             if self._listening.missed == missed:
                 return
-        await asyncio.sleep(GATHER)  # first take what waited in sockets during a stall
+        await asyncio.sleep(GATHER)  # first take the input that waited in sockets during a stall
 
     def _missed(self) -> float:
         """Return the seconds without listening since the last call."""
@@ -399,7 +399,7 @@ class LiveRun:
         return PluginFailed(f"{failed.source}: {failed.reason}")
 
     def _fail(self, plugin: str, error: BaseException) -> None:
-        """Report that a plugin failed; if by a bug, with all that is known of it."""
+        """Report that a plugin failed; a bug goes to the event loop's exception handler too."""
         if isinstance(error, OSError | ValueError):
             self.inbox.report(Failed.by(error, plugin, self.clock()))
             return

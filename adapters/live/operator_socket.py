@@ -20,13 +20,13 @@ MOST_BYTES: Final = 16_384
 MOST_ANSWER: Final = 2**20
 PATIENCE: Final = 5.0
 MOST_SERVED: Final = 32
-"""Connections at once: each asks one thing, in a few seconds."""
+"""Simultaneous connections: each has one request, and ends within seconds."""
 
 ASKED: Final = b'{"status": true}\n'
-"""The line that asks how a run stands."""
+"""The line that requests the status of a run."""
 
 ASKED_FATES: Final = b'{"fates": true}\n'
-"""The line that asks what has become of operators' orders."""
+"""The line that requests the fates of operators' orders."""
 
 HAS_STARTED: Final = "the run has started already"
 
@@ -39,14 +39,14 @@ Listener = Callable[[Said], Awaitable[Answer]]
 """Takes a message, and returns the answer to it."""
 
 Fates = Mapping[str, tuple[str, str]]
-"""What has become of the operator's order to each vehicle, and in words."""
+"""The fate of the operator's order to each vehicle, also in words."""
 
 Starter = Callable[[str], str]
-"""Starts the run for somebody, and returns why not; an empty text if it starts."""
+"""Starts the run for an operator, and returns the reason if it does not start, else an empty text."""
 
 
 class NobodyListens(Exception):
-    """No mission runs there, or it does not answer; the message says which."""
+    """No mission runs there, or it does not answer, according to the message."""
 
 
 @asynccontextmanager
@@ -59,8 +59,8 @@ async def listening(
 ) -> AsyncIterator[None]:
     """Listen at a path that only its user may open; raises OSError if that is impossible.
 
-    `describe` says how the run stands, and `fates` what has become of orders, to who asks; `start` starts a run that
-    waits for an operator. The socket of a killed run is replaced; that of a live run is not, be it stopped.
+    `describe` returns the status of the run, `fates` the fates of orders; `start` starts a run that waits for an
+    operator. The socket of a killed run is replaced; that of a live run is not, even if the run is stopped.
     """
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -87,7 +87,7 @@ Serve = Callable[[asyncio.StreamReader, asyncio.StreamWriter], Awaitable[None]]
 
 @contextmanager
 def _accepting(server: socket, serve: Serve) -> Iterator[None]:
-    """Serve who connects, also where the process has no descriptor left: some are kept in reserve."""
+    """Serve connections, also in a process without free descriptors: some are kept in reserve."""
     loop, reserve, serving = asyncio.get_running_loop(), Reserve(), set[asyncio.Task[None]]()
 
     async def carry(connection: socket) -> None:
@@ -134,7 +134,7 @@ async def _answer(
 
 
 def _starter(line: bytes) -> str | None:
-    """Return who starts the run by a line, None if nobody does."""
+    """Return the operator who starts the run by a line, None if the line is no start."""
     with suppress(PhysicalError):
         match read_json(line, MOST_BYTES):
             case {"start": True, **rest} if (by := rest.get("by", "")) == "" or is_word(by):
@@ -143,7 +143,7 @@ def _starter(line: bytes) -> str | None:
 
 
 def _said(line: bytes) -> Said | None:
-    """Return what a line says, None if that is nothing."""
+    """Return the message in a line, None if there is none."""
     with suppress(PhysicalError):
         match read_json(line, MOST_BYTES):
             case {**said} if (by := said.get("by", "")) == "" or is_word(by):
@@ -167,21 +167,21 @@ def _said_by(said: Mapping[object, object], by: str) -> Said | None:
 
 
 async def say(path: Path, agent: str, message: str, by: str = "") -> str:
-    """Send a message to an agent of the run that listens at a path; return why it was refused, or an empty text.
+    """Send a message to an agent of the run that listens at a path; return the reason of a refusal, or an empty text.
 
     Raises:
-        NobodyListens: No run does, or it does not answer.
+        NobodyListens: No run listens there, or it does not answer.
     """
     return _refusal(await _say(path, {"agent": agent, "message": message, "by": by}))
 
 
 class Outcome(NamedTuple):
-    """What came of what an operator asked for.
+    """The outcome of an operator's request.
 
     Attributes:
-        refusal: Why it was refused; empty if it was not.
-        left_out: Of an order to all vehicles, why some were not told.
-        notes: What else the operator should know.
+        refusal: The reason of a refusal; empty if it was accepted.
+        left_out: For an order to all vehicles, those left out, with the reasons.
+        notes: Other remarks to the operator.
     """
 
     refusal: str
@@ -190,17 +190,17 @@ class Outcome(NamedTuple):
 
 
 async def order(path: Path, what: str, vehicle: str | None, by: str = "") -> Outcome:
-    """Order a vehicle, or all, to `hold` or `return`; as `say`, and return who was left out, too."""
+    """Order a vehicle, or all, to `hold` or `return`; as `say`, and return the vehicles left out, too."""
     return _outcome(await _say(path, {"order": what, "vehicle": vehicle, "by": by}))
 
 
 async def give_back(path: Path, vehicle: str, at: str = "", by: str = "") -> Outcome:
-    """Give a vehicle back to the run that listens at a path, or say at which HOST:PORT it is now; as `order`."""
+    """Give a vehicle back to the run that listens at a path, or pass on its new HOST:PORT; as `order`."""
     return _outcome(await _say(path, {"give_back": vehicle, "at": at, "by": by}))
 
 
 async def acknowledge(path: Path, finding: int, by: str = "") -> str:
-    """Say that a finding was seen, by its number; as `say`."""
+    """Acknowledge a finding by its number; as `say`."""
     return _refusal(await _say(path, {"acknowledge": finding, "by": by}))
 
 
@@ -210,7 +210,7 @@ async def start(path: Path, by: str = "") -> str:
 
 
 async def status(path: Path) -> str:
-    """Return how the run that listens at a path stands, in lines of text; raises NobodyListens."""
+    """Return the status of the run that listens at a path, in lines of text; raises NobodyListens."""
     match await _asked(path, ASKED):
         case {"status": str(text)}:
             return text
@@ -218,7 +218,7 @@ async def status(path: Path) -> str:
 
 
 async def fates(path: Path) -> Fates:
-    """Return what has become of operators' orders in the run that listens at a path; raises NobodyListens."""
+    """Return the fates of operators' orders in the run that listens at a path; raises NobodyListens."""
     match await _asked(path, ASKED_FATES):
         case {"fates": dict(found)}:
             pairs = (
@@ -247,7 +247,7 @@ async def _say(path: Path, said: dict[str, Any]) -> dict[str, Any]:
 
 
 async def _asked(path: Path, line: bytes) -> dict[str, Any]:
-    """Return what a run answers to a line; it says at least why it was refused."""
+    """Return a run's answer to a line; it has at least the reason of a refusal."""
     with suppress(PhysicalError):
         answer: Any = read_json(await _exchange(path, line), MOST_ANSWER)
         if isinstance(answer, dict) and isinstance(answer.get("refusal"), str):

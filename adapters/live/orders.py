@@ -30,8 +30,8 @@ def destination(
 ) -> GoTo | None:
     """Return the command to go into a place at its current position, or to the node's future carrier.
 
-    The vehicle has to keep to the surroundings of the point that `drive` found: so nothing that the rules know of tells
-    where it is from where P has it.
+    The vehicle must keep to the surroundings of the point that `drive` found. Then no rule can distinguish its real
+    position from its point in P.
     """
     spot = found.physical.get(placement_cell(node))
     target = c.structure.physical.position(place)
@@ -56,7 +56,7 @@ def renewed(c: Configuration, fly: FLY, told: GoTo | Follow, first: Configuratio
 
 
 def stopping(fallback: Fallback, request: str, entity: Name) -> Hold | Return:
-    """Return the command that ends what a vehicle does: hold, or return."""
+    """Return the command that ends a vehicle's flight: hold, or return."""
     return Hold(request, entity) if fallback is Fallback.HOLD else Return(request, entity)
 
 
@@ -75,8 +75,8 @@ def hand_overs(
 def unshown(c: Configuration, request: CTR, found: Realisation, vehicles: frozenset[Name]) -> str:
     """Return the part of a control whose completion no report would ever show, or an empty text.
 
-    A traveller is seen to arrive, and a vehicle shows whom it obeys. No report shows that a load was put down, or that
-    a channel was joined.
+    A traveller is seen to arrive, and a vehicle shows its controlling station. No report shows that a load was put
+    down, or that a channel was joined.
     """
     travelling = {node for node, _ in found.flying}
     for node, place in moved(request.reaction, found.match):
@@ -99,10 +99,10 @@ def _authority(channels: frozenset[Name]) -> Name:
 
 
 def is_authority(channel: Name) -> bool:
-    """Tell whether a channel is a control authority, which autopilots confirm."""
+    """Return whether a channel is a control authority, which autopilots confirm."""
     return channel.partition(":")[0] == CONTROL_AUTHORITY
 
 
 def is_done(told: HandOver, channels: tuple[Name, ...]) -> bool:
-    """Tell whether the channels that a vehicle was seen on are those after a hand-over."""
+    """Return whether a vehicle was seen on the channels of a completed hand-over."""
     return told.join in channels and told.leave not in channels

@@ -1,4 +1,4 @@
-"""Take in other stations: parcels enter, vehicles are under way, agents move, assumptions break."""
+"""Input from other stations: parcels, vehicles under way, hosts of agents, broken assumptions."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from semantics.state.signature import REGION, Name
 
 
 def hear_of(turning: Turning, report: Elsewhere) -> None:
-    """Take in a report about another station; its steps are timed by when it says that they were."""
+    """Take in a report of another station; its steps carry the other station's times."""
     turning.done = report.done if isinstance(report, Delivered | Underway) else None
     match report:
         case Delivered():
@@ -42,7 +42,7 @@ def hear_of(turning: Turning, report: Elsewhere) -> None:
             turning.breaks(f"at {station}: {assumption}", station)
             turning.findings[count:] = [replace(each, elsewhere=True) for each in turning.findings[count:]]
     if turning.done is not None:
-        turning.check_times()  # what waited on its way may be late, and is done at once
+        turning.check_times()  # delayed reports may be late: check at once
     turning.done = None
 
 
@@ -70,7 +70,7 @@ def _refuse(turning: Turning, station: str, number: int, why: str) -> None:
 
 
 def _fly(turning: Turning, entity: Name, to: Name) -> None:
-    """Take in that another station has sent a vehicle, or that this vehicle has arrived.
+    """Record that another station has sent a vehicle, or that this vehicle has arrived.
 
     In between it is in transit here too, so no agent observes it on its way.
     """

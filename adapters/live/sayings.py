@@ -1,7 +1,7 @@
-"""Take in what operators say: messages to agents, orders to vehicles, vehicles given back, findings seen.
+"""Input from operators: messages to agents, orders to vehicles, vehicles given back, findings acknowledged.
 
-An order is no rule of the calculus, and changes nothing in the configuration: the vehicle is *taken over*, by an
-operator, and told to hold or to return. What the mission asks of it stays pending until it is given back.
+An order is no rule of the calculus, and leaves the configuration as it is: the operator *takes over* the vehicle, which
+then holds or returns. The mission's requests of it stay pending until it is given back.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ from semantics.state.partition import is_here, station_of
 from semantics.state.signature import Name
 
 _ADDRESS = re.compile(r"\[?([0-9a-fA-F:.]+)\]?:([0-9]{1,5})")
-"""Where a vehicle sends from: a number, since nobody waits for names."""
+"""A vehicle's address: numeric, since the loop does not wait for name look-ups."""
 
 MOST_PORT = 65_535
 
 
 def answer(turning: Turning, said: Said) -> None:
-    """Take what someone outside says, and answer it."""
+    """Take a message from outside, and answer it."""
     match said:
         case Saying():
             say_to(turning, said)
@@ -56,7 +56,7 @@ def answer(turning: Turning, said: Said) -> None:
 
 
 def order(turning: Turning, said: Ordering) -> Answer:
-    """Tell a vehicle, or all, to hold or to return: from now on the mission does not command it."""
+    """Order a vehicle, or all, to hold or to return: from now on the mission does not command it."""
     named = sorted(turning.plan.vehicles) if said.vehicle is None else [said.vehicle]
     left_out = {entity: why for entity in named if (why := _objection(turning, entity, said))}
     told = [entity for entity in named if entity not in left_out]
@@ -77,9 +77,10 @@ def _it(told: list[Name]) -> str:
 
 
 def _objection(turning: Turning, entity: Name, said: Ordering) -> str:
-    """Return why a vehicle is not told.
+    """Return the reason why a vehicle does not get an order, or an empty text.
 
-    An order to all overrules no pilot and no fail-safe, and an order to one only what the operator can know of.
+    An order to all overrules no pilot and no fail-safe; an order to one overrules only a take-over from an
+    earlier turn, which the operator can know.
     """
     if entity not in turning.plan.vehicles:
         return _no_vehicle(turning, entity)
@@ -96,19 +97,19 @@ def _objection(turning: Turning, entity: Name, said: Ordering) -> str:
 
 
 def _is_foreign(turning: Turning, entity: Name) -> bool:
-    """Tell whether a pilot, another station or a fail-safe has taken a vehicle over."""
+    """Return whether a pilot, another station or a fail-safe has taken a vehicle over."""
     return entity in turning.taken and entity not in turning.bidden
 
 
 def _authority(turning: Turning, entity: Name) -> str:
-    """Return the stations that a vehicle obeys, as P has it."""
+    """Return the stations that a vehicle obeys, according to P."""
     channels = turning.before.configuration.structure.physical.channels(entity)
     stations = (channel.partition(":")[2] for channel in channels if is_authority(channel))
     return " and ".join(sorted(stations)) or "another station"
 
 
 def _notes(turning: Turning, entity: Name, what: Fallback) -> Iterator[str]:
-    """Yield what an operator should know of a vehicle that is told something."""
+    """Yield remarks to the operator on a vehicle that gets an order."""
     if _is_foreign(turning, entity):
         yield f"that overrules who took {entity} over: {turning.taken[entity]}"
     if entity in turning.lost or entity not in turning.seen:
@@ -118,7 +119,7 @@ def _notes(turning: Turning, entity: Name, what: Fallback) -> Iterator[str]:
 
 
 def _of_leaving(turning: Turning, entity: Name) -> Iterator[str]:
-    """Yield what follows if a vehicle flies home from where the mission assumes that it stays."""
+    """Yield the consequence if a vehicle flies home although the mission assumes that it stays."""
     physical, then = turning.c.structure.physical, turning.plan.precautions.on_broken
     if turning.suspended or then is Fallback.CONTINUE or entity not in physical or physical.transit(entity):
         return
@@ -129,7 +130,7 @@ def _of_leaving(turning: Turning, entity: Name) -> Iterator[str]:
 
 
 def _bid(turning: Turning, entity: Name, said: Ordering) -> str:
-    """Take a vehicle over and tell it, in place of what this turn was to tell it; return the request."""
+    """Take a vehicle over and order it, in place of this turn's other commands; return the request."""
     flies = (GoTo, Follow, HandOver, Hold, Return)
     turning.commands[:] = (c for c in turning.commands if c.entity != entity or not isinstance(c, flies))
     if _is_foreign(turning, entity):
@@ -146,7 +147,7 @@ def _bid(turning: Turning, entity: Name, said: Ordering) -> str:
 
 
 def _take_back(turning: Turning, said: GivingBack) -> Answer:
-    """Take back a vehicle, or believe it from another address."""
+    """Take back a vehicle, or accept its messages from another address."""
     if said.vehicle not in turning.plan.vehicles:
         return Answer(said, _no_vehicle(turning, said.vehicle))
     return Answer(said, _rebind(turning, said.vehicle, said.at)) if said.at else _give_back(turning, said)
@@ -175,7 +176,7 @@ def _give_back(turning: Turning, said: GivingBack) -> Answer:
     if fallback is Fallback.CONTINUE:
         turning.find("given back", entity, f"{given}, and is commanded again")
         return Answer(said)
-    note = f"what it was to do was given up: it is told to {fallback.value}"  # as nobody else flies it
+    note = f"what it was to do was given up: it is told to {fallback.value}"  # no one else flies it
     turning.find("given back", entity, f"{given}; {note}")
     turning.fall_back(fallback, (entity,))
     return Answer(said, notes=(note,))
@@ -208,7 +209,7 @@ def say_to(turning: Turning, saying: Saying) -> None:
 
 
 def _rebind(turning: Turning, entity: Name, at: str) -> str:
-    """Believe a vehicle from another address; return why not, nothing if it is told so."""
+    """Accept a vehicle's messages from another address; return the reason of a refusal, or an empty text."""
     found = _ADDRESS.fullmatch(at)
     if found is None or not _is_number(found[1]) or int(found[2]) > MOST_PORT:
         return (

@@ -22,16 +22,16 @@ SERVING: dict[type, tuple[Rule, ...]] = {
     SND: (snd,),
     MGR: (migrate,),
 }
-"""The rules that serve each kind of request. A flight ends when it is observed to end."""
+"""The rules that serve each kind of request. A flight ends by an observation."""
 
 STEPS_PER_SECOND = 8.0
-"""How many steps an agent may take a second: one that observes in a loop observes about twice a second."""
+"""The most own steps of an agent a second: one that observes in a loop observes about twice a second."""
 
 PATIENCE = 0.02
-"""The least number of seconds for which an agent that is too fast waits."""
+"""The shortest wait, in seconds, of an agent that is too fast."""
 
 BURST = 100.0
-"""How many steps an agent may take at once."""
+"""The most own steps of an agent at once."""
 
 
 def own_steps(c: Configuration, a: Name) -> tuple[Transition, ...]:
@@ -53,7 +53,7 @@ def in_turn(c: Configuration) -> Iterator[Pending]:
 
 
 def to_serve(c: Configuration) -> Iterator[Pending]:
-    """Yield those of them that somebody serves, from the queue: flights end by themselves, however many there are."""
+    """Yield the requests in turn that rules serve, from the queue alone: flights end by themselves, and can be many."""
     headed: set[Name] = set()
     for pending in c.eta.queued():
         agent = pending.request.agent

@@ -1,4 +1,4 @@
-"""Turn what plugins publish into placements: the newest within its time limit, compared with P."""
+"""Turn publications of plugins into placements: the newest within its time limit, compared with P."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ MOST_AHEAD = 5.0
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """A message that is not taken, and why."""
+    """A rejected message, and the reason."""
 
     entity: Name
     reason: str
 
 
 def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) -> Sighting | Refusal | None:
-    """Return the sighting that a message makes, None if a newer one is known."""
+    """Return the sighting in a message, a Refusal if it is rejected, None if a newer sighting is known."""
     published = heard.published
     said = published.property if isinstance(published, Aged) else published
     owner = plan.vehicles.get(said.entity)
@@ -60,7 +60,7 @@ def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) ->
 
 @lru_cache(maxsize=1 << 4)
 def _no_entities(setting: Setting) -> frozenset[Name]:
-    """Return names that stand for something else: the region, kinds, and bigActors that may be spawned."""
+    """Return the names that belong to no entity: the region, kinds, and bigActors that may be spawned."""
     spawned = (each.name for each in setting.program.statements if isinstance(each, Spawn))
     return frozenset({REGION, *setting.signature.kinds, *spawned})
 
@@ -95,7 +95,7 @@ def placement_seen(c: Configuration, shape: Placed | None, sighting: Sighting) -
 
 
 def _may_carry(c: Configuration, by: Name, entity: Name) -> bool:
-    """Tell whether a carrier of such a kind exists: no entity carries itself, directly or through others."""
+    """Return whether a carrier of such a kind exists: no entity carries itself, directly or through others."""
     known = by in c.setting.kinds and c.setting.carries(by, entity)
     return known and entity not in (by, *c.structure.physical.carriers(by))
 
@@ -118,18 +118,18 @@ def bounds(geometry: Geometry) -> Bounds | None:
 
 
 Fence = tuple[Name, Placed, Bounds | None]
-"""A place that stands somewhere, with its bounds."""
+"""A place with a position, and its bounds."""
 
 
 class Fences:
-    """The places of one configuration, by which containers of entities are found."""
+    """The places of one configuration, as an index for the containers of entities."""
 
     def __init__(self, c: Configuration) -> None:
         self.c = c
         self._of: dict[str, list[Fence]] = {}
 
     def holders(self, entity: Name, kind: str, placement: Placement | None) -> frozenset[Name]:
-        """Return all that contains or carries an entity at a placement: what A(P) knows of its position."""
+        """Return all containers and carriers of an entity at a placement: A(P)'s knowledge of its position."""
         if placement is None:
             return frozenset()
         if isinstance(placement, Carried):
@@ -139,7 +139,7 @@ class Fences:
         found = []
         for place, position, limits in self._fences(kind):
             if limits and not (limits[0] < north < limits[1] and limits[2] < east < limits[3]):
-                continue  # most places are passed over here
+                continue  # the bounds exclude most places
             if place != entity and encloses(position, placement):
                 found.append(place)
         return frozenset(found)
@@ -157,7 +157,7 @@ class Fences:
 
 
 def contents(physical: PhysicalModel, place: Name, placement: Placement | None) -> frozenset[Name]:
-    """Return what a place contains at a placement; entities in transit are in no place."""
+    """Return the contents of a place at a placement; entities in transit are in no place."""
     if not isinstance(placement, Placed) or placement.geometry.is_point:
         return frozenset()
     setting = physical.sorting

@@ -1,4 +1,4 @@
-"""A Unix socket in the file system: bound by one process at a time, and served even where descriptors have run out."""
+"""A Unix socket in the file system: bound by one process at a time, and served even without free descriptors."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SPARE: Final = 4
 """Descriptors kept in reserve."""
 
 LOCKED: Final = 1.0
-"""Seconds for which another process that is about to bind a socket in the same folder is waited for."""
+"""Seconds of waiting for another process that is about to bind a socket in the same folder."""
 
 SPENT: Final = (errno.EMFILE, errno.ENFILE)
 
@@ -28,7 +28,7 @@ def bound(path: Path) -> Iterator[socket]:
     """Listen at a path that only its user may open, and remove it in the end if it is still this socket's.
 
     Raises:
-        OSError: It can't be bound; FileExistsError where somebody listens there, or it is no socket.
+        OSError: It can't be bound; FileExistsError if a process listens there, or it is no socket.
     """
     with socket(AF_UNIX, SOCK_STREAM) as server:
         server.setblocking(False)
@@ -53,13 +53,13 @@ def bound(path: Path) -> Iterator[socket]:
 
 
 def is_taken(path: Path) -> bool:
-    """Tell whether a process listens at a path, be it stopped or too busy to answer: nobody does where it refuses."""
+    """Return whether a process listens at a path, even stopped or busy; a refused connection shows that none does."""
     with socket(AF_UNIX, SOCK_STREAM) as asking:
         asking.setblocking(False)
         try:
             asking.connect(str(path))
         except BlockingIOError:
-            return True  # too many wait there
+            return True  # its queue of connections is full
         except OSError:
             return False
         return True
@@ -75,7 +75,7 @@ def _identity(path: Path) -> tuple[int, int] | None:
 
 @contextmanager
 def _alone_in(folder: Path) -> Iterator[None]:
-    """Keep others from binding in a folder meanwhile, as far as it can be locked."""
+    """Keep others from binding in a folder meanwhile, if the file system allows a lock."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
         end = time.monotonic() + LOCKED
@@ -97,20 +97,20 @@ def _is_locked(descriptor: int) -> bool:
 
 
 class Reserve:
-    """Descriptors that are kept for who has to be served whatever else the process has open."""
+    """Spare descriptors for clients that must be served even if the process has no others left."""
 
     def __init__(self) -> None:
         self._spare: list[int] = []
         self.fill()
 
     def fill(self) -> None:
-        """Open what is missing, as far as the process may."""
+        """Open the missing spare descriptors, within the limit of the process."""
         with suppress(OSError):
             while len(self._spare) < SPARE:
                 self._spare.append(os.open(os.devnull, os.O_RDONLY | os.O_CLOEXEC))
 
     def accepted(self, server: socket) -> socket | None:
-        """Return the next connection, None where there is none that can be taken now."""
+        """Return the next connection, None if none can be taken now."""
         try:
             return server.accept()[0]
         except OSError as error:
@@ -122,6 +122,6 @@ class Reserve:
         return None
 
     def close(self) -> None:
-        """Give all back."""
+        """Close all spare descriptors."""
         while self._spare:
             os.close(self._spare.pop())

@@ -29,7 +29,7 @@ class Plan:
         vehicles: For each entity that takes commands, the plugin that owns it.
         precautions: The mission's responses to broken assumptions and exceeded time limits.
         strict: Whether other requests wait while a vehicle confirms a hand-over, since the verdict is for `fcfs` only.
-        peers: The plugin of the other stations, which also speaks for vehicles; empty if there are none.
+        peers: The plugin of the other stations, which also reports vehicles; empty if there are none.
     """
 
     first: Configuration
@@ -41,7 +41,7 @@ class Plan:
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """The newest observation of an entity, and until when it may stay in P."""
+    """The newest observation of an entity, and the end of its validity in P."""
 
     property: PhysicalProperty
     time: float
@@ -55,11 +55,11 @@ class Order:
     Attributes:
         command: The last command.
         agent: The agent whose request it serves.
-        since: When it was first sent.
-        obeyed: Whether the vehicle has shown that it follows the command, and has shown nothing else since.
+        since: Time of its first sending.
+        obeyed: Whether the vehicle's last reports show that it follows the command.
         through: Whether the vehicle has reported the end of its path.
         refused: Whether it was refused.
-        waypoint: Around which point the vehicle will stay, as far as it has told.
+        waypoint: The point around which the vehicle will stay, if it has reported one.
     """
 
     command: GoTo | Follow | HandOver
@@ -72,7 +72,7 @@ class Order:
 
     @property
     def goal(self) -> Geometry | None:
-        """The last place of the command, as it was when it was told."""
+        """The last place of the command, at its position when it was sent."""
         match self.command:
             case GoTo(place=place):
                 return place
@@ -82,7 +82,7 @@ class Order:
 
 
 class Fate(StrEnum):
-    """What has become of an order to hold or to return."""
+    """The progress of an order to hold or to return."""
 
     ASKED = "asked"
     SENT = "sent"
@@ -92,16 +92,16 @@ class Fate(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Bidden:
-    """An order to hold or to return, which a vehicle owes until it has shown that it does it.
+    """An order to hold or to return, which a vehicle owes until its state shows it.
 
     It stands until the vehicle is given back or taken over.
 
     Attributes:
-        command: What it was told.
-        by: The operator who said so, empty if unknown; None for the mission, which falls back.
-        fate: What has become of it.
-        refusal: Why it was refused last; empty if it was not.
-        again: When it is told again what it has refused.
+        command: The command to the vehicle.
+        by: The operator who gave it, empty if unknown; None for the mission, which falls back.
+        fate: Its progress.
+        refusal: The last reason of refusal; empty if there was none.
+        again: Time of its repetition after a refusal.
     """
 
     command: Hold | Return
@@ -112,25 +112,25 @@ class Bidden:
 
     @property
     def owed(self) -> bool:
-        """Whether the vehicle has not shown yet that it does it."""
+        """Whether the vehicle has not confirmed it yet."""
         return self.fate is not Fate.CONFIRMED
 
     @property
     def orderer(self) -> str:
-        """Who ordered it, for people."""
+        """The orderer's name for people."""
         return "the mission" if self.by is None else operator(self.by)
 
     @property
     def what(self) -> str:
-        """What was ordered."""
+        """The ordered action."""
         return "hold" if isinstance(self.command, Hold) else "return"
 
     @property
     def reason(self) -> str:
-        """What stands between the vehicle and the mission's commands, as far as it is known to be so."""
+        """The reason why the mission does not command the vehicle, with the order's progress."""
         if not self.owed:
             return f"{'held' if self.what == 'hold' else 'sent home'} by {self.orderer}"
-        if self.refusal:  # also while it is told again
+        if self.refusal:  # also while it is repeated
             return f"refuses to {self.what}, as {self.orderer} ordered: {self.refusal}"
         return f"told to {self.what} by {self.orderer}, not confirmed yet"
 
@@ -146,7 +146,7 @@ def operator(by: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Waiting:
-    """The request at the head of an agent's line: since when, and which limits it has exceeded."""
+    """The request at the head of an agent's line: its start there, and the limits that it has exceeded."""
 
     request: Request
     since: float
@@ -155,7 +155,7 @@ class Waiting:
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """How many steps of its own an agent may take at once, as of a time."""
+    """The number of own steps that an agent may take at once, as of a time."""
 
     tokens: float
     at: float
@@ -168,31 +168,31 @@ class LiveState:
     Attributes:
         configuration: ⟨α | S | η⟩.
         seen: The newest sighting of each entity that the mission names or has admitted.
-        expires: When the first sighting becomes too old.
+        expires: Time at which the first sighting becomes too old.
         orders: The order of each vehicle in flight.
         handing: The unconfirmed hand-over of each vehicle.
         lost: Vehicles whose link is lost.
-        taken: Vehicles that were taken over, also by an operator's order, and how: they get no commands until an
-            operator gives them back.
-        bidden: The operator's order that stands for each vehicle; all of them are taken.
-        owed: The fall-back that the mission has ordered of each vehicle.
+        taken: Vehicles that were taken over, also by an operator's order, with the reason: they get no commands until
+            an operator gives them back.
+        bidden: The operator's standing order for each vehicle; all of them are taken.
+        owed: The fallback that the mission has ordered of each vehicle.
         idle: Agents without own steps: they wait for an observation, a message, or for ever.
-        due: When each agent at a `react` with an `after` branch stops waiting.
-        quiet: The configuration in which nothing more could be served, None if that is not known.
+        due: The end of each agent's wait at a `react` with an `after` branch.
+        quiet: The configuration in which no more requests could be served, None if that is not known.
         heads: The head of each agent's line.
         paces: The pace of each agent.
-        suspended: Whether no more controls are served, since an assumption broke.
+        suspended: Whether a broken assumption has stopped all controls.
         grounded: Agents whose controls are no longer served, since a request of theirs took too long.
         missing: Cells of P whose removal broke an assumption, with their values: their return breaks no other.
         failed: Agents whose computation failed.
-        reported: What was reported already, and is not reported again.
+        reported: Messages that are not reported again.
         last: The agent that took the last step: the next turn begins with the one after it.
-        number: How many steps were taken.
-        told: How many orders were given.
-        findings: How many findings were reported: the number of the last one.
-        shares: How many strangers were admitted from each plugin, and how many of them are places.
-        timers: Since when everything runs that the mission times; None before the start, and where it times nothing.
-        stopped: Since when a run stands still that goes on after it was killed; None where it does not.
+        number: The number of steps taken.
+        told: The number of orders given.
+        findings: The number of findings reported: also the number of the last one.
+        shares: The number of strangers admitted from each plugin, and of those that are places.
+        timers: The clocks of the mission's timing; None before the start, and in a mission without timing.
+        stopped: Start of the standstill of a killed run that is resumed; None otherwise.
     """
 
     configuration: Configuration
@@ -233,7 +233,7 @@ class LiveState:
 
     @property
     def fates(self) -> Mapping[Name, tuple[str, str]]:
-        """What has become of each operator's order, and in words."""
+        """The fate of each operator's order, also in words."""
         return {name: (each.fate.value, each.reason) for name, each in self.bidden.items()}
 
     def later(self, seconds: float) -> LiveState:
@@ -245,12 +245,12 @@ class LiveState:
         return self.with_(seen=seen, expires=self.expires + seconds, heads=heads, due=due, timers=timers)
 
 
-# --- what comes in ------------------------------------------------------------------------------------
+# --- input ---------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """Something that a plugin published."""
+    """A publication of a plugin."""
 
     plugin: str
     published: Published
@@ -258,7 +258,7 @@ class Heard:
 
 @dataclass(frozen=True, slots=True)
 class Saying:
-    """A message from outside to an agent, and who says it; `number` identifies it in the answer."""
+    """An operator's message to an agent, with its sender; `number` identifies it in the answer."""
 
     agent: Name
     message: str
@@ -267,19 +267,19 @@ class Saying:
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """What in it came from outside."""
+        """The texts from outside."""
         return self.agent, self.message, self.by
 
 
 @dataclass(frozen=True, slots=True)
 class GivingBack:
-    """An operator's word of a vehicle: that it may be commanded again, or where it is believed from now on.
+    """An operator's permission to command a vehicle again, or the vehicle's new address.
 
     Attributes:
-        vehicle: Which.
-        at: HOST:PORT where it is heard now; empty where it may be commanded again.
-        by: Who says so.
-        number: Names the word in the answer.
+        vehicle: The vehicle's name.
+        at: The vehicle's new HOST:PORT; empty if it may be commanded again.
+        by: The operator.
+        number: Identifies it in the answer.
     """
 
     vehicle: Name
@@ -289,7 +289,7 @@ class GivingBack:
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """What in it came from outside."""
+        """The texts from outside."""
         return self.vehicle, self.at, self.by
 
 
@@ -298,10 +298,10 @@ class Ordering:
     """An operator's order: to hold, or to return.
 
     Attributes:
-        fallback: Which of the two.
-        vehicle: Which vehicle; None for all that this station commands.
-        by: Who says so.
-        number: Names the order in the answer.
+        fallback: The ordered action.
+        vehicle: The vehicle's name; None for all that this station commands.
+        by: The operator.
+        number: Identifies the order in the answer.
     """
 
     fallback: Fallback
@@ -311,13 +311,13 @@ class Ordering:
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """What in it came from outside."""
+        """The texts from outside."""
         return self.vehicle or "", self.by
 
 
 @dataclass(frozen=True, slots=True)
 class Acknowledging:
-    """An operator has seen a finding: the number that it has in the recording, from 1, and who."""
+    """An operator has seen a finding, given by its number in the recording, from 1."""
 
     finding: int
     by: str = ""
@@ -325,12 +325,12 @@ class Acknowledging:
 
     @property
     def texts(self) -> tuple[str, ...]:
-        """What in it came from outside."""
+        """The texts from outside."""
         return (self.by,)
 
 
 Said = Saying | GivingBack | Ordering | Acknowledging
-"""What is said to a run from outside."""
+"""A message to a run from outside."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -343,7 +343,7 @@ class Batch:
     missed: float = 0.0
 
 
-# --- what comes out -----------------------------------------------------------------------------------
+# --- output --------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -355,9 +355,9 @@ class LiveStep:
         source: The configuration before it.
         transition: The transition.
         choice: The index of the transition among those with its label.
-        sight: What the world decided: an observation, or what passes between stations.
-        time: When.
-        date: When another station did what it is, by the clock here; else the same.
+        sight: The world's part: an observation, or a passage between stations.
+        time: Its time here.
+        date: Time of another station's original action, by the clock here; else `time`.
     """
 
     number: int
@@ -374,12 +374,11 @@ class Finding:
     """A message to the operator.
 
     Attributes:
-        kind: `broken assumption`, `refused`, `taken over`, `given back`, `ordered`, `confirmed` (an order),
-            `lost link`, `link restored`, `late`, `blocked`, `failed` (a computation, the recording, a plugin),
-            `trouble`.
+        kind: `broken assumption`, `refused`, `taken over`, `given back`, `ordered`, `confirmed` (an order), `lost
+            link`, `link restored`, `late`, `blocked`, `failed` (a computation, the recording, a plugin), `trouble`.
         about: The entity or agent.
         message: One line.
-        time: When.
+        time: Its time.
         fallback: The response: `hold`, `return`, or nothing.
         elsewhere: Whether another station found it.
     """
@@ -393,7 +392,7 @@ class Finding:
 
 
 def is_breach(finding: Finding) -> bool:
-    """Tell whether it is a breach of what the mission assumes, or what it falls back for."""
+    """Return whether it breaches an assumption of the mission, or causes a fallback."""
     return finding.kind == "broken assumption" or bool(finding.fallback)
 
 
@@ -404,9 +403,9 @@ class Answer:
     Attributes:
         saying: The message.
         refusal: Empty if it was accepted, else the reason for refusing it.
-        requests: Of an order, the request of each vehicle that was told.
-        left_out: Of an order to all, why the others were not told.
-        notes: What else the operator should know, of an order or of a vehicle that is given back.
+        requests: For an order, the request of each ordered vehicle.
+        left_out: For an order to all, the vehicles that were left out, with the reasons.
+        notes: Other remarks to the operator, on an order or on a vehicle that is given back.
     """
 
     saying: Said
@@ -436,7 +435,7 @@ class Turn:
         findings: Messages to the operator.
         answers: Answers to messages from outside.
         parcels: Parcels to other stations.
-        again: When to turn again without input; None if nothing waits for time to pass.
+        again: Time of the next turn without input; None if nothing waits for time to pass.
     """
 
     state: LiveState

@@ -1,4 +1,4 @@
-"""Where a vehicle must stay for P to be right: in the places of its point in P, and out of all others."""
+"""The surroundings of a vehicle in flight: it stays in the places of its point in P, and out of all others."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from semantics.state.setting import Setting
 from semantics.state.signature import Name
 
 MOST_COMBINATIONS: Final = 500
-"""Of where movers are, when a mission is looked at before take-off."""
+"""The most combinations of the positions of movers in a check before take-off."""
 
 
 def surroundings(
     c: Configuration, node: Name, spot: Placed, target: Geometry, first: Configuration
 ) -> Surroundings:
-    """Return what a vehicle has to stay in, and out of, within a place.
+    """Return the places that a vehicle must stay in or out of, within its target place.
 
-    That is every place that may hold it, where the place is now and where the mission lists it.
+    They are all places that may hold it, at their current positions and at those that the mission lists.
     """
     holders = sorted(c.setting.containers(c.setting.kind(node)))
     stands = {each for name in holders for each in _stands(c, first, name, spot)} - {target}
@@ -32,10 +32,9 @@ def surroundings(
 
 
 def _stands(c: Configuration, first: Configuration, place: Name, spot: Placed) -> Iterator[Geometry]:
-    """Yield where a place may stand at the height of a vehicle.
+    """Yield the possible positions of a place at the height of a vehicle.
 
-    What the mission lists counts as long as the place is where the mission has it: of one that was seen elsewhere
-    nobody knows where it goes.
+    The mission's positions count as long as the place is at one of them: a place seen elsewhere may go anywhere.
     """
     for at in (c.structure.physical.placement(place), *_listed(c, first, place)):
         if isinstance(at, Placed) and not at.geometry.is_point and band_contains(at.altitude, spot.altitude):
@@ -43,7 +42,7 @@ def _stands(c: Configuration, first: Configuration, place: Name, spot: Placed) -
 
 
 def _listed(c: Configuration, first: Configuration, place: Name) -> tuple[Placement, ...]:
-    """Return where the mission has a place, unless it was seen elsewhere."""
+    """Return the mission's positions of a place, or none if it was seen elsewhere."""
     here, begins = c.structure.physical.placement(place), first.structure.physical.placement(place)
     listed = (*(() if begins is None else (begins,)), *_placements(c.setting, place))
     return listed if here is None or here in listed else ()
@@ -57,12 +56,12 @@ def _placements(setting: Setting, place: Name) -> tuple[Placed, ...]:
 
 @lru_cache(maxsize=1 << 6)
 def _movers(setting: Setting, kind: str) -> tuple[Name, ...]:
-    """Return what may hold an entity of a kind and may come to stand elsewhere."""
+    """Return the movable containers for entities of a kind."""
     return tuple(name for name in sorted(setting.containers(kind)) if _placements(setting, name))
 
 
 def told_apart(c: Configuration, node: Name, here: Placed, seen: Placed, first: Configuration) -> str:
-    """Return what would hold a vehicle at one of two points only, where the mission lists it; or an empty text."""
+    """Return a place that holds a vehicle at only one of two points, at a listed position; or an empty text."""
     for place in _movers(c.setting, c.setting.kind(node)):
         for at in _listed(c, first, place):
             if isinstance(at, Placed) and encloses(at, here) != encloses(at, seen):
@@ -71,9 +70,9 @@ def told_apart(c: Configuration, node: Name, here: Placed, seen: Placed, first: 
 
 
 def spots(first: Configuration, node: Name, place: Name) -> Iterator[tuple[Geometry, Surroundings]]:
-    """Yield each geometry of a place with what a vehicle has to stay in and out of there, wherever the others are.
+    """Yield each geometry of a place with its surroundings, for all positions of the other places.
 
-    Of very many combinations of where the others are, only the first are looked at.
+    Of very many combinations of positions, only the first are considered.
     """
     movers = sorted({place, *first.setting.containers(first.setting.kind(node))})
     physical = first.structure.physical

@@ -1,6 +1,6 @@
-"""The section `timing`, watched: what takes longer than it says, or is over sooner, breaks an assumption.
+"""The monitor of the section `timing`: a duration outside its bounds breaks an assumption.
 
-The clocks are those of a check, as the moments at which they began.
+The clocks are those of a check, stored as their starting moments.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ from semantics.timing.timing import Every, Sayable, Window
 from semantics.timing.voyages import travelling
 
 GRACE: Final = 0.25
-"""Seconds that a run itself may need before it sees that something is done."""
+"""Seconds that a run itself may need to notice that something is done."""
 
 OWN: Final = frozenset({Sort.REQUEST, Sort.AGENT, Sort.AFTER})
-"""Clocks of what a run does itself: they stand still while it does."""
+"""Clocks of the run's own activities: they stand still while the run does."""
 
 FULL: Final = frozenset({Sort.EVERY, Sort.RESTORED})
 """Clocks that are past their bound as the mission begins."""
 
 
 class Broken(NamedTuple):
-    """An assumption about time that does not hold, in words, and what it is about."""
+    """A broken assumption about time, in words, and its subject."""
 
     about: Name
     message: str
 
 
 class Flying(NamedTuple):
-    """A flight under way: who, where to, since when, and how many seconds it takes at least and at most."""
+    """A flight under way: vehicle, destination, start, and least and most seconds."""
 
     vehicle: Name
     destination: Name
@@ -51,14 +51,14 @@ class Flying(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Timers:
-    """Since when everything runs that the mission times.
+    """The running clocks of the mission's timing.
 
     Attributes:
-        situation: What time means in the configuration.
-        since: When the clocks began, the oldest of equal ones first.
-        windows: Of clauses that have a window and could take their step: whether it binds them still.
-        began: When the mission began, later by what was spent without listening.
-        rested: For how many seconds the run itself stood still since then: it was killed, and went on.
+        situation: The meaning of time in the configuration.
+        since: The starting moments of each clock, the oldest of equal ones first.
+        windows: For each clause that has a window and could take its step, whether the window still binds it.
+        began: The start of the mission, shifted by the time without listening.
+        rested: The seconds for which the run itself stood still since then: it was killed and resumed.
     """
 
     situation: Situation
@@ -69,23 +69,23 @@ class Timers:
 
     @property
     def seconds(self) -> float:
-        """How many seconds a tick has."""
+        """The seconds of a tick."""
         return self.situation.timing.tick / 1000
 
     def elapsed(self, now: float) -> float:
-        """Return how many seconds the mission has lasted, where something is timed from its start."""
+        """Return the seconds since the mission's start, if a clause is timed from it."""
         return now - self.since[Clock(Sort.MISSION)][0]
 
     def later(self, seconds: float) -> Timers:
-        """Return them shifted by a time without listening."""
+        """Return the timers shifted by a time without listening."""
         return self.counted(self.began + seconds, self.rested, math.inf)
 
     def resting(self, since: float, now: float) -> Timers:
-        """Return them after the run itself has stood still: the world went on, and whoever waits begins anew."""
+        """Return the timers after a standstill of the run: the world went on, and every `after` wait begins anew."""
         return self.counted(self.began, self.rested + max(now - since, 0.0), now)
 
     def counted(self, began: float, rested: float, now: float) -> Timers:
-        """Return them by another first moment, and another time for which the run itself stood still until now."""
+        """Return the timers for another start, and another standstill of the run until now."""
         shift, still = began - self.began, rested - self.rested
 
         def start(clock: Clock, at: float) -> float:
@@ -124,7 +124,7 @@ def stepped(timers: Timers, transition: Transition, now: float) -> Timers:
 
 
 def _entered(timers: Timers, taken: Iterable[int], now: float) -> Timers:
-    """Return the timers with their windows: one binds what could be done in it, until that is done."""
+    """Return the timers with their windows: a window binds a possible step until the step is taken."""
     windows = {**timers.windows, **dict.fromkeys(taken, FREE)}
     for number, transitions in enumerate(timers.situation.by_clauses):
         said = timers.situation.timing.clause(number).step
@@ -139,7 +139,7 @@ def _step_of(situation: Situation, transition: Transition) -> TimedStep | None:
 
 
 def _taken(source: Situation, step: TimedStep | None, after: Situation) -> tuple[int, ...]:
-    """Return the clauses whose own step was taken, by whatever it was observed."""
+    """Return the clauses whose own step was taken, by any observation."""
     said = step.done[0] if step is not None and step.transition.label.agent is None else Clock(Sort.MISSION)
     return tuple(
         number
@@ -149,7 +149,7 @@ def _taken(source: Situation, step: TimedStep | None, after: Situation) -> tuple
 
 
 def _has_happened(before: Configuration, now: Configuration, clause: Clause) -> bool:
-    """Tell whether the world shows after a step what a clause is about: channels return by another clock."""
+    """Return whether a step made a clause's event visible in the world; the return of a channel has another clock."""
     one, other = (each.structure.physical for each in (before, now))
     match clause:
         case Drifts(entity=entity):
@@ -173,11 +173,11 @@ def _has_moved(before: Configuration, now: Configuration, entity: Name) -> bool:
     return one.abstract_parent(entity) != other.abstract_parent(entity)
 
 
-# --- what does not hold
+# --- violations
 
 
 def too_soon(timers: Timers, transition: Transition, after: Timers, now: float) -> Iterator[Broken]:
-    """Yield what a step shows to be over, or to come again, before it can."""
+    """Yield the durations that a step ends, or the repetitions that it makes, too soon."""
     source = timers.situation
     step = _step_of(source, transition)
     request = None if step is None or step.transition.served is None else step.transition.served.request
@@ -192,7 +192,7 @@ def too_soon(timers: Timers, transition: Transition, after: Timers, now: float) 
 
 
 def _untimely(timers: Timers, number: int, now: float) -> Iterator[Broken]:
-    """Yield that a clause has taken its step too soon; what may be said until some time, also that it was too late."""
+    """Yield a violation if a clause has taken its step too soon, or if a message came too late."""
     match timers.situation.timing.clause(number).step:
         case Every(least):
             elapsed = now - timers.since[Clock(Sort.EVERY, number)][0]
@@ -217,7 +217,7 @@ def _of_clause(timers: Timers, number: int, when: str) -> Broken:
 
 
 def too_late(timers: Timers, now: float) -> Iterator[Broken]:
-    """Yield what takes longer than it can, and the vehicles that are aloft for longer than they last."""
+    """Yield the steps that take too long, and the vehicles that are aloft for longer than their endurance."""
     situation = timers.situation
     for step, end, most in _ends(timers):
         if now > end + GRACE:
@@ -234,13 +234,13 @@ def too_late(timers: Timers, now: float) -> Iterator[Broken]:
 
 
 def next_end(timers: Timers, now: float) -> float:
-    """Return when to look again, infinitely late where nothing ends."""
+    """Return the time of the next check, infinity if no bound ends."""
     ends = (end for found in (_ends(timers), _batteries(timers), _windows(timers)) for _, end, _ in found)
     return min((end + GRACE + 0.001 for end in ends if end + GRACE >= now), default=math.inf)
 
 
 def _ends(timers: Timers) -> Iterator[tuple[TimedStep, float, float]]:
-    """Yield what has to be done by some time: the step, that time, and how many seconds it takes at most."""
+    """Yield the steps with a deadline: the step, the deadline, and its most seconds."""
     situation = timers.situation
     steps = {clock: step for step in reversed(situation.steps) if step.in_turn for clock in step.done}
     for index, most, unless in situation.deadlines:
@@ -259,7 +259,7 @@ def _batteries(timers: Timers) -> Iterator[tuple[Name, float, float]]:
 
 
 def _windows(timers: Timers) -> Iterator[tuple[int, float, float]]:
-    """Yield what has to happen first by some time: its clause, that time, and how many seconds after the start."""
+    """Yield the clauses with a deadline for their first step: number, deadline, and seconds after the start."""
     for number, state in timers.windows.items():
         said, may = timers.situation.timing.clause(number).step, timers.situation.by_clauses[number]
         if state == BOUND and may and isinstance(said, Window) and said.within is not None:
@@ -290,11 +290,11 @@ def _text(seconds: float) -> str:
     return lapse_text(round(seconds * 10) * 100)
 
 
-# --- what is under way
+# --- flights under way
 
 
 def flying(timers: Timers) -> Iterator[Flying]:
-    """Yield the flights under way, with since when they go on and how long they take."""
+    """Yield the flights under way, with their starts and durations."""
     situation = timers.situation
     for clock, began in timers.since.items():
         if clock.sort is Sort.FLIGHT and isinstance(clock.of, FLY):

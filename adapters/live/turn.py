@@ -49,11 +49,11 @@ from semantics.state.requests import CTR, SND
 from semantics.state.signature import Name
 
 MOST_REPORTED = 1_000
-"""How many reports are remembered; beyond it no more troubles are reported, since any sender can cause any number."""
+"""The number of remembered reports; beyond it no more troubles are reported, since any sender can cause any number."""
 
 
 class Turning:
-    """A turn being made; what it gathers becomes the next state."""
+    """A turn in progress; its changes become the next state."""
 
     def __init__(self, plan: Plan, state: LiveState, now: float) -> None:
         self.plan = plan
@@ -93,7 +93,7 @@ class Turning:
         self.parcels: list[Outgoing] = []
         self.again = math.inf
 
-    # --- what comes of it
+    # --- the result
 
     def turn(self) -> Turn:
         """Return the result of the turn."""
@@ -130,7 +130,7 @@ class Turning:
         return Turn(state, *gathered, tuple(self.parcels), again)
 
     def find(self, kind: str, about: Name, message: str, fallback: str = "", *, once: bool = False) -> bool:
-        """Report something; with `once` not a second time, and not at all after too many such reports."""
+        """Report a finding, with `once` not twice, and at most so many troubles; return whether it was reported."""
         if once:
             full = kind == "trouble" and len(self.reported) >= MOST_REPORTED
             if full or message in self.reported:
@@ -140,7 +140,7 @@ class Turning:
         return True
 
     def wake(self, at: float) -> None:
-        """Turn again at a time, even without input."""
+        """Schedule a turn at a time, even without input."""
         self.again = min(self.again, at)
 
     # --- steps
@@ -153,7 +153,7 @@ class Turning:
     ) -> None:
         """Take a step; `alike` are all possible steps by that rule here.
 
-        What it adds to an agent at another station leaves at once.
+        Additions to an agent at another station leave at once.
         """
         word = str(transition.label)
         choice = [each for each in alike if str(each.label) == word].index(transition)
@@ -179,7 +179,7 @@ class Turning:
                 self._forward(str(request))
 
     def _time(self, transition: Transition, date: float) -> None:
-        """Let the mission's clocks go on over a step; one that is too soon breaks an assumption."""
+        """Advance the mission's clocks over a step; a step that is too soon breaks an assumption."""
         if self.timers is None:
             return
         before, self.timers = self.timers, stepped(self.timers, transition, date)
@@ -187,7 +187,7 @@ class Turning:
             self._untimely(about, message)
 
     def check_times(self) -> None:
-        """Report what takes longer than the mission says, and look again when the next bound is due."""
+        """Report exceeded time bounds, and schedule the next check."""
         if self.timers is None:
             return
         for about, message in too_late(self.timers, self.now):
@@ -195,12 +195,12 @@ class Turning:
         self.wake(next_end(self.timers, self.now))
 
     def _untimely(self, about: Name, message: str) -> None:
-        """Report what time breaks, but of vehicles that were taken over: they are not held to it."""
+        """Report a broken time assumption, except of vehicles that were taken over: they need not keep it."""
         if about not in self.taken:
             self.breaks(message, about)
 
     def _forward(self, a: Name | None) -> None:
-        """Send what is here of an agent that runs at another station."""
+        """Send the local parts of an agent that runs at another station."""
         if a is None or a not in self.c.alpha:
             return
         if station_of(self.c, a) is None:
@@ -217,13 +217,13 @@ class Turning:
             self.take(left, (left,), Passage(a, station, number))
 
     def observe(self, sight: Sight, found: Iterator[Transition]) -> bool:
-        """Take the step that an observation causes, if any."""
+        """Take the step that an observation causes, if any; return whether there was one."""
         alike = tuple(found)
         if alike:
             self.take(alike[0], alike, sight)
         return bool(alike)
 
-    # --- going on
+    # --- agents and requests
 
     def go_on(self, most: int) -> None:
         """Let every agent take a step in turn and serve one request, until nothing more can be done now."""
@@ -274,7 +274,7 @@ class Turning:
         return True
 
     def _timeout(self, a: Name) -> tuple[Transition, ...]:
-        """Return the timeout of an agent that has waited long enough; note until when another waits."""
+        """Return the timeout of an agent that has waited long enough; schedule it for one that still waits."""
         found = tuple(timeout(self.c, a))
         if not found:
             self.due.pop(a, None)
@@ -378,25 +378,25 @@ class Turning:
     # --- flights
 
     def stops(self, agent: Name) -> bool:
-        """Tell whether an agent's controls are no longer served."""
+        """Return whether an agent's controls are no longer served."""
         return self.suspended or agent in self.grounded
 
     def flies(self, entity: Name) -> bool:
-        """Tell whether the order of a vehicle in flight is still valid."""
+        """Return whether the order of a vehicle in flight is still valid."""
         order = self.orders.get(entity)
         if order is None or self.stops(order.agent):
             return False
         return not order.refused and entity not in self.taken
 
     def shape(self, entity: Name) -> Placed | None:
-        """Return the shape that the mission gives an entity."""
+        """Return the mission's shape of an entity."""
         placement = self.plan.first.structure.physical.placement(entity)
         if isinstance(placement, Carried):
             return placement.shape
         return placement if isinstance(placement, Placed) else None
 
     def around(self, entity: Name, kind: str, placement: Placement | None) -> frozenset[Name]:
-        """Return what contains an entity at a placement, in the current world."""
+        """Return the containers and carriers of an entity at a placement, in the current world."""
         if self.fences.c is not self.c:
             self.fences = Fences(self.c)
         return self.fences.holders(entity, kind, placement)
@@ -409,7 +409,7 @@ class Turning:
     # --- falling back
 
     def fall_back(self, fallback: Fallback, entities: tuple[Name, ...]) -> None:
-        """Command the mission's fallback to vehicles; who was told to return before does not stop on its way home."""
+        """Command the mission's fallback to vehicles; a vehicle on its way home does not stop."""
         if fallback is Fallback.CONTINUE:
             return
         for entity in filter(self.answers_for, entities):
@@ -428,11 +428,11 @@ class Turning:
             command = stopping(fallback, self.request_of("fallback"), entity)
             self.owed[entity] = Bidden(command, by=None)
             self.commands.append(command)
-            if self.handing.pop(entity, None) is not None:  # that ends it; who is served still tells it again
+            if self.handing.pop(entity, None) is not None:  # ends the hand-over; its agent may order it again
                 self.quiet = None
 
     def due_fallback(self, entity: Name) -> Fallback:
-        """Return what the mission has a vehicle do whose flight it does not command any more; else to continue."""
+        """Return the mission's standing fallback for a vehicle; `CONTINUE` if the mission commands its flight."""
         due = {self.plan.precautions.on_broken} if self.suspended else set()
         agents = [agent for agent in self.grounded if entity in self.vehicles_of(agent)]
         if agents:
@@ -441,7 +441,7 @@ class Turning:
         return next((each for each in (Fallback.RETURN, Fallback.HOLD) if each in due), Fallback.CONTINUE)
 
     def flies_home(self, entity: Name) -> bool:
-        """Tell whether the mission has fallen back so that a vehicle was told to return."""
+        """Return whether the mission's fallback sends a vehicle home."""
         return entity in self.plan.vehicles and self.due_fallback(entity) is Fallback.RETURN
 
     def vehicles_of(self, agent: Name) -> tuple[Name, ...]:
@@ -452,7 +452,7 @@ class Turning:
         return tuple(sorted(sent or host & self.plan.vehicles.keys()))
 
     def answers_for(self, entity: Name) -> bool:
-        """Tell whether this station commands a vehicle and reports on it, and no other does."""
+        """Return whether this station alone commands a vehicle and reports on it."""
         if not is_parted(self.c) or entity not in self.plan.vehicles:
             return True
         if self.plan.vehicles[entity] == self.plan.peers:
@@ -462,7 +462,7 @@ class Turning:
         return not authority or not authority.isdisjoint(physical.channels(self.c.read(HERE)))
 
     def breaks(self, assumption: str, about: Name, kind: str = "broken assumption") -> None:
-        """Report a broken assumption, or another end of a flight, and respond as the mission says."""
+        """Report a broken assumption, or another end of a flight, and respond with the mission's fallback."""
         if not self.answers_for(about):
             return
         fallback = self.plan.precautions.on_broken

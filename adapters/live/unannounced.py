@@ -1,7 +1,7 @@
-"""Entities that the mission does not name, seen in its places.
+"""Strangers: entities that the mission does not name, seen in its places.
 
-Any sender of positions can invent any number of such entities (strangers). So each plugin has a quota, and one step
-admits all strangers of a turn: a step's cost grows with the number of entities.
+Any sender of positions can invent any number of strangers. So each plugin has a quota, and one step admits all
+strangers of a turn: a step's cost grows with the number of entities.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from semantics.state.physical_model import Placed, Placement, channels_cell, pla
 from semantics.state.signature import REGION, Name
 
 MOST_STRANGERS = 1_000
-"""How many strangers are admitted."""
+"""The most strangers."""
 
 SHARE = MOST_STRANGERS // 2
-"""How many of one plugin, so that a flood on one feed leaves room for the others."""
+"""The most strangers of one plugin, so that a flood on one feed leaves room for the others."""
 
 MOST_PLACES = 60
-"""How many places of one plugin: each observation compares entities with all places."""
+"""The most places of one plugin: each observation compares entities with all places."""
 
 
 def comes_in(turning: Turning, plugin: str, found: Sighting) -> bool:
-    """Tell whether an entity is of a kind of the mission and in one of its places, and there is room for it."""
+    """Return whether an entity is of a kind of the mission and in one of its places, and there is room for it."""
     entity, kind, c = found.property.entity, found.property.kind, turning.c
     if entity in turning.coming:
         return True
@@ -88,7 +88,7 @@ def place_strangers(turning: Turning, entities: Iterable[Name]) -> None:
 
 
 def remove_strangers(turning: Turning, entities: Iterable[Name]) -> None:
-    """Remove from P the strangers that are no longer seen, and what they carry, in one step."""
+    """Remove from P the strangers that are no longer seen, and their cargo, in one step."""
     physical = turning.c.structure.physical
     gone = {entity for entity in entities if entity in physical}
     if not gone:
@@ -103,12 +103,12 @@ def remove_strangers(turning: Turning, entities: Iterable[Name]) -> None:
 
 
 def _placed(sighting: Sighting) -> Placed:
-    """Return where a stranger is; a report that it is carried is ignored, since it cannot be checked."""
+    """Return the placement of a stranger; a report that it is carried is ignored, since it cannot be checked."""
     return Placed(sighting.property.geometry)
 
 
 def _grows(here: Placement | None, seen: Placed) -> bool:
-    """Tell whether a point has become a place, which has another quota."""
+    """Return whether a point has become a place, which has another quota."""
     return isinstance(here, Placed) and here.geometry.is_point and not seen.geometry.is_point
 
 
@@ -118,7 +118,7 @@ def _happen(turning: Turning, sight: Sight) -> None:
 
 
 def _together(words: Sequence[str]) -> str:
-    """Describe what happens to several entities by the first.
+    """Describe an event of several entities by the first.
 
     >>> _together(["a vanishes", "b vanishes", "c vanishes"])
     'a vanishes, and so on for 2 more'

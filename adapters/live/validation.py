@@ -1,4 +1,4 @@
-"""Check what plugins publish where it enters a run: all of it can be printed, encoded and recorded."""
+"""Validate publications at their entry into a run: all of them can be printed, encoded and recorded."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from physical import is_word, legible
 
 
 def flaw_of(published: Published) -> str:
-    """Return what is wrong with a publication, or an empty text."""
+    """Return the flaw of a publication, or an empty text."""
     said = published.property if isinstance(published, Aged) else published
     words, numbers = [said.entity], [said.time or 0.0]
     if isinstance(published, Aged):
@@ -26,7 +26,7 @@ def flaw_of(published: Published) -> str:
 
 
 def legible_report(report: Report) -> Report:
-    """Return a report whose texts can be printed: file names and server answers may hold anything."""
+    """Return a report with printable texts: file names and server answers may hold anything."""
     texts: list[tuple[str, Any]] = [(each.name, getattr(report, each.name)) for each in fields(report)]
     spoilt = {name: legible(text) for name, text in texts if isinstance(text, str) and legible(text) != text}
     return replace(report, **spoilt) if spoilt else report  # type: ignore[arg-type]  # texts for texts

@@ -16,13 +16,13 @@ class Watcher(Protocol):
     """A watcher: a terminal, a recording, a test. Called in the loop's thread, in this order for each turn."""
 
     def arrived(self, heard: Heard, now: float) -> None:
-        """See an arrival."""
+        """Receive a publication."""
 
     def reported(self, report: Report, now: float) -> None:
-        """See a plugin's report."""
+        """Receive a plugin's report."""
 
     def turned(self, turn: Turn, now: float) -> None:
-        """See the result of a turn, before its commands are sent."""
+        """Receive the result of a turn, before its commands are sent."""
 
 
 class Watchers:
@@ -33,15 +33,15 @@ class Watchers:
         self._failures: list[Failed] = []
 
     def arrived(self, heard: Heard, now: float) -> None:
-        """Show an arrival to all."""
+        """Pass a publication to all."""
         self._tell(now, lambda watcher: watcher.arrived(heard, now))
 
     def reported(self, report: Report, now: float) -> None:
-        """Show a plugin's report to all."""
+        """Pass a plugin's report to all."""
         self._tell(now, lambda watcher: watcher.reported(report, now))
 
     def turned(self, turn: Turn, now: float) -> None:
-        """Show the result of a turn to all."""
+        """Pass the result of a turn to all."""
         self._tell(now, lambda watcher: watcher.turned(turn, now))
 
     def failures(self) -> tuple[Failed, ...]:

@@ -1,10 +1,10 @@
-"""Autopilots over MAVLink: publishes state, links and control authority; takes places, paths and hand-overs.
+"""Autopilots over MAVLink: they publish state, links and authority, and take places, paths and hand-overs.
 
-`pilot` is the whole behaviour towards one vehicle, as a pure state machine made of smaller ones (`telemetry`, `plan`,
-`task`, `sync`, `upload`, `download`, `command`, `streams`, `link`, `signing`); `autopilot` is the plugin that
-gives it a socket and a clock, `roster` identifies vehicles, `keys` keeps the signing key.
+`pilot` is the behaviour towards one vehicle: a pure state machine made of smaller ones (`telemetry`, `next_step`,
+`task`, `sync`, `upload`, `download`, `command`, `streams`, `link`, `signing`). `autopilot` is the plugin that gives it
+a socket and a clock, `roster` identifies vehicles, and `keys` keeps the signing key.
 
-A vehicle's state confirms what it does, never an answer alone.
+A command counts as carried out once the vehicle's state shows it; an answer alone proves nothing.
 """
 
 from adapters.mavlink.autopilot import Autopilot

@@ -42,24 +42,24 @@ from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError, Surroundings
 
 TICK: Final = 0.2
-"""Seconds between two looks of a pilot at the clock."""
+"""Seconds between two ticks of a pilot."""
 
 AT_ONCE: Final = 8
-"""So many pilots look at it one after the other; then the loop serves others."""
+"""Pilots whose ticks run in one go; then the event loop serves others."""
 
 HEARTBEAT: Final = 1.0
 MAX_REMOTES: Final = 64
-"""How many remote addresses have a parser; of those without a vehicle the one unheard for longest is dropped."""
+"""The most remote addresses with a parser; beyond it, the longest unheard address without a vehicle is dropped."""
 
 MOST_LOGGED: Final = 1_000
-"""Packets heard that are logged in a second."""
+"""The most received packets logged in a second."""
 
 MOST_TEXTS: Final = 10
-"""Texts of a vehicle that are reported in a second."""
+"""The most texts of a vehicle reported in a second."""
 
 Tap = Callable[[float, bytes], None]
 Listener = Callable[[str, Mapping[str, Any], float], None]
-"""Who wants every frame heard and said, with its time: a tlog. Of a flood it gets so many a second."""
+"""The receiver of every frame heard and sent, with its time: a tlog. Its rate in a flood is limited."""
 
 
 class Autopilot:
@@ -72,12 +72,12 @@ class Autopilot:
         stations: The stations that may command them.
         keeper: The signing key, if packets are signed; then unsigned ones are ignored.
         tap: Receives every frame.
-        listeners: Told of each message that is believed of a vehicle, and of our time.
+        listeners: For each vehicle, a receiver of its accepted messages with our time.
 
     Raises PhysicalError if two vehicles cannot be distinguished.
     """
 
-    def __init__(  # noqa: PLR0913, PLR0917 - each is one thing that a link has
+    def __init__(  # noqa: PLR0913, PLR0917 - each is one property of a link
         self,
         name: str,
         address: str,
@@ -115,7 +115,7 @@ class Autopilot:
 
     @property
     def name(self) -> str:
-        """What reports call it."""
+        """Its name in reports."""
         return self._name
 
     def owns(self, entity: str) -> bool:
@@ -123,12 +123,12 @@ class Autopilot:
         return entity in self._pilots
 
     def pilot(self, entity: str) -> Pilot:
-        """Return what is known of a vehicle."""
+        """Return the state of a vehicle."""
         return self._pilots[entity]
 
     @property
     def local(self) -> Remote | None:
-        """Where it listens, once it does."""
+        """Its local address, once it listens."""
         return self._port.local if self._port else None
 
     @property
@@ -140,18 +140,18 @@ class Autopilot:
     def objection(
         self, entity: str, place: Geometry, name: str, around: Surroundings = NOWHERE_ELSE
     ) -> str | None:
-        """Return why a vehicle can't stay at a place, as far as its kind is known; None if it can."""
+        """Return the reason why a vehicle can't stay at a place, as far as its kind is known; None if it can."""
         pilot = self._pilots[entity]
         command = GoTo("", entity, place, name=name, around=around)
         return unfit(command, pilot.craft, pilot.known, pilot.on_board)
 
     def bar(self, entity: str, place: Geometry, name: str) -> str | None:
-        """Return why a vehicle can't pass a place; None if it can."""
+        """Return the reason why a vehicle can't pass a place; None if it can."""
         pilot = self._pilots[entity]
         return impassable(place, pilot.craft, pilot.known, name, pilot.on_board)
 
     def is_known(self) -> bool:
-        """Tell whether all vehicles have reported their parameters, or were asked for long enough."""
+        """Return whether all vehicles have reported their parameters, or were asked for long enough."""
         return all(map(piloting.is_known, self._pilots.values()))
 
     def remarks(self) -> Iterator[str]:
@@ -181,7 +181,7 @@ class Autopilot:
             self._troubles.report(world, now=True)
             self._world = self._port = None
 
-    # --- what arrives -----------------------------------------------------------------------------
+    # --- received messages ------------------------------------------------------------------------
 
     def _receive(self, remote: Remote, data: bytes) -> None:
         for found in self._decoder(remote).feed(data):
@@ -239,7 +239,7 @@ class Autopilot:
             listener(message.name, message.fields, now)
 
     def _is_its_source(self, pilot: Pilot, remote: Remote) -> bool:
-        """Tell whether a vehicle is believed from an address: without signatures only from its first one."""
+        """Whether an address is the vehicle's source: without signatures, only its first address is."""
         bound = self._routes.get(pilot.system, remote)
         if self._keeper is not None or bound == remote:
             return True
@@ -255,7 +255,7 @@ class Autopilot:
         return False
 
     def _rebind(self, pilot: Pilot, source: str) -> None:
-        """Believe a vehicle from another address, if the old one is silent."""
+        """Accept a vehicle's messages from another address, if the old one is silent."""
         host, _, port = source.rpartition(":")
         bound = self._routes.get(pilot.system)
         entity = pilot.craft.entity
@@ -269,7 +269,7 @@ class Autopilot:
             self._elsewhere.pop(pilot.system, None)
 
     def _is_of_a_station(self, message: Message) -> bool:
-        """Tell whether a message is of a ground station: its id or its heartbeat says so, or whom it speaks to."""
+        """Whether a message is of a ground station, by its id, its heartbeat, or its target."""
         if message.system in self._stations.ids.values():
             return True
         if message.name == "HEARTBEAT":
@@ -281,7 +281,7 @@ class Autopilot:
         return next((pilot for pilot in self._pilots.values() if to and pilot.system == to), None)
 
     def _overheard(self, message: Message) -> None:
-        """Report that another ground station sends to a vehicle of ours; what it may change is read again."""
+        """Report that another ground station sends to a vehicle of ours; items that it may change are read again."""
         pilot = self._addressed(message)
         if message.system not in self._own and pilot is not None:
             self._troubles.note("second ground station", f"system {message.system} says {message.name}")
@@ -296,7 +296,7 @@ class Autopilot:
         found = rosters.find(self._roster, possible, message, now)
         self._roster = found.roster
         if found.question is not None:
-            for name in self._stations.own:  # it may obey any of them, and only that
+            for name in self._stations.own:  # it may obey any of them, and only that one
                 self._send(replace(found.question, system=self._stations.ids[name]), remote)
         if found.stranger and message.system not in self._strangers:
             self._strangers.add(message.system)
@@ -306,7 +306,7 @@ class Autopilot:
             self._troubles.note("unknown vehicle", detail)
         return found.pilot
 
-    # --- what is said -----------------------------------------------------------------------------
+    # --- results and sent messages ----------------------------------------------------------------
 
     def _listened(self) -> float:
         """Return the pilots' time, which stops while this process does not listen."""
@@ -329,7 +329,7 @@ class Autopilot:
             self._send(message, self._routes.get(outcome.pilot.system))
 
     def _show(self, seen: Status | StatusText, missed: float) -> None:
-        """Report what a vehicle says, unless it says too much."""
+        """Report a vehicle's status or text; texts above the limit are left out."""
         assert self._world is not None
         if isinstance(seen, Status):
             heard = None if seen.heard is None else seen.heard + missed
@@ -387,7 +387,7 @@ class Autopilot:
 
 
 def _groups(entities: Sequence[str]) -> list[Sequence[str]]:
-    """Return the vehicles in groups whose pilots look at the clock together; an empty one if there are none."""
+    """Return groups of vehicles whose pilots tick together; one empty group if there are none."""
     return [entities[first : first + AT_ONCE] for first in range(0, len(entities), AT_ONCE)] or [()]
 
 

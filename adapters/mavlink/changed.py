@@ -1,4 +1,4 @@
-"""Frozen values that change with every packet, made anew quickly."""
+"""Fast copies of frozen values that change with every packet."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ Value = TypeVar("Value")
 def changed(value: Value, **changes: Any) -> Value:
     """Return a frozen value with some attributes changed: `dataclasses.replace`, ten times as fast.
 
-    For dataclasses without slots and without `__post_init__`, of many attributes: a hundred vehicles say a thousand
-    things a second, and each makes some values anew.
+    For dataclasses without slots and without `__post_init__`, with many attributes: a hundred vehicles send a thousand
+    messages a second, and each message replaces some values.
     """
     made = object.__new__(type(value))
     attributes = made.__dict__

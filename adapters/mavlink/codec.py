@@ -1,7 +1,7 @@
-"""Convert MAVLink frames to messages and back: the only file that imports pymavlink, and only when called.
+"""Convert MAVLink frames to messages and back; pymavlink is imported here alone, at the first call.
 
-It uses only pymavlink's dialect class, as a pure codec. `adapters.mavlink.signing` checks signatures: pymavlink
-remembers a packet's time stamp before it has checked the signature, so one forged packet would silence a vehicle.
+Only pymavlink's dialect class is used, as a pure codec. `adapters.mavlink.signing` checks signatures: pymavlink
+remembers a packet's time stamp before it checks the signature, so one forged packet would silence a vehicle.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from physical import PhysicalError
 from physical.messages import install_extra
 
 MAX_CHUNK: Final = 65_536
-"""Bytes parsed at once; a socket never gives more."""
+"""Bytes parsed at once; a socket never delivers more."""
 
 
 V2_HEADER: Final = 10
-"""Bytes before the fields of a frame of MAVLink 2."""
+"""Bytes before the fields of a MAVLink 2 frame."""
 
 NUMBERS_AT: Final = 6
-"""Bytes of MISSION_CURRENT before the numbers of what is on board."""
+"""Bytes of MISSION_CURRENT before the numbers of mission, fence and rally points."""
 
 
 class CodecError(PhysicalError):
@@ -39,21 +39,21 @@ class Garbage:
 
 
 class Decoder:
-    """One stream of frames from one remote address, since a frame may come in two chunks."""
+    """The frames from one remote address; a frame may come in two chunks."""
 
     def __init__(self) -> None:
         self._mav = _dialect().MAVLink(None)
         self._mav.robust_parsing = True
 
     def feed(self, data: bytes) -> list[Message | Garbage]:
-        """Return the complete messages; never raises, whatever the bytes."""
+        """Return the complete messages; never raises, for any bytes."""
         found = [_heard(each) for each in self._mav.parse_buffer(data[:MAX_CHUNK]) or ()]
         self._forget()
         return [each for each in found if each is not None]
 
     @property
     def held(self) -> int:
-        """How many bytes wait for the rest of their frame."""
+        """The number of bytes that wait for the rest of their frame."""
         return len(self._mav.buf)
 
     def _forget(self) -> None:
@@ -64,7 +64,7 @@ class Decoder:
 
 
 class Encoder:
-    """One sender's frames, numbered; signed if it has a key (32 bytes)."""
+    """The numbered frames of one sender; signed if it has a key (32 bytes)."""
 
     def __init__(self, system: int, component: int, key: bytes | None = None, link: int = 0) -> None:
         self._mav = _dialect().MAVLink(None, system, component)
@@ -103,14 +103,14 @@ def _heard(parsed: Any) -> Message | Garbage | None:
 
 
 def _numbers(raw: bytes) -> dict[str, int]:
-    """Return the extension fields of MISSION_CURRENT that older dialects of pymavlink leave out; zero if not sent."""
+    """Return the extension fields of MISSION_CURRENT that older pymavlink dialects omit; zero if not sent."""
     sent = raw[V2_HEADER : V2_HEADER + raw[1]] if raw[:1] == b"\xfd" else b""
     found = struct.unpack_from("<III", sent.ljust(NUMBERS_AT + 12, b"\0"), NUMBERS_AT)
     return dict(zip(("mission_id", "fence_id", "rally_points_id"), found, strict=True))
 
 
 def _short(reason: str) -> str:
-    """Return the part of a reason that is the same for all such packets."""
+    """Return the constant part of a reason, without the figures of one packet."""
     for known in ("CRC", "prefix", "length", "incompat_flags"):
         if known in reason:
             return f"bad {known}"

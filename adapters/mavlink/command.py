@@ -1,7 +1,7 @@
 """The command protocol: repeat a command until the vehicle's state shows it; a pure state machine.
 
-An ACK can be lost, duplicated, or belong to an earlier attempt; accepted is not done. So a command is sent again until
-the caller sees its effect, or a final refusal.
+An ACK can be lost, duplicated, or belong to an earlier attempt, and acceptance is not execution. So a command is sent
+again until the caller sees its effect, or a final refusal.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ AGAIN: Final = 1.5
 """Seconds before a command is sent again."""
 
 IN_PROGRESS: Final = 5.0
-"""Seconds before a command is sent again if the vehicle reports it as in progress."""
+"""Seconds before a command is sent again, if the vehicle reports it as in progress."""
 
 _FINAL: Final = {Result.DENIED, Result.UNSUPPORTED}
 
@@ -39,7 +39,7 @@ class Telling:
 
     @property
     def objection(self) -> str:
-        """The vehicle's last answer, if it was not an acceptance."""
+        """The vehicle's last answer, if it was no acceptance."""
         if self.answer in (None, Result.ACCEPTED, Result.IN_PROGRESS):
             return ""
         known = self.answer in tuple(Result)
@@ -53,7 +53,7 @@ class Telling:
 
 
 def tick(telling: Telling, now: float) -> tuple[Telling, tuple[Message, ...]]:
-    """Send it if it was not sent for a while."""
+    """Send it, unless it was sent just before."""
     patience = IN_PROGRESS if telling.answer == Result.IN_PROGRESS else AGAIN
     if telling.sent is not None and now - telling.sent < patience:
         return telling, ()
@@ -72,7 +72,7 @@ def hear(telling: Telling, message: Message) -> Telling:
 
 
 def long(command: Cmd, system: int, *parameters: float) -> Message:
-    """Return a COMMAND_LONG with its parameters; those not given are 0."""
+    """Return a COMMAND_LONG with its parameters; missing ones are 0."""
     padded = (*parameters, *(0.0,) * (7 - len(parameters)))
     numbered: dict[str, Any] = {f"param{i}": float(value) for i, value in enumerate(padded, 1)}
     return say(
@@ -86,7 +86,7 @@ def long(command: Cmd, system: int, *parameters: float) -> Message:
 
 
 NAN: Final = float("nan")
-"""One object: two would differ, and so would two equal messages."""
+"""A single object: two would differ, and so would two equal messages."""
 
 
 ANYWHERE: Final = 2**31 - 1
@@ -98,7 +98,7 @@ def reposition(
 ) -> Message:
     """Return the command to go to a point (1e-7 degree, metres in a frame), and circle there.
 
-    In another mode than guided it is refused, unless it `enters` guided mode.
+    Outside guided mode the vehicle refuses it, unless the command `enters` guided mode.
     """
     return say(
         "COMMAND_INT",
@@ -119,12 +119,12 @@ def reposition(
 
 
 def stop(system: int) -> Message:
-    """Return the command to stay where it is: the target is left out."""
+    """Return the command to stay at the current position: it has no target."""
     return reposition(system, ANYWHERE, ANYWHERE, (NAN, Frame.SEA_LEVEL), NAN, enters=True)
 
 
 def take_off(system: int, height: tuple[float, Frame]) -> Message:
-    """Return the command to take off where it is, to a height in a frame."""
+    """Return the command to take off at the current position, to a height in a frame."""
     metres, frame = height
     rest = 0.0 if frame is Frame.HOME else NAN  # PX4 would take off towards (0, 0)
     return long(Cmd.TAKEOFF, system, *(6 * [rest]), metres)
@@ -138,7 +138,7 @@ def begin_with(system: int, index: int, *, by_command: bool) -> Message:
 
 
 def set_parameter(system: int, name: str, value: float) -> Message:
-    """Return the message that sets a parameter; the PARAM_VALUE that it leads to is the state."""
+    """Return the message that sets a parameter; the PARAM_VALUE in answer is the state."""
     return say(
         "PARAM_SET",
         target_system=system,

@@ -1,4 +1,4 @@
-"""What an operator has to know of a vehicle at once: it has no position, its home was moved, it cannot be armed."""
+"""Urgent troubles of a vehicle for the operator: no position, a moved home, a refusal to arm."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from adapters.mavlink.telemetry import REFUSES_TO_ARM, Telemetry
 from adapters.plugin import Trouble
 
 BLIND: Final = 5.0
-"""Seconds without a position that counts, after which that is reported."""
+"""Seconds without a valid position before it is reported."""
 
 NO_POSITION: Final = "no position"
 HOME_MOVED: Final = "home moved"
@@ -18,7 +18,7 @@ HOME_MOVED: Final = "home moved"
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """Since when a vehicle that had a position has none that counts, and what was reported."""
+    """The start of a vehicle's time without a valid position, and the reported troubles."""
 
     blind: float | None = None
     reported: frozenset[str] = frozenset()
@@ -27,14 +27,14 @@ class Condition:
 def look(
     before: Condition, entity: str, known: Telemetry, now: float, *, lost: bool
 ) -> tuple[Condition, tuple[Trouble, ...]]:
-    """Report, once each, what has become of a vehicle's position and its home."""
+    """Report the new and the ended troubles of a vehicle, each once."""
     if lost:
         return before, ()
     told = bool(known.fixes) or known.estimate is not None
     placed = known.position is None or known.is_placed(now) or not told
     blind = None if placed else now if before.blind is None else before.blind
     found = frozenset(_found(known, blind, now))
-    if not known.armed:  # a reason is said again every 30 s, and said here once
+    if not known.armed:  # a vehicle repeats a reason every 30 s; it is reported once
         found |= {each for each in before.reported if each.startswith(REFUSES_TO_ARM)}
     after = Condition(blind, found)
     return after, tuple(Trouble(entity, now, *words) for words in _words(before, after, known, now))

@@ -8,7 +8,7 @@ GROUND_STATION: Final = 6
 """MAV_TYPE_GCS."""
 
 GROUND_COMPONENT: Final = 190
-"""MAV_COMP_ID_MISSIONPLANNER: what ground stations call themselves."""
+"""MAV_COMP_ID_MISSIONPLANNER: the component id of ground stations."""
 
 ARDUPILOT: Final = 3
 """MAV_AUTOPILOT_ARDUPILOTMEGA."""
@@ -21,20 +21,20 @@ INTEGERS: Final = range(1, 7)
 
 NO_AUTOPILOT: Final = 8
 ACTIVE: Final = 4
-"""MAV_STATE_ACTIVE: in the air, for what flies."""
+"""MAV_STATE_ACTIVE: for an aircraft, in the air."""
 
 PREARM_HEALTHY: Final = 0x10000000
-"""The bit of SYS_STATUS that is set when the vehicle could be armed, and takes missions."""
+"""The bit of SYS_STATUS for a vehicle that could be armed, and takes missions."""
 
 GEOFENCE: Final = 0x100000
-"""The bit of SYS_STATUS that says that a fence is kept."""
+"""The bit of SYS_STATUS for an active fence."""
 
 FIX_3D: Final = 3
 AUTOPILOT_VERSION: Final = 148
-"""The number of the message that tells an autopilot's serial number."""
+"""The number of the message with an autopilot's serial number."""
 
 AUTHORITY_PARAMETERS: Final = ("SYSID_MYGCS", "MAV_GCS_SYSID")
-"""ArduPilot's parameter that says which ground station it obeys, as it is called to 4.6 and from 4.7 on."""
+"""ArduPilot's parameter for the ground station that it obeys: its name up to 4.6, and from 4.7 on."""
 
 FENCE_PARAMETERS: Final = ("FENCE_ENABLE", "FENCE_TYPE", "FENCE_RADIUS", "FENCE_ACTION")
 HEIGHT_PARAMETERS: Final = ("FENCE_AUTOENABLE", "FENCE_ALT_MAX", "FENCE_OPTIONS")
@@ -44,14 +44,14 @@ CIRCLE_PARAMETERS: Final = ("WP_LOITER_RAD", "RTL_RADIUS")
 
 
 class ModeFlag(IntFlag):
-    """MAV_MODE_FLAG, as far as we use it."""
+    """MAV_MODE_FLAG, the flags that we use."""
 
     CUSTOM_MODE = 1
     ARMED = 128
 
 
 class Frame(IntEnum):
-    """MAV_FRAME: what an altitude is above."""
+    """MAV_FRAME: the origin of an altitude."""
 
     SEA_LEVEL = 0
     HOME = 3
@@ -60,7 +60,7 @@ class Frame(IntEnum):
 
 
 class Estimate(IntFlag):
-    """EKF_STATUS_FLAGS, and with the same numbers ESTIMATOR_STATUS_FLAGS, as far as we use them."""
+    """EKF_STATUS_FLAGS, with the same numbers as ESTIMATOR_STATUS_FLAGS: the flags that we use."""
 
     POS_HORIZ_REL = 8
     POS_HORIZ_ABS = 16
@@ -83,7 +83,7 @@ class Landed(IntEnum):
 
 
 class FenceAction(IntEnum):
-    """What PX4 does at its fences: the values of GF_ACTION (navigator/geofence_params.yaml)."""
+    """PX4's actions at its fences: the values of GF_ACTION (navigator/geofence_params.yaml)."""
 
     NONE = 0
     WARN = 1
@@ -144,7 +144,7 @@ class Result(IntEnum):
 
 
 class Cmd(IntEnum):
-    """MAV_CMD, as far as we use it."""
+    """MAV_CMD, the commands that we use."""
 
     WAYPOINT = 16
     LOITER_UNLIMITED = 17
@@ -185,7 +185,7 @@ STREAMS: Final = {
     "ESTIMATOR_STATUS": (230, 1.0),
     "ATTITUDE": (30, 0.2),
 }
-"""The messages that a vehicle may be asked to send regularly: number, and every how many seconds."""
+"""The messages that a vehicle can send regularly: number, and period in seconds."""
 
 REGULAR: Final = tuple(name for name in STREAMS if name not in ("ATTITUDE", "ESTIMATOR_STATUS"))
-"""Those that a vehicle of unknown kind is asked for; its attitude only who has to know how its camera lies."""
+"""The messages requested of a vehicle of unknown kind; its attitude only matters for a camera."""

@@ -1,6 +1,6 @@
 """Read back the mission or fence on board: a pure state machine.
 
-Every message is requested by timer until it comes; messages that were not requested are ignored.
+Every message is requested by timer until it comes; unrequested messages are ignored.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ class Download:
     Attributes:
         kind: Mission, fence or rally points.
         system: The vehicle's system id.
-        count: How many items there are; None until the vehicle has sent it.
-        items: Those that have come.
-        asked: When the last request was sent.
+        count: The number of items on board; None until the vehicle has sent it.
+        items: The received items.
+        asked: Time of the last request.
     """
 
     kind: MissionType
@@ -45,7 +45,7 @@ Step = tuple[Download, tuple[Message, ...]]
 
 
 def tick(download: Download, now: float) -> Step:
-    """Request what is missing, again if the answer seems lost."""
+    """Request the next missing message, again if the answer seems lost."""
     waiting = download.asked is not None and now - download.asked < ASK_AGAIN
     return (download, ()) if download.over or waiting else _ask(download, now)
 
@@ -69,7 +69,7 @@ def hear(download: Download, message: Message, now: float) -> Step:
 
 
 def _refused(download: Download, result: int) -> Download:
-    """Begin anew where somebody writes meanwhile; of what a vehicle has no support for, it has nothing."""
+    """Begin anew if somebody writes meanwhile; a vehicle has no items of a kind that it does not support."""
     if result == MissionResult.UNSUPPORTED and download.count is None:
         return replace(download, count=0)
     return download if result == MissionResult.ACCEPTED else replace(download, count=None, items=())

@@ -1,4 +1,4 @@
-"""A vehicle's own fences beside the polygon that it is given: a circle around home, a ceiling, and zones on board."""
+"""A vehicle's own fences beside the given polygon: a circle around home, a ceiling, and zones on board."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from physical import Geometry, circle, contains, distance, point, share_interior
 from physical.corridor import corridor
 
 EACH_BY_ITSELF: Final = (4, 6)
-"""The version of ArduPilot since which one fence can be switched on without the others."""
+"""The first ArduPilot version that can switch on one fence without the others."""
 
 
 AFTER_TAKEOFF: Final = 1
-"""ArduPilot's FENCE_AUTOENABLE with which it switches its fences on after a take-off, and off while disarmed."""
+"""ArduPilot's FENCE_AUTOENABLE that switches fences on after a take-off, and off while disarmed."""
 
 LEG_WIDTH: Final = 20.0
-"""Metres by which a straight way should be clear of a zone, both sides together."""
+"""Width in metres of the corridor around a straight leg that should be clear of a zone."""
 
 REMEDY: Final = "if that is no longer meant, remove it with a ground station"
 
@@ -43,7 +43,7 @@ class OwnFences:
         return " and ".join([*around, *below])
 
     def remedy(self, name: str) -> str:
-        """Return what an operator may do about the fence of which `name` is the parameter."""
+        """Return the remedy for the fence whose parameter is `name`."""
         if self.dialect.fence_action:
             return f"set {name} to more, or to 0 for none"
         return f"set FENCE_TYPE to 4 (the polygon alone), or {name} to more"
@@ -75,12 +75,12 @@ def _dialect(known: Telemetry) -> Dialect:
 
 
 def _acts(known: Telemetry) -> bool:
-    """Tell whether a vehicle whose fences need no switch does anything at them, as far as it has told."""
+    """Return whether a vehicle whose fences need no switch acts at them, as far as its parameters are known."""
     return known.parameters.get(_dialect(known).fence_action, FenceAction.HOLD) > FenceAction.WARN
 
 
 def keeps_no_polygon(known: Telemetry) -> str | None:
-    """Return why a vehicle would not obey a given polygon."""
+    """Return the reason why a vehicle would not obey a given polygon, or None."""
     action, told = _dialect(known).fence_action, known.parameters
     if action:
         remedy = "set it to 2 (hold) or 3 (return)"
@@ -112,7 +112,7 @@ def zones_beside(fence: Geometry | None, known: Telemetry, on_board: OnBoard) ->
 
 
 def widened(fence: Geometry, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
-    """Yield why the zones on board to stay in can be neither kept nor replaced."""
+    """Yield the reason why the inclusion zones on board can be neither kept nor replaced."""
     foreign = [zone for zone in zones(on_board.get(MissionType.FENCE, ())) if zone.within]
     own = {zone.key for zone in zones(polygon_items(fence))}
     foreign = [zone for zone in foreign if zone.key not in own]
@@ -126,7 +126,7 @@ def widened(fence: Geometry, known: Telemetry, on_board: OnBoard) -> Iterator[st
 
 
 def barred(zone: Zone, at: Geometry, room: float, name: str) -> str:
-    """Return why a zone prevents a vehicle from circling at a point, or an empty text."""
+    """Return the reason why a zone forbids a circle around a point, or an empty text."""
     if zone.shape is None:
         return ""
     around = circle(at.vertices[0], room) if room else at
@@ -138,7 +138,7 @@ def barred(zone: Zone, at: Geometry, room: float, name: str) -> str:
 
 
 def crossed(zone: Zone, start: Geometry, end: Geometry, name: str) -> str:
-    """Return that the straight line to a point crosses a zone to stay out of, or an empty text."""
+    """Return an objection if the straight line to a point crosses an exclusion zone, else an empty text."""
     if zone.shape is None or not zone.outside or distance(start, end) < LEG_WIDTH:
         return ""
     if not share_interior(zone.shape, corridor((start.vertices[0], end.vertices[0]), LEG_WIDTH)):
@@ -149,7 +149,7 @@ def crossed(zone: Zone, start: Geometry, end: Geometry, name: str) -> str:
 def beyond(
     own: OwnFences, known: Telemetry, at: Geometry, room: float, height: float | None, name: str
 ) -> Iterator[str]:
-    """Yield why a vehicle's own fences prevent it from circling at a point."""
+    """Yield the reasons why a vehicle's own fences forbid a circle around a point."""
     if own.circle is not None and known.home is not None:
         away = distance(point(*known.home), at) + room
         if away > own.circle:

@@ -10,7 +10,7 @@ from adapters.mavlink.profiles import Profile
 from physical import Geometry, PhysicalError
 
 CONTROL: Final = "control:"
-"""The kind of channel that control authority is."""
+"""The kind of channel for control authority."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,11 +23,11 @@ class Craft:
         system: Its MAVLink system id; None for the first vehicle heard.
         channels: Its channels while it is heard, beside its control authority.
         fence: The polygon that it must stay in; uploaded before it is armed.
-        circle: The radius in metres at which it circles where it stays; its own if None.
-        height: Its default height in metres above home; its kind's if None.
-        time_to_live: Seconds for which a position of it counts.
-        serial: Its autopilot's serial number in hexadecimal digits: then no other vehicle is taken for it.
-        streams: Messages that it is asked to send beside the regular ones.
+        circle: The radius in metres at which it circles where it stays; None for its own.
+        height: Its default height in metres above home; None for its kind's.
+        time_to_live: Seconds for which its position is valid.
+        serial: Its autopilot's serial number in hexadecimal digits; no other vehicle is then mistaken for it.
+        streams: The messages that it is asked to send beside the regular ones.
     """
 
     entity: str
@@ -52,8 +52,8 @@ class Stations:
 
     Attributes:
         ids: Their names in the mission, and their MAVLink system ids.
-        own: Those for which this run speaks.
-        in_mission: Whether the mission has channels of control authority; else a vehicle's is not shown as one.
+        own: The stations for which this run speaks.
+        in_mission: Whether the mission has channels of control authority; else a vehicle's authority is no channel.
     """
 
     ids: Mapping[str, int] = field(default_factory=lambda: {"gcs0": 255})
@@ -75,7 +75,7 @@ class Stations:
         return next((name for name, number in self.ids.items() if number == system), None)
 
     def obeyed(self, authority: int | None, profile: Profile | None) -> int | None:
-        """Return the system id of a vehicle's station; of one that obeys all stations, the mission's first."""
+        """Return the system id of a vehicle's station; for one that obeys all stations, the mission's first."""
         obeys_all = profile is not None and not profile.dialect.authority
         return next(iter(self.ids.values())) if obeys_all else authority
 

@@ -1,4 +1,4 @@
-"""What a pilot believes to be on board its vehicle: what was read back since anybody may have changed it."""
+"""A pilot's beliefs about the items on board: those read back since anybody may have changed them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from adapters.plugin import Command, Follow, Hold, Report, Return, Trouble
 
 
 class Believer(Protocol):
-    """A pilot, as far as it has to do with what is on board; frozen, and copied by `changed`."""
+    """The part of a pilot that concerns the items on board; frozen, and copied by `changed`."""
 
     @property
     def craft(self) -> Craft:
@@ -39,7 +39,7 @@ class Believer(Protocol):
 
     @property
     def on_board(self) -> OnBoard:
-        """What is believed to be on board."""
+        """The items believed to be on board."""
         ...
 
     @property
@@ -56,20 +56,20 @@ class Believer(Protocol):
 Pilot = TypeVar("Pilot", bound=Believer)
 
 JUST_NOW: Final = 5.0
-"""Seconds for which an order believes what was read before it, if nothing shows that it has changed."""
+"""Seconds for which an order relies on earlier readings, unless a change shows."""
 
 HEADING: Final = 5.0
 FLOWN: Final = 10.0
 NOW_AND_THEN: Final = 60.0
-"""Seconds after which a mission is read again: before it is flown, while it is flown, and else."""
+"""Seconds after which a mission is read again: before it is flown, while it is flown, and otherwise."""
 
 
 def unsure(
     pilot: Pilot, kinds: Collection[MissionType] = tuple(MissionType), *, quiet: bool = False
 ) -> Pilot:
-    """Return a pilot that believes nothing of what is on board before it is read again.
+    """Return a pilot that no longer believes its items of some kinds, until they are read again.
 
-    `quiet`: what was switched on is not doubted with it.
+    `quiet`: the polygon fence still counts as switched on.
     """
     on_board = {kind: items for kind, items in pilot.on_board.items() if kind not in kinds}
     known = pilot.known
@@ -79,9 +79,9 @@ def unsure(
 
 
 def read_again(pilot: Pilot, told: Command, now: float) -> Pilot:
-    """Read again what an order depends on, unless that was done just now: a path needs its mission, a start all.
+    """Read again the items that an order depends on, unless that was just done: a path its mission, a start all kinds.
 
-    While a vehicle was held, or flew home, it was anybody's.
+    While a vehicle was held, or flew home, anybody may have changed its items.
     """
     if pilot.moving is not None and isinstance(pilot.moving.command, Hold | Return):
         return unsure(pilot)
@@ -92,7 +92,7 @@ def read_again(pilot: Pilot, told: Command, now: float) -> Pilot:
 
 
 def is_surveyed(pilot: Believer) -> bool:
-    """Tell whether it is certain where the vehicle is and what is on board, or asking for that was in vain."""
+    """Return whether the vehicle's position and items on board are certain, or could not be read."""
     return pilot.known.position is not None and all(
         kind in pilot.on_board or kind in pilot.survey.given_up for kind in MissionType
     )
@@ -106,13 +106,13 @@ def out_of_fence(pilot: Believer, now: float) -> tuple[Report, ...]:
 
 
 def overheard(pilot: Pilot, message: Message) -> Pilot:
-    """Take a message between the vehicle and another station: what that may change is no longer believed."""
+    """Take a message between the vehicle and another station: drop the beliefs that it may change."""
     kinds = changed_by(message, pilot.system)
     return unsure(pilot, kinds, quiet=True) if kinds else pilot
 
 
 def with_known(pilot: Pilot, known: Telemetry) -> Pilot:
-    """Take on a state; where it shows that something else may be on board, that is read again."""
+    """Take on a state; if it shows a possible change of the items on board, they are read again."""
     before, pilot = pilot.known, changed(pilot, known=known)
     if known.boots != before.boots:
         return changed(pilot, on_board={}, survey=Survey(), questions=0)
@@ -124,14 +124,14 @@ def with_known(pilot: Pilot, known: Telemetry) -> Pilot:
 
 
 def _flies_it(pilot: Pilot) -> Pilot:
-    """Read the mission again that a vehicle flies from now on; before it is armed for it, nothing else is believed."""
+    """Read again the mission that a vehicle now flies; drop the belief in it while the order is pending."""
     if _is_pending(pilot):
         return unsure(pilot, (MissionType.MISSION,), quiet=True)
     return changed(pilot, survey=surveys.soon(pilot.survey, MissionType.MISSION))
 
 
 def about_to_fly(pilot: Pilot) -> Pilot:
-    """Read the mission again that begins at its first item now, before the vehicle is told to fly it."""
+    """Read again the mission that has just been set to its first item, before the vehicle flies it."""
     profile, known = pilot.known.profile, pilot.known
     if profile is None or known.mode == profile.auto:
         return pilot
@@ -143,7 +143,7 @@ def _is_pending(pilot: Believer) -> bool:
 
 
 def _renumbered(pilot: Believer, before: Telemetry) -> Iterator[MissionType]:
-    """Yield the kinds of which MISSION_CURRENT shows that they are not the ones of before."""
+    """Yield the kinds that have changed on board, according to MISSION_CURRENT."""
     known, mission = pilot.known, pilot.on_board.get(MissionType.MISSION, ())
     first = known.profile is not None and known.profile.dialect.home_is_item
     if known.total not in (before.total, max(0, len(mission) - first)):
@@ -154,7 +154,7 @@ def _renumbered(pilot: Believer, before: Telemetry) -> Iterator[MissionType]:
 
 
 def read_on(pilot: Pilot, message: Message, now: float) -> tuple[Pilot, tuple[Message, ...]]:
-    """Let the reading of what is on board take an answer."""
+    """Pass an answer to the reading of the items on board."""
     if message.name not in surveys.ANSWERS or _uploads(pilot):
         return pilot, ()
     survey, sent, kind = surveys.hear(pilot.survey, message, now)
@@ -170,7 +170,7 @@ def _uploads(pilot: Believer) -> bool:
 
 
 def surveyed(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
-    """Read what is on board a vehicle that obeys us, again from time to time, and more often what it flies."""
+    """Read the items on board a vehicle that obeys us, again from time to time, and more often those that it flies."""
     profile, known = pilot.known.profile, pilot.known
     if profile is None or _uploads(pilot):
         return pilot, ()

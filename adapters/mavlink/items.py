@@ -1,4 +1,4 @@
-"""Mission items: what is uploaded, and how uploaded and stored items are compared."""
+"""Mission items: their messages, and the comparison of uploaded and stored items."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Item:
 Items = tuple[Item, ...]
 
 _SAME_FRAME: Final[dict[int, int]] = {Frame.SEA_LEVEL_INT: Frame.SEA_LEVEL, Frame.HOME_INT: Frame.HOME}
-"""PX4 reads back the frames for coordinates of type integer (mavlink/mavlink_mission.cpp)."""
+"""The frames for integer coordinates that PX4 reads back (mavlink/mavlink_mission.cpp)."""
 
 
 def e7(at: Geometry) -> tuple[int, int]:
@@ -52,8 +52,8 @@ def route(
 ) -> Items:
     """Return the mission that visits points at a height above home and stays at the last.
 
-    Where `home` is an item, it is item 0, which the vehicle overwrites. Where the altitude of home is given, heights
-    are `above` that, whatever becomes of the vehicle's home. `near`: acceptance radii of all points but the last.
+    If `home` is an item, it is item 0, which the vehicle overwrites. With `above`, the altitude of the mission's home,
+    heights are above that home, even if the vehicle's home moves. `near`: acceptance radii of all points but the last.
     """
     z, frame = (height, Frame.HOME) if above is None else (round(height + above, 2), Frame.SEA_LEVEL)
     radii = near or (0.0,) * (len(path) - 1)
@@ -89,13 +89,13 @@ def fence(polygon: Geometry) -> Items:
 
 
 def same(ours: Items, theirs: Items, kind: MissionType) -> bool:
-    """Tell whether the items on board are those wanted: all of a fence, all but home of a mission."""
+    """Return whether the items on board are the wanted ones: all of a fence, all but home of a mission."""
     first = int(kind is MissionType.MISSION and bool(ours) and _is_home(ours[0]))
     return len(ours) == len(theirs) and all(map(_alike, ours[first:], theirs[first:]))
 
 
 def _is_home(item: Item) -> bool:
-    """Tell whether a first item is that for home: of what is flown, nothing is at sea level."""
+    """Return whether a first item is that for home: no flown item is at sea level."""
     return (item.command, item.z, item.frame) == (Cmd.WAYPOINT, 0.0, Frame.SEA_LEVEL)
 
 

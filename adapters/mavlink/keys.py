@@ -22,7 +22,7 @@ class Keeper:
         self._path = path
         self._signing = self._reserved = signing.load(path)
         self.trouble = ""
-        """Why the file could not be written, if it could not."""
+        """The reason why the file could not be written, if any."""
 
     @property
     def key(self) -> bytes:

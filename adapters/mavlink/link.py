@@ -9,7 +9,7 @@ from adapters.mavlink.telemetry import Telemetry
 from adapters.plugin import LinkLost, LinkRestored
 
 SILENCE: Final = 5.0
-"""Seconds: five heartbeats, and many positions."""
+"""Seconds: the time of five heartbeats, and of many positions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +23,7 @@ class Link:
 def watch(
     link: Link, entity: str, known: Telemetry, now: float
 ) -> tuple[Link, LinkLost | LinkRestored | None]:
-    """Return the current link, and its reports."""
+    """Return the current link, and the report of a change."""
     if known.heard is None:
         return link, None
     silent = now - known.heard > SILENCE

@@ -1,4 +1,4 @@
-"""Where a vehicle stays at a place, and the room that it needs: the circle that it flies, and the effect of wind."""
+"""The point where a vehicle stays in a place, and the room that it needs: its circle, widened by wind."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def home_circle(craft: Craft, profile: Profile, known: Telemetry) -> float:
 
 
 def room(craft: Craft, profile: Profile, known: Telemetry) -> float:
-    """Return the radius in metres within which its circles stay, in wind too."""
+    """Return the radius in metres that contains its circles, in wind too."""
     return circle(craft, profile, known) * profile.drift
 
 
@@ -42,16 +42,16 @@ def goal(command: GoTo | Follow) -> Geometry:
 
 
 def stay(command: GoTo | Follow, radius: float) -> Geometry | None:
-    """Return the point around which a vehicle stays in its last place, None where a circle does not fit.
+    """Return the point around which a vehicle stays in its last place, None if a circle does not fit.
 
-    The centroid if a circle around it keeps to the surroundings, else the nearest such point.
+    It is the centroid if a circle around it respects the surroundings, else the nearest such point.
     """
     at = standing(command.shape or point(0, 0), goal(command), command.around, radius)
     return None if at is None else waypoint(at)
 
 
 def cramped(command: GoTo | Follow, craft: Craft, profile: Profile, known: Telemetry) -> str | None:
-    """Return why a vehicle has no room in its last place, with the figures; None if it has."""
+    """Return the reason why a vehicle has no room in its last place, with the figures; None if it has room."""
     place, name = goal(command), command.name or "the place"
     if stay(command, room(craft, profile, known)) is not None:
         return None

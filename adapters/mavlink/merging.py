@@ -1,7 +1,7 @@
-"""Keep what is on board beside what is uploaded: fences next to each other, a landing sequence behind the mission.
+"""Merge an upload with the items on board: fences stay side by side, a landing sequence follows the mission.
 
-An upload replaces all items of its kind. So what is there is read first, and what the vehicle still needs goes up again
-with it.
+An upload replaces all items of its kind. So the items on board are read first, and those that the vehicle still needs
+are uploaded again.
 """
 
 from __future__ import annotations
@@ -18,20 +18,20 @@ from adapters.mavlink.telemetry import Telemetry
 from adapters.mavlink.zones import Zone, zones
 
 UNION: Final = 2
-"""The bit of ArduPilot's FENCE_OPTIONS with which one zone to stay in is enough; PX4 knows nothing else."""
+"""The bit of ArduPilot's FENCE_OPTIONS with which one inclusion zone is enough; PX4 always works so."""
 
 RETURNS_BY_LANDING: Final = (1.0, 2.0)
-"""ArduPlane's RTL_AUTOLAND with which it goes on to its landing sequence, in AUTO."""
+"""ArduPlane's values of RTL_AUTOLAND with which a return continues with the landing sequence, in AUTO."""
 
 OnBoard = Mapping[MissionType, Items]
-"""What was read back and, as far as can be told, has not changed since; what is not in it is not known."""
+"""Items read back that have not changed since, as far as we know; a kind without an entry is unknown."""
 
 _LANDINGS: Final = (Cmd.LAND, Cmd.VTOL_LAND)
 _STARTS: Final = (Cmd.DO_LAND_START, Cmd.DO_RETURN_PATH_START)
 
 
 def merged(ours: Items, found: Items, kind: MissionType, known: Telemetry) -> Items:
-    """Return what must be on board: our items, and those found there that are kept."""
+    """Return the items that must be on board: ours, and those found there that are kept."""
     if kind is MissionType.FENCE:
         return (*ours, *(item for zone in kept_zones(ours, found, known) for item in zone.items))
     if kind is MissionType.MISSION:
@@ -40,7 +40,7 @@ def merged(ours: Items, found: Items, kind: MissionType, known: Telemetry) -> It
 
 
 def is_on_board(wanted: Items, found: Items, kind: MissionType) -> bool:
-    """Tell whether all that is wanted, and nothing else, was found on board; the order of zones has no meaning."""
+    """Return whether the items on board are exactly the wanted ones; the order of zones has no meaning."""
     if kind is MissionType.FENCE:
         here, there = (sorted(zone.key for zone in zones(items)) for items in (wanted, found))
         return here == there
@@ -48,23 +48,23 @@ def is_on_board(wanted: Items, found: Items, kind: MissionType) -> bool:
 
 
 def kept_zones(ours: Items, found: Items, known: Telemetry) -> tuple[Zone, ...]:
-    """Return the zones on board that are not ours and stay: all of which ours does not become wider."""
+    """Return the zones on board that are not ours and stay: all zones that do not widen our fence."""
     own = {zone.key for zone in zones(ours)}
     foreign = (zone for zone in zones(found) if zone.key not in own)
     return tuple(zone for zone in foreign if not (zone.within and widens(known)))
 
 
 def widens(known: Telemetry) -> bool:
-    """Tell whether another zone to stay in lets a vehicle leave ours."""
+    """Return whether another inclusion zone lets a vehicle leave ours."""
     return _dialect(known).unites or bool(int(known.parameters.get("FENCE_OPTIONS", 0)) & UNION)
 
 
 def landing(found: Items, known: Telemetry) -> Items:
-    """Return the landing sequence of a mission on board, to which the vehicle returns; empty if it has none.
+    """Return the landing sequence of a mission on board, by which the vehicle returns; empty without one.
 
-    It is everything from the first marker of such a sequence on. PX4 needs no marker before a landing.
+    It begins at the first marker of such a sequence. PX4 needs no marker before a landing.
     """
-    if known.parameters.get("RTL_AUTOLAND") == 0.0:  # it is not armed with one
+    if known.parameters.get("RTL_AUTOLAND") == 0.0:  # the vehicle cannot be armed with such a sequence
         return ()
     marked = next((at for at, item in enumerate(found) if item.command in _STARTS), None)
     if marked is None and not _dialect(known).marks_landing:
@@ -73,7 +73,7 @@ def landing(found: Items, known: Telemetry) -> Items:
 
 
 def landing_now(known: Telemetry, on_board: OnBoard) -> bool:
-    """Tell whether a vehicle flies the landing sequence by which it returns, in the mode of a mission."""
+    """Return whether a vehicle returns by its landing sequence, in the mode of a mission."""
     profile, found = known.profile, on_board.get(MissionType.MISSION)
     asked = known.parameters.get("RTL_AUTOLAND") in RETURNS_BY_LANDING
     if profile is None or not asked or known.mode != profile.auto or known.current is None or found is None:
@@ -83,7 +83,7 @@ def landing_now(known: Telemetry, on_board: OnBoard) -> bool:
 
 
 def jumps_out(found: Items, known: Telemetry) -> int | None:
-    """Return the item outside of the landing sequence on board to which it jumps, if it does."""
+    """Return the target of the first jump out of the landing sequence on board, or None."""
     tail = landing(found, known)
     first = len(found) - len(tail)
     targets = (item.parameters[0] for item in tail if item.command == Cmd.DO_JUMP)
@@ -91,7 +91,7 @@ def jumps_out(found: Items, known: Telemetry) -> int | None:
 
 
 def _renumbered(tail: Items, before: int, ahead: int) -> Items:
-    """Return a landing sequence, the last of `before` items, as it follows `ahead` others: jumps keep their aims."""
+    """Renumber the jumps of a landing sequence, the last of `before` items, that now follows `ahead` items."""
     shift = ahead - (before - len(tail))
     return tuple(_shifted(item, shift) if item.command == Cmd.DO_JUMP else item for item in tail)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 VERSION_2: Final = 0xFD
-"""The first byte of a frame of MAVLink 2; its third has flags."""
+"""The first byte of a MAVLink 2 frame; its third byte has flags."""
 
 FLAGS: Final = 2
 SIGNED: Final = 1
@@ -41,7 +41,7 @@ class Message:
 
     @property
     def target(self) -> int:
-        """The target system; 0 is all."""
+        """The target system; 0 means all."""
         return int(self.fields.get("target_system", 0))
 
 
@@ -51,5 +51,5 @@ def say(name: str, **fields: Any) -> Message:
 
 
 def is_for(message: Message, system: int) -> bool:
-    """Tell whether a message is addressed to a system, or to all."""
+    """Return whether a message is addressed to a system, or to all."""
     return message.target in (0, system)

@@ -1,7 +1,7 @@
 """The next action towards a command: a pure function of the vehicle's state.
 
-Little is remembered except what is known to be on board. So lost packets, duplicate answers and reboots need no special
-cases: the next action is the first whose effect the state does not show.
+The memory holds little beyond the items on board. So lost packets, duplicate answers and reboots need no special cases:
+the next action is the first whose effect the state does not show.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Wait:
 
 @dataclass(frozen=True, slots=True)
 class Tell:
-    """A message, until the state shows its effect."""
+    """A message, repeated until the state shows its effect."""
 
     why: str
     message: Message
@@ -59,11 +59,11 @@ class Load:
 
 @dataclass(frozen=True, slots=True)
 class Underway:
-    """The state shows that the vehicle follows its command; `done` that it has completed it.
+    """The state shows that the vehicle follows its command.
 
     Attributes:
-        done: Whether it has.
-        waypoint: Around which point it will stay, if it is going anywhere.
+        done: Whether it has completed the command.
+        waypoint: The point around which it will stay, if it is going anywhere.
     """
 
     done: bool
@@ -75,26 +75,26 @@ Step = Wait | Tell | Load | Underway
 
 @dataclass(frozen=True, slots=True)
 class Vehicle:
-    """The input of a plan.
+    """The input of `next_step`.
 
     Attributes:
         system: Its MAVLink system id.
-        known: Its state as its messages show it.
+        known: Its state according to its messages.
         profile: The profile of its kind.
         on_board: The missions, fences and rally points that were read back and have not changed since.
         fence: The polygon that it must stay in.
         circle: The radius in metres at which it circles where it stays.
-        room: The radius in metres within which its circles stay, in wind too.
+        room: The radius in metres that contains its circles, in wind too.
         height: Metres above the mission's home at which the command is carried out.
-        above: Metres above sea level of that home, if heights are told above sea level; None for above home.
+        above: Metres above sea level of that home, if commanded heights are above sea level; None for above home.
         begun: Whether its mission was seen to begin since the command.
         resumes: Whether the mission continues with the current item.
-        passed: How many places of its path it was seen in.
-        furthest: The highest item of the mission that it was seen at.
+        passed: The number of places of its path in which it was seen.
+        furthest: The highest mission item at which it was seen.
         home_circle: The radius in metres at which it circles its home when it returns.
         speaker: The system id of messages to it, that of its authority.
-        deaf: Why it seems not to hear us, if so.
-        lacks: Why it has no position, if so.
+        deaf: A likely reason why it does not answer us, or an empty text.
+        lacks: The reason why it has no position, or an empty text.
     """
 
     system: int
@@ -137,7 +137,7 @@ def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
 
 
 def _prepared(vehicle: Vehicle, mission: Items | None = None) -> Step | None:
-    """Return what is missing until the vehicle has a position, accepts missions, has its fence, and can be armed.
+    """Return the first missing precondition: a position, acceptance of missions, the fence, readiness to arm.
 
     A vehicle that is ready only with certain items on board gets its `mission` first.
     """
@@ -160,7 +160,7 @@ def _prepared(vehicle: Vehicle, mission: Items | None = None) -> Step | None:
 
 
 def _ready(vehicle: Vehicle) -> Step:
-    """Wait until it could be armed; where that depends on its mode, in one from which it may take off."""
+    """Wait until it could be armed; if that depends on its mode, first enter a mode from which it may take off."""
     unfit = vehicle.profile.climb is not None and vehicle.known.mode != vehicle.profile.climb
     return (_in_mode(vehicle, vehicle.profile.hold) if unfit else None) or Wait(
         "it is not ready to be armed yet"
@@ -168,7 +168,7 @@ def _ready(vehicle: Vehicle) -> Step:
 
 
 def _loaded(vehicle: Vehicle, ours: Items, kind: MissionType) -> Step | None:
-    """Read what is on board; then upload ours, with what is kept of that."""
+    """Read the items on board; then upload ours, with those that are kept."""
     found = vehicle.on_board.get(kind)
     if found is None:
         return Wait(f"its {kind.name.lower()} is not read yet")
@@ -186,7 +186,7 @@ def _go(command: GoTo, vehicle: Vehicle) -> Step:
 
 
 def _stay(command: GoTo | Follow, vehicle: Vehicle) -> Geometry:
-    """Return around which point it will stay; commands without room for its circle were refused."""
+    """Return the point around which it will stay; commands without room for its circle were refused."""
     return stay(command, vehicle.room) or waypoint(goal(command))
 
 
@@ -213,7 +213,7 @@ def _copter_takeoff(vehicle: Vehicle) -> Step | None:
 
 
 def _mode_takeoff(vehicle: Vehicle, mode: int) -> Step | None:
-    """Take off in a mode of its own, which the vehicle leaves by itself once it is high enough."""
+    """Take off in a mode for that, which the vehicle leaves by itself once it is high enough."""
     known = vehicle.known
     if known.flying:
         return Wait("it climbs") if known.mode == mode else None
@@ -225,7 +225,7 @@ def _told_to_take_off(vehicle: Vehicle) -> Step:
 
 
 def _height(vehicle: Vehicle, height: float) -> tuple[float, Frame]:
-    """Return a height above home as the vehicle takes it when it takes off."""
+    """Return a height above home in the vehicle's frame, for a take-off."""
     if not vehicle.profile.dialect.above_sea:
         return height, Frame.HOME
     assert vehicle.known.ground is not None, "plans begin with a home"
@@ -233,14 +233,14 @@ def _height(vehicle: Vehicle, height: float) -> tuple[float, Frame]:
 
 
 def _travel_height(vehicle: Vehicle) -> tuple[float, Frame]:
-    """Return the height of the command as the vehicle takes it on its way."""
+    """Return the height of the command in the vehicle's frame, for travel."""
     if vehicle.above is None:
         return _height(vehicle, vehicle.height)
     return round(vehicle.height + vehicle.above, 1), Frame.SEA_LEVEL
 
 
 def _takeoff_items(command: GoTo, vehicle: Vehicle) -> Items | None:
-    """Return the mission by which a vehicle takes off, if it takes one."""
+    """Return the mission by which a vehicle takes off, if it uses one."""
     if vehicle.profile.takeoff is not TakeOff.MISSION or vehicle.known.flying:
         return None
     return route((_stay(command, vehicle),), vehicle.height, takeoff=True, above=vehicle.above)
@@ -268,7 +268,7 @@ def _may_take_off(vehicle: Vehicle) -> bool:
 def _sent(vehicle: Vehicle, at: Geometry) -> Step | None:
     """Bring it to guided mode with the commanded target.
 
-    A vehicle in guided mode is not told to enter it: it may leave that mode at this moment for its safety.
+    A vehicle in guided mode is not asked to enter it: it may leave that mode at this moment for its safety.
     """
     known, (x, y) = vehicle.known, e7(at)
     enters = known.mode != vehicle.profile.guided
@@ -283,7 +283,7 @@ def _sent(vehicle: Vehicle, at: Geometry) -> Step | None:
 
 
 def _aims_elsewhere(vehicle: Vehicle) -> bool:
-    """Tell whether its target is at another height than the command's, as far as both are known."""
+    """Return whether its target is at another height than the command's, as far as both are known."""
     known = vehicle.known
     if known.aim is None or known.datum is None or vehicle.profile.takeoff is TakeOff.NONE:
         return False
@@ -291,7 +291,7 @@ def _aims_elsewhere(vehicle: Vehicle) -> bool:
 
 
 def _stopped(vehicle: Vehicle) -> Step | None:
-    """Let it stay here, where the mode in which it holds is also that in which it goes to a target."""
+    """Make it stay here, if the mode in which it holds is also the mode in which it goes to a target."""
     known, profile = vehicle.known, vehicle.profile
     if profile.hold != profile.guided or known.target is None or known.position is None:
         return None
@@ -318,7 +318,7 @@ def _path_items(command: Follow, vehicle: Vehicle) -> Items:
 
 
 def _by_item(profile: Profile) -> bool:
-    """Tell whether the missions of a kind of vehicle begin with a take-off."""
+    """Return whether the missions of a kind of vehicle begin with a take-off."""
     return profile.takeoff in (TakeOff.MISSION, TakeOff.COMMAND)
 
 
@@ -354,7 +354,7 @@ def _begun(vehicle: Vehicle, first: int) -> Step | None:
 
 
 def _in_turn(vehicle: Vehicle) -> Step | None:
-    """Let no place of the path be left out: the number of an item is no proof that the vehicle was there."""
+    """Make it visit every place of the path: an item's number is no proof that the vehicle was there."""
     current, next_place = vehicle.known.current or 0, _lead(vehicle.profile) + vehicle.passed
     due = min(next_place, current) if current >= vehicle.furthest else vehicle.furthest
     if current == due:
@@ -398,7 +398,7 @@ def _is_home(vehicle: Vehicle) -> bool:
 
 
 def passing(command: Follow, vehicle: Vehicle) -> int:
-    """Return how many places of a path a vehicle has passed that is at its position now; they are passed in order."""
+    """Return how many places of its path a vehicle has passed, in order, including its present position."""
     passed = vehicle.passed
     while passed < len(command.path) - 1:
         place = command.path[passed]
@@ -418,7 +418,7 @@ def _reached(place: Geometry, at: Geometry, vehicle: Vehicle) -> bool:
 def height_of(
     band: Band | None, profile: Profile, known: Telemetry, position: Position, otherwise: float
 ) -> float:
-    """Return the height above the mission's home of the middle of a band; the vehicle's own if there is none."""
+    """Return the height above the mission's home of the middle of a band; without one, `otherwise`."""
     if band is None or profile.takeoff is TakeOff.NONE:
         return otherwise
     home = position.altitude - position.height if known.datum is None else known.datum

@@ -1,4 +1,4 @@
-"""Reasons why a vehicle cannot carry out a command, known before anything is sent."""
+"""Reasons why a vehicle cannot carry out a command, known before any message is sent."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from adapters.plugin import Command, Follow, GoTo, HandOver
 from physical import Geometry, circle, contains, point, waypoint
 
 NEEDS_MORE: Final[dict[float, str]] = {1: "a take-off", 2: "a landing", 3: "a take-off and a landing"}
-"""What PX4 demands of each mission (MIS_TKO_LAND_REQ, navigator/mission_params.yaml); 4 and 5 are met by a path."""
+"""PX4's demands of each mission (MIS_TKO_LAND_REQ, navigator/mission_params.yaml); every path meets 4 and 5."""
 
 NOTHING_READ: Final[OnBoard] = MappingProxyType({})
 
@@ -49,7 +49,7 @@ def objection(
 ) -> str | None:
     """Return the objection in the operator's words; None if none is known.
 
-    `again`: the command was taken on before it was known what is on board, and only that can be new.
+    `again`: the command was taken on before the items on board were known, so only objections to those items are new.
     """
     first = () if again else _objections(command, craft, stations, known)
     return next(chain(first, _of_on_board(command, craft, known, on_board)), None)
@@ -73,7 +73,7 @@ def _of_length(command: Follow) -> Iterator[str]:
 
 
 def _of_on_board(command: Command, craft: Craft, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
-    """Object to what on board prevents a flight."""
+    """Yield objections from the items on board."""
     if not isinstance(command, GoTo | Follow) or known.profile is None:
         return
     yield from _of_zones(command, craft, known.profile, known, on_board)
@@ -84,7 +84,7 @@ def _of_on_board(command: Command, craft: Craft, known: Telemetry, on_board: OnB
 def unfit(
     command: GoTo | Follow, craft: Craft, known: Telemetry, on_board: OnBoard = NOTHING_READ
 ) -> str | None:
-    """Return why no station can send a vehicle to a place: it is too small, or outside a fence."""
+    """Return the reason why no station can send a vehicle to a place: it is too small, or outside a fence."""
     zones = () if known.profile is None else _of_zones(command, craft, known.profile, known, on_board)
     return next(chain(_of_place(command, craft, known), zones), None)
 
@@ -92,7 +92,7 @@ def unfit(
 def impassable(
     place: Geometry, craft: Craft, known: Telemetry, name: str, on_board: OnBoard = NOTHING_READ
 ) -> str | None:
-    """Return why a place can't be passed; the vehicle needs no room for a circle there."""
+    """Return the reason why a place can't be passed; the vehicle needs no room for a circle there."""
     if craft.fence is not None and not contains(craft.fence, waypoint(place)):
         return f"{name} lies outside the fence"
     own = own_fences(known, given=craft.fence is not None)
@@ -128,7 +128,7 @@ def _of_place(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]
 
 
 def not_ours(stations: Stations, known: Telemetry) -> str | None:
-    """Return the station that a vehicle obeys, if it is certainly not ours."""
+    """Return an objection if the vehicle certainly obeys a station that is not ours."""
     authority = stations.obeyed(known.authority, known.profile)
     name = stations.name_of(authority)
     if authority is None or name in stations.own:
@@ -153,7 +153,7 @@ def _of_hand_over(command: HandOver, stations: Stations, known: Telemetry) -> It
 
 
 def _of_landing(known: Telemetry) -> Iterator[str]:
-    """Object to a path where the vehicle takes only missions with a take-off or a landing: a path has neither."""
+    """Object to a path if the vehicle requires a take-off or a landing in each mission: a path has neither."""
     rule = "" if known.profile is None else known.profile.dialect.landing_rule
     demanded = known.parameters.get(rule, 0)
     if demanded in NEEDS_MORE:
@@ -162,7 +162,7 @@ def _of_landing(known: Telemetry) -> Iterator[str]:
 
 
 def _of_fence(command: Command, craft: Craft, known: Telemetry) -> Iterator[str]:
-    """Object to points outside of the fence, and to a circle around the last that leaves it."""
+    """Object to points outside the fence, and to a circle around the last that leaves it."""
     if craft.fence is None or not isinstance(command, GoTo | Follow):
         return
     why = keeps_no_polygon(known)
@@ -211,7 +211,7 @@ def _of_own_fences(command: GoTo | Follow, craft: Craft, profile: Profile, known
 def _of_zones(
     command: GoTo | Follow, craft: Craft, profile: Profile, known: Telemetry, on_board: OnBoard
 ) -> Iterator[str]:
-    """Object to points that a zone on board does not allow, to zones that can't be kept, and to rally points."""
+    """Object to points that a zone on board forbids, to zones that can't be kept, and to rally points."""
     if craft.fence is not None:
         yield from widened(craft.fence, known, on_board)
         yield from beyond_fence(craft.fence, known, on_board)
@@ -223,7 +223,7 @@ def _of_zones(
 
 
 def _of_legs(command: GoTo | Follow, craft: Craft, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
-    """Object to straight ways through zones to stay out of, from where the vehicle is now."""
+    """Object to straight legs through exclusion zones, from the vehicle's position on."""
     points = [*_points(command, craft, known)]
     if known.position is not None:
         points = [point(known.position.latitude, known.position.longitude), *points]
@@ -235,7 +235,7 @@ def _of_legs(command: GoTo | Follow, craft: Craft, known: Telemetry, on_board: O
 
 
 def _of_items(command: GoTo | Follow, profile: Profile, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
-    """Object to items that the vehicle asks for before it is armed, and to a landing that can't be kept."""
+    """Object to required items that are missing before arming, and to a landing sequence that can't be kept."""
     found = on_board.get(MissionType.MISSION)
     if found is None:
         return
@@ -256,7 +256,7 @@ def _of_items(command: GoTo | Follow, profile: Profile, known: Telemetry, on_boa
 
 
 def holds_circle(place: Geometry, radius: float) -> bool:
-    """Tell whether a circle around a place's waypoint fits in it; for a point it always does."""
+    """Return whether a circle around a place's waypoint fits in it; for a point it always does."""
     if place.is_point:
         return True
     return contains(place, _around(waypoint(place), radius))

@@ -57,10 +57,10 @@ ASK_AUTHORITY: Final = 1.0
 CHECK_AUTHORITY: Final = 5.0
 
 UNANSWERED: Final = 8
-"""Unanswered questions after which a likely reason is reported; even a bad link answers one of them."""
+"""Unanswered questions after which a likely reason is reported; even a bad link passes one of them."""
 
 MOST_QUESTIONS: Final = 10
-"""How often a vehicle is asked, once a second, for its parameters: it does not answer for one that it lacks."""
+"""Requests for a vehicle's parameters, one a second: it never answers for a parameter that it lacks."""
 
 _ANSWERS: Final = frozenset(
     {
@@ -76,7 +76,7 @@ _ANSWERS: Final = frozenset(
 _SLOTS: Final = ("handing", "moving")
 
 Shown = tuple[Position | None, int | None, bool]
-"""What the last publication depended on: position, authority, whether the link was lost."""
+"""The basis of the last publication: position, authority, whether the link was lost."""
 
 
 @dataclass(frozen=True)  # no slots: `changed`
@@ -88,21 +88,21 @@ class Pilot:
         stations: The stations that may command it.
         system: Its MAVLink system id.
         signs: Whether messages to it are signed.
-        known: Its state as its messages show it.
-        link: Whether it is heard.
+        known: Its state according to its messages.
+        link: The state of its link.
         streams: The messages requested of it.
-        on_board: The missions, fences and rally points that were read back since anybody may have changed them.
-        survey: The reading of what is on board.
+        on_board: The missions, fences and rally points read back since anybody may have changed them.
+        survey: The reading of the items on board.
         moving: The command that it carries out.
         handing: The hand-over in progress.
         helm: Whether it follows its orders.
-        asked: When its authority was last requested.
-        unanswered: How often it was requested since the last answer.
-        questions: How often its parameters were requested since it booted.
-        since: Since when it has a position.
-        shown: What the last publication depended on.
-        status: What was last reported of what it says of itself.
-        condition: What of its position and its home was reported.
+        asked: Time of the last request for its authority.
+        unanswered: The number of requests for it since the last answer.
+        questions: The number of requests for its parameters since it booted.
+        since: Time of its first position.
+        shown: The basis of the last publication.
+        status: Its last reported status.
+        condition: The troubles of its position and home, with those already reported.
     """
 
     craft: Craft
@@ -157,7 +157,7 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
         return Outcome(changed(pilot, handing=task))
     outside = () if not isinstance(told, Return) else inventory.out_of_fence(pilot, now)
     if isinstance(told, Hold | Return):
-        pilot = changed(pilot, handing=None)  # where it stops it stays ours
+        pilot = changed(pilot, handing=None)  # a vehicle that stops stays ours
     elif not _continues(pilot.moving, told):
         pilot = inventory.read_again(pilot, told, now)
     surveyed = inventory.is_surveyed(pilot) or isinstance(told, Hold | Return)
@@ -166,7 +166,7 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
 
 
 def _stops_in_vain(pilot: Pilot, told: Hold | Return, reason: str, now: float) -> Outcome:
-    """Reject an order to stop; what it was to end does not go on, should the vehicle obey us again."""
+    """Reject an order to stop; the command that it was to end does not resume if the vehicle obeys us again."""
     ended = tasks.rejected(Task(told, since=now, boots=pilot.known.boots), reason, now)
     reports = () if ended.report is None else (ended.report,)
     return Outcome(changed(pilot, moving=ended.task, handing=None), reports=reports)
@@ -175,7 +175,7 @@ def _stops_in_vain(pilot: Pilot, told: Hold | Return, reason: str, now: float) -
 def _check_not_rejected(before: Task | None, told: Command) -> None:
     """Refuse a rejected request again: a moving place must not take a vehicle back from its pilot.
 
-    An order to stop is owed until it is done.
+    An order to stop stays due until it is done.
     """
     if isinstance(told, Hold | Return):
         return
@@ -184,7 +184,7 @@ def _check_not_rejected(before: Task | None, told: Command) -> None:
 
 
 def _continues(before: Task | None, told: Command) -> bool:
-    """Tell whether a command is that of before, of which a place has moved."""
+    """Return whether a command is the earlier one with a moved place."""
     if before is None or before.command.request != told.request:
         return False
     return isinstance(told, Follow) or not before.over
@@ -229,7 +229,7 @@ def _heard(pilot: Pilot, message: Message, now: float) -> Outcome:
 
 
 def _with_passed(pilot: Pilot, now: float) -> Pilot:
-    """Note which place of its path a vehicle is in."""
+    """Record the place of its path that a vehicle is in."""
     task, profile = pilot.moving, pilot.known.profile
     if task is None or profile is None or not pilot.helm.held or not isinstance(task.command, Follow):
         return pilot
@@ -237,7 +237,7 @@ def _with_passed(pilot: Pilot, now: float) -> Pilot:
 
 
 def tick(pilot: Pilot, now: float) -> Outcome:
-    """Let time pass."""
+    """Advance to the time `now`."""
     pilot = changed(pilot, known=waited(pilot.known, now))
     return _with_its_words(_ticked(pilot, now), now)
 
@@ -264,7 +264,7 @@ def _ticked(pilot: Pilot, now: float) -> Outcome:
 
 
 def _with_its_words(outcome: Outcome, now: float) -> Outcome:
-    """Add what the vehicle says: its texts, and its status once a second while it is heard."""
+    """Add the vehicle's texts, and its status once a second while it is heard."""
     pilot, known = outcome.pilot, outcome.pilot.known
     entity, before = pilot.craft.entity, pilot.status
     seen: list[Status | StatusText] = [
@@ -340,7 +340,7 @@ def _untold(pilot: Pilot) -> Iterator[Message]:
 
 
 def is_known(pilot: Pilot) -> bool:
-    """Tell whether a vehicle has told all that was asked, what is on board too, or was asked for long enough."""
+    """Return whether the vehicle's parameters and items on board have come, or were requested long enough."""
     told = (pilot.known.profile, pilot.known.home, pilot.known.position)
     known = all(each is not None for each in told)
     return known and not any(_untold(pilot)) and (pilot.survey.settled or not _is_ours(pilot))
@@ -388,12 +388,12 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
     if helm.taken and not before.taken:
         return _taken_over(pilot, now)
     if helm.held and not before.held:
-        pilot = inventory.unsure(pilot, quiet=True)  # who had it for a moment may have done more than that
+        pilot = inventory.unsure(pilot, quiet=True)  # whoever had it for a moment may have changed more
     return pilot, tuple(_changes(pilot, before, now))
 
 
 def _changes(pilot: Pilot, before: Helm, now: float) -> Iterator[Report]:
-    """Yield that the vehicle's command becomes doubtful, or certain again."""
+    """Yield a report when the vehicle's command becomes doubtful, or certain again."""
     entity, task = pilot.craft.entity, pilot.moving
     if before.held and not pilot.helm.held:
         yield Doubted(entity, now)
@@ -402,7 +402,7 @@ def _changes(pilot: Pilot, before: Helm, now: float) -> Iterator[Report]:
 
 
 def _undone(pilot: Pilot, profile: Profile, now: float) -> str:
-    """Return the part of its completed commands that the vehicle no longer does."""
+    """Return the part of its completed commands that the vehicle no longer carries out."""
     task = pilot.moving
     if task is None or not task.accepted:
         return ""
@@ -411,7 +411,7 @@ def _undone(pilot: Pilot, profile: Profile, now: float) -> str:
 
 
 def _taken_over(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
-    """End the vehicle's commands: what it does from now on is not our doing."""
+    """End the vehicle's commands: its actions from now on are not ours."""
     reason = pilot.helm.taken + pilot.known.last_words(now)
     pilot = changed(pilot, helm=replace(pilot.helm, taken=reason))
     reports: list[Report] = [TakenOver(pilot.craft.entity, now, reason)]
@@ -429,7 +429,7 @@ def _authority(pilot: Pilot) -> int | None:
 
 
 def _is_ours(pilot: Pilot) -> bool:
-    """Tell whether we report on a vehicle; if its authority is unknown, only if we have commanded it."""
+    """Return whether we report on a vehicle; if its authority is unknown, only if we have commanded it."""
     stations, authority = pilot.stations, _authority(pilot)
     if authority is None:
         return set(stations.own) == set(stations.ids) or bool(pilot.helm.modes)
@@ -482,7 +482,7 @@ def _vehicle(pilot: Pilot, task: Task, profile: Profile, now: float) -> next_ste
 
 
 def _deaf(pilot: Pilot) -> str:
-    """Return why a vehicle seems not to hear us, if it does."""
+    """Return a likely reason why a vehicle does not answer us, or an empty text."""
     if _authority(pilot) is not None:
         return ""
     if pilot.known.signs and not pilot.signs:
@@ -500,7 +500,7 @@ def _unknown(pilot: Pilot, task: Task, now: float) -> Progress:
 def _with_height(pilot: Pilot, task: Task) -> Task:
     """Fix the height of a task as soon as the vehicle's own position allows.
 
-    A band is above sea level, and so is what the vehicle is told then; and always if its home has been moved.
+    The commanded height is above sea level for a band, and whenever the vehicle's home has been moved.
     """
     known, profile, position = pilot.known, pilot.known.profile, pilot.known.position
     if task.height is not None or profile is None or position is None:
@@ -512,7 +512,7 @@ def _with_height(pilot: Pilot, task: Task) -> Task:
 
 
 def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Aged, ...], tuple[Report, ...]]:
-    """Publish the vehicle if anything published has changed."""
+    """Publish the vehicle if any published value has changed."""
     position, authority = pilot.known.position, _authority(pilot)
     if position is None or pilot.known.profile is None:  # a run begins when the kinds are known
         return changed(pilot, since=None), (), ()
@@ -530,7 +530,7 @@ def _publication(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Aged, ...], tup
 
 
 def _channels(pilot: Pilot) -> tuple[str, ...]:
-    """Return the channels that it is on: none while it is not heard."""
+    """Return the channels of the vehicle: none while it is not heard."""
     if pilot.link.lost:
         return ()
     station = pilot.stations.name_of(_authority(pilot)) if pilot.stations.in_mission else None

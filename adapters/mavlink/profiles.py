@@ -1,4 +1,4 @@
-"""Profiles of vehicle types: their autopilot's dialect, modes, take-off, and how well they hold a position.
+"""Profiles of vehicle types: their autopilot's dialect, modes, take-off, and precision in holding a position.
 
 The numbers are ArduPilot 4.6's and PX4 1.18's; kind and autopilot come from HEARTBEAT.
 """
@@ -31,15 +31,15 @@ class TakeOff(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
-    """What one make of autopilot does differently with the same messages.
+    """The differences of one make of autopilot, with the same messages.
 
     Attributes:
-        name: The name that people use.
+        name: Its name for people.
         number: Its MAV_AUTOPILOT.
-        authority: The parameters, by version, that say which station it obeys; none: it obeys all on its link.
+        authority: The parameters, by version, for the station that it obeys; none: it obeys all on its link.
         circle: The parameter of the radius at which it circles.
         home_circle: The parameter of the radius at which it circles its home.
-        fence_action: The parameter that says what it does at its fences; empty: they are switched on and off.
+        fence_action: The parameter of its action at its fences; empty: they are switched on and off.
         fence_circle: The parameter of its fence around home.
         fence_ceiling: The parameter of its fence above home.
         landing_rule: The parameter that may demand a landing of each mission; empty: none does.
@@ -47,10 +47,10 @@ class Dialect:
         above_sea: Whether heights of commands are above sea level, not above home.
         home_is_item: Whether item 0 of a mission is home.
         begins_by_command: Whether a command, not a message, makes an item of a mission the current one.
-        enters: Whether a target is always sent with the flag that enters guided mode; it may be refused without.
-        lands_by_state: Whether EXTENDED_SYS_STATE says that it flies; else its HEARTBEAT does.
+        enters: Whether every target needs the flag that enters guided mode, or else may be refused.
+        lands_by_state: Whether EXTENDED_SYS_STATE reports flight; else HEARTBEAT does.
         typed: Whether parameters are the bytes of their type, not all floats.
-        unites: Whether it may be in any one of its fence's zones to stay in; else it must be in all.
+        unites: Whether any one of its fence's inclusion zones is enough; else it must be in all.
         marks_landing: Whether a landing sequence begins with a marker; else also with the landing.
         streams: The messages that it is asked to send regularly.
     """
@@ -85,7 +85,7 @@ class Dialect:
 
 
 def mode_number(main: int, sub: int = 0) -> int:
-    """Return PX4's number of a mode, as HEARTBEAT has it."""
+    """Return PX4's number of a mode, in the form of HEARTBEAT."""
     return main << 16 | sub << 24
 
 
@@ -128,7 +128,7 @@ class Profile:
     """One kind of vehicle.
 
     Attributes:
-        kind: The name that people use.
+        kind: Its name for people.
         modes: Its modes by number.
         guided: The mode in which it goes to a point and stays.
         auto: The mode in which it follows its mission.
@@ -136,13 +136,13 @@ class Profile:
         home: The mode in which it returns.
         takeoff: How it leaves the ground.
         circle: The radius in metres that it needs to stay somewhere.
-        reach: How near in metres counts as being at a point.
+        reach: The distance in metres that counts as being at a point.
         altitude: Its default height in metres above home.
         parameters: The parameters of its limits and its circles.
         drift: The factor by which wind and inertia widen its circle.
-        dialect: What its autopilot does differently from others.
-        climb: The mode in which it takes off, if that is one of its own.
-        rise: The height in metres above home to which it takes off by a command, before it is sent anywhere.
+        dialect: The differences of its autopilot from others.
+        climb: The mode in which it takes off, if it has one for that.
+        rise: The height in metres above home of a take-off by command, before any other target.
     """
 
     kind: str
@@ -179,7 +179,7 @@ _ROVER_MODES: Final = {
 
 FLIES: Final = (*FENCE_PARAMETERS, *HEIGHT_PARAMETERS, *ARMING_PARAMETERS)
 
-# Seen: 50 m at waypoints, and circles of 80 m in guided mode, in 8 m/s of wind from 85 to 103 m: 1.29 times as far out.
+# Measured: 50 m at waypoints; circles of 80 m in guided mode have 85 to 103 m in 8 m/s of wind: 1.29 times.
 PLANE: Final = Profile(
     "plane",
     _PLANE_MODES,
@@ -201,7 +201,7 @@ ROVER: Final = Profile("rover", _ROVER_MODES, 15, 10, 4, 11, TakeOff.NONE, 2.0, 
 BOAT: Final = Profile("boat", _ROVER_MODES, 15, 10, 5, 11, TakeOff.NONE, 5.0, 8.0, 0.0)
 
 AUTO: Final = 4
-"""PX4's main mode of all that it flies by itself."""
+"""PX4's main mode of all autonomous flight."""
 
 _PX4_MODES: Final = {
     mode_number(1): "MANUAL", mode_number(2): "ALTCTL", mode_number(3): "POSCTL", mode_number(5): "ACRO",
@@ -265,7 +265,7 @@ def profile_of(vehicle_type: int, autopilot: int) -> Profile | None:
 
 
 def unknown_kind(vehicle_type: int, autopilot: int) -> str:
-    """Return why a HEARTBEAT's sender has no profile.
+    """Return the reason why a HEARTBEAT's sender has no profile.
 
     >>> unknown_kind(20, 12)
     'it is a vehicle of MAV_TYPE 20 with PX4, of which only planes and copters are known here'

@@ -1,4 +1,4 @@
-"""Where a vehicle returns to: its home, or one of the rally points on board; and what on board that depends on."""
+"""The points to which a vehicle returns, its home or a rally point on board, and other needs for items on board."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from adapters.mavlink.telemetry import Telemetry
 from physical import Geometry, PhysicalError, contains, distance, point
 
 ARMING_ITEMS: Final = "ARMING_MIS_ITEMS"
-"""ArduPilot's parameter that names the items without which it is not armed."""
+"""ArduPilot's parameter for the items without which it cannot be armed."""
 
 _RALLY: Final = 32
 _NEEDED: Final[Mapping[int, tuple[Cmd, str]]] = {
@@ -23,11 +23,11 @@ _NEEDED: Final[Mapping[int, tuple[Cmd, str]]] = {
     16: (Cmd.VTOL_TAKEOFF, "a take-off of a VTOL"),
     64: (Cmd.RETURN_TO_LAUNCH, "a return"),
 }
-"""The bits of ARMING_MIS_ITEMS (AP_Arming/AP_Arming.cpp), but that of rally points."""
+"""The bits of ARMING_MIS_ITEMS (AP_Arming/AP_Arming.cpp), except that of rally points."""
 
 
 def refuges(known: Telemetry, on_board: OnBoard) -> tuple[Geometry, ...]:
-    """Return the points to one of which a vehicle returns from its position."""
+    """Return the possible points of return from a vehicle's position."""
     home = () if known.home is None else (point(*known.home),)
     rally = tuple(at for at in rally_points(on_board) if _is_near(at, known))
     only = known.profile is not None and known.profile.dialect.home_is_item
@@ -50,7 +50,7 @@ def _points(items: Items) -> Iterator[Geometry]:
 
 
 def _is_near(rally: Geometry, known: Telemetry) -> bool:
-    """Tell whether a rally point is near enough to be used."""
+    """Return whether a rally point is near enough to be used."""
     limit = known.parameters.get("RALLY_LIMIT_KM", 0.0)
     if known.position is None or limit <= 0.0:
         return True
@@ -59,7 +59,7 @@ def _is_near(rally: Geometry, known: Telemetry) -> bool:
 
 
 def beyond_fence(fence: Geometry, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
-    """Yield which rally points would lead a vehicle out of its fence when it returns."""
+    """Yield the rally points that would lead a returning vehicle out of its fence."""
     limit = 1000.0 * known.parameters.get("RALLY_LIMIT_KM", 0.0)
     for number, at in enumerate(rally_points(on_board), 1):
         away = distance(fence, at)
@@ -71,7 +71,7 @@ def beyond_fence(fence: Geometry, known: Telemetry, on_board: OnBoard) -> Iterat
 
 
 def missing_items(mission: Items, known: Telemetry, on_board: OnBoard) -> Iterator[str]:
-    """Yield what a vehicle asks to have on board before it is armed, and `mission` has not."""
+    """Yield the items that a vehicle requires on board before it is armed, and that `mission` lacks."""
     asked = known.parameters.get(ARMING_ITEMS, 0.0)
     bits = int(asked) if 0 <= asked < 1e6 else 0
     there = {item.command for item in mission}

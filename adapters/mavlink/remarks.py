@@ -1,4 +1,4 @@
-"""What is on board before a flight, in words for the operator: what is kept, what is replaced, where it returns to."""
+"""Remarks to the operator on the items on board before a flight: kept and replaced items, and the points of return."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _OURS = (Cmd.WAYPOINT, Cmd.LOITER_UNLIMITED, Cmd.TAKEOFF)
 def remarks_on_board(
     craft: Craft, known: Telemetry, on_board: OnBoard, unread: Collection[MissionType]
 ) -> Iterator[str]:
-    """Yield what an operator should know of what is on board a vehicle; `unread` was asked for in vain."""
+    """Yield remarks on the items on board a vehicle; `unread` kinds could not be read."""
     missing = [kind.name.lower() for kind in unread if kind not in on_board]
     if missing:
         yield f"does not tell what is on board: {', '.join(missing)}"

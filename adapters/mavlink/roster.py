@@ -1,6 +1,6 @@
 """Map the systems on a link to the mission's vehicles, by system id, serial number, or order of arrival.
 
-A pure state machine. A vehicle that is identified by its serial number is asked for it (AUTOPILOT_VERSION) until it
+A pure state machine. A vehicle with a serial number in the mission is asked for it (AUTOPILOT_VERSION) until it
 answers. Until then its messages are ignored, since any vehicle can have its system id.
 """
 
@@ -23,7 +23,7 @@ VERSION: Final = "AUTOPILOT_VERSION"
 
 @dataclass(frozen=True, slots=True)
 class Roster:
-    """The reported serial numbers of systems, and when each was last asked."""
+    """The reported serial numbers of systems, and the time of the last question to each."""
 
     serials: Mapping[int, str] = field(default_factory=dict)
     asked: Mapping[int, float] = field(default_factory=dict)
@@ -31,7 +31,7 @@ class Roster:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """A message's vehicle: its `pilot` and system id, None if unknown; `question` is to be sent to the sender."""
+    """A message's vehicle: its `pilot` with the system id, None if unknown; `question` is for the sender."""
 
     roster: Roster
     pilot: Pilot | None = None
@@ -40,7 +40,7 @@ class Found:
 
 
 def find(roster: Roster, pilots: Iterable[Pilot], message: Message, now: float) -> Found:
-    """Return the pilot of a message's sender, and the question that would identify it."""
+    """Return the pilot of a message's sender, or the question that would identify it."""
     if message.system == 0 or message.component != AUTOPILOT_COMPONENT:
         return Found(roster)
     everyone = tuple(pilots)

@@ -1,8 +1,8 @@
-"""MAVLink 2 signing: which packets are accepted, and the state on disk between runs.
+"""MAVLink 2 signing: the checks of packets, and the state on disk between runs.
 
-A pure state machine. A signature's time stamp is in units of 10 µs since 2015; for each stream (link, system,
-component) it must grow, and a new stream may be at most a minute behind. A stream is remembered only after its
-signature has been checked, so an attacker can neither silence a vehicle nor fill the memory.
+A pure state machine. A signature's time stamp counts units of 10 µs since 2015. It must grow in each stream (link,
+system, component), and a new stream may be at most a minute behind. A stream is remembered only after its signature has
+been checked, so an attacker can neither silence a vehicle nor fill the memory.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ UNITS: Final = 100_000
 
 NEW_STREAM: Final = 60 * UNITS
 RESERVE: Final = 10 * UNITS
-"""How far time stamps on disk run ahead in a run: after a crash none is sent, and no packet accepted, a second time.
+"""Lead of the time stamps on disk during a run: even after a crash none is sent, or accepted, a second time.
 
 After a crash a vehicle's packets are ignored for at most this time, until its own time stamps have caught up.
 """
@@ -54,7 +54,7 @@ Stream = tuple[int, int, int]
 
 @dataclass(frozen=True, slots=True)
 class Signing:
-    """A key, the newest time stamp sent or seen, and the newest of every stream that was heard."""
+    """A key, the newest time stamp sent or received, and the newest of every stream."""
 
     key: bytes
     timestamp: int = 0
@@ -62,7 +62,7 @@ class Signing:
 
 
 def new_key(passphrase: str) -> bytes:
-    """Make a key of a passphrase as ground stations do: its SHA-256."""
+    """Make a key from a passphrase as ground stations do: its SHA-256."""
     return hashlib.sha256(passphrase.encode()).digest()
 
 
@@ -83,7 +83,7 @@ def check(signing: Signing, message: Message) -> tuple[Signing, Verdict]:
 
 
 def stamp(signing: Signing, now: float) -> Signing:
-    """Take the next time stamp to send with: the clock's, and larger than any before."""
+    """Take the next time stamp to send: the clock's, and larger than any before."""
     return replace(signing, timestamp=max(signing.timestamp + 1, int((now - EPOCH) * UNITS)))
 
 
@@ -94,7 +94,7 @@ def ahead(signing: Signing) -> Signing:
 
 
 def covers(reserved: Signing, signing: Signing) -> bool:
-    """Tell whether a state on disk is at least as far as another in every time stamp."""
+    """Return whether a state on disk is at least as far as another in every time stamp."""
     known = reserved.streams
     return reserved.timestamp >= signing.timestamp and all(
         known.get(stream, -1) >= time for stream, time in signing.streams.items()
@@ -133,7 +133,7 @@ def load(path: Path) -> Signing:
 
 
 def _signing(data: object) -> Signing:
-    """Return the state that a file says; raises PhysicalError."""
+    """Return the state in the data of a file; raises PhysicalError."""
     match data:
         case {"key": str(key), "timestamp": int(timestamp), "streams": dict(streams)}:
             pass

@@ -18,21 +18,21 @@ ASK_EVERY: Final = 2.0
 
 @dataclass(frozen=True, slots=True)
 class Streams:
-    """When each message came last, and when they were last requested."""
+    """The time of each message's last arrival and of the last request."""
 
     came: dict[str, float] = field(default_factory=dict)
     asked: float | None = None
 
 
 def hear(streams: Streams, message: Message, now: float) -> Streams:
-    """Note that a message came."""
+    """Record the arrival of a message."""
     return Streams({**streams.came, message.name: now}, streams.asked) if message.name in STREAMS else streams
 
 
 def tick(
     streams: Streams, system: int, now: float, wanted: Iterable[str] = REGULAR
 ) -> tuple[Streams, tuple[Message, ...]]:
-    """Request all wanted messages that did not come for a while."""
+    """Request all wanted messages that have not come for a while."""
     if streams.asked is not None and now - streams.asked < ASK_EVERY:
         return streams, ()
     missing = [name for name in wanted if _missed(streams.came.get(name), STREAMS[name][1], now)]

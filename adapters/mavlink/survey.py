@@ -1,7 +1,7 @@
-"""Read what is on board: missions, fences and rally points, before the first command and again and again.
+"""Read the items on board: missions, fences and rally points, before the first command and repeatedly.
 
-Anybody may change it at any time, on the ground and in the air, and a vehicle tells only the one who does. So nothing
-is believed to be on board but what was read back since the last moment at which somebody may have changed it.
+Anybody may change them at any time, on the ground and in the air, and a vehicle reports a change only to its author. So
+only items read back since the last possible change count as on board.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ RETRY: Final = 5.0
 """Seconds before it is tried again."""
 
 PER_ITEM: Final = 0.2
-"""Seconds for each item by which the next reading is later: a long mission takes long to read."""
+"""Seconds by which each item delays the next reading: a long mission takes long to read."""
 
 ANSWERS: Final = frozenset({"MISSION_COUNT", "MISSION_ITEM_INT", "MISSION_ACK"})
 
@@ -38,28 +38,28 @@ _WRITES: Final = frozenset(
         "MISSION_WRITE_PARTIAL_LIST",
     }
 )
-"""What a station says when it writes."""
+"""The messages of a station that writes."""
 
 _ASKS: Final = frozenset({"MISSION_ACK", "MISSION_REQUEST", "MISSION_REQUEST_INT"})
-"""What a vehicle says to the one who writes."""
+"""The messages of a vehicle to a writer."""
 
 _POINTS: Final = {"FENCE_POINT": MissionType.FENCE, "RALLY_POINT": MissionType.RALLY}
 """The messages of older protocols."""
 
 NEVER: Final = float("-inf")
-"""Before any time."""
+"""Earlier than any time."""
 
 
 @dataclass(frozen=True, slots=True)
 class Survey:
-    """The reading of what is on board.
+    """The reading of the items on board.
 
     Attributes:
-        reading: The one under way.
-        progress: When it last got an answer.
-        read: When each kind was read last.
-        found: What was read last of each kind; it may have changed since.
-        given_up: When a reading of each kind was last given up.
+        reading: The current download.
+        progress: Time of its last answer.
+        read: Time of the last reading of each kind.
+        found: The items of the last reading of each kind; they may have changed since.
+        given_up: Time of the last abandoned reading of each kind.
     """
 
     reading: reading.Download | None = None
@@ -70,7 +70,7 @@ class Survey:
 
     @property
     def settled(self) -> bool:
-        """Whether each kind was read, or was asked for in vain."""
+        """Whether each kind was read, or could not be read."""
         return all(kind in self.found or kind in self.given_up for kind in MissionType)
 
 
@@ -84,7 +84,7 @@ def tick(
     system: int,
     now: float,
 ) -> Step:
-    """Go on with a reading, or begin the next: first of what is not certain, then of what was read `every` so often."""
+    """Continue a reading, or begin the next: uncertain kinds first, then each kind after its period in `every`."""
     if survey.reading is not None and now - survey.progress > SILENT:
         survey = replace(survey, reading=None, given_up={**survey.given_up, survey.reading.kind: now})
     if survey.reading is None:
@@ -100,7 +100,7 @@ def tick(
 def hear(
     survey: Survey, message: Message, now: float
 ) -> tuple[Survey, tuple[Message, ...], MissionType | None]:
-    """Take an answer of the vehicle; return the kind that is read now, if one is."""
+    """Take an answer of the vehicle; return the kind whose reading it completes, if any."""
     before = survey.reading
     if before is None:
         return survey, (), None
@@ -113,14 +113,14 @@ def hear(
 
 
 def settle(survey: Survey, kind: MissionType, items: Items, now: float) -> Survey:
-    """Note what was found on board."""
+    """Record the items found on board."""
     found = {**survey.found, kind: items}
     given_up = {each: at for each, at in survey.given_up.items() if each != kind}
     return replace(survey, read={**survey.read, kind: now}, found=found, given_up=given_up)
 
 
 def doubt(survey: Survey, kinds: Collection[MissionType]) -> Survey:
-    """End a reading of what may have changed meanwhile, and read these kinds as soon as possible."""
+    """Abandon a reading that may be out of date, and read these kinds as soon as possible."""
     given_up = {kind: at for kind, at in survey.given_up.items() if kind not in kinds}
     given_up |= {kind: NEVER for kind in survey.given_up if kind in kinds}
     if survey.reading is not None and survey.reading.kind in kinds:
@@ -129,12 +129,12 @@ def doubt(survey: Survey, kinds: Collection[MissionType]) -> Survey:
 
 
 def soon(survey: Survey, kind: MissionType) -> Survey:
-    """Read a kind as soon as possible, and believe what was read until then."""
+    """Read a kind as soon as possible; the last reading counts until then."""
     return replace(survey, read={**survey.read, kind: NEVER})
 
 
 def changed_by(message: Message, vehicle: int) -> tuple[MissionType, ...]:
-    """Return what on board a message between a vehicle, of this system id, and another station may change."""
+    """Return the kinds of items that a message between this vehicle and another station may change."""
     if message.name in _POINTS:
         return (_POINTS[message.name],)
     if message.name not in (_ASKS if message.system == vehicle else _WRITES):
@@ -146,7 +146,7 @@ def changed_by(message: Message, vehicle: int) -> tuple[MissionType, ...]:
 def _next(
     survey: Survey, every: Mapping[MissionType, float], certain: Collection[MissionType], now: float
 ) -> MissionType | None:
-    """Return the kind to be read next."""
+    """Return the kind to read next."""
     due = [
         (kind in certain, max(survey.read.get(kind, NEVER), survey.given_up.get(kind, NEVER)), kind)
         for kind, seconds in every.items()

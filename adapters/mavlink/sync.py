@@ -1,4 +1,4 @@
-"""Synchronise a mission or fence: upload, read back, compare, repeated until they are equal."""
+"""Synchronise a mission or fence: upload, read back, compare; repeat until both are equal."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from adapters.mavlink.merging import is_on_board
 from adapters.mavlink.message import Message
 
 ROUNDS: Final = 5
-"""How many differences are tolerated before the vehicle counts as refusing."""
+"""Read-backs that may differ before the vehicle counts as refusing."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sync:
-    """A mission or fence being uploaded by one `speaker`.
+    """A mission or fence that is being uploaded by one `speaker`.
 
-    `rounds` counts the read-backs that differed, and `answer` is the vehicle's last one that is no acceptance.
+    `rounds` counts the read-backs that differed. `answer` is the vehicle's last answer that is no acceptance.
     """
 
     items: Items
@@ -45,12 +45,12 @@ class Sync:
 
     @property
     def objection(self) -> str:
-        """The vehicle's last answer to the upload, if it was not an acceptance."""
+        """The vehicle's last answer to the upload, if it was no acceptance."""
         return "" if self.answer is None else _named(self.answer)
 
     @property
     def reached(self) -> tuple[int, int, int]:
-        """Its progress: rounds, whether it reads back, items."""
+        """The progress: rounds, whether the items are read back, number of items."""
         reads = isinstance(self.doing, reading.Download)
         items = self.doing.items if isinstance(self.doing, reading.Download) else self.doing.wanted
         return self.rounds, int(reads), len(items)
@@ -60,15 +60,15 @@ Step = tuple[Sync, tuple[Message, ...]]
 
 
 def begin(items: Items, kind: MissionType, system: int, speaker: int, *, ready: bool = False) -> Sync:
-    """Begin with an upload; all messages come from one station's system id, and answers go to it.
+    """Begin with an upload; one station's system id sends all messages and receives all answers.
 
-    A vehicle that is `ready` has the space that it will ever have.
+    A vehicle that is `ready` has all the space that it will ever have.
     """
     return Sync(items, kind, system, speaker, writing.Upload(items, kind, system, ready=ready), ready=ready)
 
 
 def tick(sync: Sync, now: float) -> Step:
-    """Let time pass."""
+    """Advance to the time `now`."""
     if isinstance(sync.doing, writing.Upload):
         upload, sent = writing.tick(sync.doing, now)
         return _onwards(replace(sync, doing=upload), sent, now)
@@ -77,7 +77,7 @@ def tick(sync: Sync, now: float) -> Step:
 
 
 def hear(sync: Sync, message: Message, now: float) -> Step:
-    """Take a message of the vehicle, if it is meant for the speaker."""
+    """Take a message of the vehicle, if the speaker is its target."""
     if message.target not in (0, sync.speaker):
         return sync, ()
     if isinstance(sync.doing, writing.Upload):
@@ -105,6 +105,6 @@ def _onwards(sync: Sync, sent: tuple[Message, ...], now: float) -> Step:
 
 
 def _named(result: int) -> str:
-    """Return a result by its name in MAVLink."""
+    """Return the MAVLink name of a result."""
     known = result in tuple(MissionResult)
     return MissionResult(result).name if known else f"MAV_MISSION_RESULT {result}"

@@ -1,8 +1,8 @@
 """Detect that a vehicle was taken over: by a pilot, another ground station, a fail-safe or itself.
 
-A pilot, another ground station, a fail-safe and a reboot look the same from here: the vehicle is in a mode that was not
-ordered here, disarmed, or flies elsewhere. Any command would overrule them, so none is sent until an operator gives the
-vehicle back.
+All these and a reboot look the same from here: the vehicle is in a mode that was not ordered here, is disarmed, or
+flies elsewhere. Any command would overrule its new controller, so none is sent until an operator gives the vehicle
+back.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ class Helm:
             modes that would end it.
         armed: Whether it was armed since.
         boots: Its number of boots when it last followed its orders.
-        strange: Since when it deviates.
-        taken: Why it gets no more commands; empty while it does.
+        strange: The start of its deviation.
+        taken: The reason why it gets no more commands; empty while it does.
     """
 
     modes: frozenset[int] = frozenset()
@@ -53,7 +53,7 @@ def watch(
     undone: str = "",
     on_board: OnBoard = MappingProxyType({}),
 ) -> Helm:
-    """Compare a vehicle's state with its last command; `undone` is what it should do and no longer does."""
+    """Compare a vehicle's state with its last command; `undone` is the part that it no longer carries out."""
     if helm.taken or known.mode is None or known.beat is None:
         return helm
     if isinstance(command, Return) and known.armed is False:
@@ -68,7 +68,7 @@ def watch(
 
 
 def given_back(known: Telemetry) -> Helm:
-    """Return the helm of a vehicle that an operator has given back, in whatever mode it is."""
+    """Return the helm of a vehicle that an operator has given back, in any mode."""
     return Helm(frozenset() if known.mode is None else frozenset({known.mode}), boots=known.boots)
 
 
@@ -90,7 +90,7 @@ def modes_of(command: Command | None, profile: Profile) -> frozenset[int]:
 
 
 def _otherwise(helm: Helm, known: Telemetry, profile: Profile, command: Command | None) -> str:
-    """Return what of its mode and arming was not ordered here; a disarmed vehicle may be handled freely."""
+    """Return its deviation in mode or arming, or an empty text; a disarmed vehicle may be handled freely."""
     if helm.armed and known.armed is False:
         booted = "it has booted anew and is disarmed" if known.boots != helm.boots else "it was disarmed"
         return f"{booted}, and is not armed again"

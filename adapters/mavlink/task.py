@@ -1,4 +1,4 @@
-"""One command in progress: its current step, its status, and how it ends."""
+"""A command in progress: its current step, its status, and its end."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from adapters.plugin import Accepted, Arrived, Command, Follow, GoTo, Rejected, 
 from physical import Geometry
 
 PATIENCE: Final = 45.0
-"""Seconds, while the vehicle is heard, for one step, and for an upload without progress."""
+"""Seconds for one step, or for an upload without progress, while the vehicle is heard."""
 
 BOOT_PATIENCE: Final = 120.0
 """Seconds for a vehicle to get ready: its filters settle, its receiver finds satellites."""
@@ -31,23 +31,23 @@ class Task:
         command: The command.
         station: For a HandOver, the system id of the station that gets the authority.
         height: Metres above the mission's home at which it is carried out, once known.
-        above: Metres above sea level of that home, if heights are told above sea level.
+        above: Metres above sea level of that home, if commanded heights are above sea level.
         step: The current step.
-        since: Since when: the start of the step, the vehicle's return to the link, or an upload's last progress.
+        since: Time of the step's start, of the vehicle's return to the link, or of an upload's last progress.
         reached: The progress of an upload.
         doing: The step's exchange of messages.
         accepted: Whether the state has shown that the vehicle follows it.
         over: Whether it has arrived or was rejected.
-        rejection: Why it was rejected, if it was.
-        begun: Whether the mission was seen at its first item, or the vehicle has reported that it resumes it.
-        resumes: Whether the path has moved: the vehicle is told to continue with the current item.
-        passed: How many places of a path it was seen in, in their order.
-        furthest: The highest item of the mission that it was seen at since it began it.
+        rejection: The reason of its rejection, if any.
+        begun: Whether the mission was seen at its first item, or the vehicle has reported its resumption.
+        resumes: Whether the path has moved: the vehicle continues with the current item.
+        passed: The number of places of a path in which it was seen, in their order.
+        furthest: The highest mission item at which it was seen since it began the mission.
         boots: The vehicle's number of boots for which this holds.
         checked: Whether it is possible for this kind of vehicle.
-        surveyed: Whether it is possible with what is on board.
+        surveyed: Whether it is possible with the items on board.
         complained: Whether a delay of this step was reported.
-        waypoint: Around which point the vehicle will stay.
+        waypoint: The point around which the vehicle will stay.
     """
 
     command: Command
@@ -74,7 +74,7 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """The progress of a task: messages to send, reports, and what is now known to be on board."""
+    """The progress of a task: messages to send, a report, and items confirmed on board."""
 
     task: Task
     sent: tuple[Message, ...] = ()
@@ -83,7 +83,7 @@ class Progress:
 
 
 def hear(task: Task, message: Message, now: float) -> Progress:
-    """Let the current exchange take a message of the vehicle to us."""
+    """Pass a message from the vehicle to the current exchange."""
     if isinstance(task.doing, telling.Telling):
         return Progress(replace(task, doing=telling.hear(task.doing, message)))
     if isinstance(task.doing, syncing.Sync):
@@ -93,7 +93,7 @@ def hear(task: Task, message: Message, now: float) -> Progress:
 
 
 def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float) -> Progress:
-    """Do the next step: `step` is the first missing one."""
+    """Pursue `step`, the first missing one."""
     task = _followed(task, vehicle, now)
     if isinstance(step, Underway):
         return _underway(task, step, now)
@@ -129,7 +129,7 @@ def undone(task: Task, step: Step, boots: int) -> str:
 
 
 def seen(task: Task, vehicle: Vehicle) -> Task:
-    """Note that a vehicle that flies its mission is where it is; the places of a path are passed in their order."""
+    """Record the places of its path that a vehicle passes, in their order, while it flies its mission."""
     flies = (task.begun or task.resumes) and vehicle.known.mode == vehicle.profile.auto
     if not isinstance(task.command, Follow) or not flies:
         return task
@@ -161,7 +161,7 @@ def rejected(task: Task, reason: str, now: float) -> Progress:
 def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
     """Update the task from the vehicle's state."""
     known = vehicle.known
-    if known.boots != task.boots:  # all of it is void
+    if known.boots != task.boots:  # a reboot voids all progress
         task = replace(
             task,
             boots=known.boots,
@@ -179,7 +179,7 @@ def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
 
 
 def _begins(task: Task, vehicle: Vehicle) -> bool:
-    """Tell whether the vehicle is at the commanded item; if it was there before, only its answer shows this."""
+    """Return whether the vehicle is at the commanded item; if it was there before, only its answer shows this."""
     message = task.step.message if isinstance(task.step, Tell) else None
     if message is not None and message.name == "MISSION_SET_CURRENT":
         return bool(vehicle.known.current == message["seq"])
@@ -202,12 +202,12 @@ def _underway(task: Task, step: Underway, now: float) -> Progress:
 
 
 def accepted(task: Task, now: float) -> Accepted:
-    """Return the report that the vehicle shows that it follows a command."""
+    """Return the report that the vehicle visibly follows a command."""
     return Accepted(*_shown(task, now))
 
 
 def _shown(task: Task, now: float) -> tuple[str, str, float, Geometry | None, Geometry | None]:
-    """Return what a report says of what a vehicle follows."""
+    """Return the common fields of the reports on a command that a vehicle follows."""
     command = task.command
     place = goal(command) if isinstance(command, GoTo | Follow) else None
     return command.request, command.entity, now, place, task.waypoint

@@ -1,7 +1,7 @@
-"""A vehicle's state as its messages show it: a fold, without a clock of its own.
+"""The state of a vehicle as a fold over its messages; it has no clock of its own.
 
-Our clock stamps every message at arrival. The vehicle's own clock may be wrong and run at any speed; it only shows the
-order of messages and a reboot.
+Our clock stamps every message at arrival. The vehicle's clock may be wrong and run at any speed: it only orders
+messages and reveals a reboot.
 """
 
 from __future__ import annotations
@@ -37,32 +37,32 @@ from adapters.plugin import Battery
 from physical import Band, PhysicalProperty, Velocity, distance, point
 
 FIX_SECONDS: Final = 10.0
-"""How long a fix, or an estimate, is believed: it comes once a second, and may be lost."""
+"""Seconds for which a fix or an estimate is valid: it comes once a second, and may be lost."""
 
 HOME_METRES: Final = 30.0
 HOME_RISE: Final = 10.0
-"""Metres along and up by which a home must have moved: arming sets it anew, to where it stands."""
+"""Metres along and up that count as a moved home; arming sets home anew, to the vehicle's position."""
 
 BACKWARDS: Final = 5_000
-"""Milliseconds by which the vehicle's clock must go back to mean a reboot: less is a late packet."""
+"""Milliseconds by which the vehicle's clock must go back to mean a reboot; a smaller step is a late packet."""
 
 UNKNOWN: Final = 65_535
-"""How MAVLink says that a voltage or a heading is not known."""
+"""MAVLink's value for an unknown voltage or heading."""
 
 LARGEST: Final = 1e6
 """The largest valid radius, height or set of fences."""
 MEMORY: Final = 60.0
-"""Seconds for which a warning may explain what the vehicle does."""
+"""Seconds for which a warning may explain the behaviour of a vehicle."""
 
 MOST_WORDS: Final = 3
 REFUSES_TO_ARM: Final = ("PreArm:", "Arm:", "Arming denied", "Preflight Fail")
-"""How texts begin by which a vehicle says why it cannot be armed."""
+"""The beginnings of texts in which a vehicle explains why it cannot be armed."""
 
 WARNING: Final = 4
-"""MAV_SEVERITY_WARNING: what is less urgent has a larger number."""
+"""MAV_SEVERITY_WARNING; less urgent texts have larger numbers."""
 
 _NUMBERS: Final = ("mission_id", "fence_id", "rally_points_id")
-"""In the order of `MissionType`; only PX4 tells them."""
+"""In the order of `MissionType`; only PX4 sends them."""
 
 NOWHERE: Final = 0.01
 """Degrees around (0, 0) that are ignored: an autopilot reports them before its filter has settled."""
@@ -70,7 +70,7 @@ NOWHERE: Final = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """Where a vehicle is: degrees, metres above sea level and above home, m/s (over ground, upwards), our time."""
+    """A vehicle's position: degrees, metres above sea level and above home, m/s (over ground, upwards), our time."""
 
     latitude: float
     longitude: float
@@ -84,44 +84,44 @@ class Position:
 
 @dataclass(frozen=True)  # no slots: `changed`
 class Telemetry:
-    """The state of a vehicle as its own messages show it; None is *not reported yet*.
+    """The state of a vehicle according to its own messages; None means *not reported yet*.
 
     Attributes:
-        heard: When its last message came.
+        heard: Arrival of its last message.
         profile: The profile of its kind.
         sort: Its MAV_TYPE and its MAV_AUTOPILOT.
         mode: Its mode's number.
         armed: Whether its motors may turn.
         active: Whether it reports that it flies (or drives).
         position: Its position, if it has a fix.
-        fixes: What each receiver last reported of its fix (GPS_FIX_TYPE), and when.
-        estimate: Whether its own filter says that its position is good, and when it last said so.
+        fixes: The last fix (GPS_FIX_TYPE) of each receiver, and its time.
+        estimate: Whether its filter has a good position, and the time of that report.
         healthy: Whether it could be armed, and accepts missions.
         current: The number of its current mission item.
-        total: How many items its mission has, as it counts them; None if it does not say.
-        numbers: What changes with its mission, its fence and its rally points; None where it does not say.
+        total: Its own count of the mission's items; None if it reports none.
+        numbers: The ids of its mission, fence and rally points, which change with them; None if it reports none.
         target: Its target in degrees.
         aim: Its target's altitude in metres above sea level.
         home: Its home in degrees.
         ground: Its home's altitude in metres above sea level.
         base: Its home when it was last seen disarmed, else the first: heights of the mission are above it.
         fenced: Whether a fence is active, its own or ours.
-        polygon: Whether it has reported that the polygon is active.
+        polygon: Whether it has acknowledged the polygon fence.
         authority: The system id of the station that it obeys.
-        authority_parameter: The parameter that holds it.
+        authority_parameter: The name of the parameter with that id.
         parameters: Other reported parameters, of its limits and its circles.
         version: The firmware's major and minor version.
         signs: Whether it signs its packets.
         clock: Its own milliseconds since boot.
         suspect: Its clock when it first seemed to have gone back.
-        placed: Its clock when its position was measured.
-        boots: How many reboots were seen.
+        placed: Its clock at the measurement of its position.
+        boots: The number of reboots seen.
         words: Its last warnings or worse, with their times.
-        chunks: What has come of a long text.
-        texts: Its texts that were not taken from here yet.
+        chunks: The received chunks of a long text.
+        texts: Its texts that nobody has collected yet.
         battery: Its battery.
-        heading: Where its nose points, in degrees from true north.
-        beat: When its last heartbeat came.
+        heading: Its heading, in degrees from true north.
+        beat: Arrival of its last heartbeat.
     """
 
     heard: float | None = None
@@ -166,13 +166,13 @@ class Telemetry:
         return bool(self.armed and self.active)
 
     def is_placed(self, now: float) -> bool:
-        """Tell whether its position counts: by its own filter, else by the fix of any receiver."""
+        """Return whether its position is valid: by its own filter, else by the fix of any receiver."""
         if self.estimate is not None and now - self.estimate[1] <= FIX_SECONDS:
             return self.estimate[0]
         return any(fix >= FIX_3D and now - time <= FIX_SECONDS for fix, time in self.fixes.values())
 
     def lacks(self, now: float) -> str:
-        """Return why it has no position; an empty text if it has one."""
+        """Return the reason why it has no position; an empty text if it has one."""
         if self.is_placed(now):
             return ""
         said = [
@@ -183,7 +183,7 @@ class Telemetry:
         return f"it has no position: {', '.join([*said, *own]) or 'it tells of no GPS'}"
 
     def unready(self, now: float) -> tuple[str, ...]:
-        """Return why it said lately that it cannot be armed."""
+        """Return its recent reasons why it cannot be armed."""
         lately = (text for time, text in self.words if now - time <= MEMORY)
         return () if self.armed else tuple(text for text in lately if text.startswith(REFUSES_TO_ARM))
 
@@ -194,7 +194,7 @@ class Telemetry:
 
     @property
     def home_moved(self) -> str:
-        """How its home was moved since it was armed, in words; empty if it was not."""
+        """The move of its home since it was armed, in words; empty if there was none."""
         if self.base is None or self.home is None or self.ground is None:
             return ""
         away, up = distance(point(*self.base[:2]), point(*self.home)), self.ground - self.base[2]
@@ -233,8 +233,8 @@ def property_of(craft: Craft, at: Position, channels: tuple[str, ...]) -> Physic
 
 
 def _clocked(known: Telemetry, clock: int | None, now: float) -> Telemetry:
-    """Note that it is heard, and follow its clock; two successive messages far behind mean a reboot."""
-    if not clock:  # messages without, and those from before its clock began
+    """Record the arrival, and follow the vehicle's clock; two successive messages far behind mean a reboot."""
+    if not clock:  # messages without a clock, and those from before it began
         return changed(known, heard=now)
     if known.clock is None or clock > known.clock - BACKWARDS:
         return changed(known, heard=now, clock=max(clock, known.clock or 0), suspect=None)
@@ -268,7 +268,7 @@ def _second_fix(known: Telemetry, said: Mapping[str, Any], now: float) -> Teleme
 
 
 def _estimate(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
-    """Note whether its filter has a position: one that is only predicted counts until it is armed, as for ArduPilot."""
+    """Record whether its filter has a position; as in ArduPilot, a predicted one is enough until it is armed."""
     flags = Estimate(said["flags"] & KNOWN_FLAGS)
     predicted = known.armed is False and Estimate.PRED_POS_HORIZ_ABS in flags
     placed = Estimate.POS_HORIZ_ABS in flags and Estimate.CONST_POS_MODE not in flags
@@ -307,14 +307,14 @@ def _status(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry
 
 
 def _battery(known: Telemetry, said: Mapping[str, Any], _now: float) -> Telemetry:
-    if said["id"] != 0:  # the first is the one that SYS_STATUS has, too
+    if said["id"] != 0:  # only the first battery, which SYS_STATUS reports too
         return known
     cells = (each for each in said["voltages"] if each != UNKNOWN)
     return _charged(known, said["battery_remaining"], sum(cells))
 
 
 def _charged(known: Telemetry, percent: int, millivolts: int) -> Telemetry:
-    """Note what a battery's monitor tells; what it does not measure stays as another message said."""
+    """Record the report of a battery's monitor; values that it does not measure keep those of other messages."""
     before = known.battery or Battery()
     battery = Battery(
         percent if 0 <= percent <= 100 else before.percent,
@@ -374,12 +374,12 @@ def _text(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetry:
 
 
 def waited(known: Telemetry, now: float) -> Telemetry:
-    """Return the state after a time in which the rest of a long text may not have come."""
+    """Return the state with a long text given up, once the wait for its rest has ended."""
     return known if known.chunks is None else _said(known, give_up(known.chunks, now), now)
 
 
 def _matters(text: str) -> bool:
-    """Tell whether a text explains what a vehicle does, however severe it is: of a fence ArduPilot says a notice."""
+    """Return whether a text of any severity explains a vehicle's behaviour: ArduPilot's fence texts are notices."""
     return "breach" in text.lower() or text.startswith(REFUSES_TO_ARM)
 
 

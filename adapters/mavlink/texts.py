@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 CHUNK: Final = 50
-"""Characters of a chunk that another one follows; a shorter one is the last."""
+"""Characters of a chunk that is not the last; the last one is shorter."""
 
 PATIENCE: Final = 2.0
-"""Seconds after which the rest of a text is not waited for."""
+"""Seconds of waiting for the rest of a text."""
 
 LOST: Final = "..."
-"""What stands for chunks that did not come."""
+"""The mark for lost chunks."""
 
 LEAST_SEVERE: Final = 7
 """MAV_SEVERITY_DEBUG."""
@@ -21,7 +21,7 @@ LEAST_SEVERE: Final = 7
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A whole text, and how severe it is: from 0 (emergency) to 7 (debug)."""
+    """A whole text, and its severity: from 0 (emergency) to 7 (debug)."""
 
     text: str
     severity: int
@@ -29,7 +29,7 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class Chunks:
-    """What has come of a long text: its number, its chunks, which is the next, and when the last came."""
+    """The received part of a long text: its number, its chunks, the next index, and the time of the last chunk."""
 
     number: int
     severity: int
@@ -39,11 +39,11 @@ class Chunks:
 
 
 Joined = tuple[Chunks | None, tuple[Text, ...]]
-"""The text that is not complete yet, and those that are."""
+"""The incomplete text, and the completed ones."""
 
 
 def join(chunks: Chunks | None, said: Mapping[str, Any], now: float) -> Joined:
-    """Take a STATUSTEXT; a text of which chunks are missing is given with what has come."""
+    """Take a STATUSTEXT; a text with lost chunks is returned with a mark in their place."""
     number, index = said.get("id", 0), said.get("chunk_seq", 0)
     text, severity = str(said["text"]), min(said["severity"], LEAST_SEVERE)
     if not number:
@@ -52,7 +52,7 @@ def join(chunks: Chunks | None, said: Mapping[str, Any], now: float) -> Joined:
     if chunks is not None and chunks.number != number:
         before, chunks = _whole((*chunks.parts, LOST), chunks.severity), None
     known = chunks or Chunks(number, severity)
-    if index < known.next:  # it came twice, or late
+    if index < known.next:  # a duplicate, or late
         return known, before
     parts = (*known.parts, *([LOST] if index > known.next else []), text)
     if len(text) < CHUNK:
@@ -61,7 +61,7 @@ def join(chunks: Chunks | None, said: Mapping[str, Any], now: float) -> Joined:
 
 
 def give_up(chunks: Chunks | None, now: float) -> Joined:
-    """Return what has come of a text whose rest does not come."""
+    """Return the received part of a text, once the wait for its rest has ended."""
     if chunks is None or now - chunks.at <= PATIENCE:
         return chunks, ()
     return None, _whole((*chunks.parts, LOST), chunks.severity)

@@ -26,10 +26,10 @@ _BEGINNING: Final = re.compile(rb"(?=\x00[\x00-\x0f][\x00-\xff]{6}[\xfd\xfe])")
 """An entry: a time before 2112, then the first byte of a frame."""
 
 APART: Final = 3 * 86_400.0
-"""Seconds that the times of two entries are apart at most: a time farther off is damaged, unless the next agrees."""
+"""Seconds between the times of two entries, at most: a farther time is damaged, unless the next one agrees."""
 
 THINGS: Final = ("message or damaged stretch", "messages and damaged stretches")
-"""What the things in a log are called."""
+"""The name of one item of a log, and of several."""
 
 POSITION: Final = "GLOBAL_POSITION_INT"
 _OTHER_POSITIONS: Final = frozenset(
@@ -56,18 +56,18 @@ class Damage:
 
 @dataclass(frozen=True, slots=True)
 class Unread:
-    """A message in its frame that can't be read, and why."""
+    """An unreadable message in its frame, and the reason."""
 
     reason: str
 
 
 def entry(time: float, frame: bytes) -> bytes:
-    """Return one entry of a log, as a plugin's tap writes it."""
+    """Return one entry of a log, in the form that a plugin's tap writes."""
     return round(time * 1e6).to_bytes(8, "big") + frame
 
 
 def read_tlog(path: str | PathLike[str], counting: Counting | None = None) -> Iterator[tuple[float, Message]]:
-    """Yield the messages of a log with their times; what is damaged is skipped and counted.
+    """Yield the messages of a log with their times; damaged parts are skipped and counted.
 
     Raises PhysicalError if the file can't be read or has no message.
     """
@@ -82,9 +82,9 @@ def read_tlog(path: str | PathLike[str], counting: Counting | None = None) -> It
 def positions_of(
     log: Iterable[tuple[float, Message]], crafts: Mapping[int, Craft], counting: Counting | None = None
 ) -> Iterator[tuple[float, PhysicalProperty]]:
-    """Yield the physical properties that a log shows of the vehicles with the given system ids.
+    """Yield the physical properties in a log of the vehicles with the given system ids.
 
-    Every message is counted: as a position, or by what it is and why it shows none.
+    Every message is counted: as a position, or under the reason why it shows none.
     """
     counting = counting or Counting()
     known: dict[int, Telemetry] = {}
@@ -103,13 +103,13 @@ def positions_of(
 
 
 def _foreign(message: Message, why: str) -> str:
-    """Say what a message of another sender is: only of positions it matters whose they are."""
+    """Describe a message of another sender; the sender matters only for positions."""
     positioned = message.name == POSITION or message.name in _OTHER_POSITIONS
     return f"{message.name} of system {message.system}, {why}" if positioned else message.name
 
 
 def _placeless(message: Message, after: Telemetry, time: float) -> str:
-    """Say why a message of a named vehicle shows no position."""
+    """Return the reason why a message of a named vehicle shows no position."""
     if message.name in _OTHER_POSITIONS:
         return f"{message.name}: the positions that count are those of {POSITION}"
     if message.name != POSITION:
@@ -127,7 +127,7 @@ def _placeless(message: Message, after: Telemetry, time: float) -> str:
 
 
 def messages_in(file: IO[bytes], counting: Counting) -> Iterator[tuple[float, Message]]:
-    """Yield the messages of a log that is open; as `read_tlog`."""
+    """Yield the messages of an open log, like `read_tlog`."""
     clock, found = _Clock(), False
     for stamp, each in entries(file):
         match each:
@@ -144,9 +144,9 @@ def messages_in(file: IO[bytes], counting: Counting) -> Iterator[tuple[float, Me
 
 
 def entries(file: IO[bytes]) -> Iterator[tuple[float, Message | Unread | Damage]]:
-    """Yield what a log holds, with its time in seconds: messages, what can't be read, damaged stretches.
+    """Yield the contents of a log with their times in seconds: messages, unreadable frames, damaged stretches.
 
-    All of them together are all bytes of the file.
+    Together they cover all bytes of the file.
     """
     log = _Bytes(file)
     while log.begins_something():
@@ -161,7 +161,7 @@ def entries(file: IO[bytes]) -> Iterator[tuple[float, Message | Unread | Damage]
 
 
 class _Clock:
-    """Follows the times of entries: one that is far from all others is replaced by the one before."""
+    """Follows the times of entries: a time far from all others is replaced by the one before."""
 
     def __init__(self) -> None:
         self._last: float | None = None
@@ -180,7 +180,7 @@ class _Clock:
 
 
 class _Bytes:
-    """A file as bytes that are looked at ahead, in bounded memory."""
+    """A file as bytes with look-ahead, in bounded memory."""
 
     def __init__(self, file: IO[bytes]) -> None:
         self._file = file
@@ -201,29 +201,29 @@ class _Bytes:
         return self._held[self._at + start : self._at + start + size]
 
     def advance(self, size: int) -> None:
-        """Go on by some bytes that were looked at."""
+        """Advance by some bytes that were looked at."""
         self._at += size
 
     def next_beginning(self) -> int | None:
-        """Return how far ahead an entry may begin at the earliest, not here, of what is held; None for nowhere."""
+        """Return the distance to the next possible beginning of an entry in the held bytes; None if there is none."""
         found = _BEGINNING.search(self._held, self._at + 1)
         return None if found is None else found.start() - self._at
 
     @property
     def held(self) -> int:
-        """How many bytes ahead are held."""
+        """The number of bytes held ahead."""
         return len(self._held) - self._at
 
     @property
     def ended(self) -> bool:
-        """Whether all that is left is held."""
+        """Whether all remaining bytes are held."""
         return self._ended
 
 
 def _entry(log: _Bytes, *, sure: bool = False) -> tuple[int, Message | Unread] | None:
-    """Return the entry that begins here and its size; None where none does.
+    """Return the entry that begins here and its size, or None.
 
-    A frame that can't be checked counts where another entry, or the end, follows it; not where it must be `sure`.
+    A frame that can't be checked counts if another entry, or the end, follows it, unless the entry must be `sure`.
     """
     head = log.ahead(_STAMP + 3)
     if len(head) < _STAMP + 3 or not _BEGINNING.match(head):
@@ -245,7 +245,7 @@ def _entry(log: _Bytes, *, sure: bool = False) -> tuple[int, Message | Unread] |
 
 
 def _skip(log: _Bytes) -> int:
-    """Go on to the next entry that is sure, or to the end; return how many bytes were skipped."""
+    """Advance to the next sure entry, or to the end; return the number of skipped bytes."""
     skipped = 0
     while True:
         log.ahead(2 * _LONGEST)

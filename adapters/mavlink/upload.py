@@ -1,12 +1,12 @@
 """Upload a mission or fence: the ground's side of the protocol, a pure state machine.
 
-The vehicle requests item after item, again after a second, and gives up after eight. So only the count is sent by
-timer. ArduPlane sends MISSION_REQUEST, others MISSION_REQUEST_INT: both get MISSION_ITEM_INT. An ACK is not believed:
-`adapters.mavlink.sync` reads back what is on board.
+The vehicle requests item after item, repeats a request after a second, and gives up after eight. So only the count is
+sent by timer. ArduPlane sends MISSION_REQUEST, others MISSION_REQUEST_INT: both get MISSION_ITEM_INT. An ACK proves
+nothing: `adapters.mavlink.sync` reads the items back.
 
-A vehicle takes one upload at a time, from one system id. It answers others with DENIED (ArduPilot) or ERROR (PX4)
-until that one is over. So these are final only once they have lasted longer than a vehicle waits. Right after it has
-booted it answers NO_SPACE; once it is ready, that is final the second time.
+A vehicle takes one upload at a time, from one system id. It answers others with DENIED (ArduPilot) or ERROR (PX4) until
+that upload is over. So these answers are final only after a vehicle's timeout. A vehicle that has just booted answers
+NO_SPACE; once it is ready, the second such answer is final.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ BUSY: Final = 25.0
 """Seconds for which another's upload may cause a refusal: three times a vehicle's timeout, by its own clock."""
 
 ACK_LOST: Final = 3.0
-"""Seconds of silence after the last item, after which its ACK must have been lost."""
+"""Seconds of silence after the last item that mean a lost ACK."""
 
 _BUSY: Final = {MissionResult.DENIED, MissionResult.ERROR}
 _OUT_OF_STEP: Final = {MissionResult.INVALID_SEQUENCE, MissionResult.CANCELLED}
@@ -41,18 +41,18 @@ class Upload:
     """An upload in progress.
 
     Attributes:
-        items: What is uploaded.
+        items: The items to upload.
         kind: Mission or fence.
         system: The vehicle's system id.
-        counted: When the count was sent last.
-        asked: When an item was requested last; None before the first.
+        counted: Time of the last count sent.
+        asked: Time of the last request for an item; None before the first.
         wanted: The items requested so far.
-        denied: Since when the vehicle has answered that it is busy, and requested nothing.
+        denied: Start of the vehicle's busy answers without a request.
         over: Whether it has ended, with or without success.
         refusal: The vehicle's final refusal, if any.
         answer: Its last answer that is neither an acceptance nor about lost items.
         ready: Whether it has been up for long enough to know its space.
-        full: How often it has answered that it has no space.
+        full: The number of its NO_SPACE answers.
     """
 
     items: Items
@@ -73,7 +73,7 @@ Step = tuple[Upload, tuple[Message, ...]]
 
 
 def tick(upload: Upload, now: float) -> Step:
-    """Let time pass: send the count, again if it seems lost, or detect a lost ACK."""
+    """Advance to `now`: send the count, again if it seems lost, or detect a lost ACK."""
     if upload.over:
         return upload, ()
     if upload.counted is None:
@@ -86,7 +86,7 @@ def tick(upload: Upload, now: float) -> Step:
 
 
 def hear(upload: Upload, message: Message, now: float) -> Step:
-    """Take a message of the vehicle to us."""
+    """Take a message from the vehicle to us."""
     if upload.over or message.fields.get("mission_type") != upload.kind:
         return upload, ()
     if message.name in ("MISSION_REQUEST", "MISSION_REQUEST_INT"):
@@ -127,7 +127,7 @@ def _answered(upload: Upload, result: int, now: float) -> Upload:
         return upload if result == MissionResult.INVALID_SEQUENCE else replace(upload, asked=None)
     since = now if upload.denied is None else upload.denied
     if result in _BUSY and complete and upload.items:
-        return replace(upload, over=True)  # what is read back decides
+        return replace(upload, over=True)  # the read-back decides
     if result in _BUSY and now - since <= BUSY:
         return replace(upload, asked=None, denied=since)
     return replace(upload, over=True, refusal=result)

@@ -1,4 +1,4 @@
-"""The zones of a fence on board: polygons and circles to stay in, or to stay out of."""
+"""The zones of a fence on board: inclusion and exclusion polygons and circles."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ Key = tuple[int, tuple[tuple[int, int, int], ...]]
 
 @dataclass(frozen=True, slots=True)
 class Zone:
-    """One polygon, circle or return point; `shape` is None where the items make none."""
+    """One polygon, circle or return point; `shape` is None if the items make none."""
 
     items: Items
     shape: Geometry | None
 
     @property
     def within(self) -> bool:
-        """Whether a vehicle must stay in it."""
+        """Whether it is an inclusion zone: a vehicle must stay in it."""
         return self.items[0].command in _WITHIN
 
     @property
     def outside(self) -> bool:
-        """Whether a vehicle must stay out of it."""
+        """Whether it is an exclusion zone: a vehicle must stay out of it."""
         return self.items[0].command in _OUTSIDE
 
     @property
     def key(self) -> Key:
-        """What two equal zones have in common: command, corners, and a circle's radius in centimetres."""
+        """The identity of a zone: command, corners, and a circle's radius in centimetres."""
         radius = [_centimetres(item.parameters[0]) if _is_circle(item) else 0 for item in self.items]
         corners = ((item.x, item.y, size) for item, size in zip(self.items, radius, strict=True))
         return self.items[0].command, tuple(corners)
@@ -70,7 +70,7 @@ def _zones(items: Items) -> Iterator[Zone]:
 
 
 def _corners(items: Items, at: int) -> int:
-    """Return how many items belong to the polygon that begins at one; each says how many it has."""
+    """Return how many items belong to the polygon that begins at an item; each item has the count."""
     first = items[at]
     wanted = first.parameters[0] if first.parameters[0] >= 1 else 1
     size = 1

@@ -1,6 +1,6 @@
 """Recordings of live runs: every arrival, request and step in one MCAP file, readable after `kill -9`.
 
-The schemas of its messages are in `schemas`, and documented in docs/reference/recording.md.
+`schemas` has the schemas of its messages, and docs/reference/recording.md documents them.
 """
 
 from adapters.recording.mcap_files import Message, RecordingError

@@ -9,14 +9,14 @@ from typing import Final
 from physical.messages import install_extra
 
 MOST_WINDOW: Final = 1 << 24
-"""Bytes that a decompressor may look back over, which it keeps in memory."""
+"""The most bytes of a decompressor's window, which it keeps in memory."""
 
 
 def opened(compression: str, data: bytes, size: int) -> bytes:
-    """Return what compressed data yields, one byte more than its declared size at the most.
+    """Return decompressed data, at most one byte more than its declared size.
 
     Raises:
-        ValueError: It is not compressed so, or nothing here opens it.
+        ValueError: The data are not compressed in this way, or no installed library can open them.
     """
     find = OPENERS.get(compression)
     if find is None:

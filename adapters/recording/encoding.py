@@ -24,7 +24,7 @@ from semantics.state.signature import Name
 
 
 def arrival_json(heard: Heard) -> dict[str, Any]:
-    """Return what a plugin published as plain data."""
+    """Return a plugin's publication as plain data."""
     published = heard.published
     if isinstance(published, Gone):
         said = {"entity": published.entity, "time": published.time, "gone": True, "source": published.source}
@@ -55,7 +55,7 @@ def _property(plugin: str, said: PhysicalProperty) -> dict[str, Any]:
 
 
 def step_json(step: LiveStep) -> dict[str, Any]:
-    """Return a step as plain data: as traces have it, with its number and the digest of what it wrote."""
+    """Return a step as plain data: like a step of a trace, with its number and the digest of its writes."""
     transition = step.transition
     data: dict[str, Any] = {"number": step.number, "label": str(transition.label), "choice": step.choice}
     if step.sight is not None:
@@ -67,12 +67,12 @@ def step_json(step: LiveStep) -> dict[str, Any]:
 
 
 def command_json(command: Command) -> dict[str, Any]:
-    """Return what a vehicle is told as plain data."""
+    """Return a command to a vehicle as plain data."""
     return {"command": type(command).__name__, **_fields(command, "around", "shape")}
 
 
 def report_json(report: Report) -> dict[str, Any]:
-    """Return what a plugin reported as plain data."""
+    """Return a plugin's report as plain data."""
     return {"report": type(report).__name__, **_fields(report, "place")}
 
 
@@ -90,7 +90,7 @@ def seen_json(seen: Seen) -> tuple[str, dict[str, Any]]:
 
 
 def answer_json(answer: Answer) -> tuple[str, dict[str, Any]] | None:
-    """Return the topic and the data of what was said from outside, None for a refused acknowledgement."""
+    """Return the topic and the data of an operator's message, None for a refused acknowledgement."""
     said, refusal = answer.saying, {"refusal": answer.refusal}
     match said:
         case Saying(agent, message, by):
@@ -110,12 +110,12 @@ def answer_json(answer: Answer) -> tuple[str, dict[str, Any]] | None:
 
 
 def clocks_json(timers: Timers | None) -> dict[str, float]:
-    """Return by what the mission's clocks are counted, as plain data; nothing where it times nothing."""
+    """Return the start and the standstill of the mission's clocks as plain data; empty without timing."""
     return {} if timers is None else {"began": timers.began, "rested": timers.rested}
 
 
 def flights_json(timers: Timers | None) -> dict[Name, dict[str, Any]]:
-    """Return how long the flight of each vehicle takes that is under way, as plain data."""
+    """Return the destination, start and durations of each flight under way as plain data."""
     under_way = () if timers is None else flying(timers)
     return {
         each.vehicle: {"to": each.destination, "since": each.since, "least": each.least, "most": each.most}
@@ -124,7 +124,7 @@ def flights_json(timers: Timers | None) -> dict[Name, dict[str, Any]]:
 
 
 def finding_json(finding: Finding, verdicts: tuple[str, ...] = ()) -> dict[str, Any]:
-    """Return what the operator was told as plain data."""
+    """Return a finding as plain data."""
     return {**_fields(finding), **({"verdicts": verdicts} if verdicts else {})}
 
 

@@ -1,6 +1,6 @@
-"""Messages of a recording as Foxglove's schemas have them, so that other programs show its map and its log.
+"""A recording's messages in Foxglove's schemas, so that other programs show its map and its log.
 
-They follow from the other messages, and nothing here reads them. Their topics begin with `/`.
+They are derived from the other messages, and no code here reads them. Their topics begin with `/`.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from physical import Geometry, PhysicalProperty, polygon, write_geojson
 from physical.frame import E7
 
 OTHERS: Final = "/"
-"""What the topics begin with that other programs read."""
+"""The prefix of the topics for other programs."""
 
 APART: Final = 1.0
-"""Seconds between two positions of an entity at the least: arrivals have all of them."""
+"""The least seconds between two positions of an entity: arrivals have all of them."""
 
 MOST_ENTITIES: Final = 1_000
-"""So many entities of a mission have a topic of their own; the others share one, as those do that it does not name."""
+"""The most entities of a mission with a topic of their own; the others share one, with those that it does not name."""
 
 MOST_LATEST: Final = 10_000
-"""Of so many entities the latest position is remembered."""
+"""The most entities whose latest position is remembered."""
 
 LATEST: Final = 2.0**32 - 1
-"""Times are not after this: seconds have 32 bits in Foxglove's other encodings."""
+"""The latest time: seconds have 32 bits in Foxglove's other encodings."""
 
 LEVELS: Final = ("UNKNOWN", "DEBUG", "INFO", "WARNING", "ERROR", "FATAL")
 _, DEBUG, INFO, WARNING, ERROR, FATAL = range(6)
@@ -42,7 +42,7 @@ FINDINGS: Final = {
     "failed": ERROR,
     **dict.fromkeys(("refused", "taken over", "lost link", "late", "blocked"), WARNING),
 }
-"""The level of each kind of finding; of all others INFO."""
+"""The level of each kind of finding; all others have INFO."""
 
 _NUMBER: Final = {"type": "number"}
 _TEXT: Final = {"type": "string"}
@@ -88,10 +88,10 @@ PLAIN: Final = ("boolean", "string", "number", "integer")
 
 
 def simplified(schema: Schema) -> Schema:
-    """Return the part of a schema that others' readers know: a topic with more is not shown by them at all.
+    """Return the part of a schema that other readers know: they hide a topic with more.
 
-    They know single types, and arrays of these and of objects; none of what is null or an array of arrays. The messages
-    have what they have: only its types are not told.
+    They know single types, and arrays of these and of objects, but no nullable types and no arrays of arrays. The
+    messages keep all their data: only the types of such parts are left out.
     """
     name, whole = schema
     return name, _simplified(whole)
@@ -112,7 +112,7 @@ def _simplified(schema: Json) -> dict[str, Any]:
 
 
 class Shown(NamedTuple):
-    """A message of Foxglove's: its topic, its schema and its data."""
+    """A Foxglove message: its topic, its schema and its data."""
 
     topic: str
     schema: Schema
@@ -120,19 +120,19 @@ class Shown(NamedTuple):
 
 
 class Showing:
-    """Shows in Foxglove's messages what the messages of a recording say.
+    """Derives Foxglove messages from the messages of a recording.
 
-    A program that reads them may draw every GeoJSON message that there is, not the last one alone. So what never moves
-    is written once, and what has an extent and moves has a topic of its own, with a message for each change.
+    A program that reads them may draw every GeoJSON message that there is, not only the last one. So static places are
+    written once, and each moving area has a topic of its own, with a message for each change.
     """
 
     def __init__(self, names: Collection[str] = ()) -> None:
-        """Show nothing yet; `names` are the entities of the mission."""
+        """Begin without messages; `names` are the entities of the mission."""
         self._names = names if len(names) <= MOST_ENTITIES else frozenset(sorted(names)[:MOST_ENTITIES])
         self._last: dict[str, tuple[float, Ring]] = {}
 
     def places(self, fixed: Iterable[PhysicalProperty], fences: Mapping[str, Any]) -> Iterator[Shown]:
-        """Show what never moves, and the vehicles' fences."""
+        """Show the static places, and the vehicles' fences."""
         named = sorted((_pairs(ring), name) for name, ring in fences.items())
         around = [
             PhysicalProperty(f"fence of {', '.join(name for _, name in group)}", "Fence", _polygon(ring))
@@ -142,7 +142,7 @@ class Showing:
             yield Shown("/places", GEOJSON, {"geojson": write_geojson(everything)})
 
     def of(self, topic: str, time: float, data: Mapping[str, Any]) -> Iterator[Shown]:
-        """Show what a message says, if it is anything that these schemas have."""
+        """Show a message, if these schemas have a form for it."""
         if topic == "arrivals":
             yield from self._arrival(time, data)
         elif topic in LINES:
@@ -151,7 +151,7 @@ class Showing:
             yield Shown("/log", LOG, {**said, "file": "", "line": 0})
 
     def _arrival(self, time: float, data: Mapping[str, Any]) -> Iterator[Shown]:
-        """Show where something is, at most once in a while, and a place only if it has changed."""
+        """Show the position of an entity, at most once in a while, and a place only if it has changed."""
         entity, ring = data["entity"], _pairs(data.get("ring") or ())
         before, known = self._last.get(entity, (-math.inf, ()))
         if 0 <= time - before < APART or (len(ring) != 1 and ring == known):
@@ -176,13 +176,13 @@ def _polygon(ring: Ring) -> Geometry:
 
 
 def _stamp(time: float) -> dict[str, int]:
-    """Return a time as Foxglove writes it; what a sender says may be any number."""
+    """Return a time in Foxglove's form; a sender's time may be any number."""
     nanoseconds = round(min(max(time, 0.0), LATEST) * NANOSECONDS)
     return {"sec": nanoseconds // NANOSECONDS, "nsec": nanoseconds % NANOSECONDS}
 
 
 def _fix(time: float, data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return where an entity was observed: an altitude that is not known is 0, and so is the covariance."""
+    """Return the observed position of an entity: an unknown altitude is 0, and so is the covariance."""
     ((north, east),) = data["ring"]
     band = data.get("altitude") or (0.0,)
     return {
@@ -196,7 +196,7 @@ def _fix(time: float, data: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-# --- the log: a level, whom it is about, and the message -------------------------------------------
+# --- the log: a level, the subject, and the message -------------------------------------------------
 
 Line = tuple[int, str, str]
 
@@ -235,7 +235,7 @@ def _order(data: Json) -> Line:
 
 
 def _spoken(data: Json, name: str, message: str) -> Line:
-    """Return what an operator said, and why it was refused, if it was."""
+    """Return an operator's message, with the reason if it was refused."""
     by = f" by {data['by']}" if data.get("by") else ""
     refused = f"; refused: {data['refusal']}" if data.get("refusal") else ""
     return (WARNING if refused else INFO), name, f"{message}{by}{refused}"
@@ -260,4 +260,4 @@ LINES: Final[Mapping[str, Callable[[Json], Line]]] = {
     "left_out": _left_out,
     "end": _end,
 }
-"""What the log says of each topic's messages; of all others nothing."""
+"""The log line for each topic's messages; other topics have none."""

@@ -19,21 +19,24 @@ from physical.messages import install_extra
 
 MAGIC: Final = b"\x89MCAP0\r\n"
 FOOTER, CHANNEL, MESSAGE, CHUNK = 0x02, 0x04, 0x05, 0x06
-"""The kinds of records that are read (https://mcap.dev/spec); all others are passed over."""
+"""The kinds of records that are read (https://mcap.dev/spec); all others are skipped."""
 
 RECORD, COUNT = struct.Struct("<BQ"), struct.Struct("<Q")
 SAID, CHUNKED = struct.Struct("<HIQQ"), struct.Struct("<QQQII")
-"""How a message begins: channel, number, when logged, when published. How a chunk does: from when, until when, bytes
-that it yields, their checksum, and how long the name of its compression is."""
+"""The heads of messages and chunks.
+
+Of a message: channel, number, log time, publish time. Of a chunk: start, end, bytes after decompression, their
+checksum, and the length of its compression's name.
+"""
 
 MOST_BYTES = 8 * 2**20
 """The longest record that is read; missions hold a megabyte."""
 
 MOST_CHUNK = 32 * 2**20
-"""The most bytes that one chunk yields."""
+"""The most decompressed bytes of one chunk."""
 
 MOST_TIMES, SPARE = 64, 16 * 2**20
-"""All chunks yield so many times the bytes that they take at the most, and so many bytes besides."""
+"""The most decompressed bytes of all chunks: a multiple of their compressed bytes, and a constant besides."""
 
 NANOSECONDS = 1_000_000_000
 
@@ -42,12 +45,12 @@ _COMPACT: Final = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"), al
 
 
 class RecordingError(ValueError):
-    """A file that is no recording, or that this installation cannot read; the message says why."""
+    """A file that is no recording, or that this installation cannot read, for the reason in the message."""
 
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One message: its topic, when it was written (seconds since 1970 UTC), and its data, None where it is unread."""
+    """One message: its topic, its time (seconds since 1970 UTC), and its data, None if it is unread."""
 
     topic: str
     time: float
@@ -59,7 +62,7 @@ Schema = tuple[str, dict[str, Any]]
 
 
 class McapWriter:
-    """Writes messages; without chunks, so that nothing is lost that was flushed."""
+    """Writes messages without chunks, so that no flushed message is lost."""
 
     def __init__(self, path: Path, schemas: Mapping[str, Schema]) -> None:
         """Begin a file; `schemas` gives each topic its schema."""
@@ -91,24 +94,24 @@ class McapWriter:
             self._writer.add_message(self._channels[topic], at, encoded, at)
 
     def flush(self) -> None:
-        """Hand what was written to the system: a killed process loses none of it."""
+        """Pass the written messages to the system: a killed process loses none of them."""
         with writing(self._path):
             self._file.flush()
 
     def close(self) -> None:
-        """End the file with its index; what can't be written any more is left out, and the file is closed."""
+        """End the file with its index; the file is closed even if that cannot be written."""
         if not self._file.closed:
             with writing(self._path), self._file:
                 self._writer.finish()
 
 
 class Place(NamedTuple):
-    """Where reading goes on.
+    """A position for further reading.
 
     Attributes:
-        offset: At which byte of the file, between two records; 0 where nothing was read.
-        within: After how many messages, if a chunk is there.
-        room: How many bytes chunks may yield beyond those that they take.
+        offset: The byte of the file, between two records; 0 before the beginning.
+        within: The number of messages read of a chunk at that byte.
+        room: The remaining allowance of decompressed bytes, beyond each chunk's own multiple.
     """
 
     offset: int = 0
@@ -117,34 +120,34 @@ class Place(NamedTuple):
 
 
 class McapReader:
-    """Reads the messages of a file, which may still be written: what is torn at its end is not written yet.
+    """Reads the messages of a file that may still grow: a torn record at its end is not written yet.
 
     Attributes:
-        place: After the last message that was read.
-        ended: Whether the file's footer was read: nothing follows.
+        place: The position after the last message read.
+        ended: Whether the file's footer was read: no record follows.
     """
 
     def __init__(self, path: Path, *, unread: tuple[str, ...] = ()) -> None:
-        """Read nothing yet; the data of topics that begin as one of `unread` will not be parsed."""
+        """Begin without reading; the data of topics with a prefix in `unread` will not be parsed."""
         self.place = Place()
         self.ended = False
         self._path = path
         self._unread = unread
         self._topics: dict[int, str] = {}
-        self._size = -1  # at which nothing was left to be read
+        self._size = -1  # the size at which all was read
 
     def grows(self) -> bool:
-        """Tell whether the file is other than when all of it had been read; raises OSError."""
+        """Return whether the file has changed since all of it was read; raises OSError."""
         return self._path.stat().st_size != self._size
 
     def going_on(self, place: Place) -> McapReader:
-        """Return another reader of the file, which goes on at a place that this one has passed."""
+        """Return another reader of the file, from a place that this one has passed."""
         other = McapReader(self._path, unread=self._unread)
         other.place, other._topics = place, self._topics
         return other
 
     def messages(self) -> Iterator[Message]:
-        """Yield the messages that are there as a whole, from `place` on, in the order written.
+        """Yield the complete messages, from `place` on, in the order written.
 
         Raises:
             RecordingError: It is no MCAP file, or a message of it is no JSON.
@@ -172,7 +175,7 @@ class McapReader:
             self._size = size
 
     def _begins(self, file: BinaryIO) -> bool:
-        """Tell whether a file has begun as MCAP does; raises RecordingError for another one."""
+        """Return whether a file has a complete MCAP beginning; raises RecordingError for another one."""
         begin = file.read(len(MAGIC))
         if not MAGIC.startswith(begin):
             raise RecordingError("this is no recording: it does not begin as MCAP")
@@ -181,7 +184,7 @@ class McapReader:
         return begin == MAGIC
 
     def _unpacked(self, content: bytes, after: Place) -> Iterator[Message]:
-        """Yield the messages of a chunk; all together yield so many times the bytes that they take at the most."""
+        """Yield the messages of a chunk, within the bound on the decompressed bytes of all chunks."""
         try:
             found = _opened(content)
         except (struct.error, ValueError) as error:
@@ -201,7 +204,7 @@ class McapReader:
         self.place = Place(after.offset, 0, room)
 
     def _taken(self, kind: int, content: bytes) -> Message | None:
-        """Return the message that a record is, None for any other; and remember the topics of channels."""
+        """Return the message in a record, None for any other record; remember the topics of channels."""
         try:
             if kind == MESSAGE:
                 return self._message(content)
@@ -219,7 +222,7 @@ class McapReader:
 
 
 def _records(file: BinaryIO, size: int) -> Iterator[tuple[int, bytes]]:
-    """Yield the kind and the content of whole records, up to the end or where it is torn."""
+    """Yield the kind and the content of whole records, up to the end or a torn record."""
     while len(head := file.read(RECORD.size)) == RECORD.size:
         kind, length = RECORD.unpack(head)
         if length > MOST_BYTES:

@@ -16,14 +16,14 @@ MOST_MESSAGES = 20_000_000
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """A recording as it was read.
+    """The content of a recording.
 
     Attributes:
-        run: What was flown.
-        messages: All others, in the order written; arrivals only where they were asked for, and nothing of what follows
-            from the others and is there for other programs.
+        run: The flown mission, with its settings.
+        messages: All other messages, in the order written; arrivals only on request, and no messages for other
+            programs.
         torn: Whether it has no end: the run was killed.
-        until: The time of its last message, of whatever kind.
+        until: The time of its last message of any kind.
     """
 
     run: dict[str, Any]
@@ -37,7 +37,7 @@ class Recording:
 
     @property
     def left_out(self) -> int:
-        """How many arrivals were not recorded."""
+        """The number of arrivals that were not recorded."""
         counts = (message.data.get("arrivals") for message in self.of("left_out"))
         return sum(count for count in counts if type(count) is int)
 
@@ -49,7 +49,7 @@ class Recording:
 
 
 def is_recording(path: str) -> bool:
-    """Tell whether a file is MCAP, by its first bytes."""
+    """Return whether a file is MCAP, by its first bytes."""
     try:
         with open_file(path) as file:
             return file.read(len(MAGIC)) == MAGIC
@@ -58,7 +58,7 @@ def is_recording(path: str) -> bool:
 
 
 def read_recording(path: Path, *, arrivals: bool = False) -> Recording:
-    """Return what a file holds; raises RecordingError for one that is no recording of a run, OSError."""
+    """Return the content of a file; raises RecordingError if it is no recording of a run, OSError."""
     reader = McapReader(path)
     run: dict[str, Any] | None = None
     kept: list[Message] = []
@@ -77,7 +77,7 @@ def read_recording(path: Path, *, arrivals: bool = False) -> Recording:
 
 
 def checked_run(run: dict[str, Any] | None) -> dict[str, Any]:
-    """Return what was flown; raises RecordingError where it does not say so."""
+    """Return a valid description of the flown mission; raises RecordingError."""
     if run is None:
         raise RecordingError("it records no run of a mission")
     if run.get("schema") != f"bigactors.run/{VERSION}":

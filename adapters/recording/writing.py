@@ -28,17 +28,17 @@ from physical import PhysicalProperty
 from semantics.state.signature import Name
 
 MOST_ARRIVALS: Final = 100
-"""Arrivals that are written in a second, of each entity of the mission, and of all others that one plugin tells of."""
+"""The most arrivals written in a second, for each entity of the mission, and for all others of one plugin."""
 
 AT_MOST: Final = 0.1
-"""Seconds for which what comes in is kept from who reads the recording as it grows."""
+"""Seconds for which new messages may stay hidden from readers of the growing file."""
 
 
 class Recorder:
-    """Writes what comes in and what follows from it; a turn's commands are on file before they are sent.
+    """Writes the input of a run and its consequences; a turn's commands are on file before they are sent.
 
-    Of a flood of arrivals so many are written, and how many were left out; steps say what they were taken for, and are
-    written all. Beside its messages it writes what other programs show of them (`foxglove`).
+    In a flood a bounded number of arrivals is written, and the number of the others; all steps are written, with their
+    observations. Beside its messages it writes those for other programs (`foxglove`).
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class Recorder:
         names: Collection[str] = (),
         fixed: Iterable[PhysicalProperty] = (),
     ) -> None:
-        """Begin a recording; `names` are the entities of the mission, `fixed` its places that never move."""
+        """Begin a recording; `names` are the entities of the mission, `fixed` its static places."""
         self._names = names
         self._showing = Showing(names)
         self._newest = now
@@ -63,12 +63,12 @@ class Recorder:
         self._flush(now)
 
     def arrival(self, heard: Heard, now: float) -> None:
-        """Write what a plugin published, unless that is too much."""
+        """Write a plugin's publication, within the limit."""
         if self._takes(heard.plugin, entity_of(heard.published), now):
             self._write("arrivals", now, arrival_json(heard))
 
     def _takes(self, plugin: str, entity: str, now: float) -> bool:
-        """Tell whether an arrival is written; of entities that the mission does not name each in its turn."""
+        """Return whether an arrival is written; entities that the mission does not name take turns."""
         if entity in self._names:
             return self._ration.takes((plugin, entity), now)
         if self._turns[plugin].takes(entity, now):
@@ -77,12 +77,12 @@ class Recorder:
         return False
 
     def report(self, report: Report, now: float) -> None:
-        """Write what a plugin reported."""
+        """Write a plugin's report."""
         topic, data = seen_json(report) if isinstance(report, Seen) else ("reports", report_json(report))
         self._write(topic, now, data)
 
     def turn(self, turn: Turn, now: float, verdicts: Callable[[Finding], tuple[str, ...]]) -> None:
-        """Write what a turn came to, and hand it to the system if there is anything that must not be lost."""
+        """Write the results of a turn, and flush if there are any."""
         self._account(now, self._ration.left_out(now))
         clocks = clocks_json(turn.state.timers)
         if clocks != self._clocks:
@@ -103,19 +103,19 @@ class Recorder:
             self._flush(now)
 
     def preflight(self, said: dict[str, Any], now: float) -> None:
-        """Write what is checked before the start, and whether it has come."""
+        """Write the state of the checks before the start."""
         self._put("preflight", now, said)
         self._flush(now)
 
     def _stands(self, topic: str, of: str, what: str, standing: Mapping[Name, Any], now: float) -> None:
-        """Write what stands of each name, where that has changed; null where nothing does any more."""
+        """Write the value of each name that has changed; null for one that has ended."""
         before, self._standing[topic] = self._standing[topic], standing
         for name in sorted(standing.keys() | before.keys()):
             if (value := standing.get(name)) != before.get(name):
                 self._put(topic, now, {of: name, what: value})
 
     def copy(self, messages: Iterable[Message]) -> None:
-        """Write the messages of another recording: this one stands by itself."""
+        """Write the messages of another recording, so that this one needs no other."""
         for message in messages:
             self._put(message.topic, message.time, message.data)
             match message:
@@ -126,13 +126,13 @@ class Recorder:
         self._file.flush()
 
     def _write(self, topic: str, now: float, data: Any) -> None:
-        """Write what came in, and hand it to the system if none was for a while: others may read it as it grows."""
+        """Write an input, and flush if that was not done for a while: others may read the growing file."""
         self._put(topic, now, data)
         if now - self._flushed >= AT_MOST:
             self._flush(now)
 
     def _put(self, topic: str, time: float, data: dict[str, Any]) -> None:
-        """Write a message, and beside it what other programs show of it."""
+        """Write a message, and beside it the messages for other programs."""
         self._newest = max(self._newest, time)
         self._file.write(topic, time, data)
         self._show(time, self._showing.of(topic, time, data))
@@ -147,7 +147,7 @@ class Recorder:
         self._flushed = now
 
     def close(self, reason: str, now: float) -> None:
-        """End the recording: after all that is in it, by whatever clock it was flown."""
+        """End the recording, at a time after all of its messages, by any clock."""
         self._account(now, self._ration.left_out())
         self._put("end", max(now, self._newest), {"reason": reason})
         self._file.close()

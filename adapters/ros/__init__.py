@@ -1,4 +1,4 @@
-"""ROS 2: positions heard over Zenoh, as `rmw_zenoh` speaks it, or replayed from a bag. No ROS is needed."""
+"""ROS 2: positions received over Zenoh from `rmw_zenoh`, or replayed from a bag. No ROS is needed."""
 
 from adapters.ros.feed import RosFeed
 from adapters.ros.sending import RosSending

@@ -1,4 +1,4 @@
-"""How far a robot has carried out an order, as its positions show: pure."""
+"""The progress of a robot's order, by its positions: pure."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from adapters.plugin import Follow, GoTo
 from physical import Geometry, contains, distance, point, standing, waypoint
 
 NEARER: Final = 10.0
-"""Metres by which a robot must have come nearer, to be believed to be on its way: more than a receiver errs."""
+"""Metres of approach that prove a robot to be on its way: more than a receiver's error."""
 
 
 @dataclass(frozen=True, slots=True)
 class Errand:
-    """An order, and what has been seen of it.
+    """An order and its progress.
 
     Attributes:
         order: The order.
-        began: When it was first sent.
-        sent: When it was last sent; None if never.
-        passed: How many of its places the robot has been in.
+        began: Time of its first sending.
+        sent: Time of its last sending; None if it was never sent.
+        passed: The number of its places in which the robot has been.
         farthest: The greatest distance to the next place since it was taken on.
         followed: Whether the robot is on its way, or there.
     """
@@ -51,7 +51,7 @@ def waypoints(order: GoTo | Follow) -> tuple[tuple[float, float], ...]:
 
 
 def seen(errand: Errand, at: Geometry) -> Errand:
-    """Return an errand after its robot was seen somewhere."""
+    """Return an errand after a sighting of its robot."""
     passed = errand.passed
     while passed < len(errand.places) and contains(errand.places[passed], at):
         passed += 1

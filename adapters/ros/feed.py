@@ -1,6 +1,6 @@
 """The ROS plugin: positions of a ROS 2 graph, by the Zenoh router of `rmw_zenoh`, or of a bag.
 
-Every topic of a type that says a position is heard: `/drifter0/fix` is about the mission's entity `drifter0`.
+It subscribes to every topic with a type of positions: `/drifter0/fix` is about the mission's entity `drifter0`.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from physical import PhysicalError, PhysicalProperty
 
 
 class RosFeed(Feed):
-    """A plugin that hears positions of ROS 2.
+    """A plugin that receives positions from ROS 2.
 
     Arguments:
         name: Its name in reports.
         address: The Zenoh router's, `tcp:HOST:PORT[?domain=N]`, or `file:BAG`.
         naming: The naming service; it knows the kinds of the mission's entities.
-        time_to_live: Seconds for which a position counts.
+        time_to_live: Seconds for which a position is valid.
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class RosFeed(Feed):
         """Set when the router has answered."""
 
     async def run(self, world: World) -> None:
-        """Hear until cancelled."""
+        """Receive until cancelled."""
         typestore()  # report a missing extra at once
         try:
             if self._address.scheme == "file":
@@ -61,7 +61,7 @@ class RosFeed(Feed):
 
     async def _listen(self, world: World) -> None:
         def take(topic: Topic, raw: bytes) -> None:
-            if not topic.name.startswith(f"/{NODE}/"):  # what a run publishes
+            if not topic.name.startswith(f"/{NODE}/"):  # a run's own publications
                 self._take(world, topic, raw)
 
         async with self._link.opened((all_of(self._domain, each) for each in TYPES), take):
@@ -81,10 +81,10 @@ class RosFeed(Feed):
             self._troubles.note("no positions", f"the bag has none of {', '.join(TYPES)}")
         self.played.set()
 
-    # --- what both say ----------------------------------------------------------------------------
+    # --- messages of both -------------------------------------------------------------------------
 
     def _take(self, world: World, topic: Topic, raw: bytes, shift: float = 0.0) -> None:
-        """Publish what a message says; `shift` moves the times of a bag to today."""
+        """Publish the position in a message; `shift` moves the times of a bag to today."""
         try:
             world.publish(Aged(self._property(topic, raw, shift, world.now()), self._time_to_live))
         except PhysicalError as problem:
@@ -100,7 +100,7 @@ class RosFeed(Feed):
 
 
 def _recorded(path: str) -> Iterator[tuple[Topic, float, bytes]]:
-    """Yield a bag's messages that say positions, with their times; raises PhysicalError, OSError."""
+    """Yield a bag's messages with positions, with their times; raises PhysicalError, OSError."""
     from rosbags.highlevel import AnyReader  # noqa: PLC0415 - an extra
 
     try:

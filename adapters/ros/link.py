@@ -1,4 +1,4 @@
-"""A node of ours in a ROS 2 graph: a session with the Zenoh router, and what arrives there in the event loop."""
+"""Our own node in a ROS 2 graph: a session with the Zenoh router, and its arrivals in the event loop."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ FUTURE: Final = 1.0
 
 REPORT: Final = 0.5
 MOST_WAITING: Final = 1_000
-"""How many messages may wait; more are dropped, and counted."""
+"""The most waiting messages; more are dropped, and counted."""
 
 PATIENCE: Final = 3_000
 """Milliseconds in which the router must answer."""
@@ -33,7 +33,7 @@ HINT: Final = "write tcp:HOST:PORT[?domain=N] of the Zenoh router, or file:BAG"
 
 
 class Link:
-    """What a plugin hears through a router, and whether this is reached."""
+    """A plugin's messages through a router, and the router's reachability."""
 
     def __init__(self, address: Address, domain: int, troubles: Troubles) -> None:
         self._address = address
@@ -46,9 +46,9 @@ class Link:
 
     @asynccontextmanager
     async def opened(self, keys: Iterable[str], take: Callable[[Topic, bytes], None]) -> AsyncIterator[Any]:
-        """Open a session, and take what is put under some keys; raises PhysicalError if no router answers.
+        """Open a session, and take the messages under some keys; raises PhysicalError if no router answers.
 
-        What a publisher keeps for late subscribers is taken, too. Zenoh connects again by itself.
+        It also takes the messages that a publisher keeps for late subscribers. Zenoh reconnects by itself.
         """
         import zenoh.ext  # noqa: PLC0415 - an extra
 
@@ -64,11 +64,11 @@ class Link:
             await asyncio.to_thread(session.close)
 
     def is_reached(self) -> bool:
-        """Whether the router answers."""
+        """Return whether the router answers."""
         return self._session is not None and bool(self._session.info.routers_zid())
 
     def report(self, world: World) -> None:
-        """Report what was dropped, that the router is lost or back, and all other troubles."""
+        """Report dropped messages, the loss and return of the router, and all other troubles."""
         dropped, self._dropped = self._dropped, 0
         if dropped:
             self._troubles.note("too many messages", f"{dropped:,} were dropped")
@@ -109,9 +109,9 @@ class Link:
 
 
 def read_at(topic: Topic, raw: bytes, now: float, oldest: float, shift: float = 0.0) -> Position:
-    """Read a position, with the time by which it counts; raises PhysicalError.
+    """Read a position, with its effective time; raises PhysicalError.
 
-    `shift` moves the times of a bag to today. Nothing older than `oldest` seconds is read.
+    `shift` moves the times of a bag to today. Messages older than `oldest` seconds are rejected.
     """
     if topic.type_hash not in (UNHASHED, hash_of(topic.type_name)):
         raise PhysicalError(

@@ -1,4 +1,4 @@
-"""ROS messages that say where something is: their types, and their bytes read by `rosbags`."""
+"""ROS messages with positions: their types, and their bytes read by `rosbags`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOST_BYTES: Final = 4_096
 """The longest message: a position has some hundred bytes, and the name of a frame."""
 
 NO_FIX: Final = 0
-"""A receiver's status below it: it has no position."""
+"""The least status of a receiver with a position."""
 
 FIX: Final = "sensor_msgs/msg/NavSatFix"
 POSE: Final = "geographic_msgs/msg/GeoPose"
@@ -26,7 +26,7 @@ WHERE: Final = "geographic_msgs/msg/GeoPointStamped"
 STRING: Final = "std_msgs/msg/String"
 PATH: Final = "geographic_msgs/msg/GeoPath"
 TRIGGER: Final = "std_srvs/srv/Trigger"
-ANSWER: Final = "std_srvs/msg/Trigger_Response"  # as `rosbags` files it
+ANSWER: Final = "std_srvs/msg/Trigger_Response"  # its name in `rosbags`
 TYPES: Final = (FIX, POSE, STAMPED)
 
 GEOGRAPHIC: Final = {
@@ -37,20 +37,21 @@ GEOGRAPHIC: Final = {
     PATH: "std_msgs/Header header\ngeographic_msgs/GeoPoseStamped[] poses\n",
     ANSWER: "bool success\nstring message\n",
 }
-"""The definitions of geographic_msgs and std_srvs, which `rosbags` does not bring."""
+"""The definitions of geographic_msgs and std_srvs, which `rosbags` lacks."""
 
 EMPTY: Final = b"\x00\x01\x00\x00\x00"
 """A message without fields, which ROS writes as one byte."""
 
 MAP: Final = "map"
-"""The frame of goals, whose places are told in degrees."""
+"""The frame of goals, whose places are in degrees."""
 
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """Where something is; its time is 0 if the message does not tell.
+    """A position; its time is 0 if the message has none.
 
-    Messages tell heights above the ellipsoid, and P has them above sea level: they are only said again to who told.
+    Heights in messages are above the ellipsoid, those in P above sea level: a message's height is only sent back to
+    its robot.
     """
 
     geometry: Geometry
@@ -59,7 +60,7 @@ class Position:
 
 
 def read_position(type_name: str, raw: bytes) -> Position:
-    """Read a position; raises PhysicalError for anything else."""
+    """Read a position; raises PhysicalError for any other message."""
     if len(raw) > MOST_BYTES:
         raise PhysicalError("message too long", f"{len(raw):,} bytes of at most {MOST_BYTES:,}")
     store, error = typestore()
@@ -78,7 +79,7 @@ def read_position(type_name: str, raw: bytes) -> Position:
 
 
 def write_fix(latitude: float, longitude: float, time: float, frame: str) -> bytes:
-    """Write a fix; its height is not known, and neither is its accuracy."""
+    """Write a fix with unknown height and accuracy."""
     status = _made("sensor_msgs/msg/NavSatStatus", status=NO_FIX, service=0)
     place = {"latitude": latitude, "longitude": longitude, "altitude": math.nan}
     accuracy = {"position_covariance": np.zeros(9), "position_covariance_type": 0}
@@ -91,18 +92,18 @@ def write_where(latitude: float, longitude: float, time: float, frame: str) -> b
 
 
 def write_goal(latitude: float, longitude: float, time: float, height: float = math.nan) -> bytes:
-    """Write where to go, and at which height; NaN leaves that open. ROS cannot leave the heading open: it is east."""
+    """Write a goal and its height; NaN leaves the height open. ROS cannot leave the heading open: it is east."""
     return bytes(typestore()[0].serialize_cdr(_goal(latitude, longitude, time, height), STAMPED))
 
 
 def write_path(waypoints: Iterable[tuple[float, float]], time: float, height: float = math.nan) -> bytes:
-    """Write where to go, and by which way."""
+    """Write a path of goals."""
     poses = [_goal(*each, time, height) for each in waypoints]
     return _written(PATH, header=_header(time, MAP), poses=poses)
 
 
 def read_answer(raw: bytes) -> tuple[bool, str]:
-    """Read whether a service has done what it was asked for, and what it says; raises PhysicalError."""
+    """Read a service's success and its text; raises PhysicalError."""
     store, error = typestore()
     try:
         said = store.deserialize_cdr(raw[:MOST_BYTES], ANSWER)
@@ -142,7 +143,7 @@ def _written(type_name: str, **fields: Any) -> bytes:
 
 @cache
 def typestore() -> tuple[Any, type[Exception]]:
-    """Return the types, and the error of bytes that are not of one; raises PhysicalError without the extra."""
+    """Return the types, and the error for bytes of no type; raises PhysicalError without the extra."""
     try:
         from rosbags.serde import SerdeError  # noqa: PLC0415 - an extra
         from rosbags.typesys import Stores, get_types_from_msg, get_typestore  # noqa: PLC0415

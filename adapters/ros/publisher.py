@@ -1,4 +1,4 @@
-"""A publisher as `rmw_zenoh` has it."""
+"""A publisher in the form of `rmw_zenoh`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from adapters.ros.wire import Topic, attachment, gid_of, key_of, publisher_token
 
 
 class Publisher:
-    """A ROS publisher: reliable and keeping its last message, for late subscribers too if it lasts."""
+    """A ROS publisher: reliable; keeps its last message, for late subscribers too if it lasts."""
 
     def __init__(self, session: Any, domain: int, topic: Topic, number: int, *, lasts: bool) -> None:
         import zenoh.ext  # noqa: PLC0415 - an extra

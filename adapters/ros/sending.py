@@ -1,4 +1,4 @@
-"""What P and L hold, published into a ROS 2 graph as `rmw_zenoh` publishes it. A watcher, which never slows the run."""
+"""P and L, published into a ROS 2 graph in the form of `rmw_zenoh`. A watcher, which never slows the run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from physical import PhysicalError, centroid
 from semantics.state.logical_model import LogicalModel
 
 PERIOD: Final = 0.5
-"""Seconds between two messages of a topic, at least."""
+"""The least seconds between two messages of a topic."""
 
 OURS: Final = "bigactors"
 SPACE: Final = f"/{OURS}/logical_space"
@@ -30,9 +30,9 @@ Said = tuple[Topic, bytes]
 
 
 class RosSending:
-    """A watcher that publishes where things are, and L when it changes.
+    """A watcher that publishes the positions of entities, and L when it changes.
 
-    The run only leaves its newest state here; messages are sent by a thread, and of each topic only the newest waits.
+    The run only leaves its newest state here; a thread sends the messages, and only the newest of each topic waits.
 
     Arguments:
         address: The Zenoh router's, `tcp:HOST:PORT[?domain=N]`.
@@ -59,7 +59,7 @@ class RosSending:
         self._thread.start()
 
     def arrived(self, heard: Heard, now: float) -> None:
-        """Do nothing: what P holds is published, not what is heard."""
+        """Do nothing: P is published, not the arrivals."""
 
     def reported(self, report: Report, now: float) -> None:
         """Do nothing."""
@@ -73,7 +73,7 @@ class RosSending:
         self._state = turn.state
 
     def close(self) -> None:
-        """Publish what is left, and leave the graph."""
+        """Publish the rest, and leave the graph."""
         self._publish()
         with self._changed:
             self._ended = True
@@ -82,7 +82,7 @@ class RosSending:
         self._session.close()
 
     def _publish(self) -> None:
-        """Hand what is new to the thread."""
+        """Pass new messages to the thread."""
         state, self._state = self._state, None
         if state is not None and not self._ended:
             said = dict(self._news(state))
@@ -108,11 +108,11 @@ class RosSending:
                         waiting, self._waiting = self._waiting, {}
                     for topic, raw in waiting.items():
                         self._publisher(topic).put(raw)
-        except Exception as failure:  # Zenoh's, told by the next turn
+        except Exception as failure:  # Zenoh's; the next turn reports it
             self._failure = failure
 
     def _wait(self) -> bool:
-        """Wait for something to send; tell whether there is."""
+        """Wait for messages to send; return whether there are any."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._ended)
             return bool(self._waiting)
@@ -135,7 +135,7 @@ def space_json(logical: LogicalModel) -> str:
 
 
 def _whereabouts(entity: str, sighting: Sighting) -> Said:
-    """Return where something is: a point as a fix; of an area, the centre."""
+    """Return the position of an entity: a point as a fix; for an area, the centre."""
     geometry = sighting.property.geometry
     stamp = sighting.time if sighting.property.time is None else sighting.property.time
     ((latitude, longitude),) = centroid(geometry).vertices

@@ -1,7 +1,7 @@
 """Robots of a ROS 2 graph as vehicles: positions in, goals out, by the Zenoh router of `rmw_zenoh`.
 
-ROS has no word by which a robot says that it follows a goal: its positions show it. It has none for *hold* and *return*
-either: these are services that the address names, else goals where it is, and where it was first heard.
+ROS has no message for a robot that follows a goal: its positions show it. It has none for *hold* and *return* either:
+these are services in the address, else goals at the robot's position, or at its first one.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError, PhysicalProperty, circle, contains, point
 
 STAYS: Final = 10.0
-"""Metres around a point within which a robot that is to hold there, or to return there, counts as being there."""
+"""Metres around a point within which a robot that holds or returns counts as there."""
 
 SILENCE: Final = 5.0
 """Seconds without a position after which a robot is lost."""
@@ -77,7 +77,7 @@ TOPIC: Final = re.compile(r"/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 
 @dataclass(slots=True)
 class Robot:
-    """A vehicle, its topics and services by the options' words, and what is known of it."""
+    """A vehicle, its topics and services by the options' words, and its state."""
 
     assigned: Assigned
     names: dict[str, str]
@@ -118,19 +118,19 @@ class RosVehicles:
         self._calls: set[asyncio.Task[None]] = set()
         self._session: Any = None
         self.local: str | None = None
-        """Our name in the graph, when the router has answered."""
+        """Our name in the graph, once the router has answered."""
 
     @property
     def name(self) -> str:
-        """What reports call it."""
+        """Its name in reports."""
         return self._name
 
     def owns(self, entity: str) -> bool:
-        """Whether it drives a vehicle."""
+        """Return whether it drives a vehicle."""
         return entity in self._robots
 
     async def command(self, command: Command) -> None:
-        """Take on a command; raises Refused for what this robot cannot be told."""
+        """Take on a command; raises Refused if this robot cannot carry it out."""
         robot = self._robots.get(command.entity)
         if robot is None:
             raise Refused(f"{command.entity} is none of the robots at {self._name}")
@@ -147,13 +147,13 @@ class RosVehicles:
                 else:
                     robot.errand, robot.asked = Errand(_as_goal(command, robot)), None
             case GiveBack():
-                return  # nobody else's goals are seen, so it was never taken over
+                return  # other senders' goals are not seen, so it was never taken over
             case _:
                 raise Refused(f"{command.entity} speaks ROS, which has no {type(command).__name__}")
         robot.newest = command
 
     async def run(self, world: World) -> None:
-        """Hear and send until cancelled."""
+        """Receive and send until cancelled."""
         typestore()  # report a missing extra at once
         topics = {robot.names["at"]: robot for robot in self._robots.values()}
         keys = [key_of(self._domain, Topic(at, each, "*")) for at in topics for each in TYPES]
@@ -180,7 +180,7 @@ class RosVehicles:
             self._tokens.clear()
             self._troubles.report(world, now=True)
 
-    # --- what a robot says ------------------------------------------------------------------------
+    # --- messages of a robot ----------------------------------------------------------------------
 
     def _publish(self, world: World, robot: Robot, place: Position) -> None:
         now, given, at = world.now(), robot.assigned, place.geometry
@@ -200,7 +200,7 @@ class RosVehicles:
             self._follow(world, robot, seen(robot.errand, at))
 
     def _follow(self, world: World, robot: Robot, errand: Errand) -> None:
-        """Report what a position shows of an errand."""
+        """Report the progress of an errand that a position shows."""
         before, robot.errand, order = robot.errand, errand, errand.order
         if errand.followed and not (before and before.followed):
             world.report(Accepted(order.request, order.entity, world.now()))
@@ -208,10 +208,10 @@ class RosVehicles:
             world.report(Arrived(order.request, order.entity, world.now()))
             robot.errand = None
 
-    # --- what a robot is told ---------------------------------------------------------------------
+    # --- messages to a robot ----------------------------------------------------------------------
 
     def _serve(self, world: World, robot: Robot) -> None:
-        """Find out whether a robot is lost; send what it does not follow yet."""
+        """Update whether a robot is lost; send the goal that it does not follow yet."""
         now, entity = world.now(), robot.assigned.entity
         silent = robot.heard is not None and now - robot.heard >= SILENCE
         if robot.heard is not None and not robot.lost and (silent or not self._link.is_reached()):
@@ -252,7 +252,7 @@ class RosVehicles:
             self._publishers[topic].put(raw)
 
     async def _ask(self, world: World, robot: Robot, command: Hold | Return) -> None:
-        """Call a service, and report what it answers."""
+        """Call a service, and report its answer."""
         service = robot.names[type(command).__name__.lower()]
         try:
             done, reason = await asyncio.to_thread(_called, self._session, self._domain, service)
@@ -267,7 +267,7 @@ class RosVehicles:
         if isinstance(command, Hold):
             world.report(Arrived(command.request, command.entity, world.now()))
 
-    # --- who listens ------------------------------------------------------------------------------
+    # --- subscribers ------------------------------------------------------------------------------
 
     def _subscribed(self) -> Iterator[str]:
         for robot in self._robots.values():
@@ -275,7 +275,7 @@ class RosVehicles:
             yield subscriptions_of(self._domain, robot.names["path"], PATH)
 
     def _listen(self, tokens: str) -> Any:
-        """Keep up with who subscribes to a topic."""
+        """Track the subscribers of a topic."""
 
         def changed(sample: Any) -> None:  # in a thread of Zenoh
             token = str(sample.key_expr)
@@ -287,19 +287,19 @@ class RosVehicles:
         return self._session.liveliness().declare_subscriber(tokens, changed, history=True)
 
     def _takers(self, robot: Robot, order: GoTo | Follow) -> list[Topic]:
-        """Return a goal's topic with each hash of its type under which it is subscribed, and that is ours."""
+        """Return a goal's topic once for each subscribed hash of its type that is ours, or ROS 2 Humble's."""
         name, kind = _goal_of(robot, order)
         hashes = {token.split("/")[-2] for token in tuple(self._tokens) if f"/{_mangled(name)}/" in token}
         return [Topic(name, kind, each) for each in sorted(hashes & {hash_of(kind), UNHASHED})]
 
     def _objection(self, robot: Robot, order: GoTo | Follow) -> str:
-        """Return why a goal reaches nobody, if so."""
+        """Return an objection if a goal has no subscriber, else an empty text."""
         name, kind = _goal_of(robot, order)
         return "" if self._takers(robot, order) else f"no node subscribes to {name} as {kind}"
 
 
 def _as_goal(command: Hold | Return, robot: Robot) -> GoTo:
-    """Return the goal that stands for a word which ROS does not have; raises Refused for who was not heard yet."""
+    """Return a goal for a hold or return, which ROS lacks; raises Refused for a robot without a position."""
     if robot.at is None or robot.home is None:
         raise Refused(f"{command.entity} was not heard yet")
     where = robot.home if isinstance(command, Return) else robot.at.geometry
@@ -325,7 +325,7 @@ def _names(entity: str, options: dict[str, str]) -> dict[str, str]:
 
 
 def _check(order: GoTo | Follow, robot: Robot) -> None:
-    """Refuse what a robot cannot be told, and what is outside its fence."""
+    """Refuse orders that a robot cannot carry out, and places outside its fence."""
     fence, entity = robot.assigned.fence, robot.assigned.entity
     if order.altitude is not None:
         raise Refused(
@@ -336,7 +336,7 @@ def _check(order: GoTo | Follow, robot: Robot) -> None:
 
 
 def _called(session: Any, domain: int, service: str) -> tuple[bool, str]:
-    """Call a Trigger, whatever hash its type comes with; raises PhysicalError."""
+    """Call a Trigger, under any hash of its type; raises PhysicalError."""
     key = key_of(domain, Topic(service, TRIGGER, "*"))
     told = attachment(1, time.time_ns(), gid_of(f"{session.zid()}{service}"))
     try:

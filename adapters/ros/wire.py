@@ -1,4 +1,4 @@
-"""What `rmw_zenoh` puts on the wire: key expressions of topics, and tokens of nodes."""
+"""The wire format of `rmw_zenoh`: key expressions of topics, and tokens of nodes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from physical import PhysicalError
 LIVELINESS: Final = "@ros2_lv"
 NODE: Final = "bigactors"
 UNHASHED: Final = "TypeHashNotSupported"
-"""What ROS 2 Humble has in the place of a type's hash."""
+"""ROS 2 Humble's placeholder for a type's hash."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class Topic:
 
 
 def key_of(domain: int, topic: Topic) -> str:
-    """Return the key under which a topic's messages are put.
+    """Return the key of a topic's messages.
 
     >>> key_of(0, Topic("/uav0/fix", "sensor_msgs/msg/NavSatFix", "RIHS01_62"))
     '0/uav0/fix/sensor_msgs::msg::dds_::NavSatFix_/RIHS01_62'
@@ -33,7 +33,7 @@ def key_of(domain: int, topic: Topic) -> str:
 
 
 def topic_of(key: str) -> Topic:
-    """Read a key; raises PhysicalError if it is none of a topic.
+    """Read a topic's key; raises PhysicalError for any other key.
 
     >>> topic_of("0/uav0/fix/sensor_msgs::msg::dds_::NavSatFix_/RIHS01_62")
     Topic(name='/uav0/fix', type_name='sensor_msgs/msg/NavSatFix', type_hash='RIHS01_62')
@@ -48,7 +48,7 @@ def topic_of(key: str) -> Topic:
 
 
 def all_of(domain: int, type_name: str) -> str:
-    """Return the key expression of all topics of a type, whatever hash they have.
+    """Return the key expression of all topics of a type, with any hash.
 
     >>> all_of(0, "sensor_msgs/msg/NavSatFix")
     '0/*/**/sensor_msgs::msg::dds_::NavSatFix_/*'
@@ -66,7 +66,7 @@ def node_token(domain: int, session: str) -> str:
 
 
 def publisher_token(domain: int, session: str, number: int, topic: Topic, *, lasts: bool) -> str:
-    """Return the token by which ROS lists a publisher: reliable, keeping one message, for late subscribers if it lasts.
+    """Return the token by which ROS lists a reliable publisher; one that `lasts` keeps a message for late subscribers.
 
     >>> publisher_token(0, "a1", 2, Topic("/uav0/fix", "sensor_msgs/msg/NavSatFix", "RIHS01_62"), lasts=False)
     '@ros2_lv/0/a1/0/2/MP/%/%/bigactors/%uav0%fix/sensor_msgs::msg::dds_::NavSatFix_/RIHS01_62/1:2:1,1:,:,:,,'
@@ -78,7 +78,7 @@ def publisher_token(domain: int, session: str, number: int, topic: Topic, *, las
 
 
 def subscriptions_of(domain: int, topic: str, type_name: str) -> str:
-    """Return the key expression of the tokens of all subscriptions to a topic by a type, whatever hash they have.
+    """Return the key expression of the tokens of all subscriptions to a topic by a type, with any hash.
 
     >>> subscriptions_of(0, "/uav0/goal", "sensor_msgs/msg/NavSatFix")
     '@ros2_lv/0/*/*/*/MS/*/*/*/%uav0%goal/sensor_msgs::msg::dds_::NavSatFix_/*/*'
@@ -94,7 +94,7 @@ def gid_of(token: str) -> bytes:
 
 
 def attachment(number: int, nanoseconds: int, gid: bytes) -> bytes:
-    """Return what goes with a message: its number, its time, and its publisher."""
+    """Return the attachment of a message: its number, its time, and its publisher."""
     return struct.pack("<qqB16s", number, nanoseconds, len(gid), gid)
 
 

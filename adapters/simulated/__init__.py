@@ -1,7 +1,7 @@
 """Simulated vehicles that speak MAVLink over real sockets, for tests and demonstrations.
 
-`vehicle` moves, `protocol` and `store` answer, `reporting` tells, `serving` puts it on a link that is as bad as
-`disturbance` says; `clock` runs the whole faster than the clock on the wall.
+`vehicle` moves, `protocol` and `store` answer, `reporting` sends the periodic messages. `serving` puts the vehicle on a
+link with a `disturbance`, and `clock` runs everything faster than real time.
 """
 
 from adapters.simulated.clock import run

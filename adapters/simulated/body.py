@@ -1,7 +1,7 @@
 """The motion of a simulated vehicle: a point with course, speed and climb near its place on the earth.
 
-A plane turns no faster than its bank allows and circles where the others stop. The figures of a plane are those of the
-recording that `tests/adapters/test_recording.py` holds it against.
+A plane turns no faster than its bank allows, and circles instead of stopping. A plane's figures are those of the
+recording in `tests/adapters/test_recording.py`.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from typing import Final
 METRES_PER_DEGREE: Final = 111_194.9
 
 EASES: Final = 1.0
-"""Seconds in which a turn is taken up, and a plane banks for it."""
+"""Seconds until a turn has its full rate, and a plane its bank."""
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What a kind of vehicle can do: m/s, degrees a second, m/s up and down, seconds to gain speed."""
+    """The limits of a kind of vehicle: m/s, degrees a second, m/s up and down, seconds to gain speed."""
 
     speed: float
     turn: float
@@ -35,7 +35,7 @@ ROVER: Final = Limits(5.0, 60.0, 0.0, 0.0, 2.0, must_move=False)
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """Where it is and how it moves: degrees, metres above home, m/s, degrees true, m/s upwards, degrees a second."""
+    """Position and motion: degrees, metres above home, m/s, degrees true, m/s upwards, degrees a second."""
 
     latitude: float
     longitude: float
@@ -48,7 +48,7 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """Where a guided vehicle goes: degrees, metres above home, the circle's radius."""
+    """The target of a guided vehicle: degrees, metres above home, the circle's radius."""
 
     latitude: float
     longitude: float
@@ -64,19 +64,19 @@ def metres_to(body: Body, latitude: float, longitude: float) -> tuple[float, flo
 
 
 def towards(body: Body, latitude: float, longitude: float, circle: float) -> float:
-    """Return the course that leads to a point or, where there is a circle, onto it: clockwise, or not if negative."""
+    """Return the course to a point, or onto a circle around it: clockwise, counter-clockwise if negative."""
     distance, bearing = metres_to(body, latitude, longitude)
     if not circle:
         return bearing
-    # Seen from the centre, the way on is a right angle ahead on the circle, and inwards far outside of it.
+    # Seen from the centre, the course is a right angle ahead on the circle, and inwards far outside it.
     inwards = math.degrees(math.atan2(distance - abs(circle), abs(circle) / 2))
     return (bearing + math.copysign(inwards - 90, circle)) % 360
 
 
 def astray(bearing: float, wind: tuple[float, float]) -> float:
-    """Return how many times too far out a plane circles, where the centre bears so, in wind (m/s to north and east).
+    """Return the factor by which wind (m/s to north and east) widens a plane's circle, at a bearing of its centre.
 
-    As ArduPlane was seen to: of 80 m in 8 m/s it made 85 m on the one side and 103 m on the other.
+    As seen of ArduPlane: a circle of 80 m in 8 m/s of wind had 85 m on the one side and 103 m on the other.
     """
     speed, blows = math.hypot(*wind), math.degrees(math.atan2(wind[1], wind[0]))
     return 1.0 + speed / 8.0 * (0.175 - 0.105 * math.cos(math.radians(bearing - blows)))

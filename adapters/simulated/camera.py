@@ -1,6 +1,6 @@
-"""A simulated camera: the sea with slicks on it, as a camera sees it, by casting a ray for each pixel.
+"""A simulated camera: a picture of the sea with slicks, by casting a ray for each pixel.
 
-It has rotations and geodesy of its own, so that a fault of the plugin's projection shows.
+It has its own rotations and geodesy, so that a fault of the plugin's projection shows.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ SKY: Final = (225.0, 205.0, 180.0)
 E7: Final = 1e7
 
 
-def render(  # noqa: PLR0913 - each is one thing that a picture shows
+def render(  # noqa: PLR0913 - each is one property of a picture
     pose: Pose,
     lens: Lens,
     size: tuple[int, int],
@@ -33,7 +33,7 @@ def render(  # noqa: PLR0913 - each is one thing that a picture shows
     noise: float = 3.0,
     land: Geometry | None = None,
 ) -> Any:
-    """Return a picture (blue, green, red) of the sea with slicks, of so many pixels to the right and down."""
+    """Return a picture (blue, green, red) of the sea with slicks; `size` is in pixels to the right and down."""
     random = np.random.default_rng(seed)
     north, east, down = _rays(pose, lens, size)
     water = down > 1e-3
@@ -88,7 +88,7 @@ def _cos_sin(degrees: float) -> tuple[float, float]:
 
 
 def _degrees(pose: Pose, north: Any, east: Any) -> tuple[Any, Any]:
-    """Return the positions at so many metres from a vehicle, by the ellipsoid's radii there (WGS 84)."""
+    """Return the positions at offsets in metres from a vehicle, by the ellipsoid's radii there (WGS 84)."""
     flattened = 1 - 6.69437999e-3 * math.sin(math.radians(pose.latitude)) ** 2
     meridian = 6_378_137.0 * (1 - 6.69437999e-3) / flattened**1.5
     normal = 6_378_137.0 / math.sqrt(flattened)
@@ -103,7 +103,7 @@ def _within(places: Sequence[Geometry], latitude: Any, longitude: Any) -> Any:
 
 
 def _waves(x: Any, y: Any, altitude: float, random: Any) -> Any:
-    """Return waves of several lengths, none so short that the pixels could not show them."""
+    """Return waves of several lengths, all long enough for the pixels."""
     total = np.zeros_like(x)
     for length in (0.03, 0.05, 0.11, 0.3):
         bearing, phase = random.uniform(0, 2 * np.pi, 2)

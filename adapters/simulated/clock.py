@@ -1,8 +1,8 @@
 """Event loops with a faster clock, so that tests of minutes take seconds.
 
-Code that waits by asyncio does not notice. Time waits for the process: it passes no timer that is not served. A busy
-machine makes a simulation slower, and changes nothing in it. Local sockets work with both clocks: data has arrived when
-the sender continues.
+Code that waits by asyncio does not notice. Time waits for the process: it passes no unserved timer. So a busy machine
+makes a simulation slower, with the same results. Local sockets work with both clocks: data has arrived when the sender
+continues.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any, Final, TypeVar
 Result = TypeVar("Result")
 
 MADE_UP: Final = 1.0
-"""Seconds on the wall of lost time that a faster clock makes up for."""
+"""Seconds of lost real time that a faster clock makes up for."""
 
 
 class _Jumping(selectors.DefaultSelector):
@@ -34,7 +34,7 @@ class _Jumping(selectors.DefaultSelector):
 
 
 class _Hurried(selectors.DefaultSelector):
-    """Waits the part of the time that a faster clock leaves, and makes up for a little lost time."""
+    """Waits the scaled time, and makes up for a little lost time."""
 
     def __init__(self, speed: float) -> None:
         super().__init__()
@@ -52,7 +52,7 @@ class _Hurried(selectors.DefaultSelector):
         return ready
 
     def _behind(self) -> float:
-        """Return the seconds by which the clock on the wall is ahead; what is more than can be made up is forgotten."""
+        """Return the seconds by which real time is ahead; a lag too long to make up for is dropped."""
         behind = (time.monotonic() - self._start) * self._speed - self.now
         lost = max(0.0, behind - MADE_UP * self._speed)
         self._start += lost / self._speed
@@ -69,7 +69,7 @@ class _Loop(asyncio.SelectorEventLoop):
 
 
 def run(main: Coroutine[Any, Any, Result], speed: float | None = None) -> Result:
-    """Run a coroutine at `speed` times the clock's pace; without one, as fast as it can be computed."""
+    """Run a coroutine at `speed` times real time; without one, as fast as possible."""
     clock = _Jumping() if speed is None else _Hurried(speed)
     with asyncio.Runner(loop_factory=lambda: _Loop(clock)) as runner:
         return runner.run(main)

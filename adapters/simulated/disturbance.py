@@ -8,13 +8,13 @@ from random import Random
 
 @dataclass(frozen=True, slots=True)
 class Disturbance:
-    """What befalls packets on a link.
+    """The disturbance of packets on a link.
 
     Attributes:
-        loss: The probability that one is lost.
-        duplication: The probability that one comes twice.
-        delay: The shortest and longest time that one takes, in seconds: they overtake each other.
-        blackouts: From when to when nothing gets through, in seconds of the sender's clock.
+        loss: The probability that a packet is lost.
+        duplication: The probability that a packet comes twice.
+        delay: The shortest and longest delay in seconds: packets may overtake each other.
+        blackouts: Start and end of each total outage, in seconds of the sender's clock.
     """
 
     loss: float = 0.0
@@ -23,7 +23,7 @@ class Disturbance:
     blackouts: tuple[tuple[float, float], ...] = ()
 
     def arrivals(self, now: float, random: Random) -> tuple[float, ...]:
-        """Return after how many seconds a packet sent now arrives: nothing if it is lost, two if twice."""
+        """Return the delays of a packet sent now, one for each arrival: none if it is lost, two if it is duplicated."""
         if any(start <= now < end for start, end in self.blackouts) or random.random() < self.loss:
             return ()
         copies = 2 if random.random() < self.duplication else 1

@@ -1,4 +1,4 @@
-"""The fences of a simulated vehicle: what it does at them, and when it switches them by itself."""
+"""The fences of a simulated vehicle: its actions at them, and its automatic switching."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from adapters.simulated.state import NOTICE, WARNING, State
 from physical import contains, point
 
 REPORT_ONLY: Final = 0.0
-"""ArduPilot's FENCE_ACTION with which it only says that it is outside."""
+"""ArduPilot's FENCE_ACTION for a report alone."""
 
 AFTER_TAKEOFF: Final = (1.0, 2.0)
 ON_ARMING: Final = 3.0
-"""FENCE_AUTOENABLE: when ArduPilot switches its fences on by itself. With the first it switches them off before."""
+"""FENCE_AUTOENABLE: ArduPilot's automatic switching of its fences. With 1 they are off before a take-off."""
 
 HIGH: Final = 10.0
 """Metres above home at which a take-off counts as done."""
 
 
 def switch_by_itself(vehicle: State) -> None:
-    """Switch the fences as FENCE_AUTOENABLE says: off again before a take-off, on after it, or on arming."""
+    """Switch the fences according to FENCE_AUTOENABLE: off before a take-off, on after it, or on arming."""
     auto = vehicle.parameters.get("FENCE_AUTOENABLE", 0.0)
     if not auto or vehicle.parameters.get("FENCE_ENABLE"):
         return
@@ -38,7 +38,7 @@ def switch_by_itself(vehicle: State) -> None:
 
 
 def keep(vehicle: State) -> None:
-    """Return, or stop, as soon as it is outside a fence; what drives has stopped before its circle."""
+    """Return, or stop, as soon as it is outside a fence; a ground vehicle has stopped before its circle."""
     here = vehicle.body
     outside = not holds(vehicle, here.latitude, here.longitude, here.height)
     if outside and vehicle.fence_action is FenceAction.HOLD:
@@ -54,7 +54,7 @@ def keep(vehicle: State) -> None:
 
 
 def _breached(vehicle: State) -> str:
-    """Name the fence that it is outside of, as ArduPilot does."""
+    """Name the breached fence, as ArduPilot does."""
     here = vehicle.body
     if not _in_zones(vehicle, here.latitude, here.longitude):
         return "Polygon"
@@ -63,7 +63,7 @@ def _breached(vehicle: State) -> str:
 
 
 def holds(vehicle: State, latitude: float, longitude: float, height: float) -> bool:
-    """Tell whether somewhere is inside all fences that are on."""
+    """Return whether a position is inside all fences that are on."""
     inside = _in_zones(vehicle, latitude, longitude)
     if Fence.CIRCLE in vehicle.fences:
         away = metres_to(Body(*vehicle.home[:2]), latitude, longitude)[0]
@@ -74,7 +74,7 @@ def holds(vehicle: State, latitude: float, longitude: float, height: float) -> b
 
 
 def _in_zones(vehicle: State, latitude: float, longitude: float) -> bool:
-    """Tell whether somewhere is in the zones to stay in, of PX4 one, and out of the others."""
+    """Return whether a position is in the inclusion zones (for PX4 in one), and in no exclusion zone."""
     if not vehicle.keeps_zones:
         return True
     at = point(latitude, longitude)

@@ -1,4 +1,4 @@
-"""How a simulated vehicle flies its mission, lands by it, and chooses where it returns to."""
+"""Missions of a simulated vehicle: flight, landing sequence, and the point of return."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ NAMES: Final[dict[int, str]] = {
     Cmd.LOITER_UNLIMITED: "LoitUnlim",
     Cmd.LAND: "Land",
 }
-"""What ArduPilot calls the items of a mission when it begins them."""
+"""ArduPilot's names for the items of a mission that it begins."""
 
 _FLOWN: Final = frozenset(NAMES)
-"""The items that lead somewhere; all others are over as soon as they are begun."""
+"""The items with a destination; all others are over as soon as they are begun."""
 
 IMMEDIATELY: Final = 2.0
 AT_HOME: Final = 1.0
-"""RTL_AUTOLAND with which it goes straight to its landing sequence, or first to where it returns to."""
+"""RTL_AUTOLAND for going straight to the landing sequence, or first to the point of return."""
 
 
 def follow(vehicle: State, seconds: float) -> None:
@@ -86,7 +86,7 @@ def _away(vehicle: State, item: Item) -> float:
 
 
 def refuge(vehicle: State) -> tuple[float, float]:
-    """Return where it returns to: the nearest rally point, or home if that is meant or none is near enough."""
+    """Return the point of return: the nearest rally point, or home if it counts or no rally point is near enough."""
     rally = [(item.x / 1e7, item.y / 1e7) for item in vehicle.store.items.get(MissionType.RALLY, ())]
     home, limit = vehicle.home[:2], 1000.0 * vehicle.parameters.get("RALLY_LIMIT_KM", 0.0)
     near = [at for at in rally if not limit or metres_to(vehicle.body, *at)[0] <= limit]
@@ -95,7 +95,7 @@ def refuge(vehicle: State) -> tuple[float, float]:
 
 
 def may_land(vehicle: State) -> bool:
-    """Tell whether it is time to look for a landing sequence."""
+    """Return whether it is time to look for a landing sequence."""
     asked = vehicle.parameters.get("RTL_AUTOLAND")
     if asked != AT_HOME or vehicle.refuge is None:
         return asked == IMMEDIATELY
@@ -103,7 +103,7 @@ def may_land(vehicle: State) -> bool:
 
 
 def land(vehicle: State) -> bool:
-    """Begin the landing sequence of the mission on board; tell whether it has one."""
+    """Begin the landing sequence of the mission on board; return whether it has one."""
     start = _landing(vehicle.store.mission)
     if start is None:
         vehicle.words.append((WARNING, "Unable to start landing sequence"))
@@ -117,7 +117,7 @@ def _landing(items: Items) -> int | None:
 
 
 def missing(vehicle: State) -> str:
-    """Return which item it needs on board before it is armed, or an empty text."""
+    """Return the required item that is missing on board before arming, or an empty text."""
     if not vehicle.parameters.get("ARMING_MIS_ITEMS"):
         return ""
     known = Telemetry(parameters=vehicle.parameters)

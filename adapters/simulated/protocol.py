@@ -1,4 +1,4 @@
-"""The answers of a simulated vehicle: commands, parameters, missions, signing; and whom it obeys."""
+"""The answers of a simulated vehicle: commands, parameters, missions, signing; and its controlling station."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ _NAMES: Final[Mapping[float, str]] = MappingProxyType(
 )
 
 FARTHEST: Final = 50_000.0
-"""Metres from home beyond which no target is taken."""
+"""Metres from home beyond which it rejects a target."""
 
 CHANGE_MODE: Final = 1
 """MAV_DO_REPOSITION_FLAGS: into guided mode from any other."""
 
 FLAGS: Final = 0xFFFF
-"""The largest set of flags that is taken; NaN is none."""
+"""The largest accepted set of flags; NaN is rejected, too."""
 
 HIGHEST: Final = 10_000.0
 LARGEST: Final = 1e6
 LONGEST: Final = 3.6e9
-"""Microseconds between two messages of a kind."""
+"""The longest interval of a message, in microseconds."""
 
 
 def hear(vehicle: Vehicle, reporter: Reporter, message: Message, now: float) -> Answer:
-    """Answer a message, if it is accepted, addressed to this vehicle, and from the station that it obeys."""
+    """Answer a message, if it is authentic, addressed to this vehicle, and from the station that it obeys."""
     if not _believed(vehicle, message) or not is_for(message, vehicle.system):
         return []
     enforces = vehicle.enforce and vehicle.kind.profile.dialect.authority
@@ -178,7 +178,7 @@ def _reposition(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Resu
 
 
 def _set_home(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
-    """Move its home to a place, or to where it is; it tells that at once."""
+    """Move its home to a place, or to its position; it reports that at once."""
     here = vehicle.body.latitude, vehicle.body.longitude, vehicle.home[2] + vehicle.body.height
     if message["param1"] == 1:
         vehicle.set_home(*here)
@@ -251,7 +251,7 @@ _COMMANDS: Final[Mapping[Cmd, Callable[[Vehicle, Reporter, Message], Result]]] =
 )
 
 
-# --- PX4's commands, as commander/Commander.cpp and navigator/navigator_main.cpp take them -----------
+# --- PX4's commands, after commander/Commander.cpp and navigator/navigator_main.cpp ------------------
 
 
 def _px4_set_mode(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
@@ -309,7 +309,7 @@ def _px4_reposition(vehicle: Vehicle, reporter: Reporter, message: Message) -> R
     if vehicle.holds(latitude, longitude, height):
         vehicle.target = Target(latitude, longitude, height, circle)
     else:
-        reporter.text("Reposition is outside geofence")  # it is accepted nevertheless
+        reporter.text("Reposition is outside geofence")  # PX4 accepts it nevertheless
     return Result.ACCEPTED
 
 

@@ -28,7 +28,7 @@ WHOLE: Final = ("COM_LOW_BAT_ACT", "GF_ACTION", "MIS_TKO_LAND_REQ")
 
 GOOD: Final = 831
 NO_POSITION: Final = 165
-"""EKF_STATUS_FLAGS as ArduPilot has them with a position, and without."""
+"""ArduPilot's EKF_STATUS_FLAGS with a position, and without."""
 
 SHORTEST: Final = 0.05
 CAPABILITIES: Final = 2 | 4 | 8 | 8192 | 16384
@@ -36,7 +36,7 @@ CAPABILITIES: Final = 2 | 4 | 8 | 8192 | 16384
 
 
 class Reporter:
-    """The intervals of a vehicle's messages, and what it has to say once."""
+    """The intervals of a vehicle's messages, and its messages to send once."""
 
     def __init__(self) -> None:
         self._every = dict(DEFAULT)
@@ -47,27 +47,27 @@ class Reporter:
         self._chunked = 0
 
     def every(self, name: str, seconds: float) -> None:
-        """Say a message at another interval; none if it isn't positive."""
+        """Send a message at another interval; never if it isn't positive."""
         self._every.pop(name, None)
         if seconds > 0:
             self._every[name] = max(SHORTEST, seconds)
 
     def once(self, name: str) -> None:
-        """Say a message once."""
+        """Send a message once."""
         self._once = [*self._once, name][-8:]
 
     def text(self, text: str) -> None:
-        """Say a text once."""
+        """Send a text once."""
         self._texts = [*self._texts, text][-8:]
 
     def reset(self) -> None:
-        """Forget what was asked for, as a reboot does."""
+        """Reset all requests, as a reboot does."""
         self.__init__()  # type: ignore[misc]
 
     def due(self, vehicle: Vehicle) -> list[Message]:
-        """Return what is to be said now, by the vehicle's own clock."""
+        """Return the messages to send now, by the vehicle's own clock."""
         names = [name for name, period in self._every.items() if self._is_due(name, period, vehicle.uptime)]
-        if vehicle.mode != self._mode:  # a change is said at once
+        if vehicle.mode != self._mode:  # a change is sent at once
             names, self._mode = ["HEARTBEAT", *names], vehicle.mode
         words = [*((WARNING, text) for text in self._texts), *vehicle.words]
         texts = [message for severity, text in words for message in self._chunks(severity, text.encode())]
@@ -103,7 +103,7 @@ class Reporter:
 
 
 def parameter_value(vehicle: Vehicle, name: str) -> Message:
-    """Return the message that tells a parameter."""
+    """Return the message with a parameter's value."""
     names, value = list(vehicle.parameters), vehicle.parameters[name]
     whole = vehicle.kind.profile.dialect.typed and name in WHOLE
     return say(
@@ -130,7 +130,7 @@ def _heartbeat(vehicle: Vehicle) -> Message:
 
 
 def _is_active(vehicle: Vehicle) -> bool:
-    """Tell whether it calls itself active: PX4 does as soon as it is armed (mavlink/streams/HEARTBEAT.hpp)."""
+    """Return whether its HEARTBEAT says active: PX4's as soon as it is armed (mavlink/streams/HEARTBEAT.hpp)."""
     return vehicle.armed if vehicle.kind.profile.dialect.lands_by_state else vehicle.flies
 
 
@@ -171,7 +171,7 @@ def _second_gps(vehicle: Vehicle) -> Message:
 
 
 def _receiver(vehicle: Vehicle, *, fix: bool) -> dict[str, Any]:
-    """Return what a receiver tells."""
+    """Return the fields of a receiver's message."""
     return {
         "time_usec": int(vehicle.uptime * 1e6),
         "fix_type": 6 if fix else int(vehicle.uptime > 6),
@@ -187,7 +187,7 @@ def _receiver(vehicle: Vehicle, *, fix: bool) -> dict[str, Any]:
 
 
 def _estimate(vehicle: Vehicle) -> int:
-    """Return what its filter says of its estimates: all good, or only of its attitude, without a position."""
+    """Return the flags of its filter: all estimates good, or only its attitude, without a position."""
     return GOOD if vehicle.has_fix else NO_POSITION
 
 
@@ -220,7 +220,7 @@ def _position(vehicle: Vehicle) -> Message:
     return say(
         "GLOBAL_POSITION_INT",
         time_boot_ms=_milliseconds(vehicle),
-        lat=_e7(where.latitude) if fix else 2_900,  # as the recorded vehicle said before its fix
+        lat=_e7(where.latitude) if fix else 2_900,  # as the recorded vehicle before its fix
         lon=_e7(where.longitude) if fix else 80,
         alt=_altitude(vehicle) if fix else 100,
         relative_alt=round(where.height * 1000),

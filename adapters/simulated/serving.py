@@ -21,13 +21,13 @@ from adapters.simulated.vehicle import Vehicle
 from adapters.transport import Port, Remote, open_port
 
 STEP: Final = 0.1
-"""Seconds between two looks at the clock."""
+"""Seconds between two steps of the simulation."""
 
 
 class Simulator:
     """Vehicles on one address, such as `udpout:127.0.0.1:14550`.
 
-    Time is the event loop's; `epoch` is what it is called in seconds since 1970. `disturbance` befalls every packet,
+    Time is the event loop's plus `epoch`, the loop's time 0 in seconds since 1970. `disturbance` affects every packet,
     in both directions.
     """
 
@@ -51,7 +51,7 @@ class Simulator:
 
     @property
     def local(self) -> Remote | None:
-        """Where it can be reached, once it runs."""
+        """Its address, once it runs."""
         return self._port.local if self._port else None
 
     def now(self) -> float:

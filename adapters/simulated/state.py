@@ -1,4 +1,4 @@
-"""The state of a simulated vehicle, and how it moves towards a target."""
+"""The state of a simulated vehicle, and its motion towards a target."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ INFO: Final = 6
 """MAV_SEVERITY_CRITICAL, _WARNING, _NOTICE and _INFO."""
 
 SAG: Final = 1.8
-"""Volts that it loses over the second half of its charge; that alone is not low yet."""
+"""Volts that it loses over the second half of its charge; that alone does not count as low."""
 
 NO_FENCE: Final = Fence(0)
 STOPS_BEFORE: Final = 4.0
-"""Metres before its circle fence at which what drives stops, in silence."""
+"""Metres before its circle fence at which a ground vehicle stops, without a message."""
 
 PARAMETERS: Final = {
     "WP_RADIUS": WAYPOINT_RADIUS,
@@ -61,7 +61,7 @@ OF_KINDS: Final = {
     TakeOff.COMMAND: ALTITUDES | {"FENCE_TYPE": 7.0},
     TakeOff.NONE: {"FENCE_TYPE": 6.0},
 }
-"""What ArduPilot 4.6 has by default, but for the radius of a plane's circle, which its simulator sets."""
+"""ArduPilot 4.6's defaults, except for the radius of a plane's circle, which its simulator sets."""
 
 
 OF_PX4: Final = {
@@ -75,11 +75,11 @@ OF_PX4: Final = {
     "NAV_LOITER_RAD": 80.0,
     "RTL_LOITER_RAD": 80.0,
 }
-"""What PX4 has by default, but for a plane's MIS_TKO_LAND_REQ of 2, with which it takes no path."""
+"""PX4's defaults, except for a plane's MIS_TKO_LAND_REQ of 2, with which it takes no path."""
 
 
 class Kind(Enum):
-    """A kind of vehicle: MAV_TYPE, profile, limits, radius around a waypoint, how it asks for mission items."""
+    """A kind of vehicle: MAV_TYPE, profile, limits, radius around a waypoint, its request for mission items."""
 
     PLANE = (1, PLANE, bodies.PLANE, WAYPOINT_RADIUS, "MISSION_REQUEST")
     COPTER = (2, COPTER, bodies.COPTER, 2.0, "MISSION_REQUEST_INT")
@@ -90,12 +90,12 @@ class Kind(Enum):
 
     @property
     def profile(self) -> Profile:
-        """Its modes, and how it takes off."""
+        """Its modes, and its way of taking off."""
         return self.value[1]
 
     @property
     def limits(self) -> Limits:
-        """What it can do."""
+        """The limits of its motion."""
         return self.value[2]
 
     @property
@@ -114,31 +114,31 @@ class State:
     """The state of a simulated vehicle.
 
     Attributes:
-        kind: What it is.
+        kind: Its kind.
         home: Degrees, metres above sea level.
         system: Its MAVLink system id.
-        speedup: How much faster than ours its clock says that time passes.
+        speedup: The pace of its clock relative to ours.
         enforce: Whether it obeys only the station that has the authority (SYSID_ENFORCE).
         accept_unsigned: Whether unsigned packets are obeyed although it has a key, as on ArduPilot's first link.
         fixed: Whether its receiver has satellites.
         second: Whether its second receiver has satellites; None if it has no second one.
-        fences: Which of its fences are on.
-        version: Of its firmware: before 4.6 all fences were switched at once.
-        slowed: What part of its kind's speed it makes over the ground, as against a head wind.
+        fences: The fences that are on.
+        version: The version of its firmware: before 4.6 all fences were switched at once.
+        slowed: The fraction of its kind's speed that it makes over the ground, as against a head wind.
         wind: Metres a second to the north and to the east: it carries a plane out of its circle.
         serial: Its autopilot's serial number: at most 18 bytes.
-        fault: Why it cannot be armed, beside that it has only just booted; it says so every 30 s.
-        complained: When it last said so, in seconds since it booted.
-        voltage: Its battery's when it is full; when it is low for a while, the fail-safe acts once.
-        charge: How much of its battery is left, from 1 to 0.
-        low: Since when it is low.
+        fault: The reason why it cannot be armed, beside a recent boot; it reports it every 30 s.
+        complained: The time of that report, in seconds since it booted.
+        voltage: The voltage of its full battery; when it is low for a while, the fail-safe acts once.
+        charge: The remaining charge of its battery, from 1 to 0.
+        low: The start of its low voltage.
         failed_safe: Whether the fail-safe has acted since it booted.
-        words: What it has to say, with its severity.
+        words: Its texts to send, with their severities.
         ground: The altitude of the ground, in metres above sea level: its first home's.
-        told: The item of its mission that it has said it begins.
-        breached: Whether it was outside a fence when it last looked.
-        refuge: Where it returns to, since it does.
-        lands: Whether it has looked for a landing sequence since it returns.
+        told: The mission item whose start it has reported.
+        breached: Whether it was outside a fence at the last check.
+        refuge: Its point of return, while it returns.
+        lands: Whether it has looked for a landing sequence during this return.
     """
 
     kind: Kind
@@ -199,7 +199,7 @@ class State:
 
     @property
     def speed(self) -> float:
-        """The speed over the ground that it flies at, in m/s."""
+        """Its speed over the ground, in m/s."""
         return self.kind.limits.speed * self.slowed
 
     @property
@@ -209,19 +209,19 @@ class State:
 
     @property
     def fence_action(self) -> FenceAction | None:
-        """What it does at its fences, which need no switch; None where they are switched."""
+        """Its action at fences that need no switch; None if they are switched."""
         action = self.parameters.get(self.kind.profile.dialect.fence_action)
         return None if action is None else FenceAction(int(action))
 
     @property
     def zones(self) -> tuple[Zone, ...]:
-        """The zones of the fence on board that make sense."""
+        """The valid zones of the fence on board."""
         found = zones(self.store.items.get(MissionType.FENCE, ()))
         return tuple(zone for zone in found if zone.shape is not None and (zone.within or zone.outside))
 
     @property
     def fence(self) -> Geometry | None:
-        """The first zone that it stays in, if there is one in force."""
+        """The first inclusion zone in force, if there is one."""
         within = (zone.shape for zone in self.zones if zone.within)
         return next(within, None) if self.keeps_zones else None
 
@@ -233,18 +233,18 @@ class State:
 
     @property
     def configured(self) -> Fence:
-        """Which fences it would keep within if they were on."""
+        """The fences that it would keep within if they were on."""
         configured = Fence(int(self.parameters.get("FENCE_TYPE", 0)))
         return configured if self.zones else configured & ~Fence.POLYGON
 
     def switch_fences(self, fences: Fence, *, on: bool) -> None:
-        """Switch the fences on, or off, that it is configured to have."""
+        """Switch its configured fences among these on or off."""
         meant = fences & Fence(int(self.parameters["FENCE_TYPE"]))
         self.fences = self.fences | meant if on else self.fences & ~meant
 
     @property
     def circle(self) -> float:
-        """The radius at which it circles where it is told none."""
+        """The radius of its circle, unless a target has one."""
         profile = self.kind.profile
         return abs(self.parameters[profile.dialect.circle]) if self.kind.limits.must_move else profile.circle
 
@@ -255,18 +255,18 @@ class State:
 
     @property
     def volts(self) -> float:
-        """Its battery's voltage now."""
+        """Its battery's present voltage."""
         return self.voltage - SAG * max(0.0, 1.0 - 2.0 * self.charge)
 
     def arm(self, *, armed: bool) -> None:
-        """Arm or disarm it, and say so."""
+        """Arm or disarm it, with a text."""
         if armed != self.armed:
             self.words.append((INFO, f"Throttle {'armed' if armed else 'disarmed'}"))
         self.armed = armed
 
     @property
     def flies(self) -> bool:
-        """Whether it is off the ground; for what does not fly, whether it is armed."""
+        """Whether it is off the ground; for a ground vehicle, whether it is armed."""
         above_ground = self.home[2] + self.body.height - self.ground
         return self.armed and (self.kind.profile.takeoff is TakeOff.NONE or above_ground > 1.0)
 
@@ -277,12 +277,12 @@ class State:
 
     @property
     def has_fix(self) -> bool:
-        """Whether it knows where it is."""
+        """Whether it has a position."""
         return (self.fixed or bool(self.second)) and self.uptime >= FIX_AFTER
 
     @property
     def tilt(self) -> tuple[float, float]:
-        """Roll and pitch in degrees: a plane banks as its turn takes it, the others stay level."""
+        """Roll and pitch in degrees: a plane banks for its turn, the others stay level."""
         body = self.body
         if not self.kind.limits.must_move or body.speed < 1.0:
             return 0.0, 0.0
@@ -295,7 +295,7 @@ class State:
         return self.uptime >= UP_AFTER
 
     def set_home(self, latitude: float, longitude: float, altitude: float) -> None:
-        """Move its home; it stays where it is, and so does its target."""
+        """Move its home; the vehicle and its target stay in place."""
         rise = altitude - self.home[2]
         self.home = (latitude, longitude, altitude)
         self.body = replace(self.body, height=self.body.height - rise)
@@ -306,12 +306,12 @@ class State:
         return height - self.home[2] if frame in (Frame.SEA_LEVEL, Frame.SEA_LEVEL_INT) else height
 
     def stay(self) -> None:
-        """Hold where it is."""
+        """Hold its position."""
         self.mode = self.kind.profile.hold
         self.target = Target(self.body.latitude, self.body.longitude, self.body.height, self.circle)
 
     def take_off(self, height: float, seconds: float) -> None:
-        """Climb where it is, once it is fast enough."""
+        """Climb at its position, once it is fast enough."""
         limits = self.kind.limits
         speed = self.speed if limits.must_move else 0.0
         rising = height if not limits.must_move or self.body.speed > 0.6 * speed else self.body.height

@@ -1,8 +1,8 @@
-"""The vehicle's side of mission upload and download, as ArduPilot does it, and PX4 in a manner of its own.
+"""The vehicle's side of mission upload and download, as in ArduPilot, with PX4's differences.
 
-ArduPilot requests item after item, again after a second, and gives up after eight. It answers an item that it did not
-request with INVALID_SEQUENCE, and overwrites item 0 by home. It serves one ground station at a time: others that upload
-meanwhile, and all that download, get DENIED. A mission is overwritten item by item as they come, a fence at the end.
+ArduPilot requests item after item, repeats a request after a second, and gives up after eight. It answers an
+unrequested item with INVALID_SEQUENCE, and overwrites item 0 by home. It serves one ground station at a time: other
+uploads meanwhile, and all downloads, get DENIED. A mission is overwritten item by item on arrival, a fence at the end.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from adapters.mavlink.survey import ALL_KINDS
 
 MAX_ITEMS: Final = 700
 FENCE_ITEMS: Final = 84
-"""How many items of a fence ArduPilot's storage holds."""
+"""The capacity of ArduPilot's storage, in items of a fence."""
 
 VERTICES: Final = 255
 """The most corners of one polygon."""
@@ -30,15 +30,15 @@ HIGHEST: Final = 1e5
 
 @dataclass(frozen=True, slots=True)
 class Manner:
-    """What makes of autopilot do differently in an upload.
+    """The differences between makes of autopilot in an upload.
 
     Attributes:
         ask_again: Seconds before it requests an item again.
         give_up: Seconds of silence after which it cancels.
-        busy: Its answer to others that upload meanwhile.
-        out_of_turn: Its answer to an item that it did not request, None if it ignores it.
+        busy: Its answer to other uploads meanwhile.
+        out_of_turn: Its answer to an unrequested item, None if it ignores it.
         home_is_item: Whether it overwrites item 0 of a mission by home.
-        in_place: Whether the items of a mission are overwritten as they come.
+        in_place: Whether the items of a mission are overwritten on arrival.
     """
 
     ask_again: float
@@ -53,7 +53,7 @@ ARDUPILOT_MANNER: Final = Manner(
     1.0, 8.0, MissionResult.DENIED, MissionResult.INVALID_SEQUENCE, home_is_item=True, in_place=True
 )
 PX4_MANNER: Final = Manner(0.25, 5.0, MissionResult.ERROR, None, home_is_item=False, in_place=False)
-"""As mavlink/mavlink_mission.cpp and mavlink_mission.h have it."""
+"""After mavlink/mavlink_mission.cpp and mavlink_mission.h."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,17 +71,17 @@ class Receiving:
 
 @dataclass(slots=True)
 class Store:
-    """What is on board, by kind, and the upload under way.
+    """The items on board, by kind, and the upload in progress.
 
     Attributes:
-        manner: What its make of autopilot does differently.
-        request: How it asks for items: planes with MISSION_REQUEST.
+        manner: The differences of its make of autopilot.
+        request: The name of its request for an item: planes use MISSION_REQUEST.
         home: Its home in 1e-7 degrees and metres above sea level.
-        items: What is on board, each as it was last complete.
-        torn: What an upload of a mission that was given up has left of both.
-        receiving: The upload under way.
-        most: How many items of each kind it holds.
-        refuses: The result with which it refuses what is whole, if it does: a person's wish in a test.
+        items: The items on board, of the last complete upload of each kind.
+        torn: The mixed mission after an upload that was given up.
+        receiving: The upload in progress.
+        most: The most items of each kind.
+        refuses: A result with which it refuses complete uploads, for tests.
         flown: Whether its mission is being flown, so that it can't be cleared.
     """
 
@@ -145,7 +145,7 @@ class Store:
 
     @property
     def mission(self) -> Items:
-        """The mission as it is now: of ArduPilot's, what has come of the next one has overwritten its beginning."""
+        """The present mission; in ArduPilot the received items of the next mission have overwritten its beginning."""
         going, whole = self.receiving, self.items.get(MissionType.MISSION, ())
         items = whole if self.torn is None else self.torn
         if going is None or going.kind is not MissionType.MISSION or not self.manner.in_place:
@@ -153,7 +153,7 @@ class Store:
         return (*going.items, *items[len(going.items) : going.count])
 
     def abandon(self) -> None:
-        """Give up an upload; what was overwritten stays so."""
+        """Give up an upload; overwritten items stay overwritten."""
         if self.receiving is not None and self.receiving.kind is MissionType.MISSION and self.manner.in_place:
             self.torn = self.mission
         self.receiving = None
@@ -212,14 +212,14 @@ class Store:
 
 
 def _wrong(item: Item, kind: MissionType) -> MissionResult | None:
-    """Return how an item is refused, if it is."""
+    """Return the result that rejects an item, or None."""
     if kind is MissionType.FENCE and item.command in POLYGONS and item.parameters[0] > VERTICES:
         return MissionResult.INVALID_PARAM1
     return None if _sound(item) else MissionResult.INVALID
 
 
 def _sound(item: Item) -> bool:
-    """Whether an item is on the earth, and its numbers are numbers."""
+    """Return whether an item is on the earth, and its numbers are numbers."""
     on_earth = abs(item.x) <= 90 * 10**7 and abs(item.y) <= 180 * 10**7
     return on_earth and abs(item.z) <= HIGHEST and all(abs(value) <= HIGHEST for value in item.parameters)
 

@@ -1,6 +1,6 @@
 """A simulated vehicle: its behaviour in each mode, and its start-up.
 
-Commands and messages are `protocol`'s and `reporting`'s business, packets `serving`'s.
+`protocol` and `reporting` handle commands and messages, `serving` handles packets.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ from adapters.simulated.body import Body, Target, moved
 from adapters.simulated.state import CRITICAL, NO_FENCE, WARNING, State
 
 READY_AFTER: Final = 19.0
-"""Seconds after boot at which it has a fix, and could be armed; before, it says that it is near (0, 0)."""
+"""Seconds after boot at which it has a fix, and could be armed; before, it reports a position near (0, 0)."""
 
 COMPLAINS_EVERY: Final = 30.0
-"""Seconds between two texts of why it cannot be armed."""
+"""Seconds between two texts with the reason why it cannot be armed."""
 
 ENDURANCE: Final = 7_200.0
 """Seconds for which a full battery lasts."""
 
 LOW_BATTERY_RETURNS: Final = 3.0
-"""PX4's COM_LOW_BAT_ACT with which it returns at a critical charge."""
+"""PX4's COM_LOW_BAT_ACT for a return at a critical charge."""
 
 
 @dataclass(slots=True)
@@ -55,7 +55,7 @@ class Vehicle(State):
     # --- moving -----------------------------------------------------------------------------------
 
     def move(self, now: float) -> None:
-        """Move on to a time."""
+        """Move until a time."""
         seconds, self.time = now - self.time, now
         profile = self.kind.profile
         self.store.flown = self.armed and self.mode == profile.auto
@@ -80,14 +80,14 @@ class Vehicle(State):
             self._idle(seconds)
 
     def _complain(self) -> None:
-        """Say why it cannot be armed, every 30 s."""
+        """Report the reason why it cannot be armed, every 30 s."""
         due = self.uptime >= READY_AFTER and self.uptime - self.complained >= COMPLAINS_EVERY
         if self.fault and due and not self.armed:
             self.complained = self.uptime
             self.words.append((CRITICAL, f"PreArm: {self.fault}"))
 
     def _return(self, seconds: float) -> None:
-        """Go to the nearest rally point or home, or by the landing sequence, as it is configured to."""
+        """Go to the nearest rally point or home, or by the landing sequence, according to its parameters."""
         if self.refuge is None:
             self.refuge, self.lands = missions.refuge(self), False
         if not self.lands and missions.may_land(self):
@@ -104,11 +104,11 @@ class Vehicle(State):
             self.stay()
 
     def holds(self, latitude: float, longitude: float, height: float) -> bool:
-        """Tell whether somewhere is inside all fences that are on."""
+        """Return whether a position is inside all fences that are on."""
         return fences.holds(self, latitude, longitude, height)
 
     def _watch_battery(self) -> None:
-        """Return once the battery is low, if the parameters say so; who sends it on after that has overruled it."""
+        """Return once the battery is low, if the parameters demand it; a later command overrules the return."""
         if self.kind.profile.dialect.typed:
             self._watch_charge()
             return
@@ -124,7 +124,7 @@ class Vehicle(State):
             self.mode = self.kind.profile.home
 
     def _watch_charge(self) -> None:
-        """Return once the charge is critical, if COM_LOW_BAT_ACT says so."""
+        """Return once the charge is critical, if COM_LOW_BAT_ACT demands it."""
         if self.charge > self.parameters["BAT_CRIT_THR"] or self.failed_safe:
             return
         self.failed_safe = True
@@ -133,7 +133,7 @@ class Vehicle(State):
             self.mode = self.kind.profile.home
 
     def _idle(self, seconds: float) -> None:
-        """Circle where it is, if it must move; else stop, at the height that it was told to take off to."""
+        """Circle at its position, if it must move; else stop, at its present height."""
         limits = self.kind.limits
         if limits.must_move and self.flies:
             circling = self.body.course + limits.turn * seconds * 0.5

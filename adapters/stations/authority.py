@@ -1,9 +1,12 @@
 """The authority over a vehicle, merged from several links that read it at different times.
 
-No message of a vehicle says since when it obeys a station. A vehicle may answer only that station, and the network
-between stations may be faster than a link. So a change counts at once where it was commanded, and where our own link is
-lost. Any other *change* that a link shows counts once it has lasted for another reading, if no command came in between.
-While our own link shows that a vehicle obeys us, no other station's word on it counts.
+No message of a vehicle has the time at which its authority changed. A vehicle may answer only the station that it
+obeys, and the network between stations may be faster than a link. So a change counts at once at the station that
+commanded it, and when our own link is lost. Any other *change* on a link counts once it has lasted for another reading,
+if no command came in between.
+
+While our own link shows that a vehicle obeys us, no other station's entry on it counts.
+
 A link that never showed an authority has not lost it: after a hand-over to us it has as long to read it.
 """
 
@@ -24,18 +27,18 @@ LASTING: Final = 12.0
 A_MOMENT: Final = 1e-6
 
 Channels = tuple[tuple[str, ...], float]
-"""The channels that a vehicle is on, and since when."""
+"""The channels of a vehicle, and the time of their last change."""
 
 
 @dataclass(slots=True)
 class Authority:
-    """The channels of the vehicles on one station's links, as far as the links are believed.
+    """The believed channels of the vehicles on one station's links.
 
     Attributes:
         station: The station.
         handing: The hand-over that each vehicle was commanded, and has not shown yet.
         shown: The last channels that each link has shown.
-        doubts: For each vehicle with contradicting channels: when its link showed them, and since when the others hold.
+        doubts: For each vehicle with contradicting channels: the time of its link's channels, and that of the others.
     """
 
     station: str
@@ -66,15 +69,15 @@ class Authority:
         return believed
 
     def keeps(self, entity: str) -> bool:
-        """Tell whether our own link shows that a vehicle obeys us, and we have not handed it over.
+        """Return whether our own link shows that a vehicle obeys us, and we have not handed it over.
 
-        Then nobody else's word on it counts: another station that has taken it shows on our link, too.
+        Then no other station's entry on it counts: a take-over by another station shows on our link, too.
         """
         ours = f"{CONTROL_AUTHORITY}:{self.station}"
         return ours in self.shown.get(entity, ()) and entity not in self.handing
 
     def lags(self, entity: str, known: Said | None) -> bool:
-        """Tell whether a vehicle obeys us and our link has not read it yet: the link would refuse commands."""
+        """Return whether a vehicle obeys us and our link has not read it yet: the link would refuse commands."""
         ours = f"{CONTROL_AUTHORITY}:{self.station}"
         shown = [channel for channel in self.shown.get(entity, ()) if is_authority(channel)]
         return (
@@ -94,10 +97,10 @@ class Authority:
         return lost or listened - since >= LASTING
 
     def _doubts(self, entity: str, since: float) -> bool:
-        """Tell whether a vehicle's channels, known since a time, are in doubt."""
+        """Return whether a vehicle's channels, known since a time, are in doubt."""
         return entity in self.doubts and self.doubts[entity][1] == since
 
 
 def is_silent(shown: tuple[str, ...]) -> bool:
-    """Tell whether a link shows no authority: it has lost the vehicle, or the vehicle has never answered it."""
+    """Return whether a link shows no authority: it has lost the vehicle, or the vehicle has never answered it."""
     return not any(map(is_authority, shown))

@@ -18,7 +18,7 @@ from physical import PhysicalError
 from physical.messages import install_extra
 
 MOST_WAITING: Final = 1_000
-"""How many messages may wait; more are dropped, and requested again."""
+"""The most waiting messages; more are dropped, and requested again."""
 
 Hear = Callable[[str, bytes], None]
 """Takes a station and its message."""
@@ -54,7 +54,7 @@ class Bus:
         self._serve()
 
     def put(self, said: bytes) -> None:
-        """Send something to all reachable stations."""
+        """Send a message to all reachable stations."""
         self._publisher.put(said)
 
     async def ask(self, station: str, question: bytes, patience: float) -> bytes:
@@ -132,7 +132,7 @@ def _set(future: asyncio.Future[Any], value: bytes | None) -> None:
 
 
 def key_of(topic: str, station: str, what: str) -> str:
-    """Return the key under which a station publishes or answers something."""
+    """Return the key for a station's messages or answers."""
     return f"bigactors/{topic}/{station}/{what}"
 
 

@@ -22,17 +22,17 @@ MOST_BYTES: Final = 256 * 1024
 MOST_CHANNELS: Final = 100
 MOST_WORDS: Final = 2_000
 LARGEST: Final = 10**15
-"""No number, index or time is larger."""
+"""The largest number, index or time."""
 
 
 @dataclass(frozen=True, slots=True)
 class Said:
-    """An observation of an entity: a property, or that it is gone; its time is set.
+    """An observation of an entity: a property, or its end; its time is set.
 
     Attributes:
-        published: The property, perhaps with a time to live, or that the entity is gone.
-        since: Since when the entity is seen on these channels.
-        owned: Whether it came over the entity's own link: for a vehicle, nothing else counts.
+        published: The property, perhaps with a time to live, or the end of the entity.
+        since: Time of the last change of the entity's channels.
+        owned: Whether it came over the entity's own link: for a vehicle, no other source counts.
     """
 
     published: Published
@@ -51,19 +51,19 @@ class Said:
 
     @property
     def time(self) -> float:
-        """When it was observed."""
+        """The time of the observation."""
         said = self.published.property if isinstance(self.published, Aged) else self.published
         assert said.time is not None
         return said.time
 
     @property
     def clock(self) -> int | None:
-        """The same time by the entity's own clock, if its link tells."""
+        """The same time by the entity's own clock, if its link reports it."""
         return self.published.clock if self.owned and isinstance(self.published, Aged) else None
 
     @property
     def until(self) -> float:
-        """Until when it may stay in P."""
+        """The end of its validity in P."""
         return self.time + self.published.time_to_live if isinstance(self.published, Aged) else math.inf
 
 
@@ -83,7 +83,7 @@ class Sent:
 
 @dataclass(frozen=True, slots=True)
 class Hosted:
-    """A bigActor that runs at the station is hosted at a node."""
+    """The host of a bigActor that runs at the station."""
 
     agent: str
     host: str
@@ -132,7 +132,7 @@ class Posted:
         index: Its index among the parcels to that station.
         parcel: Its content, as plain data.
         knows: The last numbers of other stations that the sender had received: its content may depend on them.
-        time: When it left; None in logs that do not say.
+        time: Time of its departure; None in logs without it.
     """
 
     to: str
@@ -143,7 +143,7 @@ class Posted:
 
     @property
     def key(self) -> tuple[str, ...]:
-        """A parcel replaces nothing: it stays until it is taken."""
+        """A parcel replaces no entry: it stays until it is taken."""
         return ("posted", self.to, str(self.index))
 
 
@@ -165,7 +165,7 @@ Content = Said | Sent | Hosted | Believed | Broke | Posted | Took
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One entry of a station's log. A station never gives a number twice, and later ones are larger."""
+    """One entry of a station's log. A station never uses a number twice, and its numbers grow."""
 
     station: str
     number: int
@@ -224,7 +224,7 @@ def entry_of(station: str, data: Any) -> Entry:
     """Read an entry of a station.
 
     Raises:
-        ValueError: The data are not an entry; the message says why.
+        ValueError: The data are not an entry, for the reason in the message.
     """
     if not isinstance(data, dict):
         raise ValueError(f"{data!r:.60} is no entry")

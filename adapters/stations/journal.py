@@ -25,31 +25,31 @@ BEGINNING: Final = 2
 """The required lines of a log: its owner, and the numbers used so far."""
 
 SPARE: Final = 10_000
-"""How many replaced entries the file may hold before it is rewritten."""
+"""The most replaced entries in the file before it is rewritten."""
 
 
 PASSED: Final = 1_000
-"""How many numbers are skipped after a dropped last entry, since it may have been sent."""
+"""Numbers skipped after a dropped last entry, since it may have been sent."""
 
 
 class JournalError(ValueError):
-    """A file that is not this station's log of this mission; the message says why."""
+    """A file that is not this station's log of this mission, for the reason in the message."""
 
 
 class ForeignLog(JournalError):
-    """A log of another station or mission, or none at all."""
+    """A log of another station or mission, or no log at all."""
 
 
 class Journal:
     """One station's valid entries with their numbers, in a file that is appended to, and compacted now and then.
 
-    A new log numbers from the time in milliseconds, above every number that a lost one may have used. Likewise after a
-    torn or damaged last entry, which is dropped.
+    A new log numbers from the time in milliseconds, above every number that a lost log may have used. So does a log
+    after a torn or damaged last entry, which is dropped.
 
-    Each line begins with a checksum of itself and of all before it.
+    Each line begins with a checksum of itself and of all earlier lines.
 
     Attributes:
-        dropped: What was wrong with the last line, if it was dropped.
+        dropped: The fault of the last line, if it was dropped.
     """
 
     def __init__(self, path: Path, station: str, digest: str) -> None:
@@ -74,7 +74,7 @@ class Journal:
             self._file.close()
             raise
 
-    # --- what it knows
+    # --- queries
 
     def after(self, number: int, most: int) -> tuple[list[Entry], int]:
         """Return entries after a number, the oldest first, and the number up to which they are complete."""
@@ -84,7 +84,7 @@ class Journal:
         return found[:most], found[most - 1].number
 
     def word(self, key: tuple[str, ...]) -> Content | None:
-        """Return the valid entry on something."""
+        """Return the valid entry with a key."""
         entry = self._entries.get(key)
         return None if entry is None else entry.content
 
@@ -93,7 +93,7 @@ class Journal:
         yield from self._entries.values()
 
     def sent(self, to: str) -> int:
-        """Return how many parcels were posted to a station."""
+        """Return the number of parcels posted to a station."""
         return self._sent.get(to, 0)
 
     def took(self, of: str) -> int:
@@ -105,10 +105,10 @@ class Journal:
         """Count the parcels that a station has not taken yet."""
         return sum(1 for key in self._entries if key[:2] == ("posted", to))
 
-    # --- what it is told
+    # --- changes
 
     def add(self, contents: list[Content]) -> list[Entry]:
-        """Number an entry, and write it; the entries that it replaces are no longer valid."""
+        """Number entries, and write them; the entries that they replace are no longer valid."""
         entries = []
         for content in contents:
             self.last += 1
@@ -121,7 +121,7 @@ class Journal:
         return entries
 
     def taken(self, to: str, index: int) -> None:
-        """Forget the parcels that a station has taken."""
+        """Remove the parcels that a station has taken."""
         for key, entry in list(self._entries.items()):
             if isinstance(entry.content, Posted) and entry.content.to == to and entry.content.index <= index:
                 del self._entries[key]
@@ -144,7 +144,7 @@ class Journal:
             self._sent[entry.content.to] = max(self.sent(entry.content.to), entry.content.index)
 
     def _read(self) -> bool:
-        """Read the file up to its end, or to a torn or damaged last line; tell whether it has checksums."""
+        """Read the file up to its end, or to a torn or damaged last line; return whether it has checksums."""
         self._file.seek(0)
         size = os.fstat(self._file.fileno()).st_size
         is_summed = not self._file.read(1).startswith(b"{")

@@ -2,8 +2,8 @@
 
 Each station's newest entry on an entity (its word) is a register. Registers are joined by `newer`, which is
 commutative, associative and idempotent, so the same entries lead to the same registers in any order. The state of an
-entity depends only on its registers and the time: the newest time stamp wins, ties are decided by station and number.
-Clocks decide only which of two stations is believed.
+entity depends only on its registers and the time: the newest time stamp wins, and ties are decided by station and
+number. Clocks decide only between the words of two stations.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ ABREAST: Final = 5.0
 """Seconds within which words of several links are compared by the vehicle's clock; later it may have rebooted."""
 
 MOST_ENTITIES: Final = 20_000
-"""How many entities one station may report."""
+"""The most entities that one station may report."""
 
 Words = Mapping[str, Entry]
 """The newest word of each station on one entity."""
@@ -36,7 +36,7 @@ def _numbered(entry: Entry) -> tuple[int, str]:
     return (
         entry.number,
         repr(entry.content),
-    )  # numbers are unique; two of a faulty station are ordered all the same
+    )  # numbers are unique; a faulty station's duplicates are ordered all the same
 
 
 class Merge:
@@ -60,7 +60,7 @@ class Merge:
         """Join an entry to its register; return the entity if that made a difference.
 
         Raises:
-            ValueError: The station speaks of too many entities.
+            ValueError: The station reports too many entities.
         """
         match entry.content:
             case Said() as said:
@@ -103,7 +103,7 @@ class Merge:
         return holding(self.words.get(entity, {}), now)
 
     def own(self, entity: str, station: str, now: float) -> Said | None:
-        """Return the word of one station on an entity, None if it has none that counts still."""
+        """Return the word of one station on an entity, None if it has none that counts."""
         entry = self.words.get(entity, {}).get(station)
         return None if entry is None or not _counts(entry.content, now) else holding({station: entry}, now)
 
@@ -121,8 +121,8 @@ def holding(words: Words, now: float) -> Said | None:
     """Return the state of an entity at a time: the newest word on it, with the newest change of its channels.
 
     Two stations may hear a vehicle before one of them has read its new authority. So the newest *change* of channels
-    counts, among the words that were not outdated at the time of the newest. Among positions the newest by the
-    vehicle's own clock counts: a slow link stamps positions late, and would put the vehicle where it no longer is.
+    counts, among the words that were valid at the time of the newest. Among positions the newest by the vehicle's own
+    clock counts: a slow link stamps positions late, and would put the vehicle at an old position.
     """
     found = [entry for entry in words.values() if _counts(entry.content, now)]
     if not found:
@@ -130,7 +130,7 @@ def holding(words: Words, now: float) -> Said | None:
     newest = _newest(found, now)
     if isinstance(newest.published, Gone):
         return newest
-    if newest.until <= now:  # a station that receives it late gets the same world as one that saw it expire
+    if newest.until <= now:  # a late receiver gets the same world as a station that saw it expire
         return Said(Gone(newest.entity, newest.time, ""), newest.since, newest.owned)
     told = [
         entry
@@ -138,7 +138,7 @@ def holding(words: Words, now: float) -> Said | None:
         if not isinstance(_said(entry).published, Gone) and _said(entry).until >= newest.time
     ]
     latest = _said(max(told, key=_since)) if told else newest
-    if latest is newest:  # so it is where one station alone hears it
+    if latest is newest:  # always, if one station alone hears it
         return newest
     return replace(newest, published=on(newest.published, channels_of(latest.published)), since=latest.since)
 

@@ -51,7 +51,7 @@ def fitting(entries: Sequence[Entry], upto: int) -> tuple[list[str], int]:
 
 
 def written(head: Message, entries: Sequence[str]) -> bytes:
-    """Write a message from entries as texts."""
+    """Return a message with entries as texts."""
     said = {
         "mission": head.mission,
         "time": head.time,

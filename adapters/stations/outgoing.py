@@ -1,4 +1,4 @@
-"""What a station tells the others of a turn: parcels left and entered, flights, and the hosts of agents."""
+"""A turn's entries for the other stations: parcels left and entered, flights, and the hosts of agents."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from semantics.state.parcel_serialization import parcel_json
 from semantics.state.partition import Passage, is_here
 
 A_MOMENT = 1e-6
-"""The least number of seconds between the time stamps of two entries on an agent, whatever clocks say."""
+"""The least seconds between the time stamps of two entries on an agent, for any clocks."""
 
 
 def told(turn: Turn, vehicles: Collection[str], known: Mapping[str, int]) -> Iterator[Content]:
-    """Yield the entries of a turn: those that others need before a parcel enters come before it.
+    """Yield the entries of a turn; those that others need before a parcel enters come before it.
 
     Args:
         turn: The turn.
@@ -63,7 +63,7 @@ def entered(turn: Turn) -> dict[str, int]:
 
 
 def moved(c: Configuration, merge: Merge, now: float) -> Iterator[Hosted]:
-    """Yield the hosts of agents that run here, where the stations know other ones.
+    """Yield the hosts of agents that run here, if the stations know other ones.
 
     A station with an agent has received all earlier entries on it from the agent's sender, so its entry is the latest.
     """

@@ -38,8 +38,8 @@ class Peer:
 
     Attributes:
         name: Its name in the mission.
-        listen: Where it listens, such as `tcp/0.0.0.0:7447`.
-        connect: Where the others reach it.
+        listen: Its own addresses, such as `tcp/0.0.0.0:7447`.
+        connect: Its addresses for the others.
         hosts: The nodes whose bigActors it runs, beside its own.
     """
 
@@ -51,7 +51,7 @@ class Peer:
 
 @dataclass(frozen=True, slots=True)
 class Tls:
-    """Mutual TLS: who signed the certificates, and which is ours."""
+    """Mutual TLS: the authority that signed the certificates, and our certificate with its key."""
 
     authority: Path
     certificate: Path
@@ -60,7 +60,7 @@ class Tls:
 
 @dataclass(frozen=True, slots=True)
 class Peers:
-    """All stations as one of them sees them.
+    """All stations, from the view of one of them.
 
     Attributes:
         own: This station.
@@ -102,7 +102,7 @@ def read_peers(path: Path, station: str) -> Peers:
 
 
 def _reason(error: Exception) -> str:
-    """Return what a TOML text has wrong."""
+    """Return the fault of a TOML text."""
     match error:
         case tomllib.TOMLDecodeError():
             return str(error)
@@ -114,7 +114,7 @@ def _reason(error: Exception) -> str:
 
 
 def peers_of(data: Mapping[str, Any], station: str, folder: Path) -> Peers:
-    """Return the content of a peers file; files that it names are looked for in its folder."""
+    """Return the content of a peers file; relative file names start in its folder."""
     named = {name: table for name, table in data.items() if name != "tls"}
     if len(named) > MOST_STATIONS:
         raise _mistake(f"it has more than {MOST_STATIONS} stations", "leave out those that share nothing")

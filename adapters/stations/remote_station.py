@@ -1,4 +1,4 @@
-"""What is known of another station: its log so far, its waiting parcels, its clock, its reachability."""
+"""The state of another station: its log so far, its waiting parcels, its clock, its reachability."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from adapters.stations.messages import Message
 from adapters.stations.skew import Skew
 
 SELDOM: Final = 2.0
-"""Seconds between two reports of when a station was heard."""
+"""Seconds between two reports of the time at which a station was last heard."""
 
 
 @dataclass(slots=True)
@@ -25,12 +25,12 @@ class Other:
         last: The last number that it is known to have used.
         parcels: Its parcels for us that have not entered yet, by index.
         delivered: The index up to which the run has received them.
-        skew: How far its clock is ahead.
-        answered: When it answered last.
+        skew: The lead of its clock.
+        answered: Time of its last answer.
         reached: Whether it answers; None if that is not known yet.
         skewed: Whether its clock is off by more than the bound.
-        met: When it answered last, by the run's clock; None if it never did.
-        shown: What the run was last told of its presence.
+        met: Time of its last answer, by the run's clock; None before the first.
+        shown: The last report of its presence to the run.
         awake: Set if it must be asked at once.
     """
 
@@ -47,7 +47,7 @@ class Other:
     awake: asyncio.Event = field(default_factory=asyncio.Event)
 
     def presence(self, station: str, now: float) -> Presence | None:
-        """Return what the run should know of its presence: whether it is reached at once, when it was heard seldom."""
+        """Return a report of its presence: at once if its reachability has changed, else seldom; None if not due."""
         found, before = Presence(station, now, self.reached, self.met), self.shown
         same = before is not None and before.reached == found.reached
         if same and before is not None and (before.heard == found.heard or now - before.time < SELDOM):
@@ -56,7 +56,7 @@ class Other:
         return found
 
     def here(self, time: float) -> float:
-        """Return a time of its clock by the clock here, as far as it is known how far it is ahead."""
+        """Convert a time of its clock to the clock here, as far as its lead is known."""
         best = self.skew.best
         return time if best is None else time - best.ahead
 
@@ -71,8 +71,8 @@ class Other:
     def due(self, others: Mapping[str, Other], took: int) -> Iterator[tuple[int, Posted]]:
         """Yield the parcels that may enter now, in order.
 
-        A parcel depends on what its sender had observed, which comes first as far as it can be reached. So an agent
-        that is told of a hand-over also sees it.
+        A parcel depends on its sender's observations, which come first if they can be fetched. So an agent that is
+        informed of a hand-over also sees it.
         """
         self.delivered = max(self.delivered, took)
         while (parcel := self.parcels.get(self.delivered + 1)) is not None:
@@ -82,7 +82,7 @@ class Other:
             yield self.delivered, parcel
 
     def drop(self, upto: int) -> None:
-        """Forget the parcels that have entered."""
+        """Remove the parcels that have entered."""
         for index in [index for index in self.parcels if index <= upto]:
             del self.parcels[index]
 

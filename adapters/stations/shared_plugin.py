@@ -14,16 +14,16 @@ LOOK: Final = 0.1
 
 
 class Station(Protocol):
-    """What a shared plugin needs of its station."""
+    """The interface of a station to its shared plugins."""
 
     def publish(self, plugin: Plugin, world: World, published: Published) -> None:
         """Take a plugin's publication."""
 
     def commanded(self, command: Command) -> None:
-        """Take note of a command to a plugin."""
+        """Record a command to a plugin."""
 
     def lags(self, entity: str) -> bool:
-        """Tell whether a vehicle obeys us, and our link has not read it yet."""
+        """Return whether a vehicle obeys us, and our link has not read it yet."""
 
 
 class Shared:
@@ -37,7 +37,7 @@ class Shared:
 
     @property
     def name(self) -> str:
-        """What reports call it."""
+        """Its name in reports."""
         return self.plugin.name
 
     def owns(self, entity: str) -> bool:
@@ -45,7 +45,7 @@ class Shared:
         return self.plugin.owns(entity)
 
     async def command(self, command: Command) -> None:
-        """Hand on a command, as soon as the link knows that the vehicle was handed to us."""
+        """Pass on a command, as soon as the link knows that the vehicle was handed to us."""
         self.station.commanded(command)
         if not self.station.lags(command.entity):
             await self.plugin.command(command)

@@ -1,8 +1,8 @@
-"""The station as a plugin: it shares what its own plugins publish, and publishes what the others share.
+"""The station as a plugin: it shares the publications of its own plugins, and publishes those of the others.
 
 Everything that it shares is an entry of its log, appended before it is sent. Entries are sent to all stations at once.
 A station that missed some asks for them, so a lost message only delays them. A parcel stays in the log until the other
-station's log says that it was taken, so it arrives exactly once in spite of crashes and partitions.
+station's log acknowledges it, so it arrives exactly once in spite of crashes and partitions.
 """
 
 from __future__ import annotations
@@ -66,10 +66,10 @@ NAME: Final = "stations"
 """The plugin's name."""
 
 TICK: Final = 0.02
-"""Seconds for which entries are gathered before they are sent; of each entity only the newest is."""
+"""Seconds of gathering entries before they are sent; only the newest of each entity is sent."""
 
 MOVING: Final = frozenset({"migrate", "spawn", "enter"})
-"""The rules by which an agent comes to be hosted somewhere."""
+"""The rules that change the host of an agent."""
 
 POLL: Final = 1.0
 """Seconds between two questions to each station."""
@@ -82,10 +82,10 @@ MOST_SKEW: Final = 1.0
 """Seconds by which clocks may differ before it is reported."""
 
 MOST_STRANGERS: Final = MOST_ENTITIES // 4
-"""How many entities of each plugin that the mission does not name are shared."""
+"""The most shared entities of each plugin that the mission does not name."""
 
 MOST_PARCELS: Final = 10_000
-"""How many parcels of one station may wait here; more are requested later."""
+"""The most waiting parcels of one station; more are requested later."""
 
 
 class Sharing:
@@ -132,10 +132,10 @@ class Sharing:
         self._introduced = False
         self._mute = False
 
-    # --- a plugin
+    # --- as a plugin
 
     def owns(self, entity: str) -> bool:  # noqa: ARG002 - a plugin's interface
-        """Other stations' vehicles take no commands from here."""
+        """Return False: other stations' vehicles take no commands from here."""
         return False
 
     async def command(self, command: Command) -> None:
@@ -167,16 +167,16 @@ class Sharing:
         """Return a plugin that shares its publications with all stations."""
         return Shared(plugin, self)
 
-    # --- looking on
+    # --- as a watcher
 
     def arrived(self, heard: Heard, now: float) -> None:
-        """See an arrival: nothing to do."""
+        """Ignore a publication."""
 
     def reported(self, report: Report, now: float) -> None:
-        """See a plugin's report: nothing to do."""
+        """Ignore a plugin's report."""
 
     def turned(self, turn: Turn, now: float) -> None:
-        """Share what concerns the others; the recording has it already."""
+        """Share a turn's entries for the others; the recording has the turn already."""
         for station, number in entered(turn).items():
             self.others[station].drop(number)
         contents: list[Content] = [*believed(turn, self.merge)]
@@ -188,7 +188,7 @@ class Sharing:
         for entry in self._add(contents):
             self.merge.hear(entry)
 
-    # --- saying
+    # --- sending
 
     def publish(self, plugin: Plugin, world: World, published: Published) -> None:
         """Take a publication of an own plugin: share it, and publish the merged state to our own world."""
@@ -221,7 +221,7 @@ class Sharing:
             world.publish(published)  # it can no longer be shared; our own run sees it
 
     def _has_room(self, plugin: str, entity: str) -> bool:
-        """Tell whether an entity is shared: a flood on one feed leaves room for the others."""
+        """Return whether an entity is shared: a flood on one feed leaves room for the others."""
         told = self._strangers.setdefault(plugin, set())
         if entity in self._named or entity in told:
             return True
@@ -234,17 +234,17 @@ class Sharing:
         return True
 
     def lags(self, entity: str) -> bool:
-        """Tell whether a vehicle obeys us, and our link does not know it yet."""
+        """Return whether a vehicle obeys us, and our link has not read it yet."""
         now = 0.0 if self._world is None else self._world.now()
         return self._authority.lags(entity, self._holds(entity, now))
 
     def commanded(self, command: Command) -> None:
-        """Take note of a hand-over command to one of our vehicles."""
+        """Record a hand-over command to one of our vehicles."""
         if isinstance(command, HandOver):
             self._authority.handing[command.entity] = command
 
     def _add(self, contents: Sequence[Content]) -> list[Entry]:
-        """Share something; if the log can't be written, sharing ends, since unlogged entries must not be sent."""
+        """Share contents as entries; a failure of the log ends sharing, since unlogged entries must not be sent."""
         if not contents or self._mute:
             return []
         try:
@@ -288,7 +288,7 @@ class Sharing:
         texts, upto = fitting(*self._journal.after(after, MOST_ENTRIES))
         return self._message(texts, upto, after)
 
-    # --- hearing
+    # --- receiving
 
     def _hear(self, station: str, said: bytes) -> None:
         """Take sent entries; ask at once for missed ones."""
@@ -380,7 +380,7 @@ class Sharing:
                     self._journal.taken(entry.station, index)
 
     def _pass_on(self, entry: Entry | None) -> None:
-        """Tell the run another station's latest entry on a vehicle that it sent or an agent that it has."""
+        """Report another station's latest entry on a flight, a host or a slot of L to the run."""
         assert self._world is not None
         now = self._world.now()
         match entry:
@@ -408,7 +408,7 @@ class Sharing:
         return True
 
     def _holds(self, entity: str, now: float) -> Said | None:
-        """Return the state of an entity; a vehicle that our own link shows to obey us is as that link has it."""
+        """Return the state of an entity; for a vehicle that obeys us on our own link, that link decides."""
         own = self.merge.own(entity, self._journal.station, now) if self._authority.keeps(entity) else None
         found = self.merge.holds(entity, now)
         if own is None or found is None or isinstance(own.published, Gone):
@@ -423,7 +423,7 @@ class Sharing:
             world.publish(said.published)
 
     def _deliver(self) -> None:
-        """Tell the run of the parcels that may enter."""
+        """Report the parcels that may enter to the run."""
         assert self._world is not None
         for station, other in self.others.items():
             if other.parcels:
@@ -434,7 +434,7 @@ class Sharing:
     # --- links and clocks
 
     async def _watching(self) -> None:
-        """Let entries count whose time has come, and report errors."""
+        """Show entries once their times are no longer in the future, and report presence and troubles."""
         assert self._world is not None
         world = self._world
         while True:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 KEPT: Final = 8
-"""How many round trips are remembered; the shortest is the most exact."""
+"""The number of remembered round trips; the shortest is the most exact."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +18,7 @@ class Measure:
     error: float
 
     def exceeds(self, bound: float) -> bool:
-        """Tell whether the clock is off by more than a bound, whatever the error."""
+        """Return whether the clock is off by more than a bound, for any error within the error bound."""
         return abs(self.ahead) - self.error > bound
 
 
