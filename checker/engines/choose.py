@@ -39,9 +39,9 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
     cluster: Cluster | None = None,
     threads: int | None = None,
 ) -> Exploration:
-    """Visit everything that is reachable, breadth-first.
+    """Visit the reachable configurations, breadth-first.
 
-    Each configuration is given to each of `inspect` as it is expanded, in the order of discovery; the rest are the
+    Each of `inspect` sees each configuration as it is expanded, in the order of discovery. The other arguments are the
     attributes of `Options`.
     """
     kept, crew = keeping or Keeping(), cluster or Cluster()
@@ -50,11 +50,10 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
 
 
 def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
-    """Visit everything that is reachable as options say.
+    """Visit the reachable configurations with these options.
 
     Raises:
-        EngineError: The mission says how long things take, of which the engine, or its checkpoints, know nothing; or
-            the engine keeps nothing in files.
+        EngineError: The engine, or its checkpoints, don't support the mission's timing; or the engine writes no files.
     """
     if options.engine is Engine.REFERENCE and _is_kept(options):
         raise EngineError(
