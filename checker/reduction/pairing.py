@@ -1,4 +1,4 @@
-"""The correspondence that two agents or entities have in all that their texts name, part by part."""
+"""The correspondence between two agents or entities: the names and variables at equal positions of their texts."""
 
 from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any
@@ -24,7 +24,7 @@ UNLIKE_TEXTS = "their texts differ"
 
 
 class Unlike(Exception):
-    """Two agents or entities are not interchangeable; says why."""
+    """Two agents or entities are not interchangeable; the message has the reason."""
 
 
 @dataclass
@@ -43,7 +43,7 @@ class Pairing:
         self.unify(self.c.alpha.code(one), self.c.alpha.code(other))
 
     def pair(self, known: dict[Any, Any], one: Any, other: Any) -> bool:
-        """Note that one thing corresponds to another; tell whether that is new."""
+        """Record that one thing corresponds to another; return whether that is new."""
         if one == other or known.get(one) == other:
             return False
         if one in known or one in known.values() or other in known or other in known.values():
