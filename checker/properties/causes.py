@@ -1,4 +1,4 @@
-"""The causes of a deadlock: why each request stays pending, and what each waiting agent waits for."""
+"""The causes of a deadlock: the reason why each request stays pending, and the awaited input of each waiting agent."""
 
 from collections.abc import Iterable, Iterator
 
@@ -22,7 +22,7 @@ NO_NAMES: frozenset[str] = frozenset()
 
 
 def causes(c: Configuration, waiting: Iterable[Name]) -> Iterator[str]:
-    """Yield why each request stays pending and what some agents at a react wait for, as far as that is known."""
+    """Yield the known reasons for each pending request, and the awaited input of agents at a react."""
     for a in c.alpha.names():
         for pending in c.eta.of(a):
             why = _why(c, pending)
@@ -61,7 +61,7 @@ def _apart(c: Configuration, here: Name, there: Name, who: str) -> str:
 
 
 def _missing(c: Configuration, here: Name, there: Name) -> str:
-    """Return what one or the other lacks to share a link: an image in P, a channel that is up, or belief."""
+    """Return the reason why two hosts share no link: no image in P, a channel that is down, or missing belief."""
     logical, physical = c.structure.logical, c.structure.physical
     absent = [host for host in (here, there) if host not in physical]
     if absent:
@@ -77,7 +77,7 @@ def _missing(c: Configuration, here: Name, there: Name) -> str:
 
 
 def _promise(c: Configuration, here: Name, there: Name) -> str:
-    """Return how to count on a link of theirs that the environment may give back; empty where it gives none back."""
+    """Return advice on a link that the environment may restore; empty if it restores none."""
     physical = c.structure.physical
     for clause in c.setting.environment:
         dropped = isinstance(clause, Drops) and clause.returns and physical.is_down(clause.channel)
@@ -87,7 +87,7 @@ def _promise(c: Configuration, here: Name, there: Name) -> str:
     return ""
 
 
-# --- what an agent waits for ----------------------------------------------------------------------------------
+# --- the awaited input of an agent ----------------------------------------------------------------------------
 
 
 def _awaited(c: Configuration, a: Name, react: React) -> str:
@@ -101,7 +101,7 @@ def _awaited(c: Configuration, a: Name, react: React) -> str:
 
 
 def _from(c: Configuration, a: Name, patterns: Iterable[Pattern]) -> str:
-    """Return who may send what some patterns take, even if that agent is stuck itself."""
+    """Return the possible senders of a message for some patterns, even those that are stuck themselves."""
     senders = _senders(c, a, patterns)
     if senders:
         return f" from {' or '.join(senders)}"
@@ -112,7 +112,7 @@ def _from(c: Configuration, a: Name, patterns: Iterable[Pattern]) -> str:
 
 
 def _senders(c: Configuration, a: Name, patterns: Iterable[Pattern]) -> list[Name]:
-    """Return who has sent, or may still send, what one of some patterns may take."""
+    """Return the agents that have sent, or may still send, a message that a pattern may take."""
     wanted = tuple(patterns)
     return [b for b in c.alpha.names() if _on_its_way(c, a, b, wanted) or _may_send(c, a, b, wanted)]
 

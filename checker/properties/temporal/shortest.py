@@ -18,7 +18,7 @@ from semantics.properties.temporal import Temporal
 def shortest_false(
     graph: Graph, truth: Truth, formulas: Iterable[Temporal], fairness: Conditions, known: Lasso
 ) -> Lasso:
-    """Return a shortest lasso on which one of some formulas is false, given one; it says whether it surely is."""
+    """Return a shortest lasso on which one of some formulas is false, given one; `shortest` is set if it is certain."""
     if graph.partial is not None:
         return known
     effort, best = Effort(), known
@@ -48,10 +48,10 @@ def _shorter_false(
 def run_into(
     graph: Graph, components: Numbers, conditions: Conditions, entry: int, by: Bools | None = None
 ) -> Lasso:
-    """Return a run that stays in one of some fair components, as short as can be found; `entry` is in the nearest."""
+    """Return a run that stays in a fair component, as short as the search finds; `entry` is in the nearest one."""
     part = component_of(graph, components, entry, conditions, by=by)
     stem = shortest(graph, 0, graph.targets == entry) if entry else ()
-    assert stem is not None  # everything that was explored is reached
+    assert stem is not None  # every explored configuration is reachable
     known = tightened(Lasso(stem, fair_cycle(part, entry)))
     return shortest_run(graph, components, conditions, known, by=by)
 
@@ -66,16 +66,16 @@ def shortest_run(  # noqa: PLR0913  # each says one thing of the search
     through: Bools | None = None,
     by: Bools | None = None,
 ) -> Lasso:
-    """Return a shortest lasso to a fair component, given one; it says whether it surely is.
+    """Return a shortest lasso to a fair component, given one; `shortest` is set if it is certain.
 
     Args:
         graph: The graph.
         components: The fair components.
-        conditions: What its loop meets.
+        conditions: The conditions of its loop.
         known: A lasso.
-        start: Where it begins.
-        through: The configurations that it may come to, all if not given.
-        by: The edges that its loop may take, all if not given.
+        start: Its first configuration.
+        through: The configurations that it may visit; by default all.
+        by: The edges that its loop may take; by default all.
     """
     if graph.partial is not None:
         return known
