@@ -70,7 +70,7 @@ class Checkable(Protocol):
         """Additional notes of the report."""
 
 
-def check(  # noqa: PLR0913 - each says one thing of a check
+def check(  # noqa: PLR0913 - independent options
     start: Configuration | Checkable,
     properties: Iterable[Property] | None = None,
     limits: Limits | None = None,

@@ -29,8 +29,10 @@ if TYPE_CHECKING:
     from checker.engines.times import Times
 
 SCHEMA = "bigactors.trace/1"
-"""The version of the step schema: schema, mission, digest, monitored, steps of label, choice and changes, and loop;
-steps of live runs also say what was observed, when, and the digest of what they wrote."""
+"""The version of the step schema: schema, mission, digest, monitored, steps of label, choice and changes, and loop.
+
+Steps of live runs also have their observation, its time, and the digest of their writes.
+"""
 
 MOST_STEPS = 1_000_000
 MOST_SECONDS = 10_000_000_000

@@ -55,7 +55,7 @@ def rows(found: Exploration) -> Iterator[Row]:
         label = graph.labels[action]
         if found.survey is not None and isinstance(
             label.about, Received
-        ):  # rows do not hold what was received
+        ):  # rows do not hold received observations
             label = step_of(configurations[source], label, configurations[target]).label
         yield Row(int(source), int(target), label.rule, label.agent, str(label.about), str(label))
 

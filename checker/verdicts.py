@@ -92,7 +92,7 @@ class Verdict:
         return f"<Verdict {cut(self.property.name)} {self.outcome.value}{found}>"
 
     def _repr_html_(self) -> str:
-        from bigactors.notebook import verdict_html  # noqa: PLC0415 - what notebooks show is built on values
+        from bigactors.notebook import verdict_html  # noqa: PLC0415 - notebooks import verdicts
 
         return verdict_html(self)
 
@@ -171,7 +171,7 @@ class Report:
         return f"<Report {found} configurations={self.configurations} complete={self.complete}>"
 
     def _repr_html_(self) -> str:
-        from bigactors.notebook import report_html  # noqa: PLC0415 - what notebooks show is built on values
+        from bigactors.notebook import report_html  # noqa: PLC0415 - notebooks import verdicts
 
         return report_html(self)
 

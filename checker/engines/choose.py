@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from checker.reduction.reducer import Reduced
 
 
-def explore(  # noqa: PLR0913 - each is optional, and named where it is used
+def explore(  # noqa: PLR0913 - independent options, passed by name
     initial: Configuration,
     inspect: Iterable[Inspect] = (),
     limits: Limits | None = None,

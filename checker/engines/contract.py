@@ -55,7 +55,7 @@ class Keeping:
         resumed: Whether the exploration continues from the checkpoint in the folder.
         digest: The digest of the explored mission and its options.
         every: Seconds between two checkpoints.
-        doubted: The number of sampled configurations whose successors, and whose assumptions of reductions, are
+        doubted: The number of sampled configurations on which successors, and the assumptions of reductions, are
             checked again (`--paranoid`).
         compact: How many bits of a hash stand for each configuration, where none is compared with another: some may be
             taken for others then (`--hash-compact`).

@@ -70,7 +70,7 @@ class _Explorer:
 
     def visit_all(self, started: float) -> None:
         reported = started
-        for number, configuration in enumerate(self.configurations):  # grows while it is gone through
+        for number, configuration in enumerate(self.configurations):  # grows during the loop
             now = time.monotonic()
             if (end := self.limits.end(now - started)) is not None:
                 self.bound(end)

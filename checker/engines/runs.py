@@ -100,7 +100,7 @@ def layers(start: Node, follow: Follow[Node]) -> Iterator[list[Node]]:
 
 def _waiting(states: list[Node], follow: Follow[Node], met: set[Node]) -> list[Node]:
     """Add the unvisited states that delays alone reach, and return the list."""
-    for state in states:  # grows on the way
+    for state in states:  # grows during the loop
         later = [target for step, target in follow(state) if step == DELAY and target not in met]
         met.update(later)
         states += later
@@ -153,7 +153,7 @@ def _leading(
     """Return the pairs of a number of done steps and a state from which the other steps reach an end."""
     sources: dict[tuple[int, Node], list[tuple[int, Node]]] = {(0, start): []}
     waiting = [(0, start)]
-    for done, state in waiting:  # grows on the way
+    for done, state in waiting:  # grows during the loop
         for step, target in follow(state):
             if step == DELAY or (done < len(steps) and step == steps[done]):
                 node = (done + (step != DELAY), target)

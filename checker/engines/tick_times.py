@@ -53,7 +53,7 @@ class Ticks:
             found.setdefault(number, []).append(each)
         return found
 
-    # --- of configurations
+    # --- configurations
 
     def taken(self, place: int) -> set[int]:
         """Return the steps of a configuration that are taken at some time."""
@@ -221,7 +221,7 @@ class Ticks:
                 found[number] = Span(min(known.earliest, first), max(known.latest, last))
         return found
 
-    # --- endurance, and whether time goes on
+    # --- endurance and timelocks
 
     def exhausted(self) -> tuple[dict[str, Run], int]:
         """Return the first run that exhausts each vehicle's endurance, and the number of such configurations."""

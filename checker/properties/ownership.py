@@ -140,7 +140,7 @@ class _Text:
         return frozenset(slots.union(*map(self._along, moved)))
 
     def _along(self, node: Name) -> frozenset[Slot]:
-        """Return the slots of entities that move with a node, or that it must be present to put down."""
+        """Return the slots of entities that move along with a node, or can no longer be put down afterwards."""
         kind = None if node == ANY else self.c.setting.kind(node)
         if kind not in self._taken_along:
             self._taken_along[kind] = self._along_with(kind)

@@ -131,11 +131,11 @@ class Asking:
         return value
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
-        """Ask a cell."""
+        """Return whether the answer to a question about a cell is true."""
         return bool(self.ask(cell, question, *constants))
 
     def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
-        """Ask a cell."""
+        """Return the answer to a question about a cell, and record both."""
         self.answers[cell, question, constants] = found = self.cells.ask(cell, question, *constants)
         return found
 

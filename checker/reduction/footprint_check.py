@@ -110,7 +110,7 @@ def slots_over(actors: Actors, cell: Cell) -> Iterator[tuple[Slot, Told | None]]
             yield from ((cell, None), (("known", name), is_something))
         case ("mailbox", agent):
             yield from (((what, agent, n), _waking(actors, n)) for what in ("mail", "fault") for n in reacts)
-        case ("left", entity, _):  # who writes channels may write it
+        case ("left", entity, _):  # writers of channels may write it
             yield ("channels", entity), None
         case ("line", agent):
             yield ("ready", agent), _observations

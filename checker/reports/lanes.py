@@ -21,7 +21,7 @@ SERVING: Final = frozenset({"sense", "actuate", "command", "commit", "snd", "mig
 """Rules that serve a request: they act between the requesting agent and the world."""
 
 LEAST_REPEATED: Final = 8
-"""How many steps in a row have to repeat others to be folded into one line."""
+"""The least number of consecutive repeated steps that are folded into one line."""
 
 WORLD: Final = frozenset({"L", "P", "E"})
 """The parts of a configuration outside the agents."""
@@ -53,7 +53,7 @@ class LaneStep:
 
     @property
     def date(self) -> str:
-        """When it is taken, as a clock says it; nothing where the run has no dates."""
+        """Its date as text; empty without dates."""
         return "" if self.at is None else clock_text(self.at)
 
     @property

@@ -66,7 +66,7 @@ def _visit_all(
     most = options.limits.configurations
     while goes_on:
         goes_on = search.advance(CHUNK if most is None else min(CHUNK, max(most - search.count, 0) + 1))
-        if network.outgrown:  # a constant is larger than it was taken for: what was kept may be too much
+        if network.outgrown:  # a constant has grown: zones were extrapolated too far
             network.outgrown = False
             search.again()
             goes_on = True

@@ -96,9 +96,11 @@ GROUP, RANK = 3, 2
 BEFORE, BY, BEGIN = range(GROUP)
 
 AT, LAYER, DEPTH, COUNT, USED, FOUND, MISSED, GROUPS, RANKED, LONGEST, STATE = range(11)
-"""The numbers of a state: the next zone (or group) to expand, the first zone of the layer under construction, its
-depth, the counts of zones and of bounds, the depth at which the goal was found, the count of zones without room, the
-counts of groups and of discovered rows, and the most steps.
+"""Indices of a state.
+
+`AT` is the next zone, or group, to expand. `LAYER` is the first zone of the layer under construction, `DEPTH` its depth.
+`COUNT`, `USED`, `GROUPS` and `RANKED` count zones, bounds, groups and discovered rows. `FOUND` is the depth of the goal,
+-1 before. `MISSED` is the number of zones without room, and `LONGEST` the most steps.
 """
 
 DONE, MISS, FULL = range(3)

@@ -120,7 +120,7 @@ class Network(Space):
         self._run(lambda *known: loop(*known, self.rows.words, code, self.state, self.counts_of))
         self.first_ages = self.measured(situation, ages)
 
-    # --- what is learned ------------------------------------------------------------------------------------------
+    # --- learned clocks -------------------------------------------------------------------------------------------
 
     def _see(self) -> None:
         """Update the loops' view of the learned rules."""
@@ -344,7 +344,7 @@ class Network(Space):
         records = automaton.locations.used.reshape(-1, LOCATION)
         at = np.flatnonzero(automaton.clocks.used == self.numbers[clock, None])[
             ::-1
-        ]  # of equal ones the first last
+        ]  # of equal clocks the first wins
         locations = np.searchsorted(records[:, CLOCKS], at, side="right") - 1
         found = np.zeros(len(records), np.int64)
         found[locations] = at - records[locations, CLOCKS] + 1

@@ -80,7 +80,7 @@ class Observer:
         watch = self.rule(Watch.OFF, self.network.first)
         assert watch is not None
         self._add(self.network.first, watch)
-        for number, spot in enumerate(self.spots):  # grows on the way
+        for number, spot in enumerate(self.spots):  # grows during the loop
             self.automaton.leave(number, [] if spot.watch is Watch.END else self._edges(spot))
 
     def clock(self, number: int) -> int:

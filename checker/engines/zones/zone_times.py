@@ -438,7 +438,7 @@ class ZoneTimes:
                 return True
         return False
 
-    # --- when steps are taken
+    # --- dates of steps
 
     def spans(self, steps: Sequence[Set[TakenStep]]) -> list[Span]:
         """Return for each set of steps the span of dates at which one of them is taken."""
@@ -446,7 +446,7 @@ class ZoneTimes:
 
         return Spans(self, steps).found()
 
-    # --- endurance, and whether time goes on
+    # --- endurance and timelocks
 
     def exhausted(self) -> tuple[dict[str, Run], int]:
         """Return the first run that exhausts each vehicle's endurance, and the number of such configurations."""

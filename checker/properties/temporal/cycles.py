@@ -27,7 +27,7 @@ Cycle = tuple[int, tuple[int, ...]]
 """A node and the edges from there to there."""
 
 
-def shortest_cycle(  # noqa: PLR0913, PLR0917  # each says one thing of the search
+def shortest_cycle(  # noqa: PLR0913, PLR0917  # independent parameters
     arrows: Arrows,
     depths: Numbers,
     components: Numbers,

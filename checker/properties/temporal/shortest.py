@@ -56,7 +56,7 @@ def run_into(
     return shortest_run(graph, components, conditions, known, by=by)
 
 
-def shortest_run(  # noqa: PLR0913  # each says one thing of the search
+def shortest_run(  # noqa: PLR0913  # independent parameters
     graph: Graph,
     components: Numbers,
     conditions: Conditions,

@@ -2,8 +2,9 @@
 
 A state is the set of formulas, among some, that are true from there on. Their values at one moment follow from the
 taken step and from the values at the next one; so equal rests of a run have equal states. An automaton that decides a
-formula has fewer states, but may have to repeat a loop several times, or enter it later (Schuppan and Biere, Shortest
-counterexamples for symbolic model checking of LTL with past, TACAS 2005).
+formula has fewer states, but may have to repeat a loop several times, or enter it later.
+
+Source: Schuppan and Biere, Shortest counterexamples for symbolic model checking of LTL with past, TACAS 2005.
 """
 
 from collections.abc import Iterable

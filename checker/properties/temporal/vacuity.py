@@ -27,7 +27,7 @@ from semantics.properties.propositions import Always, Not, Or
 from semantics.properties.temporal import Denied, Either, Globally, Now, OnAllPaths, Temporal
 
 MOST_EDGES: Final = 1_000_000
-"""The most edges times repeated decisions for one formula; none on a larger graph."""
+"""The budget for deciding a formula's variants, in edges; each decision costs the edges of the graph."""
 
 
 @dataclass(frozen=True, slots=True)
