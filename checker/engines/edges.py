@@ -14,7 +14,7 @@ class Edges:
     """Rows of edges, one for each configuration in the order of expansion.
 
     Attributes:
-        starts: The begin of each row; the begin of the next row ends it.
+        starts: The start of each row; the start of the next row ends it.
         targets: For each edge, the number of its target.
         actions: For each edge, the number of its label.
         labels: The number of each label, in the order of discovery.
@@ -37,7 +37,7 @@ class Edges:
         self.starts.append(len(self.targets))
 
     def rows(self, configurations: int) -> Iterator[int]:
-        """Yield the begin of each configuration's row, and the end of the last.
+        """Yield the start of each configuration's row, and the end of the last.
 
         The row of a configuration that was not fully expanded holds the edges found; the configuration is partial.
         """

@@ -21,7 +21,7 @@ class Graph:
     """A transition system in compressed sparse rows; configuration 0 is the initial one.
 
     Attributes:
-        starts: The begin of the edges of each configuration, and the end of the last (n + 1 numbers).
+        starts: The start of the edges of each configuration, and the end of the last (n + 1 numbers).
         targets: For each edge, the number of its target.
         actions: For each edge, the number of its label, or `STUTTER`.
         labels: The labels.

@@ -25,7 +25,7 @@ Awaiting = tuple[int, float | None]
 """A state, and the ticks since something is awaited; None if nothing is."""
 
 IN_TIME = -math.inf
-"""The waiting time where the awaited proposition arrives in time anyway: its elapsed part is irrelevant."""
+"""The elapsed time of a wait that certainly ends in time: its actual length is irrelevant."""
 
 
 class Ticks:
@@ -224,7 +224,7 @@ class Ticks:
     # --- endurance and timelocks
 
     def exhausted(self) -> tuple[dict[str, Run], int]:
-        """Return the first run that exhausts each vehicle's endurance, and the number of such configurations."""
+        """Return the first run that exhausts each vehicle, and the number of configurations with an exhausted one."""
         states: dict[str, set[int]] = {}
         for state, (number, ages) in enumerate(self.timeline.states):
             for vehicle in self.timeline.situations[number].exhausted(ages):

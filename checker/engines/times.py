@@ -139,7 +139,7 @@ class Times(Protocol):
         """Return for each set of steps the span of dates at which one of them is taken."""
 
     def exhausted(self) -> tuple[dict[str, Run], int]:
-        """Return the first run that exhausts each vehicle's endurance, and the number of such configurations."""
+        """Return the first run that exhausts each vehicle, and the number of configurations with an exhausted one."""
 
     def stop(self) -> Stop | None:
         """Return the first run to a timelock, None if there is none."""

@@ -152,7 +152,7 @@ class _Taken:
 
 
 def _taken(initial: Configuration, done: Sequence[Transition], dates: Sequence[int]) -> Iterator[_Taken]:
-    """Yield the steps of a run, each with the possible begins of its wait."""
+    """Yield the steps of a run, each with the possible starts of its wait."""
     situation = Situation(initial)
     running = {each: (BEGINNING,) * count for each, count in running_in(situation).items()}
     in_turn = dict.fromkeys(_in_turn(situation), BEGINNING)

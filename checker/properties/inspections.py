@@ -152,7 +152,7 @@ def disagreements(c: Configuration, request: CTR | FLY) -> tuple[str, ...]:
 
 
 class DeadlockFreedom(Inspection):
-    """No deadlock: only the environment can move, and a request is pending or an agent waits (check 3)."""
+    """No configuration where only the environment can move, and a request is pending or an agent waits (check 3)."""
 
     together = (served, moves)
 

@@ -1,4 +1,4 @@
-"""The obstacles to a control, relation by relation: those of its redex missing in L, those of its reactum in P."""
+"""The missing relations of a control that can't be served: those of its redex in L, those of its reactum in P."""
 
 from collections.abc import Iterator
 

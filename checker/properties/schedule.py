@@ -44,10 +44,10 @@ class Flight:
     Attributes:
         vehicle: The vehicle.
         agent: The requesting agent.
-        origin: The place in which L has the vehicle at the begin.
+        origin: The place in which L has the vehicle at the start.
         destination: The place in which it ends.
         takes: Its duration, in ticks.
-        begins: The dates of its begin.
+        begins: The dates of its start.
         ends: The dates of its end; never if its arrival isn't known.
         bound: The origin of its duration in the mission.
     """
@@ -76,7 +76,7 @@ class Schedule:
 
     Attributes:
         tick: Milliseconds of a tick.
-        flights: The possible flights, in the order of their first begins.
+        flights: The possible flights, in the order of their first starts.
         milestones: The first moments of the propositions of its `time` properties.
         complete: Whether everything was explored; else the latest moments are unknown.
     """
@@ -100,7 +100,7 @@ _Key = tuple[Name, Name, Name, Name]
 
 
 def flights_of(times: Times) -> tuple[Flight, ...]:
-    """Return the flights that are made in time, in the order of their first begins."""
+    """Return the flights that are made in time, in the order of their first starts."""
     begun: dict[_Key, set[TakenStep]] = {}
     ended: dict[_Key, set[TakenStep]] = {}
     set_out: dict[tuple[FLY, Name], dict[_Key, None]] = {}

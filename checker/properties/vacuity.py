@@ -74,7 +74,7 @@ class Valuations:
             self.begun = True
 
     def compare(self, c: Configuration) -> None:
-        """Record whether a configuration gives the answers of the first one."""
+        """Record whether a configuration gives the same answers as the first one."""
         if not self.begun:
             self.begun = True
             self.still = asked(self.atoms or tuple(atoms_of(self.formula)), c)
@@ -172,7 +172,8 @@ def asked(atoms: Iterable[Atom], c: Configuration) -> Answers:
 def bindings(atoms: Iterable[Proposition]) -> tuple[IsBound, ...]:
     """Return the propositions that each compared variable has a value.
 
-    Initially none has one. So a comparison that is always true is not constant once its variable gets a value.
+    Initially no variable has a value. These propositions change with the first one, so a comparison that is always true
+    doesn't count as constant.
     """
     return tuple({IsBound(atom.variable): None for atom in atoms if isinstance(atom, VariableIs)})
 

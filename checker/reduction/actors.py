@@ -46,7 +46,7 @@ EVERYTHING = Footprint(-1, -1, -1)
 
 
 class Actor(NamedTuple):
-    """An independently moving part: of an agent, or a clause of the environment.
+    """An independently moving part of an agent, or a clause of the environment.
 
     Attributes:
         kind: `program`, `line`, `request` or `clause`.

@@ -1,7 +1,7 @@
 """Partial-order reduction: an ample set of the enabled steps of a configuration.
 
-Independent steps of different actors are followed in one order only. docs/explanation/reduction.md proves this sound,
-and lists the properties for which it is refused.
+Independent steps of different actors are followed in one order only. docs/explanation/reduction.md explains why this is
+sound, and for which properties it is refused.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

@@ -193,7 +193,7 @@ class _Looking:
         self.show(self.ask(query))
 
     def show(self, names: Iterable[Name]) -> None:
-        """Make shown names nodes of L, if they are new."""
+        """Add the slots of shown names that are no nodes of L yet."""
         new = frozenset(names) - self.bounds.known - {REGION}
         self.merges |= self.slots.of("parent", new) | self.slots.of("known", new)
 

@@ -27,7 +27,7 @@ Member = int
 """The number of an interchangeable member, class by class."""
 
 Place = tuple[Cell, int, Name] | tuple[Cell]
-"""The place of an item: a cell, or also the number of an observation in it and a name."""
+"""The place of an item: a cell, possibly with the number of an observation in it and a name."""
 
 Roles = tuple[tuple[Member, int], ...]
 """The members that an item mentions, each with a digest of its role in the item, without names."""

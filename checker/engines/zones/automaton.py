@@ -16,7 +16,7 @@ from checker.engines.fast.arrays import Growing
 from checker.engines.zones.bounds import MOST, NONE
 
 UNKNOWN = -1
-"""The begin of a location's edges before they are worked out."""
+"""The start of a location's edges before they are worked out."""
 
 
 class Constraint(NamedTuple):

@@ -67,7 +67,7 @@ class Zones(NamedTuple):
 
     Attributes:
         bounds: The matrices, one after the other.
-        begins: The begin of each zone's matrix.
+        begins: The start of each zone's matrix.
         sums: The sum of its bounds; an including zone has at least the same sum.
         places: Its location.
         following: The next zone of its location in the list for inclusion tests; `COVERED` for a zone included in
@@ -98,9 +98,9 @@ BEFORE, BY, BEGIN = range(GROUP)
 AT, LAYER, DEPTH, COUNT, USED, FOUND, MISSED, GROUPS, RANKED, LONGEST, STATE = range(11)
 """Indices of a state.
 
-`AT` is the next zone, or group, to expand. `LAYER` is the first zone of the layer under construction, `DEPTH` its depth.
-`COUNT`, `USED`, `GROUPS` and `RANKED` count zones, bounds, groups and discovered rows. `FOUND` is the depth of the goal,
--1 before. `MISSED` is the number of zones without room, and `LONGEST` the most steps.
+`AT` is the next zone, or group, to expand. `LAYER` is the first zone of the layer under construction, `DEPTH` its
+depth. `COUNT`, `USED`, `GROUPS` and `RANKED` count zones, bounds, groups and discovered rows. `FOUND` is the depth of
+the goal, -1 before. `MISSED` is the number of zones without room, and `LONGEST` the most steps.
 """
 
 DONE, MISS, FULL = range(3)

@@ -449,7 +449,7 @@ class ZoneTimes:
     # --- endurance and timelocks
 
     def exhausted(self) -> tuple[dict[str, Run], int]:
-        """Return the first run that exhausts each vehicle's endurance, and the number of such configurations."""
+        """Return the first run that exhausts each vehicle, and the number of configurations with an exhausted one."""
         zones, first, where = np.arange(len(self.places)), dict[Name, int](), np.zeros(0, np.int64)
         for vehicle, endurance in self.network.timing.endurances:
             late = self.latest(zones, Clock(Sort.ALOFT, vehicle)) > endurance.lasts

@@ -19,7 +19,7 @@ class Arrows(Protocol):
 
     @property
     def starts(self) -> Numbers:
-        """The begin of the edges of each node, and the end of the last."""
+        """The start of the edges of each node, and the end of the last."""
 
     @property
     def targets(self) -> Numbers:

@@ -19,7 +19,7 @@ class Product:
     """Pairs of a configuration and a state of the automaton, numbered by their distance from the first.
 
     Attributes:
-        starts: The begin of the edges of each node, and the end of the last.
+        starts: The start of the edges of each node, and the end of the last.
         targets: The target of each edge.
         edges: For each edge, the graph's edge.
         marks: For each edge, the promises that it keeps, a bit each.
