@@ -160,7 +160,7 @@ class _Search:
             self.ends[seen] = seen[1]
             self.settled.setdefault(seen[1], spot)
             return seen[1]
-        self.ends[seen] = None  # None while the state is on the path: a run that returns to it has no end
+        self.ends[seen] = None  # while the state is on the path: a run that returns to it has no end
         path.append(_Frame(seen, spot, chain((first,), choices)))
         return _UNKNOWN
 
