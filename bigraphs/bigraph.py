@@ -1,7 +1,7 @@
 """Concrete bigraphs: a place graph and a link graph over the same nodes, as one immutable value.
 
-A place is one integer: node `n` is `n`, region `r` is `~r` (-1, -2, ...). A link is the number of an edge or, as a
-string, an outer name. A node with several parents is shared (Sevegnani and Calder). A site may have no parent; the
+Places are integers: node `n` is place `n`, region `r` is place `~r` (-1, -2, ...). A link is the number of an edge or,
+as a string, an outer name. A node with several parents is shared (Sevegnani and Calder). A site may have no parent; the
 content of such a site must have a parent of its own. A name identifies its node; nodes without a name, and all edges,
 are anonymous.
 """
@@ -41,9 +41,9 @@ class Node:
 class Bigraph:
     """A bigraph in normal order; build it with `assemble`, `from_relations`, the algebra or a notation.
 
-    `sites` holds the parents of each site; `inner_links` the link of each inner name, sorted. `==` compares bigraphs
-    whose nodes all have names; compare bigraphs with anonymous nodes by their `canonical` forms. The operators are `|`
-    merge product, `//` parallel product, `*` tensor product, `@` composition.
+    `sites` holds the parents of each site; `inner_links` the link of each inner name, sorted. Use `==` only if all
+    nodes have names, else compare `canonical` forms. The operators are `|` merge product, `//` parallel product, `*`
+    tensor product, `@` composition.
     """
 
     signature: Signature

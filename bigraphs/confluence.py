@@ -28,7 +28,7 @@ MOST_REACTIONS: Final = 1_000
 
 
 class Way(NamedTuple):
-    """A first rule applied in a state, and the final state of a run that starts with it."""
+    """The first rule of a run from a state, and the final state of that run."""
 
     rule: str
     outcome: Bigraph

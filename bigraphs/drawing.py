@@ -144,7 +144,7 @@ def _scale(axes: Axes, plan: Layout, title: str | None) -> float:
 
 
 class _Pen:
-    """The common state of all strokes."""
+    """The axes, colours and scale of a drawing, and its strokes."""
 
     def __init__(self, axes: Axes, shown: Folded, scale: float, highlight: frozenset[str]) -> None:
         self.axes, self.shown, self.scale, self.highlight = axes, shown, scale, highlight

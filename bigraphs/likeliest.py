@@ -35,7 +35,7 @@ def likeliest_run(
         system: The transition system. For an SBRS the embedded chain is used.
         goals: The goal states.
         within: The states that the run may pass; all by default.
-        strategy: The chosen action number of each state, counted as in exported files; needed for a BRS and an NBRS.
+        strategy: The number of the choice in each state, as in exported files; needed for a BRS and an NBRS.
     """
     best = {0: (0.0, 0)}
     came: dict[int, tuple[Transition, float]] = {}

@@ -15,7 +15,7 @@ Placed: TypeAlias = tuple[tuple[tuple[Place, ...], ...], tuple[tuple[int, ...], 
 def placements(redex: Bigraph, target: Bigraph, images: Sequence[int]) -> Iterator[Placed]:
     """Yield every combination of places for the regions and topmost nodes for the sites.
 
-    There is exactly one, unless two sites share their places, a site lies in a region, or places are shared.
+    There is at most one, unless two sites share their places, a site lies in a region, or places are shared.
     """
     matched = frozenset(images)
     inside = children(target)

@@ -54,9 +54,9 @@ def chances(seed: int, run: int | None = None) -> random.Random:
 
 
 def simulate(system: System, seed: int, bounds: Bounds, *, run: int | None = None) -> Iterator[Stage]:
-    """Yield the states of one run; they depend on the seed alone, not on the order of terms in the source.
+    """Yield the states of one run; equal seeds give equal runs, whatever the order of terms in the source.
 
-    With `run`, it is the run of that number which `bigactors big sim --runs` takes.
+    With `run`, it is the run of that number in `bigactors big sim --runs`.
 
     In a BRS each occurrence is equally likely; in a PBRS the weights decide. In an SBRS the rates decide, after an
     exponentially distributed delay (Gillespie's direct method). In an NBRS an action is drawn first, then an occurrence

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 Spot = tuple[float, float]
-"""To the right and up, in points; in a view, in metres."""
+"""Coordinates to the right and up, in points; those of a view are in metres."""
 
 GAP: Final = 2.0
 """Points kept free between labels."""

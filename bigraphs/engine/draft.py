@@ -66,7 +66,7 @@ class Draft:
         self.changed |= 1 << slot
 
     def new_edge(self) -> int:
-        """Return the smallest idle edge, or a new one."""
+        """Return the first edge that is idle and was idle before the rewrite, or a new one."""
         points, first = self.state.points, len(self.state.world.names)
         for edge in range(first, len(points)):
             if not points[edge] and not self.relinked >> edge & 1:

@@ -23,8 +23,8 @@ class Outlines:
     def least(self, states: list[State]) -> int:
         """Return the position of the least state, in an order that isomorphic states share.
 
-        Usually the outlines decide. Otherwise, the states with the least outline may all be isomorphic. If neither
-        decides, slow canonical forms that do not depend on earlier states do.
+        Usually the outlines decide. Otherwise the states with the least outline are often isomorphic, and any of them
+        serves. In the remaining cases, slow canonical forms decide, which do not depend on earlier states.
         """
         if len(states) == 1:
             return 0

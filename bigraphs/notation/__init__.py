@@ -1,4 +1,4 @@
-"""Readers and writers of bigraph notations: BigraphER's, BigMC's and the paper's. Only this package uses lark."""
+"""Readers and writers of bigraph notations: BigraphER's, BigMC's and the paper's."""
 
 import lazy_loader
 

@@ -22,7 +22,7 @@ from bigraphs.signature import Signature, open_signature
 
 
 def read_bigraph(text: str, signature: Signature | None = None) -> Bigraph:
-    """Read `region || region`; links are outer names. Without a signature, controls are open.
+    """Return the bigraph of `region || region`; links are outer names. Without a signature, controls are open.
 
     Raises:
         NotationError: For a syntax error or a node without a control.
@@ -49,7 +49,7 @@ def read_rule(
     node_variables: frozenset[str] = frozenset(),
     link_constants: frozenset[str] = frozenset(),
 ) -> ReactionRule:
-    """Read `redex -> reactum`. A node of the redex needs no control in the reactum."""
+    """Return the rule of `redex -> reactum`; a node of the redex needs no control in the reactum."""
     term = parse_rule(text)
     known = {node.name: node.control for node in nodes(term.redex) if node.name and node.control}
     _check_controls(term.redex, text, {})
