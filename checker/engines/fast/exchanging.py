@@ -78,7 +78,7 @@ class Exchanging:
             )
         return bool(done == gathered)
 
-    # --- what the loops see ---------------------------------------------------------------------------------------
+    # --- tables for the loops -----------------------------------------------------------------------------------------
 
     def see(self, where: Packing) -> None:
         """Rebuild the loops' tables from everything learned so far."""

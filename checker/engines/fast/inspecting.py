@@ -102,7 +102,7 @@ def _by_discovery(found: dict[Key, tuple[int, int]], again: Callable[[int], Coll
         yield from (key for key in again(first).first if found.get(key, (0, -1))[1] == first)
 
 
-# --- what is asked of agents ----------------------------------------------------------------------------------
+# --- agents ---------------------------------------------------------------------------------------------------
 
 
 def look_at_agents(survey: Survey, inspection: Inspection) -> None:
@@ -314,7 +314,7 @@ def look_at_reachability(survey: Survey, inspection: Reachability) -> None:
         inspection.collected.examined, inspection.collected.example = len(true), int(true[0])
 
 
-# --- what was visited -----------------------------------------------------------------------------------------
+# --- visited places and events --------------------------------------------------------------------------------
 
 
 def look_at_visited(survey: Survey, inspection: Visited) -> None:

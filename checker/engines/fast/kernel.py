@@ -410,7 +410,7 @@ def gather(m: Model, words: Words, f: Folded | None, batch: Batch, state: State,
         known = flags >= 0
         if known and flags & CROWDED:
             if len(later):
-                known = False  # it is counted at its final expansion
+                known = False  # counted at its final expansion
             else:
                 state[CROWDS] += 1
         elif known:

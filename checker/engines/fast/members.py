@@ -17,8 +17,7 @@ MOST_HERE = 8 * WORD
 
 EVERYBODY, UNKNOWN, NOBODY_LEFT, GOING_ON = -1, -2, -3, -4
 """Codes instead of the transition on which a path continues: follow all transitions; something is unknown; no ignored
-actor remains; add another set.
-"""
+actor remains; add another set."""
 
 MADE, REPRESENTED = 1, 2
 """The states of a successor: made, and replaced by its representative."""

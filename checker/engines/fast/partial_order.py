@@ -210,7 +210,7 @@ class Choosing:
             ]
         self.written = count
 
-    # --- visibility -------------------------------------------------------------------------------------------------
+    # --- visible bits ----------------------------------------------------------------------------------------------
 
     def _look(self, where: Packing) -> None:
         """Compute the bits of a row that properties read, and the answers of their questions for each code."""

@@ -109,7 +109,7 @@ class Slices:
         kernel.gather(part.model, rows.words, folded, part.batch, part.state, part.end)
         if folded is None:
             kernel.drop_repeated(part.batch, part.state)
-        else:  # looking them up takes no longer
+        else:  # a look-up takes no longer than this check
             part.state[SIFTED] = part.state[GATHERED]
 
     def _sift(self, part: Slice) -> None:

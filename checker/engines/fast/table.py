@@ -145,8 +145,7 @@ def fetch(words: Words, table: Any, hashes: Words, k: int, end: int, width: int,
             prefetch(words, (np.uint64(entry & numbers) - _ONE) * np.uint64(width))
 
 
-# --- rebuilding
-# ---------------------------------------------------------------------------------------------------------
+# --- rebuilding -------------------------------------------------------------------------------------------------------
 
 
 def alone(work: Callable[[range], Any], parts: int) -> list[Any]:

@@ -21,8 +21,7 @@ RECORD = 8
 
 COLUMN, LOW, WIDTH, BASE, WORD, SHIFT, MASK = range(7)
 """The fields of an inner node: its column, the first code and the size of its window, and the begin of the window in
-`next`. The last three are the column's position in a row under the present packing (see `kernel.locate`).
-"""
+`next`. The last three are the column's position in a row under the present packing (see `kernel.locate`)."""
 
 
 class LearningError(Exception):
