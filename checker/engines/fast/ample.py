@@ -151,7 +151,8 @@ def join(
     """Add a set if it is ample and has an ignored actor (cycle proviso).
 
     Returns:
-        The transition on which the path continues, or a code: NOBODY_LEFT, GOING_ON or UNKNOWN.
+        A transition of the set whose successor's path does not return to this row. If there is none: NOBODY_LEFT if no
+        enabled actor is ignored any more, else GOING_ON. UNKNOWN if something is not learned yet.
     """
     kept, row, wide = state[KEPT], state[AT], (actors + WORD - 1) // WORD
     if not ignores(r, r.sets, at, wide):
@@ -192,10 +193,10 @@ def choose(
     count: int,
     state: State,
 ) -> int:
-    """Choose the actors whose steps are followed, and return the transition on which the path continues.
+    """Choose the actors whose steps are followed, and return a transition on which the path continues (cycle proviso).
 
     Candidates are the persistent sets around actors of the agent that moved last, then those around the others. Within
-    each group, sets with one step come at once, the rest by increasing size.
+    each group, sets with one step are tried at once, the others by increasing size.
 
     Returns:
         The transition, or a code: EVERYBODY, NOBODY_LEFT or UNKNOWN.

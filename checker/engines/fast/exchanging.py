@@ -152,7 +152,7 @@ class Exchanging:
             self.where = None  # the table of entries is too small
 
     def _enter_ways(self) -> None:
-        """Add new transitions of the trie to the loops' hash table; a table that doubles is filled from scratch."""
+        """Add new edges of the trie to the loops' hash table; a table that grows is filled from scratch."""
         new = list(self.ways.items())[self.entered :] if self.entered < len(self.ways) else []
         if 2 * len(self.ways) > len(self.keys):
             room = 4 * len(self.keys)

@@ -199,13 +199,13 @@ def fold(f: Folded, touched: int, adding: bool, kept: Words, at: int) -> int:
 
 @njit(cache=True, inline="always")
 def leave_open(kept: Words, at: int, row: int, step: int) -> None:
-    """Mark a successor as deferred: store its row and transition instead of its pieces."""
+    """Mark a successor as incomplete: store its row and transition instead of its pieces."""
     kept[at], kept[at + 1] = NOWHERE, (np.uint64(step) << _HALF) | np.uint64(row)
 
 
 @njit(cache=True, inline="always")
 def step_left_open(kept: Words, at: int) -> int:
-    """Return the transition of a deferred successor; less than 0 if the successor is not deferred."""
+    """Return the transition of an incomplete successor; less than 0 for a complete one."""
     if kept[at] != NOWHERE or kept[at + 1] == NOWHERE:
         return np.int64(-1)
     return np.int64(kept[at + 1] >> _HALF)

@@ -50,7 +50,7 @@ PREDICTED = ("code", "store", "line")
 
 @dataclass(slots=True, eq=False)
 class Run:
-    """One run of an actor's rules; it happens late if the result was shared and a part is unknown.
+    """One run of an actor's rules; after a shared lesson it happens only when one of its parts is unknown.
 
     Attributes:
         actor: The actor.
@@ -250,7 +250,9 @@ class Learner:
             self.learn(part, source)
 
     def _run(self, run: Run, source: CodedSource, exchange: Exchange) -> Learned:
-        """Run an actor's rules on a configuration; name interchangeable parts in the image of an exchange."""
+        """Run an actor's rules on a configuration; `exchange` maps interchangeable parts to the names of the shared
+        lesson.
+        """
         self.runs += 1
         actor, recorder = run.actor, self._recorder(source)
         c = Configuration(self.setting, recorder)

@@ -42,7 +42,7 @@ class Exchange:
 
     Attributes:
         mobile: The names whose facts in observations have columns.
-        unordered: Whether requests in line have an order of their own.
+        unordered: Whether the requests in line are unordered, hence stored in a canonical order.
         renaming: The names, with their statements and variables.
     """
 

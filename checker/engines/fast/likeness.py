@@ -42,7 +42,7 @@ class Likeness:
 
     @cached_property
     def nobody(self) -> Exchange:
-        """The identity."""
+        """The identity exchange."""
         return Exchange(self.mobile, self.setting.scheduler is Scheduler.UNORDERED)
 
     @cached_property

@@ -1,4 +1,4 @@
-"""The enabled actors of a row and their footprints, for the loops of partial-order reduction."""
+"""The actors of a row and their footprints, for the loops of partial-order reduction."""
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
 # numba types these functions; mypy would read their integers as Python's
@@ -16,8 +16,8 @@ MOST_HERE = 8 * WORD
 """The greatest number of actors for which a row is reduced; with more, it is expanded fully."""
 
 EVERYBODY, UNKNOWN, NOBODY_LEFT, GOING_ON = -1, -2, -3, -4
-"""Codes instead of the transition on which a path continues: follow all transitions; something is unknown; no ignored
-actor remains; add another set."""
+"""Codes instead of the transition on which a path continues: all transitions are followed; something is unknown; no
+ignored actor remains; another set is needed."""
 
 MADE, REPRESENTED = 1, 2
 """The states of a successor: made, and replaced by its representative."""
@@ -30,7 +30,7 @@ FAIR, AGENTS_OWN = 1, 2
 
 MEMBER, NOW, EVER, ASIDE, FOLLOWER = range(5)
 RECORD = 5
-"""The numbers of an actor in a configuration: its index, its three footprints, and its follower (-1: none)."""
+"""The numbers of an actor: its index, three footprints, and the program whose requests queue behind it (-1: none)."""
 
 PARTS = 3
 """The bit sets of a footprint: reads, writes and merges."""

@@ -67,7 +67,7 @@ class Sharing:
         return Kin(self.lessons.setdefault((rules, first), Lessons()), exchange)
 
     def known(self, kin: Kin | None, source: Source) -> Learned | None:
-        """Return a lesson for the answers of a configuration, in the agent's own names; None if there is none."""
+        """Return the result of a shared lesson for a configuration, in the agent's own names; None if there is none."""
         if kin is None:
             return None
         exchange, back = kin.exchange, kin.exchange.inverse
