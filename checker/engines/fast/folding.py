@@ -253,7 +253,7 @@ def put_sought(f: Folded, piece: int, touched: int) -> int:
 
 @njit(cache=True)
 def fold_rows(f: Folded, words: Words, width: int, kept: Words, begin: int) -> int:
-    """Compress rows from number `begin` on; return the number of rows for which there was room."""
+    """Compress rows from number `begin` on; return the first one without room, or the number of rows."""
     count = len(kept) // PAIR
     for k in range(begin, count):
         if fold(f, take(f, words, k * width, width, True), True, kept, PAIR * k) == NO_ROOM:

@@ -250,9 +250,7 @@ class Learner:
             self.learn(part, source)
 
     def _run(self, run: Run, source: CodedSource, exchange: Exchange) -> Learned:
-        """Run an actor's rules on a configuration; `exchange` maps interchangeable parts to the names of the shared
-        lesson.
-        """
+        """Run an actor's rules on a configuration; `exchange` renames interchangeable parts as in the shared lesson."""
         self.runs += 1
         actor, recorder = run.actor, self._recorder(source)
         c = Configuration(self.setting, recorder)
