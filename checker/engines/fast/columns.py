@@ -60,7 +60,7 @@ class Column:
         return None if value is ABSENT else value
 
     def code_of(self, value: Any) -> int | None:
-        """Return the code of a value that a rule reads; None if it never occurred."""
+        """Return the code of what a rule reads, None where it was never met."""
         return self.codes.get(ABSENT if value is None else value)
 
     def code(self, value: Any) -> int:

@@ -31,7 +31,7 @@ CHUNK = 1 << 15
 """Rows expanded between two checks of the clock."""
 
 OBJECTS_BETWEEN_COLLECTIONS = 200_000
-"""The threshold of garbage collection: scanning all learned data every 700 objects takes a quarter of the time."""
+"""The threshold of garbage collection: scanning all learned data every 700 objects takes a quarter of learning time."""
 
 HOLDING = 0.0005
 """The thread switch interval in seconds while rules run; Python's 5 ms are as long as ten loops."""

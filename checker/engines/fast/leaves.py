@@ -102,7 +102,7 @@ class Leaves:
         )
 
     def columns_of(self, step: int) -> frozenset[int]:
-        """Return the columns that a transition writes or copies, both sources and targets."""
+        """Return the columns that a transition writes, or copies, or copies from."""
         record = self.steps.room[STEP * step : STEP * (step + 1)]
         copied = self.copies.room[PAIR * record[COPIES] : PAIR * record[COPIES_END]]
         written = self.writes.room[PAIR * record[WRITES] : PAIR * record[WRITES_END] : PAIR]
@@ -115,13 +115,13 @@ class Leaves:
         return parts
 
     def codes_of(self, step: int) -> dict[int, int]:
-        """Return the codes that a transition writes without copies and parts, by column."""
+        """Return the codes that a transition writes at once, by column."""
         record = self.steps.room[STEP * step : STEP * (step + 1)]
         room = self.writes.room[PAIR * record[WRITES] : PAIR * record[WRITES_END]].tolist()
         return dict(zip(room[::2], room[1::2], strict=True))
 
     def copies_of(self, step: int) -> dict[int, int]:
-        """Return the source column of each copy of a transition, by target column."""
+        """Return the columns that a transition copies, by the column that gets them."""
         record = self.steps.room[STEP * step : STEP * (step + 1)]
         room = self.copies.room[PAIR * record[COPIES] : PAIR * record[COPIES_END]].tolist()
         return dict(zip(room[::2], room[1::2], strict=True))

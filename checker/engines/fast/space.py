@@ -101,7 +101,7 @@ class Space:
         self.choosing = choosing
         self.exchanging = exchanging
         if exchanging is not None and choosing is None:
-            self.PLAIN = sys.maxsize  # representatives are computed for whole batches
+            self.PLAIN = sys.maxsize  # representatives are found in whole batches
         self.compact = compact
         self.state = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)

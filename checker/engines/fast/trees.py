@@ -107,7 +107,7 @@ class Trees:
         return UNKNOWN if code is None else self._follow_code(node, code)
 
     def after_answer(self, node: int, answer: Any) -> int:
-        """Return a node's reference for an answer to its question."""
+        """Return the reference that a node leads to by the answer to its question."""
         return self.answers[node].get(answer, UNKNOWN)
 
     def _new_node(self, ask: Ask, column: int) -> int:
