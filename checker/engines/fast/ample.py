@@ -1,7 +1,7 @@
 """Partial-order reduction in compiled loops: `checker.reduction.ample` on packed rows and footprints.
 
-Each row first chooses its ample set. Only the successors in that set are made, and those whose visibility the choice
-checks. Separate decision trees list the actors of a row. Disturbance between two footprints is computed at its first
+Each row first chooses its ample set. The loop makes the successors in that set, and those that the visibility check
+needs. Separate decision trees list the actors of a row. Disturbance between two footprints is computed at its first
 use.
 """
 
@@ -116,7 +116,7 @@ def ignores(r: Members, sets: Words, at: int, wide: int) -> bool:
 
 @inner(cache=True)
 def let_join(r: Members, actors: int, wide: int, at: int) -> None:
-    """Add a set to the chosen actors; mark as taken the parts whose actors are all in the set."""
+    """Add a set to the chosen actors; mark a part as taken if the set has all its actors."""
     r.more[:] = np.uint64(0)
     for j in range(actors):
         if has(r.sets, at, j):
@@ -193,7 +193,7 @@ def choose(
     count: int,
     state: State,
 ) -> int:
-    """Choose the actors whose steps are followed, and return a transition on which the path continues (cycle proviso).
+    """Choose the actors to follow, and return a transition on which the path continues (cycle proviso).
 
     Candidates are the persistent sets around actors of the agent that moved last, then those around the others. Within
     each group, sets with one step are tried at once, the others by increasing size.

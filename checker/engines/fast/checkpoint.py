@@ -28,7 +28,7 @@ KEPT = (EXPANDED, SIZE, CUT, CROWDS)
 """The entries of the loops' state in a checkpoint; the others follow from the mission."""
 
 RECOUNTED = 1 << 22
-"""The number of rows whose transitions are recomputed when a checkpoint is loaded: some seconds' work."""
+"""The number of rows for which a resumed exploration recomputes transitions: some seconds' work."""
 
 KINDS: Final[Kinds] = {
     "rows": np.uint64,

@@ -1,8 +1,8 @@
 """Symmetry tables for the compiled loops: the items of interchangeable members, and their images under exchanges.
 
-An *entry* is an item: the code of one column, or the codes of all columns of a cell whose observations an exchange may
-reorder. The *shape* of an entry is the item with its members replaced by the first ones of their classes. Entries of
-one shape share their *moves*: a move is a shape with the members that replace those, and is learned once.
+An *entry* is an item: the code of one column, or the codes of all columns of a cell if an exchange may reorder its
+observations. The *shape* of an entry is the item with its members replaced by the first ones of their classes. Entries
+of one shape share their *moves*: a move is a shape with the members that replace those, and is learned once.
 """
 
 from collections.abc import Sequence

@@ -1,8 +1,8 @@
 """The learner: runs a rule once for each distinct sequence of answers to its reads, and stores the result in a tree.
 
 An actor is the server of an agent's requests, an agent's own steps, or a clause of the environment. Each actor has a
-decision tree whose leaves hold its transitions. A pointwise definition has one part for each mobile name, and each part
-has a tree of its own. So the answers of an observation for different names do not multiply.
+decision tree with its transitions at the leaves. A pointwise definition has one part for each mobile name, and each
+part has a tree of its own. So the answers of an observation for different names do not multiply.
 """
 
 from collections import defaultdict

@@ -10,7 +10,7 @@ from checker.engines.fast.arrays import Growing
 from checker.engines.fast.columns import Writes
 
 CROWDED = 1
-"""The flag of a leaf whose agent has too many pending requests or messages."""
+"""The flag of a leaf with a crowded agent: it has more requests or messages than the exploration follows."""
 
 NO_TURN = -1
 UNLIKE = -1
@@ -33,7 +33,7 @@ class Effect:
     Attributes:
         writes: Columns with their new codes.
         copies: Target columns with their source columns.
-        parts: The trees whose leaves hold the remaining writes, part by part.
+        parts: The trees with the remaining writes at their leaves, part by part.
     """
 
     writes: Writes

@@ -41,7 +41,7 @@ class Exchange:
     """An exchange of names under which the rules are invariant, applied to everything that a rule reads or writes.
 
     Attributes:
-        mobile: The names whose facts in observations have columns.
+        mobile: The names with columns for their facts in observations.
         unordered: Whether the requests in line are unordered, hence stored in a canonical order.
         renaming: The names, with their statements and variables.
     """

@@ -24,7 +24,7 @@ class Likeness:
     Attributes:
         setting: The mission.
         still: Its initial configuration.
-        mobile: The names whose facts in observations have columns.
+        mobile: The names with columns for their facts in observations.
         apart: The names that may have parts.
     """
 

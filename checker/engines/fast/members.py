@@ -51,7 +51,7 @@ class Members(NamedTuple):
         disturbed: For each pair of footprints, whether one disturbs the other: 0 not computed, 1 no, 2 yes.
         step_actor, step_flags: The actor and the flags of each transition.
         seen_masks: For each word of a row, the bits that properties read.
-        seen_whole: For each word of a row, the bits whose values properties read directly.
+        seen_whole: For each word of a row, the bits that properties read directly, without a question.
         seen: Columns that properties read through a question, each with the first of its answers in `answers`.
         answers: The answer of that question for each code.
         agents: The greatest number of agents.
@@ -65,7 +65,7 @@ class Members(NamedTuple):
         sizes: The number of transitions of each set.
         inside, owners, whole: The chosen actors, the enabled actors, and those whose persistent set contains all
             enabled ones.
-        waiting, tried: Scratch space: a stack of actors in the closure, and the actors whose sets were found.
+        waiting, tried: Scratch space: a stack of actors in the closure, and the actors that have their set.
         taken, more: The parts taken along the path.
     """
 

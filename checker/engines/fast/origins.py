@@ -23,7 +23,7 @@ from checker.engines.fast.pages import Pages
 from checker.engines.fast.table import Words
 
 BLOCK = 64
-"""The number of words whose set bits have one stored count."""
+"""The number of words that share one stored count of set bits."""
 
 _ONE = np.uint64(1)
 
@@ -40,7 +40,7 @@ def note_origin(origins: Any, number: Any, origin: Any) -> None:
 
 
 def most_origins(origins: Any) -> int:
-    """Return the number of rows whose origins have room. Only for compiled loops."""
+    """Return the number of rows for which origins have room. Only for compiled loops."""
     raise NotImplementedError
 
 

@@ -136,7 +136,7 @@ class Pipeline:
         return first
 
     def rest(self) -> None:
-        """Stop the other threads: cancel slices not begun, and await those in expansion, whose results stay valid."""
+        """Stop the other threads: cancel slices not begun, and await those in expansion; their results stay valid."""
         for part in self.ahead:
             if part.expanding is not None and part.expanding.cancel():
                 part.expanding = None

@@ -48,7 +48,7 @@ Subject = tuple[Name, ...]
 Subjects = tuple[Subject, ...]
 
 MOST_TOGETHER = 2
-"""The greatest number of subjects whose profiles are combined."""
+"""The greatest number of subjects with combined profiles."""
 
 MOST_PAIRS = 1 << 22
 """The greatest number of profile pairs in a table; more are sorted."""
@@ -201,7 +201,7 @@ class _Block:
         return tables[subject(formula)][:, self.profiles.ranks[formula]]
 
     def _worth_asking(self, parts: Instances, tables: dict[Subject, Bools]) -> Iterator[Proposition]:
-        """Yield the instances whose anchor is true in some profile; all if there is no anchor."""
+        """Yield the instances with an anchor that is true in some profile; without anchors, yield all."""
         anchor = parts.anchor
         if anchor is None:
             yield from parts

@@ -85,7 +85,7 @@ class Recorder:
         source: The configuration.
         still: The values of constant cells, None for a cell that does not exist.
         varies: Returns whether a cell is ever written.
-        mobile: The names whose parts are recorded separately.
+        mobile: The names with separately recorded parts.
         scopes: The scope of the rule, and behind it that of the part that is being recorded.
         families: The pointwise definitions created.
     """
@@ -137,7 +137,7 @@ class Recorder:
         return fact
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
-        """Return a pointwise definition whose parts are evaluated at their access."""
+        """Return a pointwise definition that evaluates each part at its access."""
         family = Pointwise(self, tuple(names), part)
         self.families.append(family)  # its cached parts are keyed by its id, which must not be reused
         return family
@@ -263,7 +263,7 @@ class Conclusion:
         return merged(each for family in self.families for each in family.values()) | self.changes
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
-        """Return a pointwise definition whose parts are evaluated at their access."""
+        """Return a pointwise definition that evaluates each part at its access."""
         return self.recorder.each(names, part)
 
     def with_(self, changes: Mapping[Cell, Any]) -> "Conclusion":
@@ -286,7 +286,7 @@ class Conclusion:
         return all(self._agrees(other, cell) for cell in sorted(self.changed(self) | other.changed(other)))
 
     def _agrees(self, other: "Conclusion", cell: Cell) -> bool:
-        """Return whether a cell has the same value in both; equal edits suffice, whatever they edit."""
+        """Return whether a cell has the same value in both; equal edits suffice."""
         one, two = (each.written(cell).get(cell) for each in (self, other))
         return (isinstance(one, Edited) and one == two) or bool(self.read(cell) == other.read(cell))
 

@@ -71,7 +71,7 @@ class Rows:
 
     @property
     def bytes_each(self) -> float:
-        """The bytes of memory for one more row whose pieces are all known."""
+        """The bytes of memory for one more row, apart from new pieces."""
         return 0.0 if self.spilled else self.words.itemsize * self.kept + self.origins.bytes_each
 
     def held(self, used: int) -> int:

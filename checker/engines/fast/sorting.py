@@ -213,7 +213,7 @@ def end_of_group(x: Exchanges, d: Desk, begin: int) -> int:
 
 @inner(cache=True)
 def is_tied(d: Desk, begin: int, end: int) -> bool:
-    """Return whether the order of a group matters."""
+    """Return whether a group is tied: its order matters."""
     if end - begin > 1:
         for k in range(begin, end):
             if d.beside[d.order[k]]:
@@ -223,7 +223,7 @@ def is_tied(d: Desk, begin: int, end: int) -> bool:
 
 @inner(cache=True)
 def first_tied(x: Exchanges, d: Desk, begin: int) -> int:
-    """Return the begin of the first group from `begin` on whose order matters; -1 if there is none."""
+    """Return the begin of the first tied group from `begin` on; -1 if there is none."""
     while begin < len(d.order):
         end = end_of_group(x, d, begin)
         if is_tied(d, begin, end):
@@ -309,7 +309,7 @@ def may_change(x: Exchanges, d: Desk, count: int, one: int, other: int) -> int:
 
 @inner(cache=True)
 def free_groups(x: Exchanges, d: Desk, count: int) -> bool:
-    """Mark the tied groups whose order does not matter; return False if a move is unknown."""
+    """Mark tied groups as free if their order does not matter; return False if a move is unknown."""
     begin = first_tied(x, d, 0)
     while begin >= 0:
         end, free = end_of_group(x, d, begin), np.int64(1)

@@ -191,7 +191,7 @@ def rebuild(words: Words, size: int, width: int, table: Any, write: Write, bits:
 def choose(
     words: Words, begin: int, end: int, width: int, first: int, last: int, hashes: Words, rows: Any
 ) -> int:
-    """Note the hashes and numbers of the rows whose hash belongs to some parts; return how many there are."""
+    """Note the hashes and numbers of the rows that belong to some parts; return their number."""
     low, wide = np.uint64(first) << _PART, (np.uint64(last - first) << _PART) - _ONE
     count = np.int64(0)
     for row in range(begin, end):

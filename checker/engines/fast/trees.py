@@ -43,8 +43,8 @@ class Trees:
         next: References, window by window.
         asks: The question of each inner node.
         answers: For each inner node with a question, the reference for each answer.
-        waiting: For each such node, the codes whose answer has no reference yet, by answer.
-        answered: For each such node, the number of codes whose answer is known.
+        waiting: For each such node, the codes without a reference, by their answer.
+        answered: For each such node, the number of codes with a known answer.
         forgotten: The number of times that a tree was discarded.
     """
 
