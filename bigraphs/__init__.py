@@ -1,8 +1,8 @@
-"""Bigraphs: places nested in places, links across them, and rules that rewrite both.
+"""Bigraphs: nested places, links across them, and rules that rewrite both.
 
-Values, algebra, rules, matching, rewriting, canonical forms and drawings; whole systems, explored, run and decided by
-`bigraphs.engine`; notations are read and written by `bigraphs.notation`, transition systems written by
-`bigraphs.exports`. This room knows nothing of missions, vehicles, the earth or agents.
+This package holds values, algebra, rules, matching, rewriting, canonical forms and drawings. `bigraphs.engine` runs
+whole systems for `bigraphs.exploration` and `bigraphs.simulation`. `bigraphs.notation` reads and writes the notations,
+`bigraphs.exports` writes transition systems. The package does not depend on missions, vehicles, the earth or agents.
 """
 
 import lazy_loader

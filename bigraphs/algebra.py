@@ -15,9 +15,10 @@ EMPTY = Signature()
 
 
 def compose(context: Bigraph, content: Bigraph) -> Bigraph:
-    """Put content into the context's sites, region by region, and join names: context ∘ content.
+    """Return context ∘ content: each region of the content fills a site of the context, and equal names join.
 
-    Raises BigraphError unless the outer face of the content is the inner face of the context.
+    Raises:
+        BigraphError: Unless the outer face of the content is the inner face of the context.
     """
     if context.inner != content.outer:
         hint = "extend one of them with an identity, or use nest"
@@ -44,7 +45,11 @@ def compose(context: Bigraph, content: Bigraph) -> Bigraph:
 
 
 def parallel(*operands: Bigraph) -> Bigraph:
-    """Set side by side, sharing outer names: left || right; linear in all. Inner names must differ."""
+    """Return left || right: the operands side by side, sharing outer names; linear in the total size.
+
+    Raises:
+        BigraphError: If two operands have the same inner name.
+    """
     nodes: list[Node] = []
     sites: list[tuple[Place, ...]] = []
     inner_links: dict[str, Link] = {}
@@ -72,7 +77,7 @@ def parallel(*operands: Bigraph) -> Bigraph:
 def _shifted(
     nodes: int, regions: int, edges: int
 ) -> tuple[Callable[[Place], tuple[Place]], Callable[[Link], Link]]:
-    """Return where places and links go when so many nodes, regions and edges are before them."""
+    """Return the maps of places and links that shift an operand behind this many nodes, regions and edges."""
 
     def places(place: Place) -> tuple[Place]:
         return (place + nodes if place >= 0 else place - regions,)
@@ -84,30 +89,30 @@ def _shifted(
 
 
 def tensor(left: Bigraph, right: Bigraph) -> Bigraph:
-    """Set side by side; raises BigraphError if they share a name: left ⊗ right."""
+    """Return left ⊗ right: both side by side; raises BigraphError if they share a name."""
     _ = left.outer * right.outer
     return parallel(left, right)
 
 
 def merge_product(left: Bigraph, right: Bigraph) -> Bigraph:
-    """Set into one region, sharing outer names: left | right."""
+    """Return left | right: both in one region, sharing outer names."""
     return merged(parallel(left, right))
 
 
 def merged(bigraph: Bigraph) -> Bigraph:
-    """Return all of its regions as one."""
+    """Return the bigraph with all its regions merged into one."""
     return compose(merge(bigraph.regions) * names(bigraph.outer_names), bigraph)
 
 
 def nest(outside: Bigraph, inside: Bigraph) -> Bigraph:
-    """Put inside into outside's sites and share outer names: outside . inside."""
+    """Return outside . inside: fill the sites of `outside` with `inside` and share outer names."""
     if outside.inner_links:
         raise BigraphError("interface", "nesting needs an outside without inner names", "compose instead")
     return compose(parallel(outside, names(inside.outer_names)), inside)
 
 
 def close(bigraph: Bigraph, *closed: str) -> Bigraph:
-    """Make outer names into edges: /x bigraph. Raises BigraphError for a name that it does not have."""
+    """Return /x bigraph: the outer names become edges; raises BigraphError for a missing name."""
     for name in closed:
         if name not in bigraph.outer_names:
             raise BigraphError("closure", f"there is no outer name '{name}' to close")
@@ -117,7 +122,7 @@ def close(bigraph: Bigraph, *closed: str) -> Bigraph:
 
 
 def rename(bigraph: Bigraph, renaming: Mapping[str, str]) -> Bigraph:
-    """Give outer names other names; two that become one are joined."""
+    """Return the bigraph with renamed outer names; two names that become equal are joined."""
     grouped: dict[str, list[str]] = {}
     for name in bigraph.outer_names:
         grouped.setdefault(renaming.get(name, name), []).append(name)
@@ -126,7 +131,7 @@ def rename(bigraph: Bigraph, renaming: Mapping[str, str]) -> Bigraph:
 
 
 def lean(bigraph: Bigraph) -> Bigraph:
-    """Return it without its idle edges."""
+    """Return the bigraph without its idle edges."""
     used = sorted(
         {link for node in bigraph.nodes for link in node.ports if isinstance(link, int)}.union(
             link for _, link in bigraph.inner_links if isinstance(link, int)
@@ -158,18 +163,18 @@ def identity(interface: Interface) -> Bigraph:
 
 
 def names(kept: Iterable[str]) -> Bigraph:
-    """Return the identity of link names."""
+    """Return the identity on these link names."""
     kept = sorted(set(kept))
     return assemble(EMPTY, (), regions=0, inner_links={name: name for name in kept}, outer_names=kept)
 
 
 def placing(parents: Iterable[Iterable[int]], regions: int) -> Bigraph:
-    """Return sites, each in the regions given (more than one is sharing): merges, permutations, splits."""
+    """Return a placing: sites, each with its regions (several mean sharing). It can merge, permute and split."""
     return assemble(EMPTY, (), regions=regions, sites=[[~region for region in within] for within in parents])
 
 
 def merge(width: int) -> Bigraph:
-    """Return that many sites in one region; `merge(0)` is the empty region 1."""
+    """Return `width` sites in one region; `merge(0)` is the empty region 1."""
     return placing([{0}] * width, 1)
 
 
@@ -185,17 +190,17 @@ def closure(name: str) -> Bigraph:
 
 
 def substitution(outer: str, inner: Iterable[str]) -> Bigraph:
-    """Return y/{x, ...}: inner names joined to one outer name, idle if there are none."""
+    """Return y/{x, ...}: inner names joined to one outer name, which is idle without inner names."""
     return assemble(EMPTY, (), regions=0, inner_links=dict.fromkeys(inner, outer), outer_names=(outer,))
 
 
 def ion(signature: Signature, control: str, links: Iterable[str] = (), name: str | None = None) -> Bigraph:
-    """Return one node with a site in it, its ports linked to outer names."""
+    """Return one node that contains a site, with its ports linked to outer names."""
     ports = tuple(links)
     return assemble(signature, [Node(control, name, ports)], sites=[(0,)], outer_names=ports)
 
 
 def atom(signature: Signature, control: str, links: Iterable[str] = (), name: str | None = None) -> Bigraph:
-    """Return one node with nothing in it, its ports linked to outer names."""
+    """Return one empty node, with its ports linked to outer names."""
     ports = tuple(links)
     return assemble(signature, [Node(control, name, ports)], outer_names=ports)

@@ -1,9 +1,9 @@
 """Concrete bigraphs: a place graph and a link graph over the same nodes, as one immutable value.
 
-Places are numbered: a node counts from 0, and region `r` is `~r` (-1, -2, ...), so that a parent is one
-integer. A link is the number of an edge or, as a string, an outer name. A node may have several parents: that
-is sharing (Sevegnani and Calder). A site may have none; what is put into it needs a parent of its own. A name
-identifies its node; nodes without a name, and all edges, are anonymous.
+Places are integers: node `n` is place `n`, region `r` is place `~r` (-1, -2, ...). A link is the number of an edge or,
+as a string, an outer name. A node with several parents is shared (Sevegnani and Calder). A site may have no parent; the
+content of such a site must have a parent of its own. A name identifies its node; nodes without a name, and all edges,
+are anonymous.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ Place: TypeAlias = int
 Link: TypeAlias = int | str
 
 MOST_DRAWN: Final = 200
-"""The most nodes of a bigraph that notebooks draw by themselves."""
+"""The largest number of nodes that notebooks draw automatically."""
 
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """One node: its control, its name if it has one, the link of each port, and its parents."""
+    """A node: its control, its optional name, the link of each port, and its parents."""
 
     control: str
     name: str | None = None
@@ -41,9 +41,9 @@ class Node:
 class Bigraph:
     """A bigraph in normal order; build it with `assemble`, `from_relations`, the algebra or a notation.
 
-    `sites` holds the parents of each site, `inner_links` the link of each inner name, sorted. Two bigraphs
-    whose nodes all have names are equal if they are the same bigraph; for anonymous nodes compare `canonical`
-    forms. The operators are `|` merge product, `//` parallel product, `*` tensor product, `@` composition.
+    `sites` holds the parents of each site; `inner_links` the link of each inner name, sorted. Use `==` only if all
+    nodes have names, else compare `canonical` forms. The operators are `|` merge product, `//` parallel product, `*`
+    tensor product, `@` composition.
     """
 
     signature: Signature
@@ -59,31 +59,31 @@ class Bigraph:
 
     @property
     def inner(self) -> Interface:
-        """Return the face that sites and inner names make."""
+        """Return the inner face: the sites and the inner names."""
         return Interface(len(self.sites), tuple(name for name, _ in self.inner_links))
 
     @property
     def outer(self) -> Interface:
-        """Return the face that regions and outer names make."""
+        """Return the outer face: the regions and the outer names."""
         return Interface(self.regions, self.outer_names)
 
     def __or__(self, other: Bigraph) -> Bigraph:
-        from bigraphs.algebra import merge_product  # noqa: PLC0415 - the algebra is built on values
+        from bigraphs.algebra import merge_product  # noqa: PLC0415 - the algebra imports this module
 
         return merge_product(self, other)
 
     def __floordiv__(self, other: Bigraph) -> Bigraph:
-        from bigraphs.algebra import parallel  # noqa: PLC0415 - the algebra is built on values
+        from bigraphs.algebra import parallel  # noqa: PLC0415 - the algebra imports this module
 
         return parallel(self, other)
 
     def __mul__(self, other: Bigraph) -> Bigraph:
-        from bigraphs.algebra import tensor  # noqa: PLC0415 - the algebra is built on values
+        from bigraphs.algebra import tensor  # noqa: PLC0415 - the algebra imports this module
 
         return tensor(self, other)
 
     def __matmul__(self, other: Bigraph) -> Bigraph:
-        from bigraphs.algebra import compose  # noqa: PLC0415 - the algebra is built on values
+        from bigraphs.algebra import compose  # noqa: PLC0415 - the algebra imports this module
 
         return compose(self, other)
 
@@ -94,18 +94,21 @@ class Bigraph:
         )
 
     def _repr_svg_(self) -> str | None:
-        from bigraphs.drawing import bigraph_svg  # noqa: PLC0415 - drawing is built on values
+        from bigraphs.drawing import bigraph_svg  # noqa: PLC0415 - drawing imports this module
 
         return bigraph_svg(self) if len(self.nodes) <= MOST_DRAWN else None
 
     def __str__(self) -> str:
-        from bigraphs.text import draw_text  # noqa: PLC0415 - drawing is built on values
+        from bigraphs.text import draw_text  # noqa: PLC0415 - drawing imports this module
 
         return draw_text(self)
 
 
 def relabelled(bigraph: Bigraph, controls: Mapping[str, str], signature: Signature) -> Bigraph:
-    """Return it with other controls, of the same arity, status and order of ports: so it needs no new check."""
+    """Return the bigraph with other controls.
+
+    Each new control has the arity, the status and the port order of the old one, so the result needs no check.
+    """
     nodes = [
         Node(controls[node.control], node.name, node.ports, node.parents)
         if node.control in controls
@@ -116,7 +119,7 @@ def relabelled(bigraph: Bigraph, controls: Mapping[str, str], signature: Signatu
 
 
 def _with(bigraph: Bigraph, **parts: object) -> Bigraph:
-    """Return it with other parts that are known to make a bigraph: they are not checked."""
+    """Return the bigraph with other parts, without a check: the caller guarantees a valid bigraph."""
     found = object.__new__(Bigraph)
     for name in Bigraph.__slots__:
         object.__setattr__(found, name, parts[name] if name in parts else getattr(bigraph, name))
@@ -129,7 +132,7 @@ def link_key(link: Link) -> tuple[bool, Link]:
 
 
 def find(bigraph: Bigraph, name: str) -> int | None:
-    """Return the number of the node so named, or None."""
+    """Return the number of the node with this name, or None."""
     return next((number for number, node in enumerate(bigraph.nodes) if node.name == name), None)
 
 
@@ -152,7 +155,7 @@ def sites_in(bigraph: Bigraph) -> dict[Place, list[int]]:
 
 
 def points(bigraph: Bigraph) -> dict[Link, list[tuple[int, int]]]:
-    """Return the (node, port) pairs on each link, sorted; idle links have an empty list."""
+    """Return the (node, port) pairs on each link, sorted; the list of an idle link is empty."""
     found: dict[Link, list[tuple[int, int]]] = {link: [] for link in links(bigraph)}
     for number, node in enumerate(bigraph.nodes):
         for port, link in enumerate(node.ports):
@@ -171,7 +174,7 @@ def moved(node: Node, places: Callable[[Place], Iterable[Place]], links: Callabl
     return Node(node.control, node.name, tuple(map(links, node.ports)), parents)
 
 
-def assemble(  # noqa: PLR0913 - the parts of a bigraph, by keyword
+def assemble(  # noqa: PLR0913 - keyword arguments, one for each part of a bigraph
     signature: Signature,
     nodes: Sequence[Node],
     *,
@@ -181,10 +184,13 @@ def assemble(  # noqa: PLR0913 - the parts of a bigraph, by keyword
     inner_links: Mapping[str, Link] | None = None,
     outer_names: Iterable[str] = (),
 ) -> Bigraph:
-    """Return the bigraph in normal order; raises BigraphError if it is none.
+    """Return the bigraph in normal order.
 
-    Named nodes come first, sorted by name; anonymous ones follow in the order given. Parents are sorted, and
-    edges are numbered by their points, so that the order in which a bigraph was put together leaves no trace.
+    Named nodes come first, sorted by name; anonymous nodes follow in the given order. Parents are sorted. Edges are
+    numbered by their points, so the result does not depend on the order of construction.
+
+    Raises:
+        BigraphError: If the parts do not form a bigraph.
     """
     given = Bigraph(
         signature,
@@ -203,7 +209,7 @@ def _name_key(node: Node, number: int) -> tuple[bool, str, int]:
 
 
 def normal(bigraph: Bigraph, order: Sequence[int]) -> Bigraph:
-    """Return the same bigraph with its nodes in this order, and everything else sorted."""
+    """Return the same bigraph with its nodes in this order, and all other parts sorted."""
     rank = {number: place for place, number in enumerate(order)}
     edge_rank = _edge_ranks(bigraph, rank)
 
@@ -243,11 +249,11 @@ def _edge_ranks(bigraph: Bigraph, rank: Mapping[int, int]) -> dict[int, int]:
     return {edge: place for place, edge in enumerate(by_points)}
 
 
-# --- what makes a bigraph one: each way to fail has its own message
+# --- validity: each condition has its own message
 
 
 def check(bigraph: Bigraph) -> None:
-    """Raise BigraphError at the first thing that makes this no bigraph; linear in its size."""
+    """Raise BigraphError for the first violated condition of a bigraph; linear in its size."""
     _check_counts(bigraph)
     _check_names(bigraph)
     for node in bigraph.nodes:
@@ -329,7 +335,7 @@ def _check_acyclic(bigraph: Bigraph) -> None:
             if parent >= 0:
                 below[parent].append(number)
     free = [number for number, count in enumerate(waiting) if count == 0]
-    for number in free:  # grows while it is walked
+    for number in free:  # the list grows during the loop
         for child in below[number]:
             waiting[child] -= 1
             if waiting[child] == 0:
@@ -339,7 +345,7 @@ def _check_acyclic(bigraph: Bigraph) -> None:
 
 
 def _cycle(bigraph: Bigraph, waiting: list[int]) -> BigraphError:
-    """Walk parents that never became free until one repeats."""
+    """Return the error that names a cycle: follow blocked parents until one repeats."""
     number = next(number for number, count in enumerate(waiting) if count > 0)
     path: list[int] = []
     while number not in path:

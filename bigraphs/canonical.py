@@ -1,9 +1,10 @@
 """Equality up to renaming: an exact canonical form by colour refinement and individualisation.
 
-Named nodes are fixed points. Anonymous nodes are coloured by what they are and touch; where colours leave a
-tie, each tied node is tried, and the least encoding wins. Ties that a symmetry explains are tried once: equal
-subtrees side by side are told apart at the start, and a symmetry found at a leaf prunes what it maps to what
-was seen (McKay). The worst case is exponential, on large strongly regular link graphs.
+Named nodes are fixed points. The first colour of an anonymous node comes from its own control, ports and places;
+refinement adds the colours of its neighbours. If a tie remains, the search individualises each tied node, and the least
+encoding wins. Two kinds of symmetry reduce the search (McKay). Equal subtrees in one place get different colours at the
+start. A symmetry found at a leaf prunes branches that it maps to earlier branches. The worst case is exponential, on
+large strongly regular link graphs.
 """
 
 from __future__ import annotations
@@ -13,11 +14,11 @@ from typing import Any, TypeAlias
 
 from bigraphs.bigraph import Bigraph, Link, children, link_key, normal, sites_in
 
-_Key: TypeAlias = Any  # nested tuples of integers and strings, alike in shape wherever they are compared
+_Key: TypeAlias = Any  # nested tuples of integers and strings; compared values have the same shape
 
 
 def canonical(bigraph: Bigraph) -> Bigraph:
-    """Return the representative of all bigraphs that differ from this one in the order of anonymous nodes only."""
+    """Return the representative of all bigraphs that differ only in the order of anonymous nodes and edges."""
     anonymous = sum(node.name is None for node in bigraph.nodes)
     if anonymous < 2:
         return bigraph
@@ -25,7 +26,7 @@ def canonical(bigraph: Bigraph) -> Bigraph:
 
 
 def equal(one: Bigraph, other: Bigraph) -> bool:
-    """Say whether two bigraphs are the same up to renaming of anonymous nodes and edges."""
+    """Return whether two bigraphs are equal up to renaming of anonymous nodes and edges."""
     return one == other or (_outline(one) == _outline(other) and canonical(one) == canonical(other))
 
 
@@ -51,7 +52,7 @@ class _Search:
         return self.best
 
     def visit(self, colours: list[int], path: list[int]) -> int:
-        """Search below one node of the tree; return the depth at which the search is to go on."""
+        """Search below one node of the tree; return the depth at which the search continues."""
         cell = _first_tie(colours, len(self.bigraph.nodes))
         if not cell:
             return self.leaf(sorted(range(len(self.bigraph.nodes)), key=colours.__getitem__), path)
@@ -76,12 +77,12 @@ class _Search:
         return len(path)
 
     def seen_by_symmetry(self, number: int, tried: list[int], path: list[int]) -> bool:
-        """Say whether symmetries that fix the path map a tried node to this one."""
+        """Return whether symmetries that fix the path map a tried node to this one."""
         if not tried:
             return False
         fixing = [symmetry for symmetry in self.symmetries if all(symmetry[step] == step for step in path)]
         orbit, waiting = {number}, [number]
-        for member in waiting:  # grows while it is walked; inverses are powers, as the group is finite
+        for member in waiting:  # the list grows during the loop; inverses are powers, as the group is finite
             for symmetry in fixing:
                 if symmetry[member] not in orbit:
                     orbit.add(symmetry[member])
@@ -90,7 +91,7 @@ class _Search:
 
 
 class _Neighbours:
-    """What a node or an edge touches, for refinement; edges are numbered after the nodes."""
+    """The neighbours of each node and edge, for refinement; edges are numbered after the nodes."""
 
     def __init__(self, bigraph: Bigraph) -> None:
         self.bigraph = bigraph
@@ -104,7 +105,7 @@ class _Neighbours:
                     self.edge_points[link].append((number, port if self.ordered[number] else 0))
 
     def start(self) -> list[int]:
-        """Colour nodes by what they are, edges by their inner names; equal twins get different colours."""
+        """Return the first colours: nodes by control, ports and places, edges by inner names; twins differ."""
         below, twin = sites_in(self.bigraph), _twin_ranks(self.bigraph, self.children)
         first: list[_Key] = []
         for number, node in enumerate(self.bigraph.nodes):
@@ -124,7 +125,7 @@ class _Neighbours:
         return nodes + [rank + self.size for rank in _ranks(within)]
 
     def refine(self, colours: list[int]) -> list[int]:
-        """Split colours by the colours around, until nothing splits."""
+        """Split colours by the colours of neighbours until they are stable."""
         count = len(set(colours))
         while True:
             nodes = _ranks([self._node_row(number, colours) for number in range(self.size)])
@@ -150,7 +151,7 @@ class _Neighbours:
 
 
 def _twin_ranks(bigraph: Bigraph, below: dict[int, list[int]]) -> list[int]:
-    """Number equal anonymous subtrees in one place: exchanging them is a symmetry, so any order is as good."""
+    """Number equal anonymous subtrees in one place: exchanging two is a symmetry, so any order is correct."""
     shapes: dict[_Key, int] = {}
     shape = [0] * len(bigraph.nodes)
     rank = [0] * len(bigraph.nodes)
@@ -172,7 +173,7 @@ def _top_down(bigraph: Bigraph, below: dict[int, list[int]]) -> list[int]:
     waiting = [len(node.parents) for node in bigraph.nodes]
     order: list[int] = []
     places = list(range(-bigraph.regions, 0))
-    for place in places:  # grows while it is walked
+    for place in places:  # the list grows during the loop
         for child in below[place]:
             waiting[child] -= 1
             if waiting[child] == 0:
@@ -199,7 +200,7 @@ def _first_tie(colours: list[int], size: int) -> list[int]:
 
 
 def _single_out(colours: list[int], number: int) -> list[int]:
-    """Give one node a colour of its own, just before those that it was tied with."""
+    """Give one node its own colour, just before the nodes that it was tied with."""
     chosen = colours[number]
     return [2 * colour + (colour == chosen and place != number) for place, colour in enumerate(colours)]
 

@@ -1,4 +1,4 @@
-"""Long lists kept small: texts one after the other, and values of which few are distinct."""
+"""Compact lists: texts in one buffer, and columns with few distinct values."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ _WIDER: Final = {"B": "H", "H": "I"}
 
 
 class Column(Sequence[Value]):
-    """A list of values of which few are distinct: each of these is kept once, and the list has their numbers.
+    """A list with few distinct values: it stores each distinct value once and a code for each position.
 
     Attributes:
-        values: The distinct values, in the order in which they first came.
-        codes: For each place in the list which of them is there.
+        values: The distinct values, in order of first occurrence.
+        codes: For each position the index of its value in `values`.
     """
 
     __slots__ = ("_numbers", "codes", "values")
@@ -33,7 +33,7 @@ class Column(Sequence[Value]):
         self._put(self.code(value))
 
     def extend(self, other: Column[Value], count: int) -> None:
-        """Add the first values of another list."""
+        """Add the first `count` values of another list."""
         codes = [self.code(value) for value in other.values]
         for code in other.codes[:count]:
             self._put(codes[code])
@@ -46,7 +46,7 @@ class Column(Sequence[Value]):
             self.codes.append(code)
 
     def code(self, value: Value) -> int:
-        """Return the number of a value, which need not be in the list."""
+        """Return the code of a value; a new value gets the next code."""
         code = self._numbers.get(value)
         if code is None:
             code = self._numbers[value] = len(self.values)
@@ -68,11 +68,11 @@ class Column(Sequence[Value]):
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Column) and list(self) == list(other)
 
-    __hash__ = None  # type: ignore[assignment]  # it grows
+    __hash__ = None  # type: ignore[assignment]  # mutable
 
 
 class Texts(Sequence[bytes]):
-    """A list of texts, which are kept one after the other."""
+    """A list of byte strings, stored in one buffer."""
 
     __slots__ = ("ends", "whole")
 
@@ -103,23 +103,26 @@ class Texts(Sequence[bytes]):
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Texts) and (self.whole, self.ends) == (other.whole, other.ends)
 
-    __hash__ = None  # type: ignore[assignment]  # it grows
+    __hash__ = None  # type: ignore[assignment]  # mutable
 
 
 class Numbering:
-    """Texts numbered from 0 as they first came: an exact hash table of their numbers alone, open, at most half full."""
+    """Texts numbered from 0 in order of first occurrence.
+
+    The index is an open hash table of their numbers alone. It is exact and at most half full.
+    """
 
     __slots__ = ("_places", "texts")
 
     def __init__(self) -> None:
         self.texts = Texts()
-        self._places = array("I", bytes(4 * 64))  # a number and 1; 0 where none is
+        self._places = array("I", bytes(4 * 64))  # the number plus 1; 0 marks an empty cell
 
     def __len__(self) -> int:
         return len(self.texts)
 
     def find(self, text: bytes) -> int:
-        """Return the number of a text, -1 if it has none."""
+        """Return the number of a text, or -1 if it has none."""
         places, whole, ends = self._places, self.texts.whole, self.texts.ends
         last = len(places) - 1
         place = hash(text) & last
@@ -130,7 +133,7 @@ class Numbering:
         return -1
 
     def add(self, text: bytes) -> int:
-        """Give a text that has none the next number."""
+        """Give a new text the next number and return it; the caller has checked that the text has none."""
         if 2 * len(self.texts) >= len(self._places):
             self._grow()
         self.texts.append(text)

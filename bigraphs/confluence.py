@@ -1,8 +1,8 @@
-"""Whether the order of instantaneous rules decides what becomes of a state.
+"""Whether the result depends on the order of instantaneous rules.
 
-Of an instantaneous class the first rule that can be applied is, again and again. The class is confluent if any other
-order ends in the same states; then its order says nothing. Here the first states of a system are looked at, and in
-each of them every order.
+A run applies the first applicable rule of an instantaneous class, repeatedly. The class is confluent if every other
+order ends in the same states; then the order of its rules has no effect. The search tries all orders in the first
+states of a system, up to a limit.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ from bigraphs.errors import BigraphError
 from bigraphs.system import PriorityClass, System
 
 _UNKNOWN: Final = b"?"
-"""Where a run ends that is not known yet; no form of a state."""
+"""The outcome of a run that is not yet known; it is not the form of any state."""
 MOST_REACTIONS: Final = 1_000
-"""How many reactions are tried before the search for another outcome is given up."""
+"""The number of tried reactions at which the search gives up."""
 
 
 class Way(NamedTuple):
-    """A rule by which one goes on from a state, and the state in which that ends."""
+    """The first rule of a run from a state, and the final state of that run."""
 
     rule: str
     outcome: Bigraph
@@ -36,7 +36,10 @@ class Way(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Divergence:
-    """A state in which the order of an instantaneous class matters; `taken` is the way of a run, `other` another."""
+    """A state in which the order of an instantaneous class matters.
+
+    `taken` is the first rule and the outcome of a run; `other` is an alternative with another outcome.
+    """
 
     rules: PriorityClass
     state: Bigraph
@@ -46,30 +49,30 @@ class Divergence:
 
 @dataclass(frozen=True, slots=True)
 class Orders:
-    """What was seen of the orders of instantaneous rules; `complete` says whether all were tried in all states."""
+    """The result of the search; `complete` is whether it tried every order in every state."""
 
     divergence: Divergence | None
     complete: bool
 
 
 def compare_orders(system: System, most: int = MOST_REACTIONS) -> Orders:
-    """Look for two orders of an instantaneous class with two outcomes, in the first states of a system."""
+    """Search the first states of a system for two orders of an instantaneous class with different outcomes."""
     if not any(each.instantaneous for each in system.classes):
         return Orders(None, complete=True)
     search = _Search(Machine(system), most)
     try:
         found = next(search.divergences(), None)
-    except (_Enough, BigraphError):  # what is wrong with an order is said by the run that takes it
+    except (_Enough, BigraphError):  # the run that takes a faulty order reports the error
         return Orders(None, complete=False)
     return Orders(found, complete=found is None)
 
 
 class _Enough(Exception):
-    """Ends a search that has tried as many reactions as it may."""
+    """Ends a search at its limit of reactions."""
 
 
 class _Choice(NamedTuple):
-    """What a rule of a class makes of a state, and that class."""
+    """A rule of a class, the number of the class, and the state that the rule leads to."""
 
     rule: str
     number: int
@@ -77,12 +80,12 @@ class _Choice(NamedTuple):
 
 
 _Seen: TypeAlias = tuple[int | None, Key]
-"""A state by its canonical form, and the class that is under way in it."""
+"""A state by its canonical form, and the class that runs in it."""
 
 
 @dataclass(slots=True)
 class _Frame:
-    """A state on the way down: the choices that are left in it, the one that was taken last, and where each ended."""
+    """A state on the current path: its remaining choices, the last choice, and the outcome of each earlier one."""
 
     seen: _Seen
     spot: Spot
@@ -91,17 +94,17 @@ class _Frame:
     ends: list[tuple[_Choice, Key]] = field(default_factory=list)
 
     def note(self, end: Key | None) -> None:
-        """Note where the choice that was taken last ends, if it ends."""
+        """Record the outcome of the last choice, if it terminates."""
         if end is not None and self.by is not None:
             self.ends.append((self.by, end))
 
 
 class _Search:
-    """One search.
+    """A search for divergences.
 
     Attributes:
-        ends: For each state that was seen the form of the state in which a run from it ends, None if it does not.
-        settled: Those states, by their forms.
+        ends: The form of the final state for each visited state; None for a run without end.
+        settled: The final states, by their forms.
     """
 
     def __init__(self, machine: Machine, most: int) -> None:
@@ -110,7 +113,7 @@ class _Search:
         self.settled: dict[Key, Spot] = {}
 
     def divergences(self) -> Iterator[Divergence]:
-        """Yield divergences, of the states that are reached first first."""
+        """Yield divergences, in breadth-first order of their states."""
         waiting = deque([self.machine.first()])
         expanded: set[Key] = set()
         while waiting:
@@ -123,9 +126,9 @@ class _Search:
                     waiting += self.machine.results(spot, reaction, [found])
 
     def orders(self, start: Spot) -> Generator[Divergence, None, Key | None]:
-        """Yield the states after this one in which the order matters, depth first; return in which a run ends.
+        """Yield divergences after this state, depth first; return the form of the final state of a run.
 
-        The first of them is a last one: each of its rules leads on to one outcome.
+        The first divergence is minimal: each of its rules leads to exactly one outcome.
         """
         path: list[_Frame] = []
         if (ended := self.enter(start, None, path)) is not _UNKNOWN:
@@ -147,7 +150,7 @@ class _Search:
             path[-1].note(ended)
 
     def enter(self, spot: Spot, number: int | None, path: list[_Frame]) -> Key | None:
-        """Return where a run from a state ends; if that is not known yet, put the state on the path, and say so."""
+        """Return the outcome of a run from a state; if unknown, push the state on the path and return `_UNKNOWN`."""
         seen = number, self.machine.labelling.canonical(spot.state)
         if seen in self.ends:
             return self.ends[seen]
@@ -157,12 +160,12 @@ class _Search:
             self.ends[seen] = seen[1]
             self.settled.setdefault(seen[1], spot)
             return seen[1]
-        self.ends[seen] = None  # as long as it is under way: what returns to it has no end
+        self.ends[seen] = None  # while the state is on the path: a run that returns to it has no end
         path.append(_Frame(seen, spot, chain((first,), choices)))
         return _UNKNOWN
 
     def choices(self, spot: Spot, number: int | None) -> Iterator[_Choice]:
-        """Yield what each rule makes of a state, that first which a run takes; the class under way goes on first."""
+        """Yield the results of each rule in a state, the choice of a run first; the running class continues first."""
         classes = self.machine.classes
         if number is None or not any(True for _ in spot.enabled(classes[number][0])):
             number = self.machine.urgent(spot)

@@ -13,11 +13,10 @@ from bigraphs.matching import Match
 
 @dataclass(frozen=True, slots=True)
 class Parts:
-    """What a match leaves around its redex.
+    """The decomposition of a target at a match.
 
-    The first regions of `parameter` go into the redex's sites; the `spare` ones after them (only shared
-    places need any) and the names `wires` pass by the redex into `context`. `instance` is the redex with the
-    target's node names.
+    The first regions of `parameter` fill the redex's sites. The next `spare` regions, which only shared places need,
+    and the names `wires` go past the redex into `context`. `instance` is the redex with the target's node names.
     """
 
     context: Bigraph
@@ -28,7 +27,7 @@ class Parts:
 
     @property
     def beside(self) -> Bigraph:
-        """Return the identity that stands beside the redex."""
+        """Return the identity beside the redex."""
         return identity(Interface(self.spare, self.wires))
 
 
@@ -48,12 +47,12 @@ def take_apart(match: Match) -> Parts:
 
 
 def recompose(parts: Parts) -> Bigraph:
-    """Put context, redex and parameter together again: the target."""
+    """Return the target: the composition of context, redex and parameter."""
     return compose(parts.context, compose(tensor(parts.instance, parts.beside), parts.parameter))
 
 
 def _inside(match: Match) -> list[int]:
-    """Return the nodes in the sites, sorted."""
+    """Return the nodes inside the sites, sorted."""
     below = children(match.target)
     found = {number for tops in match.sites for number in tops}
     waiting = list(found)
@@ -65,7 +64,7 @@ def _inside(match: Match) -> list[int]:
 
 
 def _spare_places(match: Match, inside: Sequence[int], number: int) -> list[Place]:
-    """Return the places of a node that are in the context, and that no site of the redex accounts for."""
+    """Return the parents of a node that lie in the context and that no site of the redex covers."""
     accounted = {*inside, *match.nodes}
     for site, tops in enumerate(match.sites):
         if number in tops:
@@ -75,7 +74,7 @@ def _spare_places(match: Match, inside: Sequence[int], number: int) -> list[Plac
 
 
 def _wires(match: Match, inside: Sequence[int]) -> dict[Link, str]:
-    """Give each link of the parameter a name that the redex does not have."""
+    """Return a name for each link of the parameter; no name occurs in the redex."""
     linked = dict.fromkeys(link for number in inside for link in match.target.nodes[number].ports)
     taken = set(match.redex.outer_names)
     fresh = (name for name in map("w{}".format, range(len(linked) + len(taken))) if name not in taken)
@@ -101,7 +100,7 @@ def _instance(match: Match) -> Bigraph:
 def _context(
     match: Match, outside: Sequence[int], spares: Sequence[Sequence[Place]], wires: Mapping[Link, str]
 ) -> Bigraph:
-    """Return what is around the redex; it owns every edge that the redex does not."""
+    """Return the part around the redex; it owns every edge that the redex does not match."""
     target = match.target
     rank = {number: place for place, number in enumerate(outside)}
     matched = {image for link, image in match.links if isinstance(link, int)}
@@ -130,7 +129,7 @@ def _context(
 def _parameter(
     match: Match, inside: Sequence[int], spares: Sequence[int], wires: Mapping[Link, str]
 ) -> Bigraph:
-    """Return what is in the sites, one region each, then one region per node that is in the context, too."""
+    """Return the content of the sites, a region for each, then a region for each node that the context also holds."""
     rank = {number: place for place, number in enumerate(inside)}
     regions: dict[int, list[Place]] = {number: [] for number in inside}
     for site, tops in enumerate(match.sites):

@@ -19,7 +19,7 @@ from bigraphs.obstacles import Point
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Fill, border and text of a kind of node; kinds take them in alphabetical order.
+# Fill, border and text colours of the kinds of node, assigned in alphabetical order.
 KINDS: Final = (
     ("#e8f1fd", "#4f86c6", "#1d4470"),
     ("#e9f7ee", "#4fa672", "#1d5635"),
@@ -45,11 +45,10 @@ def draw_bigraph(
     highlight: frozenset[str] = frozenset(),
     title: str | None = None,
 ) -> Axes:
-    """Draw into matplotlib axes, new ones if none are given, and return them.
+    """Draw into matplotlib axes, new ones by default, and return them.
 
-    Everything scales with the axes as they are placed now, so labels always fit. `highlight` holds node and link
-    names. A *ghost*, dashed, stands for a node in its further places; in a large picture one box stands for nodes that
-    are alike.
+    The text scales with the present size of the axes, so labels always fit. `highlight` holds node and link names. A
+    dashed *ghost* stands for a node in its further places. In a large picture one box stands for several similar nodes.
     """
     return draw_layout(layout(bigraph, highlight), axes, highlight=highlight, title=title)
 
@@ -61,7 +60,7 @@ def draw_layout(
     highlight: frozenset[str] = frozenset(),
     title: str | None = None,
 ) -> Axes:
-    """Draw a layout as `draw_bigraph` does."""
+    """Draw a layout like `draw_bigraph`."""
     axes = axes if axes is not None else _new_axes(plan, title)
     axes.set_xlim(-MARGIN, plan.width + MARGIN)
     axes.set_ylim(plan.height + MARGIN, -MARGIN - _head(title))
@@ -77,7 +76,7 @@ def draw_layout(
 def save_bigraph(
     bigraph: Bigraph, path: str | Path, *, highlight: frozenset[str] = frozenset(), title: str | None = None
 ) -> None:
-    """Write a picture as the name says, `.svg` or `.png`; the same bigraph gives the same bytes."""
+    """Write a picture as `.svg` or `.png`, by the suffix; equal bigraphs give equal bytes."""
     kind = Path(path).suffix.lower().lstrip(".")
     if kind not in ("svg", "png"):
         raise BigraphError(
@@ -87,14 +86,14 @@ def save_bigraph(
 
 
 def bigraph_svg(bigraph: Bigraph) -> str:
-    """Return a picture as SVG that is as wide as a notebook's page at the most."""
+    """Return a picture as SVG, at most as wide as a notebook page."""
     written = BytesIO()
     _save(bigraph, written, "svg", frozenset(), None)
     return fitting(written.getvalue().decode())
 
 
 def fitting(svg: str) -> str:
-    """Return an SVG that shrinks with the page that it is in.
+    """Return the SVG with a width that shrinks with its page.
 
     >>> fitting('<svg width="96pt" height="72pt" viewBox="0 0 96 72">')
     '<svg style="width:100%;max-width:96pt;height:auto" viewBox="0 0 96 72">'
@@ -107,7 +106,7 @@ def _save(
     bigraph: Bigraph, target: str | Path | BytesIO, kind: str, highlight: frozenset[str], title: str | None
 ) -> None:
     import matplotlib as mpl  # noqa: PLC0415 - a picture is worth the wait, an import is not
-    from matplotlib.figure import Figure  # noqa: PLC0415 - the same
+    from matplotlib.figure import Figure  # noqa: PLC0415 - a picture is worth the wait, an import is not
 
     with mpl.rc_context({"svg.hashsalt": "bigraphs", "svg.fonttype": "none"}):
         axes = draw_bigraph(bigraph, highlight=highlight, title=title)
@@ -118,7 +117,7 @@ def _save(
 
 
 def names_id(names: Sequence[str]) -> str:
-    """Return the id, in an SVG, of the text that stands for several names."""
+    """Return the SVG id of the text that stands for several names."""
     return f"names:{', '.join(names)}"
 
 
@@ -136,7 +135,7 @@ def _head(title: str | None) -> float:
 
 
 def _scale(axes: Axes, plan: Layout, title: str | None) -> float:
-    """Return how many points of paper a point of the layout takes."""
+    """Return the number of paper points per layout point."""
     figure = axes.get_figure(root=True)
     width, height = figure.get_size_inches() if figure is not None else (1.0, 1.0)
     frame = axes.get_position()
@@ -145,7 +144,7 @@ def _scale(axes: Axes, plan: Layout, title: str | None) -> float:
 
 
 class _Pen:
-    """What every stroke needs to know."""
+    """The axes, colours and scale of a drawing, and its strokes."""
 
     def __init__(self, axes: Axes, shown: Folded, scale: float, highlight: frozenset[str]) -> None:
         self.axes, self.shown, self.scale, self.highlight = axes, shown, scale, highlight
@@ -201,7 +200,7 @@ class _Pen:
             self.rounded(glow, 9, depth, facecolor=HIGHLIGHT, edgecolor="none", alpha=0.28, linewidth=0)
         edge, width = (HIGHLIGHT, 2.0) if lit else (border, 1.3)
         self.rounded(box, 7, depth, facecolor=fill, edgecolor=edge, linewidth=width)
-        if folded := number in self.shown.members:  # a second box peeps out
+        if folded := number in self.shown.members:  # the edge of a second box shows behind
             behind = Box(box.x + 3, box.y + 3, box.width, box.height)
             self.rounded(behind, 7, depth - 5e-5, facecolor=fill, edgecolor=border, linewidth=1.0)
         x, side = (box.x + PAD, "left") if holding else (box.centre[0], "center")

@@ -1,4 +1,4 @@
-"""Errors of a user of bigraphs, as data."""
+"""Errors for users of bigraphs, as data."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 
 class BigraphError(ValueError):
-    """A mistake in a bigraph, a rule or a text of one: what was found and expected, and what to do.
+    """A mistake in a bigraph, in a rule or in their text: the finding, the expectation and a remedy.
 
     `code` is a stable word for the kind of mistake (`arity`, `interface`, `syntax`, ...).
     """
@@ -22,9 +22,9 @@ class BigraphError(ValueError):
 
 
 class NotationError(BigraphError):
-    """A mistake at a place in a text; `offset` and `length` count characters of `text`.
+    """A mistake at a position in a text; `offset` and `length` count characters of `text`.
 
-    Where a text has several, this is the first, and `mistakes` has them all, sorted by position.
+    If a text has several mistakes, this is the first; `mistakes` holds all of them, sorted by position.
     """
 
     def __init__(
@@ -38,7 +38,7 @@ class NotationError(BigraphError):
 
     @classmethod
     def of(cls, mistakes: Iterable[NotationError]) -> NotationError:
-        """Return the first of some mistakes, knowing the others."""
+        """Return the first of several mistakes, with all of them as its `mistakes`."""
         ordered = sorted(mistakes, key=lambda mistake: (mistake.offset, mistake.code, mistake.message))
         first = ordered[0]
         found = cls(first.code, first.message, first.text, first.offset, length=first.length, hint=first.hint)
@@ -47,16 +47,16 @@ class NotationError(BigraphError):
 
     @property
     def line(self) -> int:
-        """Count lines from 1."""
+        """Return the line number, counted from 1."""
         return self.text.count("\n", 0, self.offset) + 1
 
     @property
     def column(self) -> int:
-        """Count characters of the line from 1."""
+        """Return the column in characters, counted from 1."""
         return self.offset - (self.text.rfind("\n", 0, self.offset) + 1) + 1
 
     def render(self, source: str = "<text>") -> str:
-        """Return the mistakes, each as a block with the line it is in and a caret beneath."""
+        """Return a block for each mistake: the message, its line and a caret below the position."""
         return "\n\n".join(render(mistake, source) for mistake in self.mistakes)
 
     def __str__(self) -> str:
@@ -67,9 +67,9 @@ _WIDEST = 100
 
 
 def render(error: NotationError, source: str) -> str:
-    """Return `source:line:column: message`, the line, a caret under the place, and the hint.
+    """Return `source:line:column: message`, the line, a caret below the position, and the hint.
 
-    Of a long line, only the hundred characters around the place are shown.
+    A long line is cut to 100 characters around the position.
     """
     start = error.offset - (error.column - 1)
     end = error.text.find("\n", start)

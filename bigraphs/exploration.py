@@ -1,4 +1,4 @@
-"""Explore a system: its full transition system, breadth first."""
+"""Exploration of a system: its full transition system, breadth first."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LOOK_EVERY: Final = 0.2
 
 
 class Progress(NamedTuple):
-    """How far an exploration has come."""
+    """The progress of an exploration."""
 
     states: int
     transitions: int
@@ -29,7 +29,7 @@ class Progress(NamedTuple):
 
 
 class OutOfTime(Exception):
-    """Ends an exploration within a state, whose transitions are then not kept."""
+    """Ends an exploration inside a state; the transitions of that state are discarded."""
 
 
 def explore(
@@ -40,17 +40,20 @@ def explore(
     threads: int = 1,
     watch: Callable[[Progress], None] = lambda _: None,
 ) -> TransitionSystem:
-    """Return the transition system of a system; if a limit was reached, one that says that it is incomplete.
+    """Return the transition system of a system; it is marked incomplete if the search stopped early.
 
-    After half a second up to `threads` processes share the work, forks of this one where the platform has them; what
-    is found is the same. `watch` is told now and then how far it has come; a KeyboardInterrupt ends it with what was
-    found so far. Raises BigraphError for a system that cannot be run.
+    After half a second, up to `threads` processes share the work, where the platform supports fork. The result does not
+    depend on their number. `watch` receives regular progress reports. A KeyboardInterrupt ends the search and keeps the
+    states found so far.
+
+    Raises:
+        BigraphError: If the system cannot run.
     """
     return _Search(system, max_states, max_time, threads, watch).run()
 
 
 class _Search:
-    """One exploration, within its limits."""
+    """An exploration within its limits."""
 
     def __init__(
         self,
@@ -75,14 +78,14 @@ class _Search:
             raise OutOfTime
 
     def pause(self) -> None:
-        """Look around within a state, too, since one match may take long; a worker minds the time alone."""
+        """Report progress inside a state too, since one match may take long; a worker checks only the time limit."""
         if os.getpid() == self.process:
             self.look()
         else:
             self.check_time()
 
     def run(self) -> TransitionSystem:
-        """Explore; return what was found, and why it ended early, if it did."""
+        """Explore; return the transition system, with the reason if it ended early."""
         reason = ""
         try:
             self.reached.begin()
@@ -100,7 +103,7 @@ class _Search:
         return self.reached.result(time.monotonic() - self.begun, reason)
 
     def go_on(self) -> bool:
-        """Add the transitions of the next state, or those that a worker has found; say whether there was room."""
+        """Add the transitions of the next state, or a worker's slice; return whether the state limit allowed it."""
         state, waiting = self.reached.expanded, self.reached.waiting
         self.workers.share(state, len(waiting))
         found = self.workers.found(state, self.look)
@@ -110,7 +113,7 @@ class _Search:
         return self.reached.expand(waiting.popleft(), state)
 
     def look(self) -> None:
-        """Tell now and then how far it has come."""
+        """Check the time limit, and report progress at intervals."""
         self.check_time()
         now = time.monotonic()
         if now >= self.next_look:

@@ -1,6 +1,6 @@
-"""Folding: in a large picture, nodes that are alike are drawn as one that says how many they are.
+"""Folding: in a large picture, one box stands for several similar nodes and shows their number.
 
-Alike are nodes without contents that have one control, one place and the same links.
+Nodes are similar if they are empty and have the same control, the same place and the same links.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from bigraphs.bigraph import Bigraph, children, moved, sites_in
 from bigraphs.labels import node_labels
 
 CROWD: Final = 30
-"""Nodes that are drawn one by one."""
+"""Up to this number of nodes, each node has its own box."""
 
 FEWEST: Final = 3
-"""Nodes alike that are folded at the least."""
+"""The smallest group of similar nodes that is folded."""
 
 
 @dataclass(frozen=True, slots=True)
 class Folded:
-    """A bigraph with less nodes, the two lines of the label of each, and the labels of those that some stand for."""
+    """A bigraph with fewer nodes, the two label lines of each, and the labels of the nodes behind each folded one."""
 
     bigraph: Bigraph
     lines: tuple[tuple[str, str], ...]
@@ -29,14 +29,14 @@ class Folded:
 
 
 def unfolded(bigraph: Bigraph) -> Folded:
-    """Return a bigraph with all of its nodes."""
+    """Return the bigraph with all its nodes."""
     named = zip(node_labels(bigraph), bigraph.nodes, strict=True)
     lines = ((label, node.control if node.name is not None else "") for label, node in named)
     return Folded(bigraph, tuple(lines), {})
 
 
 def folded(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Folded:
-    """Return a bigraph of more than 30 nodes with those that are alike as one, but for those to be kept apart, by name.
+    """Return the bigraph; above 30 nodes, fold similar ones, except the nodes named in `apart`.
 
     >>> from bigraphs.relations import from_relations
     >>> world = from_relations({f"uav{n}": "UAV" for n in range(31)}, {}, {"wifi": ["uav7"]})

@@ -1,4 +1,4 @@
-"""Instantiation of parameters: regions moved, dropped and copied, links shared by the copies (Milner's η)."""
+"""Instantiation of parameters: regions are moved, dropped and copied; copies share links (Milner's η)."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ from bigraphs.errors import BigraphError
 
 
 def instantiate(parameter: Bigraph, regions: Sequence[int], width: int) -> Bigraph:
-    """Return a parameter whose region `i` is what region `regions[i]` was; those from `width` on stay, at the end.
+    """Return the parameter whose region `i` is the old region `regions[i]`; regions from `width` on follow unchanged.
 
-    What is in no region any more is gone. Raises BigraphError where a copy would take a named node, or a node
-    that is in another region, too: which of the copies would it be?
+    Nodes without a remaining region are removed.
+
+    Raises:
+        BigraphError: If a copied region holds a named node or a node of another region, whose copy would be ambiguous.
     """
     if list(regions) == list(range(width)):
         return parameter
@@ -40,7 +42,7 @@ def _move(parameter: Bigraph, region_to: dict[int, int], width: int) -> Bigraph:
 
 
 def _copy(found: Bigraph, parameter: Bigraph, region: int, place: int) -> Bigraph:
-    """Add the content of a region of the parameter to a region of what was found so far."""
+    """Add a copy of a region of the parameter to a region of the result."""
     copied = sorted(_below(parameter, [region]))
     others = _below(parameter, (other for other in range(parameter.regions) if other != region))
     for number in copied:

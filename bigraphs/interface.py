@@ -9,7 +9,7 @@ from bigraphs.errors import BigraphError
 
 @dataclass(frozen=True, slots=True)
 class Interface:
-    """A width (sites within, regions without) and a set of link names, sorted.
+    """A width (the number of sites or regions) and a set of link names, sorted.
 
     >>> print(Interface(2, ("y", "x")))
     <2, {x, y}>
@@ -24,14 +24,14 @@ class Interface:
         object.__setattr__(self, "names", tuple(sorted(set(self.names))))
 
     def __mul__(self, other: Interface) -> Interface:
-        """Set side by side; raises BigraphError if they share a name."""
+        """Return both interfaces side by side; raises BigraphError if they share a name."""
         shared = set(self.names) & set(other.names)
         if shared:
             raise BigraphError("interface", f"both sides have the name {', '.join(sorted(shared))}")
         return self | other
 
     def __or__(self, other: Interface) -> Interface:
-        """Set side by side, sharing names."""
+        """Return both interfaces side by side; a shared name occurs once."""
         return Interface(self.width + other.width, self.names + other.names)
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""Labels of nodes, links and places, the same wherever a bigraph is shown."""
+"""Labels of nodes, links and places, the same in every representation of a bigraph."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from bigraphs.bigraph import Bigraph, Link
 
 
 def node_labels(bigraph: Bigraph) -> tuple[str, ...]:
-    """Return one label per node, all different: its name, else its control, numbered if there are several."""
+    """Return one distinct label per node: its name, else its control, with a number if several share it."""
     kinds = Counter(node.control for node in bigraph.nodes if node.name is None)
     taken = {node.name for node in bigraph.nodes}
     seen: Counter[str] = Counter()

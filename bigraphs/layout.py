@@ -1,8 +1,8 @@
 """The layout of a drawing's boxes: a pure function of the bigraph, in points (1/72 inch), y downwards.
 
-Boxes are packed into rows bottom-up, as near to a pleasant shape as their order allows, then stretched
-top-down so that rows are flush. Names lie on the rim: outer ones above, inner ones below. A node in several
-places is drawn in the first and has a *ghost*, a small outline with its label, in each of the others.
+Boxes are packed into rows bottom-up, close to a pleasant aspect ratio, then stretched top-down so that rows are flush.
+Outer names lie on the upper rim, inner names on the lower rim. A node with several places is drawn in the first; each
+other place has a *ghost*, a small outline with its label.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ SHAPE: Final = 1.7
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A rectangle by its left upper corner and its size."""
+    """A rectangle: its upper left corner and its size."""
 
     x: float
     y: float
@@ -38,11 +38,11 @@ class Box:
 
     @property
     def centre(self) -> tuple[float, float]:
-        """Return the point in its middle."""
+        """Return the centre."""
         return self.x + self.width / 2, self.y + self.height / 2
 
     def contains(self, other: Box, slack: float = 1e-6) -> bool:
-        """Say whether the other box lies within this one."""
+        """Return whether the other box lies within this one."""
         return (
             self.x <= other.x + slack
             and self.y <= other.y + slack
@@ -51,7 +51,7 @@ class Box:
         )
 
     def overlaps(self, other: Box, slack: float = 1e-6) -> bool:
-        """Say whether the boxes have inner points in common."""
+        """Return whether the boxes have inner points in common."""
         return (
             self.x + slack < other.x + other.width
             and other.x + slack < self.x + self.width
@@ -62,7 +62,7 @@ class Box:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """What a box is of: a `region`, `node`, `site` or `ghost` of a node, its number, and where it is drawn."""
+    """The subject of a box: a `region`, `node`, `site` or `ghost` of a node, its number, and the place of the box."""
 
     kind: str
     number: int
@@ -71,9 +71,9 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """All boxes, parents before what is in them, and a pill for each name on the rim.
+    """All boxes, parents before children, and a pill for each name on the rim.
 
-    `shown` is the bigraph that they are of, in which nodes may be folded.
+    `shown` is the drawn bigraph, in which nodes may be folded.
     """
 
     shown: Folded
@@ -93,9 +93,9 @@ Rows: TypeAlias = tuple[tuple[Item, ...], ...]
 
 
 def layout(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Layout:
-    """Return the boxes of a drawing; the same bigraph gives the same layout everywhere.
+    """Return the boxes of a drawing; they depend on the bigraph alone.
 
-    In a large one nodes that are alike are one box; those named in `apart` have boxes of their own.
+    In a large bigraph one box stands for several similar nodes; the nodes in `apart` have their own boxes.
     """
     shown = folded(bigraph, apart)
     bigraph = shown.bigraph
@@ -137,7 +137,7 @@ def layout(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Layout:
 
 
 def label_size(shown: Folded, item: Item) -> Size:
-    """Return the room that the label of a box needs, frame not included."""
+    """Return the size of a box's label, without the frame."""
     if item.kind == "region":
         several = shown.bigraph.regions > 1
         return (text_width(f"region {item.number}", SMALL), HEADER) if several else (0.0, 0.0)
@@ -157,7 +157,7 @@ _BROAD: Final = frozenset("mwMWQ%@#&+=<>~^")
 
 
 def text_width(text: str, size: float) -> float:
-    """Return an upper bound of the width of text in the font that is drawn with, in points."""
+    """Return an upper bound of the width of a text in the drawing font, in points."""
     return size * sum(
         0.42
         if letter in _NARROW
@@ -171,7 +171,7 @@ def text_width(text: str, size: float) -> float:
 
 
 def _tree(bigraph: Bigraph) -> dict[Item, list[Item]]:
-    """Return what is drawn in each region and node: nodes in their first place, ghosts in the others."""
+    """Return the items drawn in each region and node: nodes in their first place, ghosts in the others."""
     inside, sited = children(bigraph), sites_in(bigraph)
     tree: dict[Item, list[Item]] = {}
     for place, nodes in inside.items():
@@ -188,7 +188,7 @@ def _tree(bigraph: Bigraph) -> dict[Item, list[Item]]:
 
 def _top_down(tree: Mapping[Item, Sequence[Item]], regions: int) -> list[Item]:
     order = [Item("region", region) for region in range(regions)]
-    for item in order:  # grows while it is walked
+    for item in order:  # the list grows during the loop
         order.extend(tree.get(item, ()))
     return order
 
@@ -201,7 +201,7 @@ def _bottom_up(tree: dict[Item, list[Item]], regions: int) -> list[Item]:
 
 
 def _packed(sized: Sequence[tuple[Item, Size]]) -> tuple[Rows, Size]:
-    """Return boxes in rows, in order, with the size of the shape that is nearest to SHAPE and small."""
+    """Return the boxes in rows, and their total size; the rows balance a small area against the aspect ratio SHAPE."""
     if not sized:
         return (), (0.0, 0.0)
     tries = (_in_rows(sized, width) for width in _row_widths(sized))
@@ -236,7 +236,7 @@ def _badness(size: Size) -> float:
 
 
 def _with_frame(item: Item, content: Size, label: Size) -> Size:
-    """Return the size of a box: its label, and below it what it holds."""
+    """Return the size of a box: its label, and its content below."""
     if content == (0.0, 0.0):
         least = (90.0, 60.0) if item.kind == "region" else (0.0, 0.0)
         return max(label[0] + 2 * PAD, least[0]), max(label[1], least[1])
@@ -257,7 +257,7 @@ def _inside(box: Box, header: float) -> Box:
 
 
 def _stretch(rows: Rows, room: Box, sizes: Mapping[Item, Size], boxes: dict[Item, Box]) -> None:
-    """Place rows in a room and share out what is to spare: boxes that hold something grow, others are centred."""
+    """Place rows in a room and distribute the spare space: boxes with content grow, others are centred."""
     if not rows:
         return
     heights = [max(sizes[item][1] for item in row) for row in rows]
@@ -274,7 +274,7 @@ def _stretch(rows: Rows, room: Box, sizes: Mapping[Item, Size], boxes: dict[Item
 
 
 def _fitted(item: Item, slot: Box, size: Size) -> Box:
-    """Return the whole slot for what holds something, else the middle of it."""
+    """Return the whole slot for a box with content, else the centre of the slot."""
     if item.kind == "region" or size[1] > LEAF_HEIGHT:
         return slot
     width = min(slot.width, size[0] * 1.25)
@@ -283,7 +283,7 @@ def _fitted(item: Item, slot: Box, size: Size) -> Box:
 
 @dataclass(frozen=True, slots=True)
 class _Pills:
-    """Names on one side of the rim, to be set in as few rows as they need."""
+    """Names on one side of the rim, in as few rows as possible."""
 
     names: tuple[str, ...]
     rows: int
@@ -297,7 +297,7 @@ class _Pills:
         return max((pill_width(name) for name in self.names), default=0.0)
 
     def placed(self, wanted: Mapping[str, float], top: float, width: float) -> tuple[tuple[str, Box], ...]:
-        """Set names near the points that they link, in turn into each row."""
+        """Return the pills, near the points that they link, alternating between the rows."""
         order = sorted(self.names, key=lambda name: (wanted[name], name))
         found: list[tuple[str, Box]] = []
         for row in range(self.rows):
@@ -311,7 +311,7 @@ class _Pills:
 
 
 def pill_width(name: str) -> float:
-    """Return the width of the pill of a name on the rim."""
+    """Return the width of a name's pill on the rim."""
     return text_width(name, SMALL + 1) + 12
 
 
@@ -323,7 +323,7 @@ def _pill_rows(names: Sequence[str], width: float) -> _Pills:
 
 
 def _spread(widths: Sequence[float], wanted: Sequence[float], room: float) -> list[float]:
-    """Return left edges, in order, near the wanted centres, without overlap, within the room as far as it goes."""
+    """Return left edges, in order, near the wanted centres, without overlap, and within the room if it suffices."""
     lefts: list[float] = []
     edge = 0.0
     for width, centre in zip(widths, wanted, strict=True):

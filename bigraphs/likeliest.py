@@ -1,4 +1,4 @@
-"""The likeliest run to some states, by the choices of a strategy where there are choices."""
+"""The most probable run to a set of states, with a strategy for the nondeterministic choices."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bigraphs.transitions import Transition, TransitionSystem
 
 @dataclass(frozen=True, slots=True)
 class Likeliest:
-    """A run: its transitions, the probability of each once its strategy has chosen, and that of all."""
+    """A run: its transitions, their probabilities under the strategy, and the product of these."""
 
     transitions: tuple[Transition, ...]
     chances: tuple[float, ...]
@@ -27,15 +27,15 @@ def likeliest_run(
     within: Container[int] | None = None,
     strategy: Sequence[int] | None = None,
 ) -> Likeliest | None:
-    """Return the likeliest run from the initial state to the first state of some, None if there is none.
+    """Return the most probable run from the initial state to the first goal state, None if there is none.
 
-    By Dijkstra's algorithm, on the negative logarithms of probabilities; of equally likely runs a shortest.
+    Uses Dijkstra's algorithm on the negative logarithms of probabilities; ties go to the shortest run.
 
     Args:
-        system: The transition system. Of an SBRS it is the embedded chain.
-        goals: Where the run ends.
-        within: The states that it passes, all unless given.
-        strategy: For each state the number of its choice, counted as in exported files; needed in a BRS and an NBRS.
+        system: The transition system. For an SBRS the embedded chain is used.
+        goals: The goal states.
+        within: The states that the run may pass; all by default.
+        strategy: The number of the choice in each state, as in exported files; needed for a BRS and an NBRS.
     """
     best = {0: (0.0, 0)}
     came: dict[int, tuple[Transition, float]] = {}
@@ -60,9 +60,9 @@ def likeliest_run(
 def decisions(
     system: TransitionSystem, strategy: Sequence[int], goals: Container[int] = ()
 ) -> dict[int, str]:
-    """Return what a strategy chooses in the states that it leads to before the goals, where there is a choice.
+    """Return the strategy's choice in each reachable state with several choices, up to the goals.
 
-    A choice is told by its action, in a BRS by its rules.
+    A choice is named by its action; in a BRS by its rules.
     """
     told: dict[int, str] = {}
     waiting, met = [0], {0}
@@ -82,7 +82,7 @@ def decisions(
 def _chosen(
     system: TransitionSystem, state: int, strategy: Sequence[int] | None
 ) -> Iterator[tuple[Transition, float]]:
-    """Yield the transitions that a strategy leaves, each with its probability."""
+    """Yield the transitions that the strategy permits, each with its probability."""
     leaving = list(system.transitions_from(state))
     if strategy is not None:
         numbered = zip(choices_of(system.kind, leaving), leaving, strict=True)

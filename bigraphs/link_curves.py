@@ -16,7 +16,7 @@ NORMALS: Final[Mapping[str, Point]] = {"top": (0, -1), "bottom": (0, 1), "left":
 
 @dataclass(frozen=True, slots=True)
 class Route:
-    """One link: its curves (cubic Béziers in a row), the ports they start from, and its dot if it has one."""
+    """One link: its curves (chains of cubic Béziers), the ports at their starts, and its optional dot."""
 
     link: Link
     curves: tuple[Curve, ...]
@@ -26,7 +26,7 @@ class Route:
 
 @dataclass(frozen=True, slots=True)
 class _End:
-    """One port before it has its place on a side."""
+    """A port before it has a position on its side."""
 
     link: Link
     node: int
@@ -35,7 +35,7 @@ class _End:
 
 
 def route(layout: Layout) -> tuple[Route, ...]:
-    """Return the curves of every link that has something to join."""
+    """Return the curves of every link that joins something."""
     bigraph = layout.shown.bigraph
     boxes = {item.number: box for item, box in layout.boxes if item.kind == "node"}
     goals = _goals(bigraph, layout, boxes)
@@ -55,7 +55,7 @@ def route(layout: Layout) -> tuple[Route, ...]:
 
 
 def _goals(bigraph: Bigraph, layout: Layout, boxes: Mapping[int, Box]) -> dict[Link, Point]:
-    """Return for each link where its curves meet: at its name, or in the middle of what it joins."""
+    """Return the meeting point of each link's curves: its name, or the middle of its ends."""
     outer = dict(layout.outer)
     goals: dict[Link, Point] = {}
     for link, on in points(bigraph).items():
@@ -70,7 +70,7 @@ def _goals(bigraph: Bigraph, layout: Layout, boxes: Mapping[int, Box]) -> dict[L
 
 
 def _middle(spots: Sequence[Point], boxes: Sequence[Box], layout: Layout) -> Point:
-    """Return the point nearest to the middle of the spots that is in no innermost box."""
+    """Return the point outside all innermost boxes that is nearest to the middle of the spots."""
     x, y = (sum(spot[axis] for spot in spots) / len(spots) for axis in (0, 1))
     close = [box for box in boxes if _near((x, y), box, 6.0 * 14 + 5.0)]
     inner = [box for box in close if not any(box is not other and box.contains(other) for other in close)]
@@ -102,7 +102,7 @@ def _ends(bigraph: Bigraph, boxes: Mapping[int, Box], goals: Mapping[Link, Point
 def _other_end(
     link: Link, number: int, on: Sequence[tuple[int, int]], boxes: Mapping[int, Box], goal: Point
 ) -> Point:
-    """Return what a port looks at: the other box of an edge of two, else where the link's curves meet."""
+    """Return the target of a port: the other box of an edge with two ends, else the meeting point of the curves."""
     others = [other for other, _ in on if other != number]
     return boxes[others[0]].centre if isinstance(link, int) and len(on) == 2 and others else goal
 
@@ -115,7 +115,7 @@ def _side(box: Box, target: Point) -> str:
 
 
 def _spaced(ends: Sequence[_End], boxes: Mapping[int, Box]) -> list[Point]:
-    """Give the ports on one side of a box even distances, in the order of what they look at."""
+    """Space the ports on one side of a box evenly, in the order of their targets."""
     sides: dict[tuple[int, str], list[int]] = {}
     for number, end in enumerate(ends):
         sides.setdefault((end.node, end.side), []).append(number)

@@ -1,10 +1,10 @@
 """Matching: every occurrence of a redex in a target, place and link graph together.
 
-An occurrence maps nodes injectively and keeps controls, nesting and links. A node without a site has no
-further child; a closed link is matched by an edge all of whose points are matched; an open link by any other
-link, which it may share. Regions may lie anywhere that is active and neither matched nor below what is
-matched (Milner's disjointness); one whose nodes are all in other nodes of the redex, too, may lie nowhere (Sevegnani
-and Calder's bigraphs with sharing, where a context has a site without a place for it).
+An occurrence maps nodes injectively and preserves controls, nesting and links. A node without a site has no further
+child. A closed link matches an edge all of whose points are matched. An open link matches any other link; several may
+match the same. A region may lie in any active place that is neither matched nor below a match (Milner's disjointness).
+A region whose nodes all have other parents in the redex may have no place at all (Sevegnani and Calder's bigraphs with
+sharing, where a site of the context may be an orphan).
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from bigraphs.region_matching import placements
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """One occurrence of `redex` in `target`.
+    """An occurrence of `redex` in `target`.
 
-    `nodes` gives the target node of each redex node, `links` the target link of each redex link, `regions`
-    the places of each region, and `sites` the topmost target nodes in each site.
+    `nodes` gives the target node of each redex node, `links` the target link of each redex link, `regions` the places
+    of each region, and `sites` the topmost target nodes in each site.
     """
 
     redex: Bigraph
@@ -42,11 +42,14 @@ def find_matches(
     node_variables: frozenset[str] = frozenset(),
     link_constants: frozenset[str] = frozenset(),
 ) -> Iterator[Match]:
-    """Yield every occurrence once, in one order.
+    """Yield every occurrence once, in a deterministic order.
 
-    A redex node matches its namesake, or any node if it is anonymous or a variable; an outer name matches any
-    link, or its namesake if it is a constant. Raises BigraphError if the redex has inner names or a region
-    without a node (it would be anywhere), or if the target is not ground.
+    A named redex node matches the node of the same name; an anonymous node or a variable matches any node. An outer
+    name matches any link; a constant matches only the link of the same name.
+
+    Raises:
+        BigraphError: If the redex has inner names or an empty region (it would match anywhere), or if the target is not
+            ground.
     """
     _check(redex, target)
     search = _Search(redex, target, node_variables, link_constants)
@@ -74,7 +77,7 @@ def _check(redex: Bigraph, target: Bigraph) -> None:
 
 
 class _Graph:
-    """A bigraph with what search asks of it looked up once."""
+    """A bigraph with indexes for the search."""
 
     def __init__(self, bigraph: Bigraph) -> None:
         self.nodes = bigraph.nodes
@@ -87,7 +90,7 @@ class _Graph:
 
 
 class _Search:
-    """A depth-first search over node images; each step takes the redex node with the fewest candidates."""
+    """A depth-first search over node images; each step places the redex node with the fewest candidates."""
 
     def __init__(
         self, redex: Bigraph, target: Bigraph, variables: frozenset[str], constants: frozenset[str]
@@ -109,7 +112,7 @@ class _Search:
         self.shared: Counter[Link] = Counter()  # target link to the number of open links on it
 
     def run(self) -> Iterator[None]:
-        """Yield whenever all nodes have images; the state holds them until the next step."""
+        """Yield for each complete assignment of nodes; the state holds it until the next step."""
         if not self.redex.nodes:
             yield
             return
@@ -123,7 +126,7 @@ class _Search:
                 stack.append(self.options())
 
     def options(self) -> Iterator[bool]:
-        """Place one more node in each way that fits, and take it away again."""
+        """Place one more node in every way that fits, and undo each placement."""
         number, candidates = self.most_constrained()
         for image in candidates:
             if self.fits(number, image):
@@ -137,7 +140,7 @@ class _Search:
         return min(((number, self.candidates(number)) for number in waiting), key=lambda pair: len(pair[1]))
 
     def candidates(self, number: int) -> list[int]:
-        """Return the shortest list that holds every image: by name, neighbour, link or control."""
+        """Return the shortest list that contains every possible image: by name, neighbour, link or control."""
         if number in self.fixed:
             image = self.fixed[number]
             return [] if image is None else [image]
@@ -157,7 +160,7 @@ class _Search:
         return min(choices, key=len)
 
     def fits(self, number: int, image: int) -> bool:
-        """Check everything about a node and its neighbours but its links."""
+        """Return whether an image fits a node and its placed neighbours; links are checked later."""
         node, other = self.redex.nodes[number], self.target.nodes[image]
         if image in self.images or node.control != other.control or len(node.ports) != len(other.ports):
             return False
@@ -171,7 +174,7 @@ class _Search:
         return self.same_neighbours(number, image)
 
     def same_neighbours(self, number: int, image: int) -> bool:
-        """Check that what is placed is a parent or a child of the one as of the other."""
+        """Return whether the placed parents and children of the node are those of its image."""
         above = {self.nodes[place] for place in self.redex.nodes[number].parents if place in self.nodes}
         below = {self.nodes[place] for place in self.redex.children[number] if place in self.nodes}
         return above == {
@@ -179,7 +182,7 @@ class _Search:
         } and below == {place for place in self.target.children[image] if place in self.images}
 
     def bindings(self, number: int, image: int) -> Iterator[None]:
-        """Bind the links of a node in each way that fits, and unbind them again."""
+        """Bind the links of a node in every way that fits, and undo each binding."""
         ports, targets = self.redex.nodes[number].ports, self.target.nodes[image].ports
         if self.redex.nodes[number].control in self.unordered:
             wanted = sorted(Counter(ports).items(), key=lambda item: link_key(item[0]))
@@ -191,7 +194,7 @@ class _Search:
         self.unbind(bound)
 
     def unordered_bindings(self, wanted: list[tuple[Link, int]], free: Counter[Link]) -> Iterator[None]:
-        """Give each link of a node one of the target node's links that it has as often."""
+        """Bind each link of a node to a target link that occurs at least as often on the target node."""
         if not wanted:
             yield
             return
@@ -205,7 +208,7 @@ class _Search:
             self.unbind(bound)
 
     def bind(self, link: Link, target: Link, bound: list[Link]) -> bool:
-        """Bind a redex link to a target link if that is allowed, and note it if it is new."""
+        """Bind a redex link to a target link if permitted; record a new binding in `bound`."""
         if link in self.links:
             return self.links[link] == target
         if target in self.closed or not self.may_bind(link, target):
@@ -233,7 +236,7 @@ class _Search:
                 self.shared[target] -= 1
 
     def with_idle_links(self) -> Iterator[tuple[tuple[Link, Link], ...]]:
-        """Yield all links with images for those that have no points: edges on idle edges, names on any link."""
+        """Yield all links with images; idle edges map to idle edges, idle names to any link."""
         idle = [link for link, on in self.redex.points.items() if not on]
         edges = [link for link in idle if isinstance(link, int)]
         names = [link for link in idle if isinstance(link, str)]

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 def to_networkx(bigraph: Bigraph) -> nx.MultiDiGraph[Any]:
     """Return places and links as one graph.
 
-    Vertices are pairs: `("region", 0)`, `("node", "uav0")`, `("site", 0)`, `("link", "net")`, `("inner",
-    "x")`, with a `kind`, nodes also with `control` and `name`, links with `closed`. Edges have a `relation`:
-    `contains` from parent to child, `linked` from a node (with its `port`) or an inner name to its link.
+    Vertices are pairs: `("region", 0)`, `("node", "uav0")`, `("site", 0)`, `("link", "net")`, `("inner", "x")`. Each
+    has a `kind`; nodes also have `control` and `name`, links `closed`. Edges have a `relation`: `contains` from parent
+    to child, `linked` from a node (with its `port`) or an inner name to its link.
     """
-    import networkx as nx  # noqa: PLC0415 - few need it, and it is slow to import
+    import networkx as nx  # noqa: PLC0415 - rarely needed and slow to import
 
     graph: nx.MultiDiGraph[Any] = nx.MultiDiGraph()
     _add_places(graph, bigraph)

@@ -1,4 +1,4 @@
-"""Obstacles of a drawing: a link that would cross boxes or labels takes the lanes between if that is shorter."""
+"""Obstacles of a drawing: a link that would cross boxes or labels takes a detour between them if that is shorter."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ Point: TypeAlias = tuple[float, float]
 Curve: TypeAlias = tuple[Point, ...]
 
 WEIGHT: Final = 9.0
-CLEAR: Final = 3.7  # what lanes and round corners take off a way's distance from boxes
-LARGEST: Final = 120  # boxes; a larger drawing is crossed straight
+CLEAR: Final = 3.7  # reduction of a detour's distance from boxes, by lanes and round corners
+LARGEST: Final = 120  # boxes; links of a larger drawing are straight
 ROUND: Final = 18.0
 BEND: Final = 8.0
 STRIDE: Final = 200.0
@@ -24,7 +24,7 @@ SAMPLES: Final = 16
 
 
 class Obstacles:
-    """What no link should cross, innermost boxes, labels and names on the rim, with the corners to pass them at."""
+    """The obstacles for links: innermost boxes, labels and names on the rim, with the corners of possible detours."""
 
     def __init__(self, layout: Layout) -> None:
         inner = innermost(layout)
@@ -36,7 +36,7 @@ class Obstacles:
         self.neighbours: dict[Point, list[Point]] = {}
 
     def avoid(self, curve: Curve, lane: int) -> Curve:
-        """Return the curve, or a way around what it crosses; lanes keep links side by side."""
+        """Return the curve, or a detour around the obstacles that it crosses; `lane` keeps parallel links apart."""
         if not self.corners:
             return curve
         if sum(self.within(one, other, -1.0) for one, other in pairwise(_sampled(curve))) < 2.0:
@@ -48,14 +48,14 @@ class Obstacles:
         return _rounded([curve[0], leave, *around, arrive, curve[-1]])
 
     def cost(self, start: Point, end: Point) -> float:
-        """Return the length of a line, its parts within obstacles counted more."""
+        """Return the length of a line, with a higher weight for the parts inside obstacles."""
         key = (start, end) if start < end else (end, start)
         if key not in self.known:
             self.known[key] = _length(start, end) + WEIGHT * self.within(start, end, CLEAR)
         return self.known[key]
 
     def within(self, start: Point, end: Point, margin: float) -> float:
-        """Return how much of a line lies in what it should not cross, or so near to it."""
+        """Return the length of a line inside the obstacles, enlarged by `margin`."""
         left, right = min(start[0], end[0]) - margin, max(start[0], end[0]) + margin
         above, below = min(start[1], end[1]) - margin, max(start[1], end[1]) + margin
         return sum(
@@ -65,7 +65,7 @@ class Obstacles:
         )
 
     def way(self, start: Point, goal: Point) -> list[Point]:
-        """Return the cheapest polyline through corners (A*; each bend costs a little), straight where there is none."""
+        """Return the cheapest polyline through corners (A*; each bend has a small cost), else a straight line."""
         best = {start: 0.0}
         before: dict[Point, Point] = {}
         waiting = [(_length(start, goal), start)]
@@ -98,13 +98,13 @@ class Obstacles:
 
 
 def innermost(layout: Layout) -> list[Box]:
-    """Return the boxes that hold no others."""
+    """Return the boxes without inner boxes."""
     nodes = [box for item, box in layout.boxes if item.kind != "region"]
     return [box for box in nodes if not any(box is not other and box.contains(other) for other in nodes)]
 
 
 def label_boxes(layout: Layout) -> list[Box]:
-    """Return where the labels of boxes that hold others are written."""
+    """Return the label areas of the boxes that contain others."""
     inner = set(innermost(layout))
     return [
         Box(box.x + PAD, box.y + 4, label_size(layout.shown, item)[0], HEADER + 6)
@@ -125,7 +125,7 @@ def _length(one: Point, other: Point) -> float:
 
 
 def _overlap(start: Point, end: Point, box: Box, margin: float) -> float:
-    """Return the length of the part of a line that is in a box, or so near to it (Liang and Barsky)."""
+    """Return the length of a line inside a box enlarged by `margin` (Liang and Barsky)."""
     low, high = 0.0, 1.0
     for at, to, least, most in (
         (start[0], end[0], box.x - margin, box.x + box.width + margin),
@@ -154,7 +154,7 @@ def _sampled(curve: Curve) -> list[Point]:
 
 
 def _rounded(way: Sequence[Point]) -> Curve:
-    """Return a polyline with round corners, as cubic Béziers in a row."""
+    """Return a polyline with round corners, as a chain of cubic Béziers."""
     curve = [way[0]]
     for before, corner, after in zip(way, way[1:], way[2:], strict=False):
         enter, leave = _short_of(corner, before), _short_of(corner, after)
@@ -163,7 +163,7 @@ def _rounded(way: Sequence[Point]) -> Curve:
 
 
 def _stub(end: Point, towards: Point) -> Point:
-    """Return the point where a link has left its end at a right angle."""
+    """Return the end of the straight stub on which a link leaves its port at a right angle."""
     length = _length(end, towards)
     share = min(1.0, STUB / length) if length else 0.0
     return end[0] + share * (towards[0] - end[0]), end[1] + share * (towards[1] - end[1])

@@ -1,4 +1,4 @@
-"""Properties of states, as in BigMC: patterns, sizes, and the states before and after."""
+"""Properties of states, as in BigMC: patterns, sizes, predecessors and successors."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from bigraphs.records import Record
 
 
 class Matches(Record):
-    """The pattern occurs; its names stand for any link, but `link_constants` for themselves."""
+    """The pattern occurs; its names match any link, except `link_constants`, which match the link of the same name."""
 
     pattern: Bigraph
     link_constants: frozenset[str] = frozenset()
 
 
 class Equal(Record):
-    """The state is this one."""
+    """The state equals `state`."""
 
     state: Bigraph
 
@@ -31,27 +31,27 @@ class Terminal(Record):
 
 
 class Not(Record):
-    """The other does not hold."""
+    """The negation of `operand`."""
 
     operand: Formula
 
 
 class Both(Record):
-    """The two hold."""
+    """Both operands hold."""
 
     left: Formula
     right: Formula
 
 
 class Either(Record):
-    """One of the two holds."""
+    """At least one operand holds."""
 
     left: Formula
     right: Formula
 
 
 class IfElse(Record):
-    """What is to hold depends on whether the condition does."""
+    """`then` holds if `condition` holds, else `otherwise` holds."""
 
     condition: Formula
     then: Formula
@@ -59,32 +59,32 @@ class IfElse(Record):
 
 
 class Scope(Enum):
-    """Which state is spoken of."""
+    """The states that a formula refers to."""
 
     THIS = "this"
     PREDECESSOR = "pred"
-    """Every state from which a step leads here; nothing is asked of a first state."""
+    """Every predecessor; true of a state without predecessors."""
     SUCCESSOR = "succ"
-    """Every state that a step leads to."""
+    """Every successor."""
     TERMINAL = "terminal"
-    """This one, if no rule applies; nothing is asked of others."""
+    """This state, if no rule applies; true of any other state."""
 
 
 class Scoped(Record):
-    """The operand holds of the states in the scope; of those before and after, only patterns and sizes are known."""
+    """The operand holds in every state of the scope; predecessors and successors support only patterns and sizes."""
 
     scope: Scope
     operand: Formula
 
 
 class Size(Record):
-    """The number of nodes of the states in a scope."""
+    """The number of nodes of each state in a scope."""
 
     scope: Scope = Scope.THIS
 
 
 class Compare(Record):
-    """`==`, `!=`, `<`, `<=`, `>` or `>=` between numbers of nodes, for all states that they may be of."""
+    """A comparison (`==`, `!=`, `<`, `<=`, `>`, `>=`) of node counts, for all states in the scopes."""
 
     symbol: str
     left: Size | int
@@ -95,14 +95,14 @@ Formula: TypeAlias = Matches | Equal | Terminal | Not | Both | Either | IfElse |
 
 
 class Property(Record):
-    """A formula that is to hold in every state that can be reached."""
+    """A formula that must hold in every reachable state."""
 
     name: str
     formula: Formula
 
 
 class Situation(Record):
-    """A state with those one step before and after it."""
+    """A state with its predecessors and successors."""
 
     state: Bigraph
     predecessors: tuple[Bigraph, ...] = ()
@@ -120,7 +120,7 @@ _COMPARISONS: Final[Mapping[str, Callable[[int, int], bool]]] = {
 
 
 def holds(formula: Formula, here: Situation) -> bool:
-    """Say whether a formula holds in a situation."""
+    """Return whether a formula holds in a situation."""
     match formula:
         case Matches(pattern, constants):
             return any(True for _ in find_matches(pattern, here.state, link_constants=constants))

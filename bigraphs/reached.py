@@ -1,4 +1,4 @@
-"""What an exploration has reached: states, numbered as they were found, transitions between them, and what waits."""
+"""The growing result of an exploration: numbered states, transitions and the queue of unexpanded states."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from bigraphs.system import SystemKind
 from bigraphs.transitions import Kind, TransitionSystem
 
 MOST_REMEMBERED: Final = 200_000
-"""How many numberings of states are cached, so that their canonical keys are not computed again."""
+"""The largest number of cached state numbers; the cache saves the computation of canonical keys."""
 
 
 @dataclass(slots=True)
 class _Merged:
-    """The occurrences that lead to one state by one action, taken together."""
+    """The merged occurrences that lead to one state by one action."""
 
     weight: float = 0.0
     count: int = 0
@@ -28,16 +28,16 @@ class _Merged:
 
 
 class Reached:
-    """States and transitions that grow, state by state; at most so many states, if a limit is given.
+    """States and transitions found so far, up to an optional limit of states.
 
     Attributes:
         visited: The states by their canonical keys.
-        remembered: The numbers of states by keys that are not canonical, some of them.
-        keys: The key of each state as it was first found (`State.key`).
-        start: The first of these.
-        waiting: The states that have no transitions yet, in the order of their numbers.
+        remembered: A cache of state numbers by raw (non-canonical) keys.
+        keys: The raw key of each state when it was first found (`State.key`).
+        start: The initial state.
+        waiting: The unexpanded states, by number.
 
-    The others are those of a `TransitionSystem`.
+    The other attributes are those of a `TransitionSystem`.
     """
 
     def __init__(self, machine: Machine, max_states: int | None = None) -> None:
@@ -57,7 +57,7 @@ class Reached:
 
     @property
     def expanded(self) -> int:
-        """How many states have their transitions: the first ones."""
+        """The number of expanded states; these are the first ones."""
         return len(self.first) - 1
 
     def begin(self) -> None:
@@ -67,7 +67,7 @@ class Reached:
         self.number(self.start, 0)
 
     def number(self, spot: Spot, source: int) -> int:
-        """Return the number of a state, a new one if it has not been seen; -1 if that is one too many."""
+        """Return the number of a state, a new one for a new state; -1 if it exceeds the limit."""
         raw = spot.state.key()
         if self.machine.world.plain:
             found = self.visited.find(raw)
@@ -90,7 +90,7 @@ class Reached:
         return self.add(key, raw, source, tuple(sorted(self.machine.holding(spot.state))))
 
     def full(self) -> bool:
-        """Say whether there are as many states as there may be."""
+        """Return whether the limit of states is reached."""
         return self.max_states is not None and len(self.keys) >= self.max_states
 
     def add(self, key: Key, raw: Key, source: int, holding: tuple[int, ...]) -> int:
@@ -103,13 +103,13 @@ class Reached:
         return found
 
     def remember(self, raw: Key, number: int) -> None:
-        """Remember the number of a state by a key that is not canonical."""
+        """Cache the number of a state by its raw key."""
         if len(self.remembered) >= MOST_REMEMBERED:
             self.remembered.clear()
         self.remembered[raw] = number
 
     def expand(self, spot: Spot, state: int) -> bool:
-        """Add the transitions of a state; say whether there was room for all that they lead to."""
+        """Add the transitions of a state; return whether the limit allowed all their targets."""
         merged: dict[tuple[int, str | None], _Merged] = {}
         occurrences = 0
         for step in self.machine.steps(spot):
@@ -128,7 +128,7 @@ class Reached:
         return True
 
     def _keep(self, merged: dict[tuple[int, str | None], _Merged]) -> None:
-        """Add merged transitions, their weights as the kind of the system wants them."""
+        """Add merged transitions, with the weights that the kind of the system requires."""
         kind, totals = self.machine.system.kind, dict[str | None, float]()
         for (_, action), group in merged.items():
             totals[action] = totals.get(action, 0.0) + group.weight
@@ -151,7 +151,7 @@ class Reached:
         return found
 
     def result(self, seconds: float, reason: str) -> TransitionSystem:
-        """Return all this, found in so many seconds; incomplete if there is a reason."""
+        """Return the transition system, found in `seconds`; a nonempty reason marks it as incomplete."""
         return TransitionSystem(
             system=self.machine.system,
             world=self.machine.world,

@@ -1,4 +1,4 @@
-"""Frozen values that are quick to define: a language has dozens of them, and small files wait for their definition."""
+"""Frozen values with a fast class definition: a language has dozens of them, and a small file would wait for them."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from operator import attrgetter
 from typing import Any, ClassVar, Final, NoReturn, dataclass_transform
 
 WHERE: Final = "span"
-"""The field that two equal records may differ in: where something was written."""
+"""The field that equality ignores: the position in the source."""
 
 
 @dataclass_transform(frozen_default=True)
 class Record:
-    """A frozen value with the fields that its class annotates, as a dataclass would have them.
+    """A frozen value whose fields are the annotations of its class, as in a dataclass.
 
-    Two records are equal if they are of one class and have the same fields, `span` excepted.
+    Two records are equal if their classes and all fields except `span` are equal.
 
     >>> class Pair(Record):
     ...     first: int

@@ -1,4 +1,4 @@
-"""The second half of matching: place a redex's regions and sites once its nodes are placed."""
+"""The second half of matching: the places of a redex's regions and sites, once its nodes are placed."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ Placed: TypeAlias = tuple[tuple[tuple[Place, ...], ...], tuple[tuple[int, ...], 
 
 
 def placements(redex: Bigraph, target: Bigraph, images: Sequence[int]) -> Iterator[Placed]:
-    """Yield the places of each region with the topmost nodes of each site, in each way there is.
+    """Yield every combination of places for the regions and topmost nodes for the sites.
 
-    There is one way, unless two sites lie side by side, a site lies in a region, or places are shared.
+    There is at most one, unless two sites share their places, a site lies in a region, or places are shared.
     """
     matched = frozenset(images)
     inside = children(target)
@@ -30,7 +30,7 @@ def placements(redex: Bigraph, target: Bigraph, images: Sequence[int]) -> Iterat
 
 
 def _below(inside: Mapping[Place, Iterable[int]], tops: Iterable[int]) -> frozenset[int]:
-    """Return nodes with all that is in them."""
+    """Return these nodes and all their descendants."""
     found = set(tops)
     waiting = list(found)
     while waiting:
@@ -41,7 +41,7 @@ def _below(inside: Mapping[Place, Iterable[int]], tops: Iterable[int]) -> frozen
 
 
 def _regions(redex: Bigraph, target: Bigraph, images: Sequence[int]) -> Iterator[tuple[Places, ...]]:
-    """Yield the places of the regions: those of the top nodes that are not matched themselves."""
+    """Yield the places of the regions: the unmatched parents of their top nodes."""
     outside = {
         number: frozenset(target.nodes[image].parents) - frozenset(images)
         for number, image in enumerate(images)
@@ -54,9 +54,10 @@ def _regions(redex: Bigraph, target: Bigraph, images: Sequence[int]) -> Iterator
 
 
 def _region_choices(redex: Bigraph, region: Place, outside: Mapping[int, Places]) -> list[Places]:
-    """Return where a region can be: exactly where a node is that is in it alone, else a part of where they all are.
+    """Return the possible place sets of a region.
 
-    That part may be empty: a region all of whose nodes are in other places, too, may lie nowhere.
+    A node with this region alone determines its places. Otherwise each subset of the common parents of its nodes is
+    possible, even the empty one: a region whose nodes all have other parents may have no place.
     """
     tops = [number for number in outside if region in redex.nodes[number].parents]
     alone = next((n for n in tops if sum(parent < 0 for parent in redex.nodes[n].parents) == 1), None)
@@ -86,7 +87,7 @@ def _all_active(target: Bigraph, places: Iterable[Place]) -> bool:
 def _sites(
     redex: Bigraph, target: Bigraph, images: Sequence[int], regions: Sequence[Places], below: Places
 ) -> Iterator[tuple[tuple[int, ...], ...]]:
-    """Yield the topmost nodes of each site; the parents of a node in sites are covered by theirs, none to spare."""
+    """Yield the topmost nodes of each site; the sites of a node cover its matched parents, and none is redundant."""
     matched, inside = frozenset(images), children(target)
     places = [
         frozenset(images[parent] for parent in parents if parent >= 0) | _union(parents, regions)
@@ -108,14 +109,14 @@ def _sites(
 def _free(
     redex: Bigraph, inside: Mapping[Place, Sequence[int]], regions: Sequence[Places], barred: Places
 ) -> set[int]:
-    """Return what a site in a region may hold or leave: neighbours with nothing matched, and no region, in them."""
+    """Return the nodes that a site in a region may hold: neighbours without a matched node or a region inside them."""
     places = frozenset().union(*(regions[~parent] for parent in sites_in(redex) if parent < 0))
     near = {number for place in places for number in inside[place]}
     return {number for number in near if barred.isdisjoint(_below(inside, [number]))}
 
 
 def _covers(parents: Iterable[Place], places: Sequence[Places], matched: Places) -> list[tuple[int, ...]]:
-    """Return each set of sites that a node can be in: within its parents, all matched ones covered, none to spare."""
+    """Return each set of sites for a node: inside its parents, covering all matched ones, without a redundant site."""
     around = frozenset(parents)
     usable = [site for site, found in enumerate(places) if found <= around]
     return [
@@ -131,7 +132,7 @@ def _covered(sites: Iterable[int], places: Sequence[Places], needed: Places) -> 
 
 
 def _superfluous(sites: tuple[int, ...], places: Sequence[Places]) -> bool:
-    """Say whether one site adds nothing to the others."""
+    """Return whether one site is covered by the others."""
     return any(
         places[site] <= frozenset().union(*(places[other] for other in sites if other != site))
         for site in sites

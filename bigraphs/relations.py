@@ -1,4 +1,4 @@
-"""Bigraphs from relations: containment, and nodes on links."""
+"""Bigraphs from relations: containment, and the nodes on each link."""
 
 from __future__ import annotations
 
@@ -15,10 +15,14 @@ def from_relations(
     links: Mapping[str, Iterable[str]],
     signature: Signature | None = None,
 ) -> Bigraph:
-    """Return one region of named nodes: `nodes` gives controls, `parent` None is the region, links are outer names.
+    """Return one region of named nodes.
 
-    A node that `parent` leaves out is in the region. Without a signature, controls are open: any arity, ports
-    without order. Raises BigraphError for a name that `nodes` does not have, and for a cycle.
+    `nodes` maps each node to its control. `parent` maps a node to its parent; a node with None or without an entry is
+    in the region. `links` maps each outer name to its nodes. Without a signature, controls are open: any arity,
+    unordered ports.
+
+    Raises:
+        BigraphError: For a name that `nodes` does not have, and for a cycle.
     """
     order = sorted(nodes)
     number = {name: place for place, name in enumerate(order)}

@@ -14,9 +14,10 @@ from bigraphs.rules import ReactionRule, matches
 
 
 def rewrite(rule: ReactionRule, match: Match) -> Bigraph:
-    """Return the target with the reactum for the redex, lean (no idle edges, as abstract bigraphs have none).
+    """Return the target with the reactum in place of the redex, without idle edges, as in abstract bigraphs.
 
-    Raises BigraphError if a named node would be copied, or created where its name is taken.
+    Raises:
+        BigraphError: If the rule would copy a named node, or create one with a name that exists.
     """
     parts = take_apart(match)
     parameter = instantiate(parts.parameter, rule.instantiation, len(rule.redex.sites))
@@ -25,12 +26,12 @@ def rewrite(rule: ReactionRule, match: Match) -> Bigraph:
 
 
 def successors(rule: ReactionRule, target: Bigraph) -> Iterator[tuple[Match, Bigraph]]:
-    """Yield every occurrence with what the rule makes of it."""
+    """Yield every occurrence with the result of the rule there."""
     return ((match, rewrite(rule, match)) for match in matches(rule, target))
 
 
 def _with_matched_names(rule: ReactionRule, match: Match) -> Bigraph:
-    """Return the reactum in which each variable has the name, if any, of the node it matched."""
+    """Return the reactum in which each variable has the name of its matched node, if that has one."""
     found: dict[str | None, str | None] = {
         node.name: match.target.nodes[image].name
         for node, image in zip(rule.redex.nodes, match.nodes, strict=True)

@@ -15,10 +15,10 @@ from bigraphs.matching import Match, find_matches
 class ReactionRule:
     """A parametric reaction rule; build it with `rule`.
 
-    Site `i` of the reactum is filled with what site `instantiation[i]` of the redex held. A named redex node
-    matches its namesake only, unless its name is among `node_variables`: then it matches any node, and the
-    same name in the reactum is that node. An anonymous one matches any node, and what it matched is replaced,
-    name and all. An outer name of the redex stands for any link, unless it is among `link_constants`.
+    Site `i` of the reactum receives the content of site `instantiation[i]` of the redex. A named redex node matches
+    only the node of the same name, unless its name is in `node_variables`. A variable matches any node, and its name in
+    the reactum refers to that node. An anonymous node matches any node; the reactum replaces it, name included. An
+    outer name of the redex matches any link, unless it is in `link_constants`.
     """
 
     redex: Bigraph
@@ -58,7 +58,7 @@ def rule(
     node_variables: frozenset[str] = frozenset(),
     link_constants: frozenset[str] = frozenset(),
 ) -> ReactionRule:
-    """Return a rule; names that the reactum lacks are idle in it, and sites stay in order unless told otherwise."""
+    """Return a rule; outer names missing from the reactum are added as idle, and sites keep their order by default."""
     for missing in sorted(set(redex.outer_names) - set(reactum.outer_names)):
         reactum = parallel(reactum, substitution(missing, ()))
     if instantiation is None and len(redex.sites) != len(reactum.sites):

@@ -1,7 +1,7 @@
-"""Many runs of a system: when its predicates become true, and how surely that is known.
+"""Statistics of many runs of a system: the times at which its predicates become true, with confidence intervals.
 
-A run of a seed is the one that `simulate` yields for both numbers. What can happen in a state is remembered for
-other runs.
+Run `number` of a seed is the run that `simulate` yields for both numbers. The sampler caches the possible steps of each
+state for later runs.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from bigraphs.simulation import Bounds, Draw, chances, ordered_steps
 from bigraphs.system import System
 
 MOST_REMEMBERED: Final = 50_000
-"""How many states are remembered, with what can happen in them."""
+"""The largest number of cached states."""
 
 CONFIDENCE: Final = 0.95
 
 
 class End(Enum):
-    """Why a run ended."""
+    """The reason for the end of a run."""
 
     STUCK = "nothing can happen"
     STEPS = "steps"
@@ -34,10 +34,10 @@ class End(Enum):
 
 
 class Sample(NamedTuple):
-    """One run, `number` among those of its seed.
+    """A run; `number` is its number among the runs of its seed.
 
-    `first` is for each predicate the time at which it was first true, None if it never was; `time` is the number of
-    steps, in an SBRS the time that passed until the end.
+    `first` holds for each predicate the time at which it was first true, or None. `time` is the number of steps; in an
+    SBRS it is the elapsed time at the end.
     """
 
     number: int
@@ -48,7 +48,7 @@ class Sample(NamedTuple):
 
 
 class _Place:
-    """A state that runs come to: what can happen there is worked out when one goes on."""
+    """A state that runs visit; its possible steps are computed when a run first continues from it."""
 
     __slots__ = ("draw", "holding", "spot", "targets")
 
@@ -60,7 +60,7 @@ class _Place:
 
 
 class Sampler:
-    """Takes runs of one system, all of one seed and within the same bounds."""
+    """A sampler of one system: all its runs have the same seed and bounds."""
 
     def __init__(self, system: System, bounds: Bounds, seed: int = 0) -> None:
         self.machine, self.bounds, self.seed = Machine(system), bounds, seed
@@ -68,7 +68,7 @@ class Sampler:
         self.places: dict[Key, _Place] = {}
 
     def run(self, number: int) -> Sample:
-        """Take one of the runs of the seed."""
+        """Return run `number` of the seed."""
         chance, time, steps = chances(self.seed, number), 0.0, 0
         first: list[float | None] = [None] * len(self.machine.system.predicates)
         place = self.place(self.start)
@@ -88,7 +88,7 @@ class Sampler:
             place, steps = place.targets[chosen], steps + 1
 
     def place(self, spot: Spot) -> _Place:
-        """Return the place of a state; the same for the same state as long as it is remembered."""
+        """Return the cached place of a state; the cache is emptied when it is full."""
         key = spot.state.key()
         found = self.places.get(key)
         if found is None:
@@ -100,14 +100,14 @@ class Sampler:
     def holding(self, place: _Place) -> frozenset[int]:
         """Return the numbers of the predicates that are true at a place."""
         if place.holding is None:
-            assert place.spot is not None  # it is looked at before anything happens
+            assert place.spot is not None  # the first visit reads the state before any step
             place.holding = frozenset(self.machine.holding(place.spot.state))
         return place.holding
 
     def draw(self, place: _Place) -> Draw:
-        """Return what draws one of the targets of a place, which are worked out the first time."""
+        """Return the random choice among the targets of a place; the first call computes the targets."""
         if place.draw is None:
-            assert place.spot is not None  # it is dropped here
+            assert place.spot is not None  # the spot is released below
             steps = ordered_steps(self.machine, place.spot)
             place.draw = Draw(self.machine.system.kind, [step.reaction.rule for step in steps])
             place.targets = [self.place(step.target) for step in steps]
@@ -115,12 +115,12 @@ class Sampler:
         return place.draw
 
 
-# --- what they say --------------------------------------------------------------------------------------------
+# --- statistics ---------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """A number that runs estimate, and the interval that covers it in 95 of 100 such experiments."""
+    """An estimated number, with its 95 % confidence interval."""
 
     value: float
     low: float
@@ -129,16 +129,16 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class FirstTimes:
-    """What runs say of one predicate.
+    """The statistics of one predicate.
 
     Attributes:
         label: The predicate.
-        runs: In how many runs it was ever true.
+        runs: The number of runs in which it was ever true.
         share: The probability of that, within the bounds of a run.
-        time: When it first was, of those runs; None without any.
-        least: The earliest.
-        most: The latest.
-        first_run: The number of the run in which it was true earliest.
+        time: The mean time at which it was first true, over these runs; None without any.
+        least: The earliest of these times.
+        most: The latest of these times.
+        first_run: The number of the run with the earliest time.
     """
 
     label: str
@@ -151,7 +151,7 @@ class FirstTimes:
 
 
 def first_times(system: System, samples: Sequence[Sample]) -> list[FirstTimes]:
-    """Return what some runs say of each predicate of a system."""
+    """Return the statistics of each predicate over these runs."""
     found = []
     for number, predicate in enumerate(system.predicates):
         times = [(time, each.number) for each in samples if (time := each.first[number]) is not None]
@@ -166,24 +166,24 @@ def first_times(system: System, samples: Sequence[Sample]) -> list[FirstTimes]:
 
 
 def share(times: int, runs: int) -> Estimate:
-    """Return the estimate of a probability: Wilson's interval, which is right for rare things, too.
+    """Return the estimate of a probability, with Wilson's interval, which also holds for rare events.
 
     >>> round(share(0, 100).high, 4)
     0.037
     """
-    from scipy.stats import binomtest  # noqa: PLC0415 - it is slow to import
+    from scipy.stats import binomtest  # noqa: PLC0415 - slow to import
 
     interval = binomtest(times, runs).proportion_ci(CONFIDENCE, method="wilson")
     return Estimate(times / runs, float(interval.low), float(interval.high))
 
 
 def mean(values: Sequence[float]) -> Estimate:
-    """Return the estimate of an expectation: Student's interval, without bounds for one value.
+    """Return the estimate of an expectation, with Student's interval; it is unbounded for one value.
 
     >>> round(mean([1.0, 2.0, 3.0]).high, 4)
     4.4841
     """
-    from scipy.stats import t  # noqa: PLC0415 - it is slow to import
+    from scipy.stats import t  # noqa: PLC0415 - slow to import
 
     centre = fmean(values)
     if len(values) == 1:
@@ -194,7 +194,7 @@ def mean(values: Sequence[float]) -> Estimate:
 
 
 def shares_until(samples: Sequence[Sample], predicate: int) -> Iterable[tuple[float, int]]:
-    """Yield the times at which a predicate was first true, sorted, each with in how many runs it was by then."""
+    """Yield the times at which a predicate was first true, sorted, each with the number of runs up to it."""
     times = sorted(time for each in samples if (time := each.first[predicate]) is not None)
     for number, time in enumerate(times, 1):
         if number == len(times) or times[number] != time:

@@ -17,8 +17,8 @@ Status: TypeAlias = Literal["active", "passive", "atomic"]
 class Control:
     """A kind of node.
 
-    `arity` is the number of its ports, None for any number. Rules apply inside *active* nodes only; an
-    *atomic* one contains nothing. Ports that are not `ordered` are interchangeable, as in BigraphER.
+    `arity` is the number of its ports; None allows any number. Rules apply only inside *active* nodes; an *atomic* node
+    contains nothing. Ports that are not `ordered` are interchangeable, as in BigraphER.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Control:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Signature:
-    """A set of controls, sorted by name. It is asked at every node, so it keeps its hash and an index."""
+    """A set of controls, sorted by name; it caches its hash and an index because every node uses it."""
 
     controls: tuple[Control, ...] = ()
     _by_name: dict[str, Control] = field(init=False, repr=False)
@@ -61,7 +61,7 @@ class Signature:
         return self._hash
 
     def __reduce__(self) -> tuple[type[Signature], tuple[tuple[Control, ...]]]:
-        return Signature, (self.controls,)  # hashes of strings differ between processes
+        return Signature, (self.controls,)  # string hashes differ between processes
 
     def __getitem__(self, name: str) -> Control:
         found = self._by_name.get(name)
@@ -74,14 +74,14 @@ class Signature:
         return name in self._by_name
 
     def __or__(self, other: Signature) -> Signature:
-        """Return both, where they agree on the controls that they share."""
+        """Return the union; raises BigraphError if the two declare a shared control differently."""
         if self is other or not other.controls:
             return self
         return _union(self, other) if self.controls else other
 
 
 def open_signature(names: Iterable[str]) -> Signature:
-    """Return active controls of any arity, with interchangeable ports."""
+    """Return a signature of active controls with any arity and interchangeable ports."""
     return Signature(tuple(Control(name, ordered=False) for name in sorted(set(names))))
 
 

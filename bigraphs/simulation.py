@@ -1,4 +1,4 @@
-"""Simulate a system: one run, chosen by a seed."""
+"""Simulation of a system: one random run, determined by a seed."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from bigraphs.system import Rule, System, SystemKind
 class Stage(NamedTuple):
     """One state of a run.
 
-    `rule` is the label of the rule that made it and `action` its action, if it has one; both are None at the start.
-    `time` is the number of steps so far, or in an SBRS the time that has passed. `kept` gives the number of a node
-    before the step and its number now, for every node that is the same one.
+    `rule` is the label of the last rule and `action` its action, if it has one; both are None at the start. `time` is
+    the number of steps so far, in an SBRS the elapsed time. `kept` pairs the number of each surviving node before the
+    step with its number after it.
     """
 
     bigraph: Bigraph
@@ -35,33 +35,32 @@ class Stage(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """How far a run goes: at most so many steps, and in an SBRS at most until a time."""
+    """The bounds of a run: a maximum number of steps and, in an SBRS, an optional end time."""
 
     steps: int
     time: float | None = None
 
 
 def chances(seed: int, run: int | None = None) -> random.Random:
-    """Return the random numbers of a seed; `run` is which of many runs of it they are for.
+    """Return the random numbers of a seed, or of one of its numbered runs.
 
-    Each run has a stream of its own that is independent of the others (numpy's SeedSequence); those of neighbouring
-    seeds need not be.
+    The streams of the runs of one seed are independent (numpy's SeedSequence). Those of neighbouring seeds may not be.
     """
     if run is None:
         return random.Random(seed)
-    from numpy.random import SeedSequence  # noqa: PLC0415 - one run needs no numpy
+    from numpy.random import SeedSequence  # noqa: PLC0415 - a single run needs no numpy
 
     return random.Random(SeedSequence(seed, spawn_key=(run,)).generate_state(8).tobytes())
 
 
 def simulate(system: System, seed: int, bounds: Bounds, *, run: int | None = None) -> Iterator[Stage]:
-    """Yield the states of one run, the same for the same seed, however terms are written.
+    """Yield the states of one run; equal seeds give equal runs, whatever the order of terms in the source.
 
-    With `run` it is that one of the runs of the seed which `bigactors big sim --runs` takes.
+    With `run`, it is the run of that number in `bigactors big sim --runs`.
 
-    In a BRS each occurrence is as likely as any other; in a PBRS by its weight; in an SBRS by its rate, after a
-    delay that is exponentially distributed (Gillespie's direct method); in an NBRS first an action is drawn, then
-    an occurrence by its weight. The run ends where nothing can happen, or at its bounds.
+    In a BRS each occurrence is equally likely; in a PBRS the weights decide. In an SBRS the rates decide, after an
+    exponentially distributed delay (Gillespie's direct method). In an NBRS an action is drawn first, then an occurrence
+    by its weight. The run ends in a deadlock or at its bounds.
     """
     machine, chance = Machine(system), chances(seed, run)
     spot, _ = machine.start()
@@ -82,12 +81,12 @@ def simulate(system: System, seed: int, bounds: Bounds, *, run: int | None = Non
 
 
 def ordered_steps(machine: Machine, spot: Spot) -> list[Step]:
-    """Return what can happen, in an order that depends on the state alone, and not on how it was reached."""
+    """Return the possible steps, in an order that depends only on the state, not on the path to it."""
     return sorted(machine.steps(spot), key=lambda step: (step.reaction.number, step.target.state.key()))
 
 
 class Draw:
-    """Draws one of the rules that can be applied in a state, and how long it takes."""
+    """A random choice among the applicable rules of a state, with the delay of the chosen one."""
 
     def __init__(self, kind: SystemKind, rules: Sequence[Rule]) -> None:
         self.timed = kind is SystemKind.SBRS
@@ -102,12 +101,12 @@ class Draw:
         self.total = sum(weights)
 
     def one(self, chance: random.Random) -> int:
-        """Return the number of a rule: of any action in an NBRS, then by the weights."""
+        """Return the number of a rule: in an NBRS of a uniformly drawn action, then by the weights."""
         numbers, weights = self.groups[0] if len(self.groups) == 1 else chance.choice(self.groups)
         return chance.choices(numbers, cum_weights=weights)[0]
 
     def delay(self, chance: random.Random) -> float:
-        """Return the time until it happens: 1, or in an SBRS exponentially distributed by the sum of the rates."""
+        """Return the delay of the step: 1, or in an SBRS exponential in the sum of the rates."""
         return chance.expovariate(self.total) if self.timed else 1.0
 
 

@@ -1,7 +1,7 @@
-"""What a copy of an exploration finds out about pieces of what waits, as plain values, and how it is taken over.
+"""Slices: the results of a worker's copy of an exploration, as plain values, and their merge into the original.
 
-The copy knows what had been reached when it was made. What it numbers from there on, states and subtrees, gets the
-numbers here that it would have got without a copy.
+A copy starts with the states and subtrees that were known at its creation. It numbers new ones by itself. The merge
+translates these numbers to those of a search without workers.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ from bigraphs.transitions import Kind
 
 @dataclass(frozen=True, slots=True)
 class Slice:
-    """What the expansion of some states has added to a copy.
+    """The additions of a copy after the expansion of some states.
 
     Attributes:
-        rows: The subtrees that are new.
-        keys: The canonical keys of the new states, the same as `raw` where these are canonical.
-        raw: Their keys as they were found.
-        doubtful: Which of the new states have labels in their canonical keys that were not known before.
-        found_from: For each new state the one that it was found from.
-        holding: For each new state the predicates that occur in it.
+        rows: The rows of the new subtrees.
+        keys: The canonical keys of the new states, equal to `raw` where these are canonical.
+        raw: The raw keys of the new states.
+        doubtful: The new states whose canonical keys contain labels that the original may number differently.
+        found_from: For each new state its predecessor in the search.
+        holding: For each new state the predicates that hold in it.
         blocks: The new states, packed.
-        ends: For each expanded state how many of the transitions are its own or those of states before it.
-        targets: For each transition the state that it leads to.
-        kinds: For each transition the rest of it.
-        occurrences: For each expanded state how many there are.
+        ends: For each expanded state the number of transitions up to and including its own.
+        targets: For each transition its target state.
+        kinds: For each transition its other fields.
+        occurrences: For each expanded state the number of occurrences.
     """
 
     rows: list[Row]
@@ -51,7 +51,7 @@ class Slice:
 
 
 def slices_of(copy: Reached, pieces: Sequence[tuple[int, int]]) -> Iterator[bytes]:
-    """Expand, in a copy that is good for nothing else, pieces of what waits: so many are skipped, so many expanded."""
+    """Expand pieces of the queue in a copy, which is useless afterwards; a piece skips states, then expands some."""
     import pickle  # noqa: PLC0415 - a small system has no workers
 
     queue, copy.max_states, labels = copy.waiting, None, len(copy.machine.labelling)
@@ -63,7 +63,7 @@ def slices_of(copy: Reached, pieces: Sequence[tuple[int, int]]) -> Iterator[byte
 
 
 def _slice(copy: Reached, queue: Waiting, sources: range, labels: int) -> Slice:
-    """Expand the first states of a queue; labels of canonical keys are known up to a number."""
+    """Expand the first states of a queue; the labels of canonical keys below `labels` are known to the original."""
     world, expanded, occurrences = copy.machine.world, copy.expanded, array("Q")
     states, rows, transitions = len(copy), len(world.rows), len(copy.targets)
     copy.waiting = Waiting(copy.start)
@@ -94,18 +94,18 @@ def _doubtful(keys: Sequence[Key], labels: int) -> Iterator[int]:
 
 
 class Copy:
-    """What the numbers of a copy are here; those that were given before it was made are the same."""
+    """The translation of a copy's numbers to this exploration; numbers assigned before the copy are equal."""
 
     def __init__(self, reached: Reached) -> None:
-        """Take what had been reached when the copy was made."""
+        """Store the sizes of the tables at the creation of the copy."""
         self.reached = reached
         self.states = len(reached)
         self.numbers: list[int] = []
         self.codes = Codes(len(reached.machine.world.rows), [])
 
     def take_over(self, answer: bytes) -> bool:
-        """Add what the copy has found out about the states that wait longest; say whether there was room for it."""
-        import pickle  # noqa: PLC0415 - as above
+        """Merge a copy's slice for the longest waiting states; return whether the limit of states allowed all of it."""
+        import pickle  # noqa: PLC0415 - a small system has no workers
 
         found: Slice = pickle.loads(answer)
         reached, first, before = self.reached, len(self.reached), len(self.numbers)
@@ -120,7 +120,7 @@ class Copy:
         return whole
 
     def _number(self, found: Slice) -> None:
-        """Number the states that the copy took for new, as far as there is room for those that are."""
+        """Number the states that were new to the copy, up to the limit of states."""
         reached, machine = self.reached, self.reached.machine
         for place, raw in enumerate(found.raw):
             known = _recoded(machine.world, raw, self.codes) if self.codes.here else raw
@@ -136,7 +136,7 @@ class Copy:
             self.numbers.append(number)
 
     def _keep(self, found: Slice, expanded: int) -> None:
-        """Add the transitions of the first states of a slice."""
+        """Add the transitions of the first expanded states of a slice."""
         reached, states, numbers = self.reached, self.states, self.numbers
         end, before = found.ends[expanded - 1] if expanded else 0, len(reached.targets)
         reached.targets.extend(
@@ -147,7 +147,7 @@ class Copy:
         reached.occurrences += sum(found.occurrences[:expanded])
 
     def _new_blocks(self, blocks: Sequence[Block], is_new: Sequence[bool]) -> Iterator[Block]:
-        """Yield what of some blocks is new."""
+        """Yield the blocks, reduced to the new states."""
         start = 0
         for block in blocks:
             kept = [place for place, new in enumerate(is_new[start : start + len(block)]) if new]

@@ -1,7 +1,7 @@
-"""Sorts: what a node may contain, and which ports a link may join (simple place and link sortings, after Milner).
+"""Sorts: the permitted content of nodes and the ports that a link may join (simple sortings, after Milner).
 
-A control that no place sort speaks of holds anything; a port that no link sort speaks of is joined with such
-ports only. `A` speaks of every `A(1)`, `A(2)`, ... of a parametrised control.
+A control without a place sort may hold anything. A port without a link sort may be joined only with other such ports. A
+sort of `A` applies to every `A(1)`, `A(2)`, ... of a parametrised control.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from bigraphs.signature import Signature
 
 @dataclass(frozen=True, slots=True)
 class LinkSort:
-    """A named set of ports: a control with the number of a port, or None for all that it has."""
+    """A named set of ports: each is a control with a port number, or with None for all its ports."""
 
     name: str
     ports: tuple[tuple[str, int | None], ...]
@@ -25,13 +25,13 @@ class LinkSort:
 
 @dataclass(frozen=True, slots=True)
 class Sorting:
-    """What each control may hold, and the sorts of links; both sorted by name."""
+    """The permitted content of each control, and the sorts of links; both sorted by name."""
 
     places: tuple[tuple[str, tuple[str, ...]], ...] = ()
     links: tuple[LinkSort, ...] = ()
 
     def allows(self, parent: str, child: str) -> bool:
-        """Say whether a node may be directly in another, by their controls."""
+        """Return whether a node may be directly inside another, by their controls."""
         content = dict(self.places).get(base(parent))
         return content is None or base(child) in content
 
@@ -56,7 +56,7 @@ def base(control: str) -> str:
 
 
 def violations(bigraph: Bigraph, sorting: Sorting) -> Iterator[str]:
-    """Yield what in a bigraph is against its sorting."""
+    """Yield the violations of a sorting in a bigraph."""
     for node in bigraph.nodes:
         for parent in node.parents:
             if parent >= 0 and not sorting.allows(bigraph.nodes[parent].control, node.control):
@@ -81,9 +81,9 @@ def _listed(sorts: Iterable[str | None]) -> str:
 
 
 def unkept(rule: ReactionRule, signature: Signature, sorting: Sorting) -> Iterator[str]:
-    """Yield why a rule could leave a bigraph unsorted that was sorted; none, if it keeps every one sorted.
+    """Yield the ways in which a rule can turn a sorted bigraph into an unsorted one.
 
-    What is around a redex, and in its sites, is only known to be sorted.
+    The context of a redex and the content of its sites are assumed to be sorted, and otherwise arbitrary.
     """
     for side, bigraph in (("redex", rule.redex), ("reactum", rule.reactum)):
         yield from (f"in the {side}, {found}" for found in violations(bigraph, sorting))
@@ -96,7 +96,7 @@ def unkept(rule: ReactionRule, signature: Signature, sorting: Sorting) -> Iterat
 
 
 def _holders(rule: ReactionRule, region: Place, signature: Signature, sorting: Sorting) -> list[str]:
-    """Return the controls of nodes that a region of the redex may be in."""
+    """Return the controls of the nodes that may contain a region of the redex."""
     tops = {rule.redex.nodes[child].control for child in children(rule.redex)[region]}
     return [
         control.name

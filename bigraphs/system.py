@@ -1,7 +1,7 @@
-"""Reactive systems as values: a signature, a first state, rules in priority classes, and predicates.
+"""Reactive systems as values: a signature, an initial state, rules in priority classes, and predicates.
 
-This is what a `.big` or a `.bgm` file means once it has been read: every parameter has a value, every
-expression is a bigraph. Nothing here knows how a system is run.
+A system is the meaning of a `.big` or `.bgm` file: all parameters have values and all expressions are bigraphs. This
+module does not depend on the engine.
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ Value: TypeAlias = int | float | str
 
 
 class SystemKind(Enum):
-    """What the weights of rules mean."""
+    """The meaning of the rules' weights."""
 
     BRS = "brs"
-    """Nothing: rules have no weights."""
+    """No weights."""
     PBRS = "pbrs"
-    """Weights: the probability of a step is its share of all that can happen in its class (a Markov chain)."""
+    """Weights: the probability of a step is its share of the total weight in its class (a Markov chain)."""
     SBRS = "sbrs"
-    """Rates of exponentially distributed delays (a continuous-time Markov chain); infinite if instantaneous."""
+    """Rates of exponential delays (a continuous-time Markov chain); infinite for an instantaneous rule."""
     NBRS = "nbrs"
-    """Weights within an action; which action is taken is a choice (a Markov decision process)."""
+    """Weights within an action; the choice of the action is nondeterministic (a Markov decision process)."""
 
 
 class Where(Enum):
-    """The part of a state, around an occurrence of a redex, that a condition looks at."""
+    """The part of a state that a condition inspects, relative to an occurrence of a redex."""
 
     CONTEXT = "ctx"
     PARAM = "param"
@@ -43,7 +43,7 @@ class Where(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """A place in a source text, lines and columns from 1."""
+    """A position in a source text: line and column, from 1."""
 
     line: int
     column: int
@@ -54,7 +54,7 @@ class Position:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What must (or, if not `positive`, must not) occur in the context or in the parameter of a match."""
+    """A pattern that must occur in the context or the parameter of a match, or must not if not `positive`."""
 
     positive: bool
     pattern: Bigraph
@@ -63,12 +63,12 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """One rule of a system, its parameters given.
+    """One rule of a system, with the values of its parameters.
 
-    Site `i` of the reactum holds what site `instantiation[i]` of the redex held. `weight` is a weight or a
-    rate, None in a BRS; infinity is a rate of an instantaneous rule. `action` names the action that it is part
-    of, in an NBRS only, and `reward` is that action's. An outer name of the redex stands for any link, but one
-    of `link_constants` (BigMC's declared names) for the link of that name.
+    Site `i` of the reactum receives the content of site `instantiation[i]` of the redex. `weight` is a weight or a
+    rate; None in a BRS, infinity for an instantaneous rule. In an NBRS, `action` names the rule's action and `reward`
+    is the reward of that action. An outer name of the redex matches any link; a name in `link_constants` (a declared
+    name of BigMC) matches only the link of that name.
     """
 
     name: str
@@ -85,11 +85,11 @@ class Rule:
 
     @property
     def label(self) -> str:
-        """Return the name with its parameters, `move(1,"a")`: distinct within a system."""
+        """Return the name with its parameters, `move(1,"a")`; labels are distinct within a system."""
         return call(self.name, self.parameters)
 
     def reaction(self) -> ReactionRule:
-        """Return the bare reaction rule, for `bigraphs.matching` and `bigraphs.rewriting`."""
+        """Return the reaction rule without weight and conditions, for `bigraphs.matching` and `bigraphs.rewriting`."""
         return ReactionRule(
             self.redex,
             self.reactum,
@@ -101,7 +101,10 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class PriorityClass:
-    """Rules of one priority; those of an instantaneous class fire without a state between, the first that can first."""
+    """Rules of one priority.
+
+    The first applicable rule of an instantaneous class fires at once, without an intermediate state.
+    """
 
     rules: tuple[Rule, ...]
     instantaneous: bool = False
@@ -110,7 +113,7 @@ class PriorityClass:
 
 @dataclass(frozen=True, slots=True)
 class Predicate:
-    """A pattern that states are labelled with where it occurs, and the reward of being in such a state."""
+    """A pattern that labels the states in which it occurs, with the reward of such a state."""
 
     name: str
     pattern: Bigraph
@@ -126,7 +129,7 @@ class Predicate:
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """A choice of an NBRS, with the reward for taking it."""
+    """An action of an NBRS, with its reward."""
 
     name: str
     reward: int | float = 0
@@ -134,9 +137,9 @@ class Action:
 
 @dataclass(frozen=True, slots=True)
 class System:
-    """A reactive system; `classes` come from the highest priority down, `initial` is ground.
+    """A reactive system; `classes` are sorted from the highest priority down, `initial` is ground.
 
-    Rules keep every state sorted by `sorting`, and `properties` (BigMC's) are to hold in every state.
+    Rules keep every state sorted by `sorting`. `properties` (BigMC's) must hold in every state.
     """
 
     kind: SystemKind
@@ -148,7 +151,7 @@ class System:
     properties: tuple[Property, ...] = ()
     sorting: Sorting = UNSORTED
     warnings: tuple[NotationError, ...] = field(default=(), compare=False, repr=False)
-    """What its text has wrong, where it does not matter."""
+    """The harmless mistakes in the source text."""
 
     def rules(self) -> Iterator[Rule]:
         """Yield every rule, from the highest priority down."""
@@ -156,7 +159,7 @@ class System:
 
 
 def call(name: str, parameters: tuple[Value, ...]) -> str:
-    """Write a name with its parameters.
+    """Return a name with its parameters as text.
 
     >>> call("move", (1, 2.0, "a"))
     'move(1,2.0,"a")'

@@ -1,4 +1,4 @@
-"""Bigraphs drawn in text: an indented tree of places, then the links."""
+"""Bigraphs as text: an indented tree of places, then the links."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from bigraphs.labels import link_label, node_labels
 def draw_text(bigraph: Bigraph) -> str:
     """Return the places as a tree and the links as a list.
 
-    A node with several parents is drawn in full in the first, and named with an arrow in the others.
+    A node with several parents is drawn in full in the first; in the others an arrow and its label stand for it.
 
     >>> from bigraphs.relations import from_relations
     >>> print(draw_text(from_relations({"u": "UAV", "a": "Area"}, {"u": "a"}, {"net": ["u"]})))

@@ -1,4 +1,4 @@
-"""Transition systems: the result of exploring a reactive system, as arrays and as a graph."""
+"""Transition systems: the results of explorations, as arrays and as graphs."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 class Transition(NamedTuple):
     """One transition.
 
-    `weight` is the probability of it, its rate, or 1 in a BRS; `rules` are the labels of the rules that make it,
-    sorted, and `occurrences` in how many ways they do. `action` is the action that it belongs to, in an NBRS.
+    `weight` is its probability, its rate, or 1 in a BRS. `rules` holds the labels of its rules, sorted; `occurrences`
+    is the number of their occurrences. `action` is its action, in an NBRS.
     """
 
     source: int
@@ -35,7 +35,7 @@ class Transition(NamedTuple):
 
 
 class Kind(NamedTuple):
-    """All of a transition but where it starts and ends; few of those of a system are distinct."""
+    """A transition without its source and target; a system has few distinct kinds."""
 
     weight: float
     rules: tuple[str, ...]
@@ -45,16 +45,16 @@ class Kind(NamedTuple):
 
 @dataclass(frozen=True)
 class TransitionSystem:
-    """The states that are reachable, numbered from 0 as they were found, breadth first, and the transitions between.
+    """The reachable states, numbered from 0 in breadth-first order, and their transitions.
 
     Attributes:
-        keys: What tells each state.
-        holding: For each state the numbers of the predicates that occur in it.
-        first: For each state that was expanded the number of its first transition; then how many there are in all.
-        targets: For each transition the state that it leads to.
-        kinds: For each transition the rest of it.
-        found_from: For each state the one that it was found from.
-        reason: Why not all states were expanded; empty if they were.
+        keys: The key of each state.
+        holding: For each state the numbers of the predicates that hold in it.
+        first: For each expanded state the number of its first transition; at the end the number of all transitions.
+        targets: For each transition its target state.
+        kinds: For each transition its other fields.
+        found_from: For each state its predecessor in the search.
+        reason: Why some states were not expanded; empty if all were.
     """
 
     system: System
@@ -76,22 +76,22 @@ class TransitionSystem:
 
     @property
     def complete(self) -> bool:
-        """Say whether every reachable state is there, with all of its transitions."""
+        """Return whether every reachable state is present with all its transitions."""
         return not self.reason
 
     @property
     def expanded(self) -> int:
-        """Return how many states have their transitions: the first ones, all of them in a complete system."""
+        """Return the number of expanded states, which come first; in a complete system all states."""
         return len(self.first) - 1
 
     @property
     def kind(self) -> SystemKind:
-        """Return what the weights mean."""
+        """Return the kind of the system: the meaning of its weights."""
         return self.system.kind
 
     @cached_property
     def starts(self) -> array[int]:
-        """For each transition the state that it starts from."""
+        """For each transition its source state."""
         found = array("I")
         for state in range(self.expanded):
             found.extend(repeat(state, len(self.leaving(state))))
@@ -99,7 +99,7 @@ class TransitionSystem:
 
     @cached_property
     def labels(self) -> tuple[bytearray, ...]:
-        """For each predicate a byte per state, 1 where it occurs."""
+        """For each predicate one byte per state: 1 where it holds."""
         return tuple(self._label(predicate) for predicate in range(len(self.system.predicates)))
 
     def _label(self, predicate: int) -> bytearray:
@@ -114,26 +114,26 @@ class TransitionSystem:
         return to_bigraph(from_key(self.world, self.keys[number]))
 
     def leaving(self, state: int) -> range:
-        """Return the numbers of the transitions that start from a state; none if it was not expanded."""
+        """Return the numbers of the transitions from a state; empty if it was not expanded."""
         return range(self.first[state], self.first[state + 1]) if state < self.expanded else range(0)
 
     def transitions(self) -> Iterator[Transition]:
-        """Yield the transitions, sorted by where they start."""
+        """Yield the transitions, sorted by source."""
         return (each for state in range(self.expanded) for each in self.transitions_from(state))
 
     def transitions_from(self, state: int) -> Iterator[Transition]:
-        """Yield the transitions that start from a state."""
+        """Yield the transitions from a state."""
         return (
             Transition(state, self.targets[number], *self.kinds[number]) for number in self.leaving(state)
         )
 
     def states_with(self, predicate: int) -> Iterator[int]:
-        """Yield the numbers of the states in which a predicate occurs."""
+        """Yield the numbers of the states in which a predicate holds."""
         holds = [predicate in numbers for numbers in self.holding.values]
         return (state for state, code in enumerate(self.holding.codes) if holds[code])
 
     def labels_of(self, state: int) -> tuple[str, ...]:
-        """Return the labels of the predicates that occur in a state."""
+        """Return the labels of the predicates that hold in a state."""
         return tuple(self.system.predicates[number].label for number in self.holding[state])
 
     def path_to(self, state: int) -> list[int]:
@@ -149,13 +149,13 @@ class TransitionSystem:
         return tuple(sorted({rule for rules in leading for rule in rules}))
 
     def rules_never_used(self) -> tuple[Rule, ...]:
-        """Return the ordinary rules that make no transition, in the order written."""
+        """Return the ordinary rules without a transition, in source order."""
         used = {label for kind in self.kinds.values for label in kind.rules}
         ordinary = (rule for each in self.system.classes if not each.instantaneous for rule in each.rules)
         return tuple(rule for rule in ordinary if rule.label not in used)
 
     def beginning(self, states: int) -> TransitionSystem:
-        """Return the first states, and the transitions between them."""
+        """Return the first `states` states and the transitions between them."""
         first, targets, kinds = array("Q", (0,)), array("I"), Column[Kind]()
         for state in range(min(states, self.expanded)):
             for number in self.leaving(state):
@@ -175,7 +175,7 @@ class TransitionSystem:
 
     def to_networkx(self) -> nx.MultiDiGraph[int]:
         """Return a graph of states (`labels`) and transitions (`rules`, `weight`, `occurrences`, `action`)."""
-        import networkx as nx  # noqa: PLC0415 - few need it, and it is slow to import
+        import networkx as nx  # noqa: PLC0415 - rarely needed and slow to import
 
         graph: nx.MultiDiGraph[Any] = nx.MultiDiGraph()
         for state in range(len(self)):

@@ -1,4 +1,4 @@
-"""Decide claims about a transition system: predicates and properties in every state, or in some."""
+"""Decisions of claims about a transition system: predicates and properties in every state, or in some."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bigraphs.transitions import TransitionSystem
 
 
 class Quantifier(Enum):
-    """In which states a predicate is claimed to occur."""
+    """The claimed occurrence of a predicate: in every state, in none, or in some."""
 
     ALWAYS = "always"
     NEVER = "never"
@@ -21,7 +21,7 @@ class Quantifier(Enum):
 
 
 class Outcome(Enum):
-    """What became of a claim; *incomplete* if the states that were explored don't decide it."""
+    """The outcome of a claim; *incomplete* if the explored states do not decide it."""
 
     HOLDS = "holds"
     VIOLATED = "violated"
@@ -30,7 +30,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What became of one claim, with the nearest state that shows it, if one does."""
+    """The outcome of one claim, with the nearest state that demonstrates it, if one does."""
 
     claim: str
     outcome: Outcome
@@ -38,7 +38,7 @@ class Verdict:
 
 
 def predicate_hint(name: str, labels: Sequence[str]) -> str:
-    """Return what may help where a system has no predicate of a name.
+    """Return a hint for an unknown predicate name.
 
     >>> predicate_hint("overr", ["over", "done"]), predicate_hint("x", ["over", "done"])
     ("did you mean 'over'?", 'the predicates are over, done')
@@ -50,7 +50,11 @@ def predicate_hint(name: str, labels: Sequence[str]) -> str:
 
 
 def predicate_verdict(system: TransitionSystem, quantifier: Quantifier, label: str) -> Verdict:
-    """Decide whether a predicate occurs always, never or ever; raises BigraphError if there is none of that label."""
+    """Decide whether a predicate holds always, never or in a reachable state.
+
+    Raises:
+        BigraphError: If no predicate has that label.
+    """
     labels = [predicate.label for predicate in system.system.predicates]
     if label not in labels:
         raise BigraphError("predicate", f"unknown predicate '{label}'", predicate_hint(label, labels))
@@ -66,14 +70,14 @@ def predicate_verdict(system: TransitionSystem, quantifier: Quantifier, label: s
 
 
 def deadlock_verdict(system: TransitionSystem) -> Verdict:
-    """Decide whether something can happen in every state."""
+    """Decide whether every state has a transition."""
     found = next((state for state in range(system.expanded) if not system.leaving(state)), None)
     outcome = Outcome.VIOLATED if found is not None else _nothing(system, Outcome.HOLDS)
     return Verdict("no deadlock", outcome, found)
 
 
 def property_verdict(system: TransitionSystem, claim: Property) -> Verdict:
-    """Decide whether a property of a `.bgm` file holds in every state; states that were not expanded are left out."""
+    """Decide whether a property of a `.bgm` file holds in every expanded state."""
     found = next(
         (state for state, here in _situations(system) if not holds(claim.formula, here)),
         None,
@@ -83,7 +87,7 @@ def property_verdict(system: TransitionSystem, claim: Property) -> Verdict:
 
 
 def _nothing(system: TransitionSystem, outcome: Outcome) -> Outcome:
-    """Return what it means that nothing was found: nothing, unless all states were looked at."""
+    """Return the outcome of a search without a finding: the given one if the system is complete, else incomplete."""
     return outcome if system.complete else Outcome.INCOMPLETE
 
 
@@ -107,9 +111,9 @@ def _situations(system: TransitionSystem) -> Iterator[tuple[int, Situation]]:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A step of a run: the rules that make it, none where nothing can happen, and the number of the state after it.
+    """A step of a run: its rules (none after a deadlock) and the number of the state after it.
 
-    `action` is the action that was chosen, and `chance` the probability of the step then, where they are asked about.
+    For a probabilistic claim, `action` is the chosen action and `chance` the probability of the step under that choice.
     """
 
     rules: tuple[str, ...]
@@ -120,7 +124,7 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A run from the initial state; the steps from number `loop` on come again and again, unless it is None."""
+    """A run from the initial state; the steps from number `loop` on repeat forever, unless it is None."""
 
     steps: tuple[Step, ...]
     loop: int | None = None
@@ -128,9 +132,9 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A number that was asked for: what it is, between which bounds it surely is if they are known.
+    """A computed number, with its proven bounds if they are known.
 
-    `compared` says that a formula claims something of it.
+    `compared` is whether a formula compares it with a limit.
     """
 
     number: float
@@ -140,10 +144,10 @@ class Value:
 
 @dataclass(frozen=True, slots=True)
 class Decided:
-    """What became of a claim, with a run that shows it where one run can.
+    """The outcome of a claim, with a run as its evidence where one run suffices.
 
-    `what` says of the run what it is, `remarks` what the verdict says less than it seems to. Where a number is asked
-    for, `value` is it, and `strategy` what is chosen in the states with a choice to reach it.
+    `what` describes the run; `remarks` say in which respect the verdict is weaker than it looks. A claim that asks for
+    a number has it as `value`; `strategy` is the choice in each state that attains it.
     """
 
     claim: str

@@ -1,8 +1,8 @@
-"""Processes that do a part of what waits, ahead of the one that asks; what they find is taken in order.
+"""Worker processes that compute parts of a queue ahead of the main process, which takes the results in order.
 
-A worker is a fork: it knows all that is known, and nothing has to be sent to it. It does every n-th piece of what
-waits, answers piece by piece, and ends. What a worker that failed has not answered, whatever the reason, is left to
-the one that asks, who meets an error where it would have met it alone.
+A worker is a fork: it shares the memory of the main process, so nothing needs to be sent to it. It computes every n-th
+piece of the queue, answers piece by piece, and ends. The main process computes the unanswered pieces of a failed worker
+itself, so any error occurs as it would without workers.
 """
 
 from __future__ import annotations
@@ -20,41 +20,41 @@ if TYPE_CHECKING:
     from multiprocessing.context import ForkProcess
 
 BEGIN: Final = 0.5
-"""After how many seconds help is asked for, of the processor as all here: small systems are done by then."""
+"""Seconds of processor time before workers start; small systems finish earlier."""
 LEAST: Final = 0.1
-"""For less seconds of work no worker is started: to copy the memory that both write takes some 0.03 of each."""
+"""The least work for which workers start, in seconds; copying the shared memory on write takes some 0.03 s each."""
 PIECE: Final = 0.1
-"""How many seconds of work a piece is, at most."""
+"""The longest duration of a piece, in seconds."""
 PIECES: Final = 8
-"""How many pieces a worker is given, or up to twice as many: neighbours take equally long, others do not."""
+"""The number of pieces per worker, at most doubled: neighbouring states take equally long, distant ones do not."""
 LOOK_EVERY: Final = 0.1
-"""Seconds between two looks around while a worker is waited for."""
+"""Seconds between two progress checks while the main process waits for a worker."""
 
 Piece: TypeAlias = tuple[int, int]
-"""How many parts that wait are skipped after the piece before, and how many are in it."""
+"""The number of parts to skip after the previous piece, and the number of parts in this piece."""
 
 Work: TypeAlias = Callable[[Sequence[Piece]], Iterator[bytes]]
-"""What a worker does: yields an answer for each piece."""
+"""A worker's task: it yields an answer for each piece."""
 
 
 Memory = TypeVar("Memory")
 
 
 def cores() -> int:
-    """Return how many cores this process may use."""
+    """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @dataclass(eq=False, slots=True)
 class _Worker(Generic[Memory]):
-    """A process that is at work, and what its answers are understood by."""
+    """A running process, and the data needed to interpret its answers."""
 
     process: ForkProcess
     answers: Connection
     memory: Memory
 
     def end(self) -> None:
-        """End it, whatever it does."""
+        """Kill the process and release its resources."""
         self.process.kill()
         self.process.join()
         self.process.close()
@@ -62,21 +62,21 @@ class _Worker(Generic[Memory]):
 
 
 class Workers(Generic[Memory]):
-    """Those who help with parts that are numbered from 0, each of which takes about as long as those before it."""
+    """The workers of a queue, whose parts are numbered from 0 and take similar times."""
 
     def __init__(self, processes: int, work: Work, remember: Callable[[], Memory]) -> None:
-        """Take what is to be remembered of the moment at which a worker was started: it comes with its answers."""
+        """Set the task; `remember` captures the state at the start of a worker and comes back with its answers."""
         self._processes = max(processes, 1) if hasattr(os, "fork") else 1
         self._work, self._remember = work, remember
         self._given: deque[tuple[int, _Worker[Memory]]] = (
             deque()
-        )  # the first part of each piece, and who does it
+        )  # the first part of each piece, and its worker
         self._since, self._from = time.process_time(), 0
         self._at_once, self._frozen = 1, False
-        self._pace = 0.0  # seconds that one process takes for a part, lately
+        self._pace = 0.0  # seconds per part in one process, recently measured
 
     def share(self, first: int, waiting: int) -> None:
-        """Give workers some of the parts that wait, from `first` on, if it is worth it and nothing is given."""
+        """Give workers parts from `first` on, if that is worthwhile and none are working."""
         if self._processes == 1 or self._given:
             return
         if self._at_once > 1 or time.process_time() - self._since >= BEGIN:
@@ -87,20 +87,20 @@ class Workers(Generic[Memory]):
                 self._start(first, turns, count)
 
     def _pieces(self, waiting: int) -> tuple[int, int]:
-        """Return how many pieces each process is to do, and how many parts a piece has."""
+        """Return the number of pieces per process, and the number of parts per piece."""
         parts = waiting // self._processes
         count = max(1, min(parts // PIECES, int(PIECE / self._pace)))
         return min(parts // count, 2 * PIECES), count
 
     def _measure(self, first: int, at_once: int) -> None:
-        """Note how long a part has taken since it was last noted, and how many processes do the next ones."""
+        """Measure the time per part since the last call; `at_once` processes compute the next parts."""
         now = time.process_time()
         if first > self._from:
             self._pace = self._at_once * (now - self._since) / (first - self._from)
         self._since, self._from, self._at_once = now, first, at_once
 
     def _start(self, first: int, turns: int, count: int) -> None:
-        """Start workers; this process does the first piece of each turn."""
+        """Start workers; this process computes the first piece of each turn."""
         self._frozen = True
         gc.freeze()  # a collection would copy all memory that the processes share
         between = (self._processes - 1) * count
@@ -109,7 +109,7 @@ class Workers(Generic[Memory]):
             for place in range(1, self._processes):
                 pieces = [(place * count, count), *[(between, count)] * (turns - 1)]
                 helpers.append(self._started(pieces))
-        except OSError:  # there is no room for one more
+        except OSError:  # no resources for another process
             self._processes = 1 + len(helpers)
         for turn in range(turns):
             begin = first + turn * (between + count)
@@ -117,8 +117,8 @@ class Workers(Generic[Memory]):
         self._measure(first, 1 + len(helpers))
 
     def _started(self, pieces: Sequence[Piece]) -> _Worker[Memory]:
-        """Return a worker, to which Ctrl-C says nothing."""
-        from multiprocessing import get_context  # noqa: PLC0415 - small systems need no help
+        """Return a new worker, which ignores Ctrl-C."""
+        from multiprocessing import get_context  # noqa: PLC0415 - small systems need no workers
         from signal import SIG_BLOCK, SIG_SETMASK, SIGINT, pthread_sigmask  # noqa: PLC0415
 
         context = get_context("fork")
@@ -133,7 +133,7 @@ class Workers(Generic[Memory]):
         return _Worker(process, answers, self._remember())
 
     def found(self, first: int, look: Callable[[], None]) -> tuple[Memory, bytes] | None:
-        """Wait for what a worker has found from a part on; None if no worker does it. Look around meanwhile."""
+        """Return a worker's answer for the piece that starts at a part, or None; call `look` while waiting."""
         if not self._given or self._given[0][0] != first:
             return None
         worker = self._given[0][1]
@@ -150,12 +150,12 @@ class Workers(Generic[Memory]):
         return worker.memory, answer
 
     def _leave(self, worker: _Worker[Memory]) -> None:
-        """Take back what a worker has not done."""
+        """Stop a worker and take back its unanswered pieces."""
         worker.end()
         self._given = deque((first, other) for first, other in self._given if other is not worker)
 
     def close(self) -> None:
-        """End the workers that are at work."""
+        """Stop all workers."""
         while self._given:
             self._leave(self._given[0][1])
         if self._frozen:
@@ -163,11 +163,14 @@ class Workers(Generic[Memory]):
 
 
 def _run(work: Work, send: Connection, answers: Connection, pieces: Sequence[Piece]) -> None:
-    """Answer for each piece, in a worker; its own way to hear them is closed, so that it notices when nobody does."""
+    """Answer each piece, in a worker.
+
+    The worker closes its copy of the receiving end, so that it notices the death of the main process.
+    """
     answers.close()
     gc.disable()
     try:
         for answer in work(pieces):
             send.send_bytes(answer)
-    except Exception:  # who asks meets it in turn
+    except Exception:  # the main process meets the error in its turn
         raise SystemExit(1) from None

@@ -1,7 +1,7 @@
 """The physical model: geometry, altitude and channels of entities on the WGS 84 earth, and their motion.
 
-It reads and writes GeoJSON, waypoint files and plans. It knows nothing of bigraphs, agents or missions. AIS
-recordings are read by `physical.ais_receiver` and its neighbours, which need the extra `ais`.
+The package reads and writes GeoJSON, waypoint files and plans. It does not depend on bigraphs, agents or missions.
+`physical.ais_receiver` and its neighbours read AIS recordings, which need the extra `ais`.
 """
 
 import lazy_loader

@@ -1,7 +1,7 @@
-"""Decode one AIS message by pyais into reports: the only file that imports pyais, and only when called.
+"""The decoder of one AIS message, by pyais, into reports: the only file that imports pyais, and only when called.
 
-Of pyais its `decode` alone is used; its stream classes block, and have lost multi-part messages. Messages
-without a position or static data (binary data, acknowledgements, channel management) are not decoded at all.
+It uses only `decode` of pyais; the stream classes block, and have lost multi-part messages. Messages without a position
+or static data (binary data, acknowledgements, channel management) are not decoded.
 """
 
 from collections.abc import Callable
@@ -13,24 +13,24 @@ from physical.messages import install_extra
 from physical.nmea import Part, Reason
 
 POSITIONS = frozenset({1, 2, 3, 4, 9, 11, 17, 18, 19, 21, 27})
-"""The messages that tell where their sender is."""
+"""The message types with the position of the sender."""
 
 AIRCRAFT_POSITION = 9
 
 STATICS = frozenset({5, 19, 21, 24})
-"""The messages that tell what their sender is."""
+"""The message types with static data of the sender."""
 
 _TYPES = range(1, 28)
-# Up to the last bit that is read from each message: pyais reads on past the end of shorter ones.
+# The last bit that is read from each message type: pyais reads past the end of shorter messages.
 _NEEDED_BITS = {1: 137, 2: 137, 3: 137, 4: 134, 5: 240, 9: 128, 11: 134, 17: 75}
 _NEEDED_BITS |= {18: 133, 19: 271, 21: 219, 24: 48, 27: 94}
 _HIGHEST_MMSI = 999_999_999
-# Speed in tenths of a knot, but in knots from aircraft and over long range; each has its own "not available".
+# Speed is in tenths of a knot, except in knots from aircraft and over long range; each has its own "not available".
 _NO_SPEED = {9: 1023.0, 27: 63.0}
 
 
 class _Message(Protocol):
-    """What pyais gives; the coordinates only in positions."""
+    """The fields of a pyais message; only position messages have coordinates."""
 
     msg_type: int
     mmsi: int
@@ -39,15 +39,16 @@ class _Message(Protocol):
 
 
 def type_of(parts: tuple[Part, ...]) -> int:
-    """Read the message type, 0 to 63: the first character of the payload is exactly that."""
+    """Return the message type, 0 to 63, which is the first character of the payload."""
     code = parts[0].payload[0] - 48
     return code - 8 if code > 40 else code
 
 
 def decode(parts: tuple[Part, ...], time: float | None) -> tuple[tuple[Report, ...], Reason | None]:
-    """Decode one message from all its parts, in order: its reports, and why some or all are missing.
+    """Decode one message from all its parts, in order: its reports, and the reason if some or all are missing.
 
-    Raises AisError where pyais is not installed.
+    Raises:
+        AisError: If pyais is not installed.
     """
     msg_type = type_of(parts)
     if msg_type not in _TYPES:
@@ -59,7 +60,7 @@ def decode(parts: tuple[Part, ...], time: float | None) -> tuple[tuple[Report, .
     pyais_decode = _pyais_decode()
     try:
         message = pyais_decode(*(part.raw for part in parts))
-    except Exception:  # pyais raises whatever hostile payloads meet in its converters; none may end a feed
+    except Exception:  # pyais raises arbitrary errors for hostile payloads; none may end a feed
         return (), Reason.UNDECODABLE
     return _reports(message, time) if message.mmsi <= _HIGHEST_MMSI else ((), Reason.UNDECODABLE)
 
@@ -67,7 +68,7 @@ def decode(parts: tuple[Part, ...], time: float | None) -> tuple[tuple[Report, .
 @cache
 def _pyais_decode() -> Callable[..., _Message]:
     try:
-        from pyais import decode as pyais_decode  # noqa: PLC0415 - an extra: nobody pays for it who reads no AIS
+        from pyais import decode as pyais_decode  # noqa: PLC0415 - an optional dependency, imported only for AIS
     except ImportError as missing:
         hint = install_extra("ais")
         raise AisError("ais-extra", "reading AIS needs pyais, which is not installed", hint) from missing
@@ -84,7 +85,7 @@ def _reports(message: _Message, time: float | None) -> tuple[tuple[Report, ...],
 
 def _position(message: _Message, time: float | None) -> tuple[PositionReport, ...]:
     lat, lon = _coordinates(message)
-    if abs(lat) > 90 or abs(lon) > 180:  # 91 and 181 mean "not available", what lies beyond means nothing
+    if abs(lat) > 90 or abs(lon) > 180:  # 91 and 181 mean "not available"
         return ()
     sog, cog, heading = _motion(message)
     return (
@@ -93,7 +94,7 @@ def _position(message: _Message, time: float | None) -> tuple[PositionReport, ..
 
 
 def _altitude(message: _Message) -> float | None:
-    """Read the altitude that aircraft report; 4095 means "not available"."""
+    """Return the altitude of an aircraft; 4095 means "not available"."""
     altitude = getattr(message, "alt", None) if message.msg_type == AIRCRAFT_POSITION else None
     return None if altitude is None or altitude > HIGHEST_ALTITUDE else float(altitude)
 
@@ -105,7 +106,7 @@ def _coordinates(message: _Message) -> tuple[float, float]:
 
 
 def _tenth_of_a_minute(tenths: float, width: int) -> float:
-    """Scale a coordinate of message 17, which pyais gives unsigned and in tenths of its unit, to degrees."""
+    """Return a coordinate of message 17 in degrees; pyais gives it unsigned and in tenths of its unit."""
     raw = round(10 * tenths)
     return (raw - (raw >> (width - 1) << width)) / 600
 
@@ -121,7 +122,7 @@ def _motion(message: _Message) -> tuple[float | None, float | None, float | None
 
 
 def _angle(degrees: float | None) -> float | None:
-    """Pass 0 up to 360, exclusive: 360, 511 and all between mean "not available"."""
+    """Return an angle in [0, 360); 360, 511 and all values between mean "not available"."""
     return None if degrees is None or degrees >= 360 else float(degrees)
 
 

@@ -1,7 +1,7 @@
-"""Assemble multi-part AIS messages: a bounded table as an immutable value.
+"""Assembly of multi-part AIS messages: a bounded table as an immutable value.
 
-Parts belong together when talker, sequence number, channel, total and the tag block's group agree, and when
-they are heard near each other. They may come in any order, and twice.
+Parts belong together if talker, sequence number, channel, total and the tag block's group agree, and if they arrive
+close to each other. They may arrive in any order, and repeatedly.
 """
 
 from dataclasses import dataclass, replace
@@ -9,22 +9,22 @@ from dataclasses import dataclass, replace
 from physical.nmea import Part
 
 FRAGMENT_SECONDS = 5.0
-"""How long after the first part of a message the others count, where lines have times."""
+"""Seconds after the first part of a message in which its other parts count, if lines have times."""
 
 FRAGMENT_LINES = 100
-"""How many parts of any message may be heard meanwhile."""
+"""The number of parts, of any message, after which an incomplete message expires."""
 
 FRAGMENT_TABLE = 64
-"""How many incomplete messages are held; the oldest gives way."""
+"""The largest number of incomplete messages; a new one replaces the oldest."""
 
 Key = tuple[str, bytes, bytes, int, str | None]
 
 
 @dataclass(frozen=True, slots=True)
 class Incomplete:
-    """A message some of whose parts are missing: `time` is its first part's, `heard` that part's number.
+    """An incomplete message: `time` is the time of its first part, `heard` the count of parts received before it.
 
-    `sentences` is how many sentences brought its parts: one may be repeated.
+    `sentences` counts the sentences that brought its parts, repetitions included.
     """
 
     key: Key
@@ -36,7 +36,7 @@ class Incomplete:
 
 @dataclass(frozen=True, slots=True)
 class Fragments:
-    """The incomplete messages, oldest first, and how many parts were heard in all."""
+    """The incomplete messages, oldest first, and the number of parts received in all."""
 
     waiting: tuple[Incomplete, ...] = ()
     heard: int = 0
@@ -47,7 +47,7 @@ EMPTY = Fragments()
 
 @dataclass(frozen=True, slots=True)
 class Joined:
-    """What one part led to: the new table, the message it completed, if any, and those that were given up."""
+    """The effect of one part: the new table, the completed message, if any, and the expired messages."""
 
     fragments: Fragments
     complete: Incomplete | None
@@ -55,7 +55,7 @@ class Joined:
 
 
 def join(fragments: Fragments, part: Part, time: float | None, group: str | None = None) -> Joined:
-    """Add a part to the message that it belongs to, or let it begin one."""
+    """Add a part to its message, or start a new message."""
     key = (part.talker, part.sequence, part.channel, part.total, group)
     recent = tuple(entry for entry in fragments.waiting if fragments.heard - entry.heard < FRAGMENT_LINES)
     mine = next((entry for entry in recent if entry.key == key and _together(entry, part, time)), None)
@@ -70,7 +70,7 @@ def join(fragments: Fragments, part: Part, time: float | None, group: str | None
 
 
 def _together(entry: Incomplete, part: Part, time: float | None) -> bool:
-    """Whether a part can be of this message: near in time, and no other text under a number already heard."""
+    """Whether a part may belong to a message: near in time, and without a conflicting part of the same number."""
     if entry.time is not None and time is not None and abs(time - entry.time) > FRAGMENT_SECONDS:
         return False
     return all(part.number != other.number or part.payload == other.payload for other in entry.parts)

@@ -1,8 +1,8 @@
-"""Decode AIS line by line: a pure state machine from NMEA lines to reports.
+"""A line-by-line AIS decoder: a pure state machine from NMEA lines to reports.
 
-`hear(ear, line)` is a function of its arguments alone; recordings fold it over a file, live feeds over a
-socket. The state holds what later lines need: the recording's clock, the parts of incomplete messages, and the
-times of groups of lines. It is bounded for any input.
+`hear(ear, line)` depends only on its arguments; recordings fold it over a file, live feeds over a socket. The state
+holds the recording's clock, the parts of incomplete messages, and the times of groups of lines. It is bounded for any
+input.
 """
 
 from dataclasses import dataclass, replace
@@ -25,7 +25,7 @@ from physical.nmea import (
 from physical.nmea_lines import Framed, framed_in
 
 GROUP_TABLE = 64
-"""How many groups of lines are remembered."""
+"""The largest number of groups of lines in the state."""
 
 POSITION: Final = "position"
 STATIC: Final = "message with a name or a type of ship"
@@ -33,7 +33,7 @@ PART: Final = "part of a message"
 TIME: Final = "time"
 COMMENT: Final = "comment"
 TAKEN: Final = frozenset({POSITION, STATIC, PART, TIME, COMMENT})
-"""The kinds of pieces of which something is taken."""
+"""The kinds of pieces that contribute to the result."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Ear:
-    """What remains of the lines heard so far; the oldest group first."""
+    """The state after the lines so far; the oldest group comes first."""
 
     clock: float | None = None
     fragments: Fragments = EMPTY
@@ -55,15 +55,15 @@ class Ear:
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """What one line brought: the new state, reports, and what went wrong.
+    """The result of one line: the new state, reports and mistakes.
 
     Attributes:
         ear: The new state.
-        reports: What was reported.
-        reasons: What went wrong, one for each mistake.
-        pieces: What each sentence of the line is, or the line where it has none: of `TAKEN`, or why nothing is
-            taken of it.
-        given_up: How many parts, heard before and now or earlier counted as such, belong to no message any more.
+        reports: The reports.
+        reasons: One reason for each mistake.
+        pieces: The kind of each sentence, or of the line if it has none: one of `TAKEN`, or the reason for its
+            rejection.
+        given_up: The number of parts, this line's or earlier ones, that no longer belong to a message.
     """
 
     ear: Ear
@@ -74,15 +74,17 @@ class Heard:
 
 
 def hear(ear: Ear, line: bytes, now: float | None = None) -> Heard:
-    r"""Hear one line, received at `now` (seconds since 1970; None for a recording).
+    r"""Decode one line, received at `now` (seconds since 1970; None for a recording).
 
-    A message's time is that of its tag blocks, else one that its logger wrote beside it, else `now`, else what the
-    latest `$PGHP`, `$..RMC` or `$..ZDA` line said. Blank lines, comments (`#`) and other sentences
-    bring nothing. Raises AisError where pyais is missing.
+    The time of a message comes from its tag blocks, else from its logger's text, else it is `now`, else it comes from
+    the latest `$PGHP`, `$..RMC` or `$..ZDA` line. Blank lines, comments (`#`) and other sentences have no reports.
 
     >>> heard = hear(Ear(), rb"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61")
     >>> heard.reports[0].mmsi, heard.reports[0].lat
     (376427000, 37.346935)
+
+    Raises:
+        AisError: If pyais is missing.
     """
     if len(line) > MAX_LINE:
         return _failed(ear, Reason.OVERLONG)
@@ -101,7 +103,7 @@ def hear(ear: Ear, line: bytes, now: float | None = None) -> Heard:
 
 
 def _after(before: Heard, here: Heard) -> Heard:
-    """Return what two pieces of a line brought together."""
+    """Return the combined result of two pieces of a line."""
     if not before.pieces:
         return here
     return Heard(
@@ -126,9 +128,9 @@ def _framed(ear: Ear, framed: Framed, now: float | None) -> Heard:
 
 
 def _grouped(ear: Ear, tag: TagBlock) -> tuple[Ear, TagBlock]:
-    """Complete a tag block by what the first line of its group said, or remember it as the first.
+    """Complete a tag block with the first line of its group, or store it as the first line.
 
-    A line whose number does not follow begins another group: numbers of groups come again.
+    A number out of sequence starts a new group, since group numbers recur.
     """
     if tag.group is None:
         return ear, tag
@@ -143,13 +145,13 @@ def _grouped(ear: Ear, tag: TagBlock) -> tuple[Ear, TagBlock]:
         time = first.time if tag.time is None else tag.time
         tag = replace(tag, time=time, source=first.source or tag.source)
     first = tag if known is None else known.first
-    if tag.number >= tag.total:  # nothing of it is still to come
+    if tag.number >= tag.total:  # the group is complete
         return replace(ear, groups=others), tag
     return replace(ear, groups=(*others, Group(first, tag.number))[-GROUP_TABLE:]), tag
 
 
 def _follows(tag: TagBlock, group: Group) -> bool:
-    """Whether a line goes on with a group: it comes after the group's last line, and is of as many."""
+    """Whether a line continues a group: it comes after the group's last line, and has the same total."""
     first = group.first
     return (
         first.group == tag.group

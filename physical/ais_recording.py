@@ -1,4 +1,4 @@
-"""Read AIS recordings: files of NMEA lines, lazily and within bounds, with an account of what was in them."""
+"""AIS recordings: files of NMEA lines, read lazily and within bounds, with an account of their content."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -18,7 +18,7 @@ NOTHING: Final = Tally()
 _END: Final = re.compile(rb"[\r\n]+")
 
 MAX_RECORDING = 256 * 2**20
-"""The most bytes read of a recording, unless told otherwise; an hour of a busy coast is about 40 MB."""
+"""The default limit of a recording in bytes; an hour of a busy coast is about 40 MB."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,10 +42,12 @@ class Recording:
 def read_recording(
     source: str | PathLike[str] | bytes | Iterable[bytes], limit: int = MAX_RECORDING
 ) -> Recording:
-    """Read a recording from a path, from bytes, or from an iterable of lines.
+    """Return the recording at a path, in bytes, or in an iterable of lines.
 
-    Bad lines are counted, never fatal. Memory grows with the reports: about 300 bytes each. Raises AisError
-    where the file cannot be read, is longer than `limit` bytes, or pyais is missing.
+    Bad lines are counted, never fatal. Memory grows with the reports, about 300 bytes each.
+
+    Raises:
+        AisError: If the file is unreadable or longer than `limit` bytes, or if pyais is missing.
     """
     if isinstance(source, bytes):
         return record(_lines(BytesIO(source), limit))
@@ -60,7 +62,7 @@ def read_recording(
 
 
 def record(lines: Iterable[bytes]) -> Recording:
-    """Fold `hear` over lines."""
+    """Return the recording of these lines, by a fold of `hear`."""
     ear, reports, counting, total = Ear(), list[Report](), Counting(), 0
     for line in lines:
         heard = hear(ear, line)
@@ -73,13 +75,13 @@ def record(lines: Iterable[bytes]) -> Recording:
 
 
 PIECES: Final = ("sentence or other line", "sentences and other lines")
-"""What the things in a recording are called: a line may hold no sentence, one, or several."""
+"""Singular and plural of the counted pieces: a line may hold no sentence, one, or several."""
 
 INCOMPLETE: Final = "part of an incomplete message"
 
 
 def count(counting: Counting, heard: Heard) -> None:
-    """Count what a line brought."""
+    """Count the pieces of a line."""
     for piece in heard.pieces:
         (counting.take if piece in TAKEN else counting.leave)(piece)
     if Reason.TAG_BLOCK in heard.reasons:
@@ -88,14 +90,14 @@ def count(counting: Counting, heard: Heard) -> None:
 
 
 def _give_up(counting: Counting, parts: int) -> None:
-    """Count parts, taken so far, as those of messages that are not complete."""
+    """Move accepted parts to the count of incomplete messages."""
     if parts:
         counting.take(PART, -parts)
         counting.leave(INCOMPLETE, parts)
 
 
 def has_sentences(tally: Tally) -> bool:
-    """Tell whether anything in a recording is a sentence of AIS."""
+    """Whether a recording contains a sentence of AIS."""
     return any(kind in (POSITION, STATIC, PART) for kind, _ in tally.taken) or any(
         kind == INCOMPLETE or kind.startswith("message") or kind in _IN_SENTENCES
         for kind, _ in tally.left_out
@@ -108,7 +110,7 @@ _IN_SENTENCES: Final = frozenset(
 
 
 def _lines(file: IO[bytes], limit: int) -> Iterator[bytes]:
-    r"""Read lines of bounded length, ended by \n or \r; what an overlong one has beyond that is passed over."""
+    r"""Yield lines of bounded length, ended by \n or \r; the rest of an overlong line is skipped."""
     rest, skipping = b"", False
     for chunk in _bounded(iter(lambda: file.read(CHUNK), b""), limit):
         *lines, rest = _END.split(rest + chunk)

@@ -1,7 +1,7 @@
 """Reports of AIS stations: positions and static data as plain values, in the units of AIS.
 
-Degrees, knots and seconds since 1970; None is *not available*. `time` is when the message was received, as
-told by the recording or by the receiver: AIS messages themselves carry at most the second of the minute.
+Units are degrees, knots and seconds since 1970; None is *not available*. `time` is the time of reception, from the
+recording or the receiver: AIS messages themselves carry at most the second of the minute.
 """
 
 from dataclasses import dataclass
@@ -9,20 +9,20 @@ from dataclasses import dataclass
 from physical.errors import PhysicalError
 
 HIGHEST_ALTITUDE = 4094.0
-"""How message 9 says 4,094 metres *or more*."""
+"""The altitude in message 9 that means 4,094 metres *or more*."""
 
 _TENTH_OF_A_MINUTE = (17, 27)
 
 
 class AisError(PhysicalError):
-    """AIS input that cannot be read at all; single bad lines are counted instead."""
+    """Unreadable AIS input; single bad lines are counted instead."""
 
 
 @dataclass(frozen=True, slots=True)
 class PositionReport:
-    """Where one station was: WGS 84 degrees; speed over ground in knots; course, heading in degrees true.
+    """The position of one station: WGS 84 degrees; speed over ground in knots; course and heading in degrees true.
 
-    `altitude` is in metres, of aircraft only; `HIGHEST_ALTITUDE` stands for all above it, too.
+    `altitude` is in metres, for aircraft only; `HIGHEST_ALTITUDE` also stands for all higher ones.
     """
 
     time: float | None
@@ -37,13 +37,13 @@ class PositionReport:
 
     @property
     def coarse(self) -> bool:
-        """Whether the position is given to a tenth of a minute (185 m) only: messages 17 and 27."""
+        """Whether the resolution of the position is only a tenth of a minute (185 m): messages 17 and 27."""
         return self.msg_type in _TENTH_OF_A_MINUTE
 
 
 @dataclass(frozen=True, slots=True)
 class StaticReport:
-    """What one station is: its name and its type of ship, as far as the message tells them.
+    """The name and the ship type of one station, as far as the message contains them.
 
     `ship_type` is the code of ITU-R M.1371 (52 is a tug, 70-79 are cargo ships).
     """

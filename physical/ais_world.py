@@ -1,4 +1,4 @@
-"""Make a world from an AIS recording: the physical properties of the stations heard, as of a time."""
+"""A world from an AIS recording: the physical properties of its stations at a given time."""
 
 from collections import OrderedDict
 from collections.abc import Collection, Iterable, Iterator
@@ -16,18 +16,18 @@ from physical.tally import Counting, Read
 from physical.written_times import moment_text
 
 TIME_TO_LIVE = 600.0
-"""How old a position may be, in seconds: what lies at anchor reports every three minutes."""
+"""The maximum age of a position in seconds: a vessel at anchor reports every three minutes."""
 
 KNOT = 1852 / 3600
-"""Metres a second."""
+"""Metres per second in a knot."""
 
 COARSE: Final = "position to a tenth of a minute, of a station with a finer one"
 
 HIGHEST_FLIGHT: Final = 20_000.0
-"""Metres above which nothing flies that sends AIS."""
+"""Metres above which no aircraft with AIS flies."""
 
 MOST_STATIONS: Final = 100_000
-"""How many stations are remembered as heard finely."""
+"""The largest number of remembered stations with fine positions."""
 
 
 def world_at(
@@ -37,14 +37,15 @@ def world_at(
     kinds: Collection[str] | None = None,
     time_to_live: float = TIME_TO_LIVE,
 ) -> tuple[PhysicalProperty, ...]:
-    """Return the newest position of every station, as of `time` (seconds since 1970), sorted by name.
+    """Return the newest position of every station at `time` (seconds since 1970), sorted by name.
 
-    Without a time: as of the end. Positions older than `time_to_live` seconds are left out, and so is what is
-    not inside `area`, or of none of `kinds`. A position to a tenth of a minute counts only where there is no
-    better one. A position without a time is as old as those that arrived next to it; in a recording without times
-    the last position to arrive is the newest, and none is too old.
+    By default, `time` is the end of the recording. The result excludes positions older than `time_to_live` seconds,
+    positions outside `area`, and stations of kinds other than `kinds`. A coarse position (a tenth of a minute) counts
+    only for a station without a finer one. A position without a time takes the time of its neighbour. In a recording
+    without times, the last position to arrive is the newest, and none is too old.
 
-    Raises AisError where a time is asked of a recording without times, and for an unknown kind.
+    Raises:
+        AisError: If `time` is given for a recording without times, and for an unknown kind.
     """
     return seen_at(recording, time, area, kinds, time_to_live).properties
 
@@ -56,7 +57,7 @@ def seen_at(
     kinds: Collection[str] | None = None,
     time_to_live: float = TIME_TO_LIVE,
 ) -> Read:
-    """Return what `world_at` does, with the account of the recording and one of its positions."""
+    """Return the result of `world_at`, with the accounts of the recording and of its positions."""
     _check_kinds(kinds)
     positions = dated(recording.positions)
     now = _end(positions) if time is None else time
@@ -78,7 +79,7 @@ UNDATED: Final = "position without a time: it counts as heard when its neighbour
 
 
 def check_time(recording: Recording, time: float | None, time_to_live: float = TIME_TO_LIVE) -> None:
-    """Refuse a time at which no position of a recording counts; raises AisError with the recording's span."""
+    """Raise AisError, with the recording's span, for a time at which no position of it counts."""
     times = [report.time for report in recording.positions if report.time is not None]
     if time is None or not times or min(times) <= time <= max(times) + time_to_live:
         return
@@ -89,9 +90,9 @@ def check_time(recording: Recording, time: float | None, time_to_live: float = T
 
 
 def dated(positions: Iterable[PositionReport]) -> tuple[PositionReport, ...]:
-    """Return positions with the times that those without one have from their neighbours, in order of arrival.
+    """Return positions, in order of arrival, in which a missing time is that of a neighbour.
 
-    It is the latest time before, or the first after where there is none before; none where no position has one.
+    It is the latest time before the position, else the first time after it; None if no position has a time.
     """
     known = tuple(positions)
     time = next((report.time for report in known if report.time is not None), None)
@@ -103,7 +104,7 @@ def dated(positions: Iterable[PositionReport]) -> tuple[PositionReport, ...]:
 
 
 class Finest:
-    """Who was heard finely, and when: a position to a tenth of a minute then tells nothing new.
+    """The stations with a recent fine position: a coarse position of such a station adds nothing.
 
     At most `MOST_STATIONS` are remembered, the latest ones.
     """
@@ -113,7 +114,7 @@ class Finest:
         self._time_to_live = time_to_live
 
     def supersedes(self, report: PositionReport, time: float) -> bool:
-        """Note a report, heard at a time; tell whether a finer one of its sender still counts."""
+        """Record a report at a time; return whether a finer one of its sender is still valid."""
         if report.coarse:
             known = self._heard.get(report.mmsi)
             return known is not None and time - known <= self._time_to_live
@@ -125,7 +126,7 @@ class Finest:
 
 
 def physical_property(report: PositionReport) -> PhysicalProperty:
-    """Turn one position into the physical property of its sender, named by its MMSI."""
+    """Return the physical property of a position's sender, named by its MMSI."""
     speed, course = report.sog_kn, report.cog_deg
     return PhysicalProperty(
         entity_name(report.mmsi),

@@ -35,13 +35,13 @@ class Band:
 def _metres(value: float) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise PhysicalError("altitude", f"the altitude {value!r:.60} is not a number", "write it in metres")
-    if not -LIMIT <= value <= LIMIT:  # false of NaN too
+    if not -LIMIT <= value <= LIMIT:  # also rejects NaN
         raise PhysicalError("altitude", f"an altitude is not between -{LIMIT:,} m and {LIMIT:,} m")
     return float(value) + 0.0  # -0.0 becomes 0.0
 
 
 def band_contains(outer: Band | None, inner: Band | None) -> bool:
-    """Whether `inner` lies within `outer`, its ends included; true where either has no band.
+    """Whether `inner` lies within `outer`, ends included; true if either has no band.
 
     The ends count, unlike borders on the ground: a vessel at 0 m is in a place from 0 m to 100 m.
     """

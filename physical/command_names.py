@@ -1,4 +1,4 @@
-"""What the commands of missions are called (MAV_CMD), so that one that is not read can be named."""
+"""The names of mission commands (MAV_CMD), for messages about unread ones."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FENCES: Final = MappingProxyType(
         5100: "rally point",
     }
 )
-"""Commands that stand for a part of a fence, or for a rally point: their positions are no waypoints."""
+"""Commands for parts of a fence and for rally points: their positions are no waypoints."""
 
 _POINTING: Final = MappingProxyType(
     {
@@ -95,7 +95,7 @@ _NAMES: Final = MappingProxyType(
 
 
 def command_name(command: int) -> str:
-    """Return what a command is called.
+    """Return the name of a command.
 
     >>> command_name(177), command_name(5100), command_name(43000)
     ('DO_JUMP', 'rally point', 'command 43000')

@@ -1,7 +1,7 @@
 """Containment among many places: which contain which, and whether they nest (paper §3.2.2).
 
-An STRtree over the places, each entered once per turn of longitude that it can be met in, finds candidates by
-their bounds; `contains` and `overlaps` decide.
+An STRtree finds candidates by their bounds; it holds each place three times, shifted by a turn of longitude. `contains`
+and `overlaps` decide.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class PlaceIndex:
         return next(iter(self.containers(geometry, altitude)), None)
 
     def minimal(self, geometry: Geometry, altitude: Band | None = None) -> tuple[str, ...]:
-        """Return the containers that contain no other of them, sorted: its parents, with sharing."""
+        """Return the containers that contain no other container, sorted: the parents, with sharing."""
         found = {name: self._places[name] for name in self.containers(geometry, altitude)}
         above = {
             name for name, place in found.items() if any(holds(place, inner) for inner in found.values())
@@ -65,19 +65,19 @@ class PlaceIndex:
 
 
 def holds(outer: Place, inner: Place) -> bool:
-    """Whether a place contains another: on the ground, and in altitude where both have a band."""
+    """Whether a place contains another: on the ground, and in altitude if both have a band."""
     return contains(outer.geometry, inner.geometry) and band_contains(outer.altitude, inner.altitude)
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Conflict:
-    """Two places that do not nest: share space, and neither contains the other.
+    """Two places that do not nest: they overlap, and neither contains the other.
 
     Attributes:
-        first: The one that is first by name.
-        second: The other.
+        first: The first place by name.
+        second: The other place.
         reason: Why they do not nest.
-        outer: The one that contains the other but for a common border; may be empty.
+        outer: The place that would contain the other without their common border; may be empty.
     """
 
     first: str
@@ -86,19 +86,19 @@ class Conflict:
     outer: str = ""
 
     def __str__(self) -> str:
-        """Say what is wrong, naming both."""
+        """Return the conflict as a sentence with both names."""
         return f"{self.first} and {self.second} {self.reason}"
 
     @property
     def hint(self) -> str:
-        """What to do about it."""
+        """A remedy."""
         if self.outer:
             return f"what lies inside touches no border: make {self.outer} a little larger"
         return "places must nest or be apart: change one of the two"
 
 
 def check_places(places: Mapping[str, Place | Geometry]) -> tuple[Conflict, ...]:
-    """Return every two places that do not nest, sorted; with sharing there is nothing to check.
+    """Return all pairs of places that do not nest, sorted; a world with sharing needs no check.
 
     >>> from physical.shape import box
     >>> room = box((0, 0), (1, 1))

@@ -14,13 +14,13 @@ from physical.frame import E7, METRES_PER_DEGREE, Frame, PositionE7, local_frame
 from physical.shape import SMALLEST_RADIUS, Geometry, point, polygon
 
 MOST_VERTICES: Final = 1_000
-"""The longest line that is read."""
+"""The largest number of positions of a line."""
 
 FARTHEST: Final = 300_000.0
-"""Metres that a line may reach north or east of its middle: there lengths across are off by 4e-4."""
+"""The largest distance in metres from a line's middle, north or east: there lengths across are off by 4e-4."""
 
 TOLERANCE: Final = 0.01
-"""Of its half width a corridor's border may be off."""
+"""The permitted error of a corridor's border, as a share of half its width."""
 
 
 def corridor(line: Sequence[Sequence[float]], width: float) -> Geometry:
@@ -55,7 +55,7 @@ def _check_width(width: object) -> None:
 
 
 def _unrolled(line: Sequence[Sequence[float]]) -> list[PositionE7]:
-    """Return the positions of a line with continuous longitudes, none twice in a row."""
+    """Return the positions of a line with continuous longitudes, without repetitions."""
     if len(line) > MOST_VERTICES:
         raise GeometryError(
             "too-many-vertices",

@@ -1,6 +1,6 @@
-"""Draw a physical model as a map: places, movers, channels and flights on the earth, with a scale.
+"""Maps of a physical model: places, movers, channels and flights on the earth, with a scale.
 
-matplotlib draws; where things go is decided by `map_view` and `map_labels`, which are pure.
+matplotlib draws; the pure modules `map_view` and `map_labels` compute the positions.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ if TYPE_CHECKING:
 __all__ = ["MapEntity", "Sheet", "draw_map"]
 
 REACHES: Final = (HIDING, 20.0, 35.0, 55.0, 80.0)
-"""Points within which markers of one kind are folded, tried in turn."""
+"""Distances in points within which markers of one kind are folded, tried in turn."""
 
 BULGES: Final = (0.12, -0.12, 0.05, -0.05, 0.19, -0.19)
-"""How far the lines of channels leave the straight way, a share of its length."""
+"""The bulges of channel lines, as shares of their length."""
 
 
-def draw_map(  # noqa: PLR0913 - each says one thing of the map
+def draw_map(  # noqa: PLR0913 - each is one aspect of the map
     entities: Iterable[MapEntity],
     axes: Axes,
     *,
@@ -58,17 +58,17 @@ def draw_map(  # noqa: PLR0913 - each says one thing of the map
     """Draw a map that fills the axes, whose place in the figure must not change afterwards.
 
     Args:
-        entities: What there is, each name once, in any order.
+        entities: The entities, with unique names, in any order.
         axes: Empty axes. Their units become points.
-        highlight: Names that glow, such as those that have just changed.
-        marked: Names with a dashed outline, such as those that are believed to be elsewhere.
+        highlight: Names with a glow, such as recently changed ones.
+        marked: Names with a dashed outline, such as those with a different believed position.
         colours: A colour for each kind; other kinds take one of the palette.
         channel_colours: The same for channels.
-        within: What the view is for, such as all that a run goes through, so that its maps are alike; else what is
-            drawn.
+        within: The geometries that the view must show, such as all of a run, so that its maps are alike; by default the
+            entities.
 
     Returns:
-        The sheet: where positions lie on the axes, for whoever draws more on them.
+        The sheet, which gives the axes coordinates of positions for further drawing.
     """
     in_order = sorted(entities, key=lambda entity: entity.name)
     scene, writing = composed(in_order, _size(axes), colours or {}, (highlight, marked), within)
@@ -92,7 +92,7 @@ def composed(
     looks: tuple[Collection[str], Collection[str]],
     within: Sequence[Geometry],
 ) -> tuple[Scene, Writing]:
-    """Return the scene in which no more is folded than must be for the names of all markers to stand beside them."""
+    """Return the scene with the fewest folded markers in which all marker names fit beside them."""
     plain = scene_of(entities, size, colours, *looks, within)
     for reach in REACHES:
         scene = arranged(plain, reach)
@@ -104,7 +104,7 @@ def composed(
 
 
 def _size(axes: Axes) -> Spot:
-    """Return how wide and high axes are, in points."""
+    """Return the width and height of axes, in points."""
     window, dpi = axes.get_window_extent(), axes.figure.dpi
     return (window.width * 72.0 / dpi, window.height * 72.0 / dpi)
 
@@ -152,7 +152,7 @@ def _channels(scene: Scene) -> list[tuple[str, Curve]]:
     """Return the curves of all channels, lines between their members."""
     channels = sorted({channel for entity in scene.entities.values() for channel in entity.channels})
     return [
-        # Channels between the same two would hide each other.
+        # Channels between the same two members would hide each other.
         (channel, arc(min(start, end), max(start, end), BULGES[rank % len(BULGES)]))
         for rank, channel in enumerate(channels)
         for start, end in _lines_of(scene, channel)
@@ -160,7 +160,7 @@ def _channels(scene: Scene) -> list[tuple[str, Curve]]:
 
 
 def _lines_of(scene: Scene, channel: str) -> list[tuple[Spot, Spot]]:
-    """Return the lines of a channel: a star around the member that it is named for, else the shortest tree."""
+    """Return the lines of a channel: a star around the member in its name, else the shortest tree."""
     spots = {name: scene.middle(name) for name, each in scene.entities.items() if channel in each.channels}
     station = spots.get(channel.rpartition(":")[2])
     if station is None:
@@ -169,7 +169,7 @@ def _lines_of(scene: Scene, channel: str) -> list[tuple[Spot, Spot]]:
 
 
 def _shortest_tree(spots: Sequence[Spot]) -> list[tuple[Spot, Spot]]:
-    """Return the lines of least total length that join some spots (Prim), those that fall together left out."""
+    """Return the shortest tree between spots (Prim), without lines between coinciding spots."""
     joined, lines = list(spots[:1]), []
     waiting = list(spots[1:])
     while waiting:
@@ -182,7 +182,7 @@ def _shortest_tree(spots: Sequence[Spot]) -> list[tuple[Spot, Spot]]:
 
 
 def _flights(scene: Scene) -> list[tuple[str, Curve]]:
-    """Return the ways of what is in transit."""
+    """Return the paths of entities in transit."""
     return [
         (name, arc(scene.middle(name), bounds(scene.sheet.outline(destination)).centre, -0.1))
         for name in scene.near()

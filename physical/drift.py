@@ -1,17 +1,15 @@
 """The finite quotient of a drift within a place (semantics.md, *The environment*).
 
-Where a mover may be is cut along the borders of all places (for a point), or along those of their Minkowski
-erosions by the mover (for a convex polygon); within one *cell* of this arrangement all its relations are
-the same. Two cells are adjacent where they share a border of positive length; the borders themselves are
-left out.
+The borders of all places cut the possible positions of a point mover into cells. For a convex polygon, the borders of
+their Minkowski erosions by the mover do so. Within one *cell* of this arrangement all relations of the mover are equal.
+Two cells are adjacent if they share a border of positive length. The borders themselves are left out.
 
-A mover may carry others. They stand or fly where it is, in shapes of their own and among places of their own, so the
-borders of those places, eroded by those shapes, cut the drift as well (`Aboard`).
+A mover may carry others. They share its position, but have their own shapes and their own places. So the borders of
+those places, eroded by those shapes, also cut the drift (`Aboard`).
 
-**Cells with equal relations.** Two cells apart from each other may stand in the same relations, such as the
-two sides of a channel. To make them one would let the mover hop across the channel without being seen in
-it: sound for safety, but not exact. They are one here only where no sequence of moves tells them apart
-(bisimilarity), so the quotient is exact, and the coarsest that is.
+**Cells with equal relations.** Two separate cells may have equal relations, such as the two sides of a channel. Merging
+them would let the mover cross the channel without being seen in it: sound for safety, but not exact. Only bisimilar
+cells, which no sequence of moves distinguishes, are merged. So the quotient is exact, and the coarsest exact one.
 """
 
 from __future__ import annotations
@@ -36,25 +34,25 @@ GRID: Final = 0.02
 """Metres between the spots at which borders may meet: coordinates and edges are exact to half of it."""
 
 CLEARANCE: Final = 0.05
-"""Metres that the representative of a face keeps from borders; what has no room for that is a sliver."""
+"""Metres between the representative of a face and all borders; a cell without such room is a sliver."""
 
 
 Places = Mapping[str, Geometry]
 """Places by name."""
 
 Aboard = Mapping[Geometry, Places]
-"""Shapes that may stand where the mover's centroid is, each with the places that may contain it."""
+"""Shapes that may share the mover's centroid, each with the places that may contain it."""
 
 
 NOTHING_ABOARD: Final[Aboard] = {}
 
 Relations = tuple[tuple[str, ...], ...]
-"""Of each shape that stands where the mover is, the mover first, the places that contain it."""
+"""For each shape at the mover's position, the mover first, the places that contain it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Face:
-    """Placements that nothing tells apart, by a representative.
+    """A class of indistinguishable placements, with a representative.
 
     Attributes:
         representative: The mover, placed well inside.
@@ -74,7 +72,7 @@ class Face:
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A connected cell of the arrangement, in the frame of the place drifted in."""
+    """A connected cell of the arrangement, in the frame of the surrounding place."""
 
     shape: shapely.Polygon
     representative: Geometry
@@ -93,20 +91,20 @@ class Quotient:
 def drift_faces(
     mover: Geometry, within: Geometry, places: Places, aboard: Aboard = NOTHING_ABOARD
 ) -> tuple[Face, ...]:
-    """Return the faces of a mover's drift within a place, by representative; none where it doesn't fit.
+    """Return the faces of a mover's drift within a place, sorted by representative; empty if it doesn't fit.
 
-    Exact for one mover among polygons that stand still. Faces narrower than 10 cm are left out.
+    The faces are exact for one mover among stationary polygons. Faces narrower than 10 cm are left out.
 
     Raises:
-        GeometryError: The mover or a shape aboard is a polygon that is not convex, or `within` is a point.
+        GeometryError: If the mover or a shape aboard is a polygon that is not convex, or `within` is a point.
     """
     return quotient(mover, within, places, aboard).faces
 
 
 def face_at(mover: Geometry, within: Geometry, places: Places, aboard: Aboard = NOTHING_ABOARD) -> int | None:
-    """Return the index of the face in which a mover is now; None where it isn't within the place.
+    """Return the index of a mover's present face; None if it isn't within the place.
 
-    On a border it counts to the nearest face with its relations.
+    On a border it is the nearest face with the same relations.
     """
     if not contains(within, mover):
         return None
@@ -120,13 +118,13 @@ def face_at(mover: Geometry, within: Geometry, places: Places, aboard: Aboard = 
 
 
 def quotient(mover: Geometry, within: Geometry, places: Places, aboard: Aboard = NOTHING_ABOARD) -> Quotient:
-    """Return the cells and the faces of a drift; where the mover is now doesn't matter."""
+    """Return the cells and the faces of a drift; they do not depend on the mover's present position."""
     _check(mover, within, aboard)
     return _quotient(within, _shapes(mover, places, aboard))
 
 
 Shapes = tuple[tuple[Geometry, tuple[tuple[str, Geometry], ...]], ...]
-"""The mover, then each other shape aboard, as first given, with the polygons that may contain it."""
+"""The mover, then each other shape aboard, unmoved, with the polygons that may contain it."""
 
 
 def _shapes(mover: Geometry, places: Places, aboard: Aboard) -> Shapes:
@@ -147,7 +145,7 @@ def _indexed(shapes: Shapes) -> Indexed:
 
 
 def _relations(mover: Geometry, shapes: Indexed) -> Relations:
-    """Return what contains the mover, and what each shape aboard with its centroid where the mover's is."""
+    """Return the containers of the mover, and of each shape aboard at the mover's centroid."""
     (_, own), *aboard = shapes
     put = [(translate_to(shape, centroid(mover)), among) for shape, among in aboard]
     return tuple(tuple(sorted(among.containers(at))) for at, among in [(mover, own), *put])
@@ -185,12 +183,12 @@ def _check(mover: Geometry, within: Geometry, aboard: Aboard) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """Where an arrangement is computed, in metres.
+    """The plane of an arrangement, in metres.
 
     Attributes:
-        room: Where a shape's centroid may be for it to be inside a place.
-        put: The mover with its centroid there.
-        spot: Where a geometry's centroid is.
+        room: The positions of a shape's centroid at which it is inside a place.
+        put: The mover with its centroid at a spot.
+        spot: The spot of a geometry's centroid.
     """
 
     room: Callable[[Geometry, Geometry], shapely.Geometry]
@@ -206,8 +204,8 @@ def plane_of(mover: Geometry, within: Geometry, aboard: Aboard = NOTHING_ABOARD)
 def _plane(within: Geometry, shapes: Shapes) -> Plane:
     """Return the plane for a mover and the shapes aboard.
 
-    With a polygon among them the metric frame in which it moves rigidly; for points alone a plane affine to latitude
-    and longitude, about metric, in which edges stay as straight as they are.
+    If one of them is a polygon, it is the metric frame in which the polygon moves rigidly. For points alone it is a
+    plane affine to latitude and longitude, approximately metric, in which edges stay exactly straight.
     """
     mover = shapes[0][0]
     if all(shape.is_point for shape, _ in shapes):
@@ -240,7 +238,7 @@ def _affine(centre: PositionE7, near: shapely.Geometry) -> Plane:
 
 
 def _pieces(plane: Plane, within: Geometry, shapes: Shapes) -> list[shapely.Polygon]:
-    """Return the polygons into which all borders cut the plane, as far as they meet the place drifted in."""
+    """Return the polygons into which all borders cut the plane, as far as they meet the surrounding place."""
     space = plane.room(within, shapes[0][0])
     rooms = [plane.room(place, shape) for shape, places in shapes for _, place in places]
     borders = [shape.boundary for shape in (space, *rooms) if shape.intersects(space)]
@@ -255,7 +253,7 @@ Links = frozenset[tuple[int, int]]
 
 
 def _shared_edges(pieces: Sequence[shapely.Polygon]) -> Links:
-    """Return which pieces of one arrangement share an edge; it has been cut at every vertex."""
+    """Return the pieces that share an edge; the arrangement is cut at every vertex."""
     owners: dict[frozenset[tuple[float, float]], list[int]] = {}
     for i, piece in enumerate(pieces):
         for ring in (piece.exterior, *piece.interiors):
@@ -265,7 +263,7 @@ def _shared_edges(pieces: Sequence[shapely.Polygon]) -> Links:
 
 
 def _across(slivers: frozenset[int], cells: Mapping[int, Cell], links: Links) -> Links:
-    """Return which cells face each other across a sliver, along a metre or so."""
+    """Return the pairs of cells that face each other across a sliver, along about a metre."""
     beside_one = sorted({i for link in links if slivers & set(link) for i in link if i in cells})
     reach = 4 * CLEARANCE
     grown = {i: cells[i].shape.buffer(reach) for i in beside_one}
@@ -276,7 +274,7 @@ def _across(slivers: frozenset[int], cells: Mapping[int, Cell], links: Links) ->
     )
 
 
-# --- cells made faces -----------------------------------------------------------------------------
+# --- faces from cells -----------------------------------------------------------------------------
 
 
 def _merged(cells: Mapping[int, Cell], links: Links) -> Quotient:

@@ -1,16 +1,16 @@
-"""The user's mistakes in physical input, as data."""
+"""User mistakes in physical input, as data."""
 
 from __future__ import annotations
 
 
 class PhysicalError(ValueError):
-    """A mistake in physical input: what was found, what was expected, what to do.
+    """A mistake in physical input: the finding, the expectation and a remedy.
 
     Attributes:
         code: A stable word for the kind of mistake, such as ``latitude``.
-        message: What is wrong, in the user's words.
-        hint: What to do about it; may be empty.
-        where: Where in the input: a feature's index and name, a line; may be empty.
+        message: The problem, in the user's words.
+        hint: A remedy; may be empty.
+        where: The position in the input: a feature's index and name, a line; may be empty.
     """
 
     def __init__(self, code: str, message: str, hint: str = "", where: str = "") -> None:

@@ -1,9 +1,9 @@
-"""Extents: where something may be, and how far two of them are apart at least and at most, in metres.
+"""Extents: regions of possible positions, with the least and greatest distance of two of them, in metres.
 
-Both bounds are rounded outwards: bent edges are followed in a metric frame, and what that may miss is taken off or
-added. In the frame around a centre, lengths are those of the earth along its rays, and too long by at most c/sin(c)
-across them, c being the angle from the centre (Rauch: nowhere does the ellipsoid bend more than a ball of its polar
-radius).
+Both bounds are rounded outwards: bent edges are followed in a metric frame, and the possible error is subtracted or
+added. In the frame around a centre, lengths along its rays are those of the earth. Lengths across are too long by at
+most the factor c/sin(c), with c the angle from the centre (Rauch: the ellipsoid nowhere bends more than a sphere of its
+polar radius).
 """
 
 from __future__ import annotations
@@ -26,28 +26,28 @@ POLAR_RADIUS: Final = 6_356_752.0
 """Half the earth's axis in metres."""
 
 FARTHEST: Final = 20_003_932.0
-"""From pole to pole: no two points of the earth are farther apart, in metres."""
+"""The distance from pole to pole in metres: no two points of the earth are farther apart."""
 
 QUARTER: Final = 9_900_000.0
-"""Up to here the distance to a point is convex, so that the farthest points of a place are corners of its hull."""
+"""Up to this distance, the distance to a point is convex, so the farthest points of a place are corners of its hull."""
 
 LARGE: Final = 1_000_000.0
-"""Metres from its middle beyond which a place is followed by samples of its border only."""
+"""The radius in metres of a place beyond which only samples of its border are used."""
 
 SAMPLES: Final = 512
-"""How many of them there are, roughly; of a hull with more corners, some are left out and accounted for."""
+"""The approximate number of samples; a hull with more corners is simplified, and the error is added."""
 
 NOISE: Final = 1e-6
-"""Metres by which the length of a geodesic may be off."""
+"""The error in metres of a geodesic's length."""
 
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """All points within some metres of a geometry, or of several and of all straight ways between their points.
+    """All points within `margin` metres of a geometry, or of the geodesic hull of several.
 
     Attributes:
-        parts: The geometries, sorted; one unless it is spanned.
-        spanned: Whether each straight way (geodesic) from a point of a part to another belongs to it.
+        parts: The geometries, sorted; one unless `spanned`.
+        spanned: Whether every geodesic between points of the parts belongs to it.
         margin: Metres around.
     """
 
@@ -57,19 +57,19 @@ class Extent:
 
 
 def extent(geometry: Geometry, margin: float = 0.0) -> Extent:
-    """Return all points within some metres of a geometry."""
+    """Return all points within `margin` metres of a geometry."""
     return Extent((geometry,), margin=margin)
 
 
 def span(extents: Iterable[Extent]) -> Extent:
-    """Return the hull of extents: their points, and all straight ways from one to another."""
+    """Return the hull of extents: their points, and all geodesics between them."""
     known = tuple(extents)
     parts = sorted({part for each in known for part in each.parts})
     return Extent(tuple(parts), spanned=True, margin=max(each.margin for each in known))
 
 
 def least_distance(a: Extent, b: Extent) -> float:
-    """Return metres that no point of one extent is nearer to any of another; 0 where they meet.
+    """Return a lower bound, in metres, of the distance between points of two extents; 0 if they meet.
 
     >>> from physical import box, point
     >>> round(least_distance(extent(box((37, -9), (37.1, -8.9))), extent(point(37.05, -8.8))))
@@ -79,7 +79,7 @@ def least_distance(a: Extent, b: Extent) -> float:
 
 
 def greatest_distance(a: Extent, b: Extent) -> float:
-    """Return metres that no point of one extent is farther from any of another.
+    """Return an upper bound, in metres, of the distance between points of two extents.
 
     >>> from physical import box, point
     >>> round(greatest_distance(extent(box((37, -9), (37.1, -8.9))), extent(point(37.05, -8.8), 10)))
@@ -89,18 +89,18 @@ def greatest_distance(a: Extent, b: Extent) -> float:
     return FARTHEST if apart > QUARTER else apart + a.margin + b.margin
 
 
-# --- seen from a middle ---------------------------------------------------------------------------
+# --- samples and hulls ----------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class _Points:
-    """Some points (longitudes and latitudes in degrees), and how far any other of what they stand for may be off."""
+    """Sample points (longitudes and latitudes in degrees), and the largest distance of any other point from them."""
 
     positions: Any
     missed: float
 
     def apart(self, other: _Points) -> Any:
-        """Return the metres from each point to each of others."""
+        """Return the distances in metres from each point to each of the others."""
         (easts, norths), (wests, souths) = self.positions, other.positions
         pairs = (np.repeat(easts, len(wests)), np.repeat(norths, len(wests)))
         return geod().inv(*pairs, np.tile(wests, len(easts)), np.tile(souths, len(easts)))[2]
@@ -108,20 +108,18 @@ class _Points:
 
 @lru_cache(maxsize=MEMO)
 def _samples(geometry: Geometry) -> _Points:
-    """Return points of a border; `missed` is how far any other point of it may be from one of them."""
+    """Return samples of a border; every other point of it is at most `missed` metres from one of them."""
     shape = planar(geometry)
     if geometry.is_point:
         return _Points(np.array([[shape.x / E7], [shape.y / E7]]), 0.0)
     step = shape.length / SAMPLES
     coordinates = shapely.get_coordinates(shapely.segmentize(shape, step).exterior)
-    return _Points(
-        coordinates.T / E7, math.radians(step / E7) * 6_400_000.0 / 2
-    )  # at the poles it bends least
+    return _Points(coordinates.T / E7, math.radians(step / E7) * 6_400_000.0 / 2)  # the poles bend least
 
 
 @lru_cache(maxsize=MEMO)
 def _corners(geometry: Geometry) -> _Points:
-    """Return what spans a geometry: the corners of its hull, seen from its middle."""
+    """Return the corners of a geometry's hull, in the frame around its middle."""
     frame, shape = _framed(planar(geometry))
     if geometry.is_point or _reach(shape) > LARGE:
         return _samples(geometry)
@@ -135,7 +133,7 @@ def _corners(geometry: Geometry) -> _Points:
 
 
 def _together(geometries: Iterable[Geometry]) -> shapely.GeometryCollection:
-    """Return geometries in one plane, each on the side of the first on which it is nearer."""
+    """Return geometries in one plane, each shifted by the turn that brings it nearest to the first."""
     shapes = [planar(each) for each in geometries]
     turns = [round((shapes[0].bounds[0] - each.bounds[0]) / TURN) * TURN for each in shapes]
     return shapely.GeometryCollection([translate(*pair) for pair in zip(shapes, turns, strict=True)])
@@ -148,14 +146,14 @@ def _framed(shape: shapely.Geometry) -> tuple[Frame, shapely.Geometry]:
 
 
 def _reach(*shapes: shapely.Geometry) -> float:
-    """Return how far shapes go from the centre of their frame."""
+    """Return the largest distance of shapes from the centre of their frame."""
     return max(float(np.hypot(*shapely.get_coordinates(shape).T).max()) for shape in shapes)
 
 
 def _bend(reach: float, spanned: bool) -> float:
-    """Return how far, in metres, edges and the straight ways of a hull may leave their chords in a frame.
+    """Return the largest distance, in metres, of edges and a hull's geodesics from their chords in a frame.
 
-    A straight way at h from the centre and of half length l leaves its chord by h·l²/3R², at most 0.13 reach³/R².
+    A geodesic of half length l, at distance h from the centre, leaves its chord by h·l²/3R², at most 0.13 reach³/R².
     """
     edges = CHORD_TOLERANCE + 1e-6 * reach
     return edges + 0.2 * reach * (reach / POLAR_RADIUS) ** 2 if spanned else edges

@@ -1,4 +1,4 @@
-"""Files that are read: only those that have an end, and that nobody has to be waited for."""
+"""Opening of input files: only regular files, which end and do not block."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from os import PathLike
 from typing import Final
 
 _NOT_WAITING: Final = getattr(os, "O_NONBLOCK", 0)
-"""A named pipe that nobody writes into is opened at once."""
+"""Opens a named pipe without a writer at once."""
 
 _STRANGE: Final = (
     (stat.S_ISFIFO, "a pipe"),
@@ -21,20 +21,20 @@ _STRANGE: Final = (
 
 
 def open_file(path: str | PathLike[str]) -> BufferedReader:
-    """Open a file to read its bytes.
+    """Open a file for reading bytes.
 
     Raises:
-        OSError: It can't be opened, or is a folder, a pipe, a socket or a device.
-        ValueError: It is no path.
+        OSError: If it can't be opened, or is a folder, a pipe, a socket or a device.
+        ValueError: If the path is invalid.
     """
     return open(path, "rb", opener=_opened)
 
 
 def opened_itself(path: str, flags: int, mode: int = 0o666) -> int:
-    """Open a file for writing, as `open` asks its opener to; never one that a symbolic link leads to.
+    """Open a file for writing, as an opener of `open`; symbolic links are refused.
 
     Raises:
-        OSError: It can't be opened, or is a symbolic link.
+        OSError: If it can't be opened, or is a symbolic link.
     """
     try:
         return os.open(path, flags | os.O_NOFOLLOW | os.O_CLOEXEC, mode)
@@ -46,11 +46,11 @@ def opened_itself(path: str, flags: int, mode: int = 0o666) -> int:
 
 
 def _opened(path: str, flags: int) -> int:
-    # a socket can't be opened at all, and a device may do something when it is
+    # checked before the open: a socket can't be opened, and opening a device may have effects
     if strange := _strange(os.stat(path).st_mode):
         raise _refused(path, strange)
     handle = os.open(path, flags | _NOT_WAITING)
-    if strange := _strange(os.fstat(handle).st_mode):  # it has come to be another since
+    if strange := _strange(os.fstat(handle).st_mode):  # the file was replaced in between
         os.close(handle)
         raise _refused(path, strange)
     return handle

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from pyproj import Geod, Proj
 
 E7: Final = 10_000_000
-"""Units in a degree: coordinates are whole numbers of 1e-7 degree (about 1 cm)."""
+"""Units per degree: coordinates are integers of 1e-7 degree (about 1 cm)."""
 
 TURN: Final = 360 * E7
 """Once around the earth."""
@@ -21,7 +21,7 @@ CHORD_TOLERANCE: Final = 0.005
 """Metres by which an edge may leave its image in a metric frame."""
 
 METRES_PER_DEGREE: Final = 111_320.0
-"""Metres in a degree of latitude, roughly."""
+"""Metres per degree of latitude, roughly."""
 
 EARTH_RADIUS: Final = 6_371_000.0
 MAX_PARTS_OF_AN_EDGE: Final = 1_000
@@ -37,24 +37,24 @@ PositionE7 = tuple[int, int]
 @lru_cache(maxsize=1)
 def geod() -> Geod:
     """Return the WGS 84 ellipsoid."""
-    from pyproj import Geod  # noqa: PLC0415 - many worlds are points and boxes, and ask for no metres
+    from pyproj import Geod  # noqa: PLC0415 - many worlds are points and boxes, and need no metres
 
     return Geod(ellps="WGS84")
 
 
 @lru_cache(maxsize=1)
 def equal_area() -> Proj:
-    """Return the cylindrical equal-area projection, in which planar areas are the ellipsoid's."""
+    """Return the cylindrical equal-area projection: planar areas equal areas on the ellipsoid."""
     return _projection(proj="cea")
 
 
 def normal_longitude(longitude: int) -> int:
-    """Bring a longitude in 1e-7 degree into [-180, 180) degrees."""
+    """Return a longitude in 1e-7 degree, normalised to [-180, 180) degrees."""
     return (longitude + TURN // 2) % TURN - TURN // 2
 
 
 def rounded(latitude: float, longitude: float) -> PositionE7:
-    """Round degrees to the grid of 1e-7 degree; a pole has longitude 0."""
+    """Return degrees rounded to the grid of 1e-7 degree; a pole has longitude 0."""
     north = round(latitude * E7)
     return (north, 0 if abs(north) == 90 * E7 else normal_longitude(round(longitude * E7)))
 
@@ -62,7 +62,7 @@ def rounded(latitude: float, longitude: float) -> PositionE7:
 class Frame(NamedTuple):
     """A local metric frame: azimuthal equidistant, x to the east and y to the north of its centre.
 
-    Distances and directions from the centre are exact; at d metres from it, lengths across are off by d²/6R²
+    Distances and directions from the centre are exact. At d metres from it, lengths across are off by the share d²/6R²
     (4e-5 at 100 km).
     """
 
@@ -75,12 +75,12 @@ class Frame(NamedTuple):
         return (x, y)
 
     def position(self, x: float, y: float) -> PositionE7:
-        """Return the position nearest to x and y metres on the grid of 1e-7 degree."""
+        """Return the position on the grid of 1e-7 degree that is nearest to x and y metres."""
         longitude, latitude = self.proj(x, y, inverse=True)
         return rounded(latitude, longitude)
 
     def project(self, shape: shapely.Geometry) -> shapely.Geometry:
-        """Return a planar shape given in 1e-7 degree (x east, y north) in metres, its edges bent."""
+        """Return a planar shape in metres, from 1e-7 degree (x east, y north), with bent edges."""
         bent = shapely.transform(shapely.segmentize(shape, _part(shape)), self._project)
         return bent.simplify(CHORD_TOLERANCE / 2)
 
@@ -91,10 +91,9 @@ class Frame(NamedTuple):
 
 
 def _part(shape: shapely.Geometry) -> float:
-    """Return how long a part of an edge may be, in 1e-7 degree, for its chord to stay within the tolerance.
+    """Return the longest part of an edge, in 1e-7 degree, whose chord stays within the tolerance.
 
-    A part of s metres leaves its chord by at most s²·tan(latitude)/8R, with an equal share for the frame's
-    own bending.
+    A part of s metres leaves its chord by at most s²·tan(latitude)/8R; the frame's own bending gets an equal share.
     """
     west, south, east, north = shape.bounds
     steepest = max(abs(south), abs(north), E7) / E7

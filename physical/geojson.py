@@ -1,11 +1,10 @@
 """GeoJSON (RFC 7946) feature collections, read and written as physical properties.
 
-`properties.name` and `properties.kind` say what a feature is; `altitude` ([low, high], metres), `channels`,
-`carried_by`, of a Point `radius_m` (which makes it a circle) and of a LineString `width_m` (which makes it a
-corridor) may be there. A Multi geometry of one part is that part. Other members are left alone, and
-a position's third number is no band of altitudes; what is not read is counted. Edges are straight in longitude and
-latitude, as here (§3.1.1). What crosses the antimeridian is written cut (§3.1.9) and joined again when read.
-A moved polygon is written as its vertices: what it is a placement of is not.
+A feature needs `properties.name` and `properties.kind`. Optional properties are `altitude` ([low, high], metres),
+`channels`, `carried_by`, `radius_m` of a Point (a circle) and `width_m` of a LineString (a corridor). A Multi geometry
+with a single part is that part. Other members are ignored and counted; the third number of a position is no altitude
+band. Edges are straight in longitude and latitude, as in this model (§3.1.1). A geometry across the antimeridian is
+written cut (§3.1.9) and joined again when read. A moved polygon is written as its vertices, without its template.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ READ: Final = ("name", "kind", "altitude", "channels", "carried_by", "radius_m",
 """The properties of a feature that are read."""
 
 MULTI: Final = {"MultiPoint": "Point", "MultiLineString": "LineString", "MultiPolygon": "Polygon"}
-"""What each Multi geometry is made of."""
+"""The part type of each Multi geometry."""
 
 Json = Mapping[str, object]
 
@@ -44,7 +43,7 @@ _ORDER: Final = "a position of GeoJSON is [longitude, latitude], in degrees, eas
 
 
 class GeoJSONError(PhysicalError):
-    """A mistake in a GeoJSON text; `problems` has every one that was found, each with its feature."""
+    """The mistakes in a GeoJSON text; `problems` has all of them, each with its feature."""
 
     def __init__(self, problems: Sequence[PhysicalError]) -> None:
         first = problems[0]
@@ -79,9 +78,9 @@ def read_features(text: str | bytes) -> Read:
 def reading_geojson(
     text: str | bytes, counting: Counting | None = None
 ) -> Generator[PhysicalProperty, None, None]:
-    """Yield the properties one by one, for whoever does something else in between; problems are told at the end.
+    """Yield the properties one by one, so that the caller can work in between; problems are raised at the end.
 
-    What is not taken of a feature is counted as an aside.
+    Ignored parts of a feature are counted as asides.
 
     Raises:
         GeoJSONError: With all problems of all features.
@@ -151,21 +150,21 @@ def _features(collection: object) -> Sequence[object]:
 
 
 def _check_crs(crs: object) -> None:
-    """Refuse another coordinate system than WGS 84, as GeoJSON allowed before RFC 7946."""
+    """Raise PhysicalError for a coordinate system other than WGS 84, which GeoJSON allowed before RFC 7946."""
     named = json.dumps(crs)
     if crs is not None and "CRS84" not in named and "4326" not in named:
         _fail("crs", f"the coordinates are not WGS 84 but {named:.80}", "convert them: RFC 7946 has no other")
 
 
 def _count(feature: object) -> int:
-    """Count the positions of a feature without trusting its shape."""
+    """Return the number of positions of a feature, whatever its structure."""
     geometry = feature.get("geometry") if isinstance(feature, dict) else None
     coordinates = geometry.get("coordinates") if isinstance(geometry, dict) else None
     return sum(1 for _ in _positions(coordinates))
 
 
 def _positions(coordinates: object) -> Iterator[list[object]]:
-    """Yield the innermost lists of coordinates, whatever their shape."""
+    """Yield the innermost lists of coordinates, whatever their structure."""
     open_lists = [coordinates]
     while open_lists:
         part = open_lists.pop()
@@ -210,7 +209,7 @@ def _property(feature: object, counting: Counting) -> PhysicalProperty:
 
 
 def _note_unread(geometry: object, properties: Json, counting: Counting) -> None:
-    """Count what is passed over: other properties, and heights in coordinates, which are no band of altitudes."""
+    """Count ignored data: other properties, and heights in coordinates, which are no altitude bands."""
     if others := len(properties.keys() - READ):
         counting.note(f"property of a feature with another name than {', '.join(READ)}", others)
     coordinates = geometry.get("coordinates") if isinstance(geometry, dict) else None
@@ -278,7 +277,7 @@ def _geometry(geometry: object, properties: Json, counting: Counting) -> Geometr
 
 
 def _single(geometry: object) -> tuple[object, object]:
-    """Return the type and the coordinates of a geometry; of a Multi geometry of one part that part's."""
+    """Return the type and the coordinates of a geometry, or of the part of a Multi geometry with a single part."""
     if not isinstance(geometry, dict):
         return None, None
     kind, coordinates = geometry.get("type"), geometry.get("coordinates")
@@ -288,7 +287,7 @@ def _single(geometry: object) -> tuple[object, object]:
 
 
 def _polygon(ring: list[tuple[float, float]], counting: Counting) -> Geometry:
-    """Return the polygon of a ring that may cross the antimeridian without being cut there."""
+    """Return the polygon of a ring, which may cross the antimeridian without a cut."""
     found = polygon(ring)
     check_edges(ring)
     if goes_around(ring):
@@ -357,13 +356,13 @@ def _turned_east(shape: shapely.Polygon) -> shapely.Polygon:
 
 
 def _cut(parts: Sequence[shapely.Polygon]) -> bool:
-    """Whether every part ends at the antimeridian, on one side or the other."""
+    """Whether every part ends at the antimeridian, and both sides occur."""
     sides = {(part.bounds[0] == TURN // 2, part.bounds[2] == TURN // 2) for part in parts}
     return sides == {(True, False), (False, True)}
 
 
 def _without_cuts(ring: list[PositionE7]) -> list[PositionE7]:
-    """Leave out vertices on the antimeridian that the cut has put amid an edge, to a unit of rounding."""
+    """Return the ring without vertices on the antimeridian that the cut added to an edge, up to rounding."""
     around = zip(ring[-1:] + ring[:-1], ring, ring[1:] + ring[:1], strict=True)
     return [here for before, here, after in around if here[1] != TURN // 2 or not _amid(before, here, after)]
 

@@ -1,10 +1,12 @@
 """Land on the earth: coasts and lakes for maps, without a network.
 
-`land.zip` is Natural Earth's land at 1:10 million, in the public domain, good to about a kilometre
-(`tests/data/make_land.py` made it). It has a file for each tile of 10 degrees that has land, and an overview of
-the whole earth. In each, whole numbers tell how many polygons there are, how many rings each has and how many
-vertices each of those; then come the steps from vertex to vertex, first all to the east and then all to the north:
-0, 1, 2, 3 and so on stand for 0, -1, 1, -2, and all low bytes come before all high ones.
+`land.zip` is Natural Earth's land at 1:10 million, in the public domain, accurate to about a kilometre
+(`tests/data/make_land.py` made it). It has a file for each tile of 10 degrees with land, and an overview of the whole
+earth.
+
+A file begins with integers: the number of polygons, the number of rings of each, the number of vertices of each ring.
+The steps from vertex to vertex follow, first all to the east, then all to the north. A step is zigzag-encoded (0, 1, 2,
+3 stand for 0, -1, 1, -2), and all low bytes precede all high bytes.
 """
 
 from __future__ import annotations
@@ -26,24 +28,24 @@ from shapely.affinity import translate
 from physical.frame import Position
 
 ACCURACY: Final = 1_000.0
-"""Metres by which a coast may lie elsewhere."""
+"""The possible error of a coast in metres."""
 
 TILE: Final = 10
 STEP: Final = 0.0005
-"""Degrees that a number of a tile stands for."""
+"""Degrees per unit of a tile's numbers."""
 
 OVERVIEW: Final = "overview"
 OVERVIEW_STEP: Final = 0.02
 WIDE: Final = 25.0
-"""Degrees from which the overview is enough."""
+"""The window size in degrees from which the overview suffices."""
 
 Ring = tuple[Position, ...]
 
 
 def land_within(south_west: Position, north_east: Position) -> tuple[tuple[Ring, ...], ...]:
-    """Return the land in a window as polygons: the border of each, then its holes.
+    """Return the land in a window as polygons, each its border and then its holes.
 
-    Where the window goes across the antimeridian, its longitudes go beyond 180, and so do those of the polygons.
+    In a window across the antimeridian, longitudes go beyond 180, also those of the polygons.
 
     >>> [len(polygon) for polygon in land_within((36.9, -8.8), (37.2, -8.5))]
     [1]
@@ -60,7 +62,7 @@ def land_within(south_west: Position, north_east: Position) -> tuple[tuple[Ring,
 
 
 def land_share(south_west: Position, north_east: Position) -> float:
-    """Return how much of a window is land, between 0 and 1; lakes are water.
+    """Return the share of a window that is land, between 0 and 1; lakes are water.
 
     >>> land_share((37.0, -8.7), (37.05, -8.6)), land_share((38.0, -7.6), (38.1, -7.5))
     (0.0, 1.0)
@@ -81,7 +83,7 @@ def tile_name(west: int, south: int) -> str:
 
 
 def _near(west: float, south: float, east: float, north: float) -> Iterator[shapely.Polygon]:
-    """Yield the polygons of all tiles that a window meets, where it has them."""
+    """Yield the polygons of all tiles that meet a window, shifted to the window's longitudes."""
     wide = max(east - west, north - south) > WIDE
     size = 360 if wide else TILE
     for turn in range(math.floor((west + 180) / size), math.floor((east + 180) / size) + 1):
@@ -104,7 +106,7 @@ def _archive() -> ZipFile:
 
 @lru_cache(maxsize=64)
 def _tile(name: str, west: int, south: int, step: float) -> tuple[shapely.Polygon, ...]:
-    """Return the polygons of a tile, none where it is all sea."""
+    """Return the polygons of a tile; none for a tile of sea."""
     if name not in _archive().namelist():
         return ()
     written = _archive().read(name)
@@ -138,7 +140,7 @@ def _numbers(written: bytes) -> array[int]:
 
 
 def _steps(written: bytes) -> list[int]:
-    """Return steps of which all low bytes come first."""
+    """Return steps, decoded from bytes of which all low ones come first."""
     both = bytearray(len(written))
     both[::2], both[1::2] = written[: len(written) // 2], written[len(written) // 2 :]
     return [(number >> 1) ^ -(number & 1) for number in _native(array("H", bytes(both)))]

@@ -1,7 +1,7 @@
-"""Edges over more than half the earth: written numbers don't say which way around they go.
+"""Edges over more than half the earth, whose direction the written numbers leave open.
 
-RFC 7946 has them go straight from one number to the other, over more than 180 degrees; most files mean the shorter way,
-across the antimeridian. Where both may be meant the edge is refused.
+By RFC 7946 such an edge goes straight from one number to the other, over more than 180 degrees. Most files mean the
+shorter way, across the antimeridian. An ambiguous edge is refused.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from typing import Final
 from physical.errors import GeometryError
 
 CLEAR: Final = 270.0
-"""Degrees of longitude from which an edge is clearly one across the antimeridian: the shorter way is at most 90."""
+"""Degrees of longitude from which an edge certainly crosses the antimeridian: the shorter way is at most 90."""
 
 Positions = Sequence[Sequence[float]]
 """Latitudes and longitudes in degrees, as written."""
 
 
 def check_edges(positions: Positions, *, closed: bool = True) -> None:
-    """Refuse edges of more than 180 and less than 270 degrees; raises GeometryError."""
+    """Raise GeometryError for an edge of more than 180 and less than 270 degrees."""
     for here, there in _edges(positions, closed=closed):
         apart = abs(there[1] - here[1])
         if 180.0 < apart < CLEAR:
@@ -33,9 +33,9 @@ def check_edges(positions: Positions, *, closed: bool = True) -> None:
 
 
 def goes_around(ring: Positions) -> bool:
-    """Tell whether a ring with clear edges, read number by number, would enclose most of the earth's longitudes.
+    """Whether a ring with clear edges would enclose most of the earth's longitudes if read number by number.
 
-    So it is if it is counterclockwise by its numbers, as RFC 7946 asks for.
+    That holds if it is counterclockwise by its numbers, as RFC 7946 requires.
     """
     if not any(abs(there[1] - here[1]) >= CLEAR for here, there in _edges(ring, closed=True)):
         return False
@@ -43,7 +43,7 @@ def goes_around(ring: Positions) -> bool:
 
 
 def check_width(west: float, east: float) -> None:
-    """Refuse a box between two meridians, from west to east, of 180 degrees or more; raises GeometryError."""
+    """Raise GeometryError for a box of 180 degrees or more, from west eastwards to east."""
     if (width := (east - west) % 360.0) >= 180.0:
         raise GeometryError(
             "wide",

@@ -9,19 +9,21 @@ from typing import Final
 from physical.map_labels import Spot
 
 FEWEST: Final = 4
-"""Markers alike that are folded at the least."""
+"""The smallest group of similar markers that is folded."""
 
 HIDING: Final = 7.0
 """Points between two markers that hide each other."""
 
 ROOM: Final = 14.0
-"""Points between the middles of markers that are fanned out."""
+"""Points between the centres of fanned-out markers."""
 
 
 def folded(
     spots: Mapping[str, Spot], alike: Mapping[str, Hashable], reach: float
 ) -> tuple[dict[str, Spot], dict[str, tuple[str, ...]]]:
-    """Return the spots left and, by the name that stands for them, the names folded there: alike, and within reach.
+    """Return the remaining spots, and the folded names by the name that represents them.
+
+    Names are folded if they are alike and within reach.
 
     >>> folded({name: (0.0, 1.0) for name in "abcdef"}, {name: "UAV" for name in "abcde"}, 5.0)
     ({'f': (0.0, 1.0), 'a': (0.0, 1.0)}, {'a': ('a', 'b', 'c', 'd', 'e')})
@@ -40,21 +42,21 @@ def folded(
 
 
 def fanned(spots: Mapping[str, Spot]) -> dict[str, Spot]:
-    """Return the spots with those that hide each other in a ring around their middle."""
+    """Return the spots; those that hide each other form a ring around their middle."""
     found = dict(spots)
     for names in _groups(spots, HIDING):
         if len(names) > 1:
             (x, y), turn = _mean([spots[name] for name in names]), 2 * math.pi / len(names)
             radius = ROOM / 2 / math.sin(math.pi / len(names))
             for rank, name in enumerate(names):
-                # The first to the left of the second, and the first of three above the others.
+                # Two go left and right in order; of three or more, the first is on top.
                 angle = math.pi / (1 if len(names) == 2 else 2) - turn * rank
                 found[name] = (x + radius * math.cos(angle), y + radius * math.sin(angle))
     return found
 
 
 def _groups(spots: Mapping[str, Spot], reach: float) -> list[list[str]]:
-    """Return names in groups, each within reach of the first of its group."""
+    """Return groups of names, each within reach of the first of its group."""
     groups: list[list[str]] = []
     for name, spot in spots.items():
         near = (group for group in groups if math.dist(spots[group[0]], spot) <= reach)

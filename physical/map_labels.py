@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 Spot = tuple[float, float]
-"""To the right and up, in points (or in metres, where a view is spoken of)."""
+"""Coordinates to the right and up, in points; those of a view are in metres."""
 
 GAP: Final = 2.0
 """Points kept free between labels."""
@@ -17,13 +17,13 @@ RINGS: Final = (3.0, 8.0, 15.0, 24.0, 36.0, 50.0)
 """Points from the clearance to the label, tried in turn."""
 
 DIRECTIONS: Final = (0, 180, 90, 270, 45, 315, 135, 225, 22, 338, 158, 202, 68, 292, 112, 248)
-"""Degrees counter-clockwise from the right, those that read best first."""
+"""Degrees counter-clockwise from the right, the most readable first."""
 
 BESIDE: Final = 9.0
-"""Points from the clearance to a label that needs no line to what it names."""
+"""Points from the clearance to a label that needs no leader line."""
 
 CELL: Final = 24.0
-"""Points that a cell is wide, in which spots along lines are looked up."""
+"""The width in points of the cells that index spots along lines."""
 
 _Cells = dict[tuple[int, int], list[Spot]]
 
@@ -41,47 +41,47 @@ class Box(NamedTuple):
 
     @property
     def width(self) -> float:
-        """How wide it is."""
+        """The width."""
         return self.right - self.left
 
     @property
     def height(self) -> float:
-        """How high it is."""
+        """The height."""
         return self.top - self.bottom
 
     @property
     def centre(self) -> Spot:
-        """Its middle."""
+        """The centre."""
         return ((self.left + self.right) / 2, (self.bottom + self.top) / 2)
 
     def grown(self, by: float) -> Box:
-        """Return the box with more on every side."""
+        """Return the box, enlarged on every side."""
         return Box(self.left - by, self.bottom - by, self.right + by, self.top + by)
 
     def shared(self, other: Box) -> float:
-        """Return the area that two boxes share, 0 where they only touch."""
+        """Return the common area of two boxes, 0 if they only touch."""
         wide = min(self.right, other.right) - max(self.left, other.left)
         high = min(self.top, other.top) - max(self.bottom, other.bottom)
         return wide * high if wide > 0 and high > 0 else 0.0
 
     def holds(self, spot: Spot) -> bool:
-        """Tell whether a spot is inside or on the border."""
+        """Whether a spot is inside or on the border."""
         return self.left <= spot[0] <= self.right and self.bottom <= spot[1] <= self.top
 
     def nearest(self, spot: Spot) -> Spot:
-        """Return the spot of the box that is nearest to another."""
+        """Return the spot of the box that is nearest to another spot."""
         return (min(max(spot[0], self.left), self.right), min(max(spot[1], self.bottom), self.top))
 
 
 def around(centre: Spot, size: Spot) -> Box:
-    """Return the box of a size (width and height) about its middle."""
+    """Return the box with this centre and size (width and height)."""
     return Box(
         centre[0] - size[0] / 2, centre[1] - size[1] / 2, centre[0] + size[0] / 2, centre[1] + size[1] / 2
     )
 
 
 def union(boxes: Sequence[Box]) -> Box:
-    """Return the smallest box around some, at least one."""
+    """Return the smallest box around boxes, at least one."""
     lefts, bottoms, rights, tops = zip(*boxes, strict=True)
     return Box(min(lefts), min(bottoms), max(rights), max(tops))
 
@@ -93,9 +93,9 @@ class Wanted:
     Attributes:
         at: The spot that it names.
         size: Its width and height.
-        clearance: How far to the side of the spot, and above and below it, nothing may be written.
-        inside: Middles of the label that are tried first, best first.
-        farthest: How far from the clearance it may stand.
+        clearance: The free distance around the spot, horizontally and vertically.
+        inside: Preferred centres of the label, best first.
+        farthest: The largest distance from the clearance.
     """
 
     at: Spot
@@ -108,10 +108,10 @@ class Wanted:
 def place_labels(
     wanted: Sequence[Wanted], obstacles: Sequence[Box], lines: Sequence[Spot], view: Box
 ) -> tuple[Box | None, ...]:
-    """Return a box for each label: in the view, off the obstacles, off each other, near what it names.
+    """Return a box for each label: in the view, off the obstacles, off each other, near its spot.
 
-    Labels are placed in the order given, each where it costs least. `lines` are spots that are better not
-    written over. Where there is no room nearby, there is None.
+    Labels are placed in the given order, each at its least cost. `lines` are spots that labels should avoid. A label
+    without room nearby has None.
     """
     taken, cells = list(obstacles), _cells(lines)
     found: list[Box | None] = []
@@ -125,7 +125,7 @@ def place_labels(
 
 
 def leader(box: Box, label: Wanted) -> tuple[Spot, ...]:
-    """Return spots along the way from a label to what it names, none where it stands beside it or in it."""
+    """Return spots along the leader line from a label to its spot, none if it stands beside it or inside."""
     if any(math.dist(box.centre, spot) < 0.01 for spot in label.inside):
         return ()
     (x1, y1), (x2, y2) = box.nearest(label.at), label.at
@@ -142,14 +142,14 @@ def _add(cells: _Cells, spots: Iterable[Spot]) -> None:
 
 
 def _cells(spots: Iterable[Spot]) -> _Cells:
-    """Return spots by the cell that they lie in, so that a box finds those inside it."""
+    """Return spots by cell, for fast lookup of those in a box."""
     cells: _Cells = {}
     _add(cells, spots)
     return cells
 
 
 def _within(box: Box, cells: _Cells) -> int:
-    """Count the spots inside a box."""
+    """Return the number of spots inside a box."""
     xs = range(int(box.left // CELL), int(box.right // CELL) + 1)
     ys = range(int(box.bottom // CELL), int(box.top // CELL) + 1)
     return sum(box.holds(spot) for x in xs for y in ys for spot in cells.get((x, y), ()))
@@ -180,10 +180,10 @@ def _candidates(label: Wanted) -> Iterator[tuple[float, Box]]:
 
 
 def _beside(label: Wanted, direction: float, distance: float) -> Box:
-    """Return the label's box at a distance from what it names, seen in a direction."""
+    """Return the label's box at a distance from its spot, in a direction."""
     east, north = math.cos(direction), math.sin(direction)
     wide, high = label.size
-    # The box's support in that direction; a label to the side stays level with what it names.
+    # The box's support in that direction; a label to the side stays level with its spot.
     x = label.at[0] + east * (label.clearance[0] + distance) + _sign(east) * wide / 2
     y = label.at[1] + north * (label.clearance[1] + distance) + _sign(north) * high / 2
     return around((x, y), label.size)

@@ -14,16 +14,16 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 RADIUS: Final = 5.5
-"""Of a marker, in points."""
+"""The radius of a marker, in points."""
 
 MARK_RADIUS: Final = RADIUS + 4.0
-"""Of the dashed circle around what is marked."""
+"""The radius of the dashed circle around a marked entity."""
 
 NORTH: Final = 18.0
-"""How wide the arrow to the north is, with what is free beside it."""
+"""The width of the north arrow, with the space beside it."""
 
 Curve = tuple[Spot, Spot, Spot]
-"""A quadratic Bezier curve."""
+"""A quadratic Bézier curve."""
 
 LEADING: Final = 1.35
 SPACING: Final = 6.0
@@ -32,7 +32,7 @@ SPACING: Final = 6.0
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One line of a label; the icon, an outline with its colour, stands before the text and may glow or be marked."""
+    """One line of a label; its icon, an outline with a colour, stands before the text and may glow or be marked."""
 
     text: str
     size: float = 8.0
@@ -45,7 +45,7 @@ class Line:
 
     @property
     def start(self) -> float:
-        """Where the text begins, in points from the left."""
+        """The start of the text, in points from the left."""
         return self.indent + (9.0 if self.icon else 0.0)
 
 
@@ -56,15 +56,15 @@ def block_size(lines: Sequence[Line]) -> Spot:
 
 
 def names_id(names: Sequence[str]) -> str:
-    """Return the id, in an SVG, of what stands for several names."""
+    """Return the SVG id of an element that stands for several names."""
     return f"names:{', '.join(names)}"
 
 
 def draw_block(
     axes: Axes, box: Box, lines: Sequence[Line], paper: str = PAPER, names: Sequence[str] = ()
 ) -> None:
-    """Write the lines of a label into its box, from the top; `names` are what they stand for."""
-    from matplotlib.patheffects import withStroke  # noqa: PLC0415 - only who draws needs matplotlib
+    """Write the lines of a label into its box, from the top; `names` are the represented names."""
+    from matplotlib.patheffects import withStroke  # noqa: PLC0415 - only drawing needs matplotlib
 
     top = box.top
     for line in lines:
@@ -98,7 +98,7 @@ def _draw_line_icon(axes: Axes, line: Line, at: Spot) -> None:
 def draw_icon(
     axes: Axes, at: Spot, shape: Outline, colour: str, *, radius: float = RADIUS, hollow: bool = False
 ) -> None:
-    """Draw a marker; a hollow one for what is on its way."""
+    """Draw a marker; a hollow one is in transit."""
     from matplotlib.patches import Polygon  # noqa: PLC0415 - the same
 
     axes.add_patch(
@@ -116,7 +116,7 @@ def draw_icon(
 def draw_polygon(
     axes: Axes, outline: Sequence[Spot], colour: str, *, strength: float, width: float = 1.1
 ) -> None:
-    """Draw a polygon: lightly filled, its border in the same colour."""
+    """Draw a polygon: lightly filled, with a border of the same colour."""
     from matplotlib.patches import Polygon  # noqa: PLC0415 - the same
 
     axes.add_patch(Polygon(outline, facecolor=colour, alpha=strength, linewidth=0, zorder=2))
@@ -159,13 +159,13 @@ def draw_mark(axes: Axes, at: Spot, radius: float = MARK_RADIUS) -> None:
 
 
 def arc(start: Spot, end: Spot, bulge: float = 0.12) -> Curve:
-    """Return the quadratic Bezier curve between two spots, bulging to the left by a share of its length."""
+    """Return the quadratic Bézier curve between two spots, with a bulge to the left as a share of its length."""
     (x1, y1), (x2, y2) = start, end
     return (start, ((x1 + x2) / 2 - (y2 - y1) * 2 * bulge, (y1 + y2) / 2 + (x2 - x1) * 2 * bulge), end)
 
 
 def samples(curve: Curve) -> list[Spot]:
-    """Return spots along a curve, its ends left out."""
+    """Return spots along a curve, without its ends."""
     (x1, y1), (x2, y2), (x3, y3) = curve
     parts = min(max(2, round(math.dist(curve[0], curve[2]) / SPACING)), 200)
     weights = [((1 - t) ** 2, 2 * t * (1 - t), t * t) for t in (part / parts for part in range(1, parts))]
@@ -182,7 +182,7 @@ def draw_curve(axes: Axes, curve: Curve, colour: str) -> None:
 
 
 def draw_flight(axes: Axes, curve: Curve, colour: str) -> None:
-    """Draw a dashed way with an arrow head at its end."""
+    """Draw a dashed path with an arrow head at its end."""
     from matplotlib.patches import PathPatch, Polygon  # noqa: PLC0415 - the same
     from matplotlib.path import Path  # noqa: PLC0415 - the same
 
@@ -200,19 +200,19 @@ def _head(before: Spot, tip: Spot, length: float = 8.0) -> list[Spot]:
 
 
 def draw_pointer(axes: Axes, at: Spot, behind: Spot, colour: str) -> None:
-    """Draw an arrow head at the border of the view that points away from a spot behind it."""
+    """Draw an arrow head at the border of the view that points away from the spot `behind`."""
     from matplotlib.patches import Polygon  # noqa: PLC0415 - the same
 
     axes.add_patch(Polygon(_head(behind, at, 10.0), facecolor=colour, linewidth=0, zorder=7))
 
 
 def draw_leader(axes: Axes, start: Spot, end: Spot) -> None:
-    """Draw a hair line from a label to what it names."""
+    """Draw a thin leader line from a label to its object."""
     axes.plot([start[0], end[0]], [start[1], end[1]], color=QUIET, linewidth=0.6, alpha=0.8, zorder=4.4)
 
 
 def draw_scale(axes: Axes, box: Box, length: float, text: str, note: str = "") -> None:
-    """Draw a scale bar in a box, its length above it, a note under it, and to the left an arrow to the north."""
+    """Draw a scale bar in a box, with its length above, a note below, and a north arrow to the left."""
     from matplotlib.patches import Polygon  # noqa: PLC0415 - the same
 
     right, y = box.right, box.top - 20.0
@@ -240,7 +240,7 @@ def draw_land(axes: Axes, polygons: Sequence[Sequence[Sequence[Spot]]]) -> None:
 def draw_grid(
     axes: Axes, xs: Sequence[tuple[float, str]], ys: Sequence[tuple[float, str]], paper: str
 ) -> None:
-    """Draw meridians and parallels, each a place in points and what is written beside it, on paper of a colour."""
+    """Draw meridians and parallels, each with its offset in points and its label, on a background colour."""
     axes.set_facecolor(paper)
     axes.set_xticks([x for x, _ in xs], [text for _, text in xs])
     axes.set_yticks([y for y, _ in ys], [text for _, text in ys])

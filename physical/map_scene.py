@@ -18,14 +18,14 @@ from physical.map_view import Plane, bounds, focus, plane_of, view_of
 from physical.shape import Geometry
 
 NARROWEST_COAST: Final = 10.0 * ACCURACY
-"""How wide a map is at least, in metres, to show coasts: on a smaller one they would mislead."""
+"""The smallest width in metres of a map with coasts; on a smaller map they would mislead."""
 
 SMALLEST_POLYGON: Final = 7.0
-"""Points under which a polygon is drawn as a marker."""
+"""The size in points below which a polygon is drawn as a marker."""
 
 
 Land = tuple[tuple[tuple[Spot, ...], ...], ...]
-"""Polygons: of each its border, then its lakes."""
+"""Polygons, each its border and then its lakes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,13 +34,13 @@ class MapEntity:
 
     Attributes:
         name: Its name.
-        kind: Its kind: gives the colour, and the shape of the marker.
-        geometry: Where it is, or took off; None for what is carried, and for what is absent.
-        place: Whether it is a place that stays where it is, rather than something that moves.
-        channels: The channels that it is on.
-        carried_by: The name of what carries it.
-        towards: The name of what it is in transit to.
-        destination: Where that is, if that can be told.
+        kind: Its kind, which determines the colour and the shape of the marker.
+        geometry: Its position, or its take-off position; None if it is carried or absent.
+        place: Whether it is a stationary place, rather than a mover.
+        channels: Its channels.
+        carried_by: The name of its carrier.
+        towards: The name of its destination, in transit.
+        destination: The position of its destination, if known.
     """
 
     name: str
@@ -55,7 +55,7 @@ class MapEntity:
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """A map's paper: where positions lie on axes whose units are points."""
+    """A map's paper: the axes coordinates of positions, in points."""
 
     plane: Plane
     view: Box
@@ -68,26 +68,26 @@ class Sheet:
         return Box(0.0, 0.0, self.width, self.height)
 
     def spot(self, metres: Spot) -> Spot:
-        """Return where a spot of the plane lies."""
+        """Return the sheet coordinates of a spot of the plane."""
         scale = self.width / self.view.width
         return ((metres[0] - self.view.left) * scale, (metres[1] - self.view.bottom) * scale)
 
     def at(self, position: Position) -> Spot:
-        """Return where a position lies."""
+        """Return the sheet coordinates of a position."""
         return self.spot(self.plane.metres(position))
 
     def outline(self, geometry: Geometry) -> tuple[Spot, ...]:
-        """Return where a geometry's vertices lie."""
+        """Return the sheet coordinates of a geometry's vertices."""
         return tuple(map(self.spot, self.plane.outline(geometry)))
 
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """What is drawn where: everything that is present, by name, with its outline on the sheet.
+    """The drawn entities by name, with their outlines on the sheet.
 
     Attributes:
-        spots: Where markers stand; those that would hide each other beside where they are.
-        members: The names for which a marker stands, by the name that it has.
+        spots: The positions of markers; fanned-out markers stand beside their true positions.
+        members: The names that a marker represents, by its own name.
     """
 
     sheet: Sheet
@@ -112,39 +112,39 @@ class Scene:
         return self.shapes[self.entities[name].kind]
 
     def is_polygon(self, name: str) -> bool:
-        """Tell whether an entity is drawn as an area: it has one, and it can be seen."""
+        """Whether an entity is drawn as an area: it has one, and it is large enough."""
         around = bounds(self.outlines[name])
         return len(self.outlines[name]) > 1 and max(around.width, around.height) >= SMALLEST_POLYGON
 
     def near(self) -> list[str]:
-        """Return the names of what the sheet shows, one for each marker."""
+        """Return the names visible on the sheet, one for each marker."""
         hidden = {name for names in self.members.values() for name in names[1:]}
         return [name for name in self.outlines if name not in self.far and name not in hidden]
 
     def middle(self, name: str) -> Spot:
-        """Return the middle of the outermost carrier: of its outline, or of the marker that stands for it."""
+        """Return the centre of the outermost carrier: of its outline, or of the marker that represents it."""
         carrier = self.outermost(name)
         first = next((first for first, names in self.members.items() if carrier in names), carrier)
         return self.spots.get(first) or bounds(self.outlines[carrier]).centre
 
     def moved(self) -> list[tuple[Spot, Spot]]:
-        """Return for each marker that stands beside where it is both spots."""
+        """Return the drawn and the true spot of each displaced marker."""
         true = {name: bounds(self.outlines[name]).centre for name in self.spots if name not in self.members}
         return [(self.spots[name], at) for name, at in true.items() if math.dist(self.spots[name], at) > 2.0]
 
     def outermost(self, name: str) -> str:
-        """Return the carrier that an entity is in the end carried by, or itself."""
+        """Return the outermost carrier of an entity, or itself."""
         while name not in self.outlines:
             name = str(self.entities[name].carried_by)
         return name
 
     def cargo(self, carrier: str, depth: int = 0) -> list[tuple[int, str]]:
-        """Return what an entity carries, at any depth, each with its depth."""
+        """Return an entity's cargo at any depth, each with its depth."""
         held = [name for name, entity in self.entities.items() if self.carrier(entity) == carrier]
         return [each for name in held for each in [(depth, name), *self.cargo(name, depth + 1)]]
 
     def carrier(self, entity: MapEntity) -> str | None:
-        """Return what carries an entity, None where it has its own place on the sheet."""
+        """Return the carrier of an entity, None if it has its own position on the sheet."""
         return None if entity.name in self.outlines else entity.carried_by
 
 
@@ -156,9 +156,9 @@ def scene_of(
     marked: Collection[str],
     within: Sequence[Geometry] = (),
 ) -> Scene:
-    """Return the scene of entities, each name once, on a sheet of a width and height in points.
+    """Return the scene of entities with unique names, on a sheet of this width and height in points.
 
-    The sheet shows `within`, and where that is empty what there is.
+    The sheet shows `within`, or all entities if that is empty.
     """
     known = {entity.name: entity for entity in entities}
     placed = {
@@ -196,7 +196,8 @@ def scene_of(
 def arranged(scene: Scene, reach: float) -> Scene:
     """Return the scene with markers folded and fanned out.
 
-    Folded are those of one kind, in the same places, within so many points; fanned out are others that hide each other.
+    Markers of one kind in the same places are folded if they are within `reach` points. Other markers that hide each
+    other are fanned out.
     """
     scene = replace(scene, spots={}, members={})
     markers = [name for name in scene.near() if not scene.is_polygon(name)]
@@ -212,13 +213,13 @@ def arranged(scene: Scene, reach: float) -> Scene:
 
 
 def _stands_out(scene: Scene, name: str) -> bool:
-    """Tell whether there is more to be said of an entity than its name."""
+    """Whether the label of an entity has more than its name."""
     told = name in scene.highlight or name in scene.marked or scene.entities[name].towards is not None
     return told or bool(scene.cargo(name))
 
 
 def shows_coasts(sheet: Sheet) -> bool:
-    """Tell whether a sheet is wide enough for coasts."""
+    """Whether a sheet is wide enough for coasts."""
     return sheet.view.width >= NARROWEST_COAST
 
 
@@ -238,7 +239,7 @@ def _land(sheet: Sheet) -> Land:
 
 
 def _rides(entity: MapEntity, known: Mapping[str, MapEntity], placed: Mapping[str, Geometry]) -> bool:
-    """Tell whether something that is placed carries an entity, at any depth."""
+    """Whether an entity is carried, at any depth, by a placed one."""
     passed = {entity.name}
     while (carrier := entity.carried_by) is not None and carrier in known and carrier not in passed:
         if carrier in placed:

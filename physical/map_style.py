@@ -16,10 +16,10 @@ SEA: Final = "#f0f6fb"
 LAND: Final = "#f3efe4"
 COAST: Final = "#b9ae92"
 HALO: Final = "#e4572e"
-"""Behind what is highlighted."""
+"""The colour behind highlighted entities."""
 
 MARK: Final = "#1f2933"
-"""Around what is marked, dashed."""
+"""The colour of the dashed outline of marked entities."""
 
 PALETTE: Final = (
     "#4f86c6",
@@ -31,7 +31,7 @@ PALETTE: Final = (
     "#a8973a",
     "#7b8494",
 )
-"""Calm colours of one lightness."""
+"""Calm colours of equal lightness."""
 
 Outline = tuple[tuple[float, float], ...]
 
@@ -55,11 +55,11 @@ WORDS: Final = (
     (("drifter", "buoy", "float"), DISC),
     (("aton", "beacon", "light"), DIAMOND),
 )
-"""Shapes of kinds whose names have these words in them."""
+"""The shapes of kinds by words in their names."""
 
 
 def kind_colours(kinds: Iterable[str]) -> dict[str, str]:
-    """Return a colour for each kind: the palette, in the order of their names."""
+    """Return a colour for each kind: the palette, in alphabetical order."""
     return {kind: PALETTE[rank % len(PALETTE)] for rank, kind in enumerate(sorted(set(kinds)))}
 
 
@@ -74,7 +74,7 @@ def darker(colour: str) -> str:
 
 
 def kind_shapes(kinds: Iterable[str]) -> dict[str, Outline]:
-    """Return the outline of each kind's marker, about one unit in radius; unknown kinds take what is left."""
+    """Return the outline of each kind's marker, about one unit in radius; unknown kinds take unused shapes."""
     found: dict[str, Outline] = {}
     for kind in sorted(set(kinds)):
         lower = kind.lower()
@@ -86,8 +86,8 @@ def kind_shapes(kinds: Iterable[str]) -> dict[str, Outline]:
 
 @lru_cache(maxsize=1 << 12)
 def text_width(text: str, size: float, bold: bool = False) -> float:
-    """Return how wide a line of text is, in points, in the font that matplotlib brings along."""
-    from matplotlib.font_manager import FontProperties  # noqa: PLC0415 - only who draws needs matplotlib
+    """Return the width of a line of text, in points, in matplotlib's own font."""
+    from matplotlib.font_manager import FontProperties  # noqa: PLC0415 - only drawing needs matplotlib
     from matplotlib.textpath import text_to_path  # noqa: PLC0415 - the same
 
     font = FontProperties(family="DejaVu Sans", size=size, weight="bold" if bold else "normal")
@@ -96,7 +96,7 @@ def text_width(text: str, size: float, bold: bool = False) -> float:
 
 
 def shortened(text: str, width: float, size: float, bold: bool = False) -> str:
-    """Return the text, cut with an ellipsis where it is wider than so many points."""
+    """Return the text, cut with an ellipsis if it is wider than `width` points."""
     if text_width(text, size, bold) <= width:
         return text
     low, high = 0, len(text)

@@ -15,13 +15,13 @@ from physical.shape import Geometry
 SEMI_MAJOR: Final = 6_378_137.0
 ECCENTRICITY_SQUARED: Final = 0.006_694_379_990_14
 STEEPEST: Final = 89.5
-"""The latitude to which the plane is scaled at most: at a pole a degree of longitude has no length."""
+"""The highest latitude for the plane's scale: at a pole a degree of longitude has no length."""
 
 NARROWEST: Final = 400.0
-"""Metres that a view is wide at least."""
+"""The smallest width of a view in metres."""
 
 FAR: Final = 4.0
-"""How many times smaller the view must get for far entities to be left out of it."""
+"""The factor by which the view must shrink for far entities to be left out."""
 
 STEPS: Final = (1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0)
 FINE_STEPS: Final = tuple(digit * 10.0**-power for power in range(7, 0, -1) for digit in (1, 2, 5))
@@ -29,7 +29,7 @@ FINE_STEPS: Final = tuple(digit * 10.0**-power for power in range(7, 0, -1) for 
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """Metres to the east and north of a position; a degree has everywhere the length that it has there.
+    """Metres to the east and north of a position, with the length of a degree at that position everywhere.
 
     So edges, straight in latitude and longitude, stay straight, and so do parallels and meridians.
     """
@@ -39,7 +39,7 @@ class Plane:
 
     @property
     def scale(self) -> Spot:
-        """Metres in a degree of longitude and of latitude."""
+        """Metres per degree of longitude and of latitude."""
         latitude = math.radians(min(max(self.latitude, -STEEPEST), STEEPEST))
         flat = 1.0 - ECCENTRICITY_SQUARED * math.sin(latitude) ** 2
         across = SEMI_MAJOR / math.sqrt(flat)
@@ -47,12 +47,12 @@ class Plane:
         return (math.radians(across * math.cos(latitude)), math.radians(along))
 
     def metres(self, position: Position) -> Spot:
-        """Return where a position is; the world is cut opposite to the plane's own."""
+        """Return the spot of a position; the world is cut opposite to the plane's centre."""
         east, north = self.scale
         return (turned(position[1] - self.longitude) * east, (position[0] - self.latitude) * north)
 
     def degrees(self, spot: Spot) -> Position:
-        """Return latitude and longitude, the latter not brought into [-180, 180)."""
+        """Return latitude and longitude; the longitude is not normalised to [-180, 180)."""
         east, north = self.scale
         return (self.latitude + spot[1] / north, self.longitude + spot[0] / east)
 
@@ -69,7 +69,7 @@ class Plane:
 
 
 def turned(longitude: float) -> float:
-    """Bring a longitude into [-180, 180).
+    """Return a longitude normalised to [-180, 180).
 
     >>> turned(190.0)
     -170.0
@@ -78,7 +78,7 @@ def turned(longitude: float) -> float:
 
 
 def plane_of(geometries: Sequence[Geometry]) -> Plane:
-    """Return the plane around the middle of some geometries, cut where the earth is emptiest."""
+    """Return the plane around the middle of geometries, cut in the largest gap between their longitudes."""
     positions = [vertex for geometry in geometries for vertex in geometry.vertices] or [(0.0, 0.0)]
     latitudes = [latitude for latitude, _ in positions]
     longitudes = sorted({turned(longitude) for _, longitude in positions})
@@ -95,9 +95,9 @@ def bounds(outline: Sequence[Spot]) -> Box:
 
 
 def focus(boxes: Sequence[Box]) -> tuple[int, ...]:
-    """Return which of some boxes a view should hold: all but a few far ones (a quarter at most), sorted.
+    """Return the boxes that a view should hold, sorted: all but at most a quarter, the farthest ones.
 
-    Far ones are left out, as few as can be, where the view gets four times smaller by that.
+    As few as possible are left out, and only if the view shrinks to less than a quarter.
     """
     everything = tuple(range(len(boxes)))
     if len(boxes) < 4:
@@ -134,18 +134,18 @@ def view_of(boxes: Sequence[Box], aspect: float, margin: float = 0.1) -> Box:
 
 
 def tick_step(span: float, most: int) -> float:
-    """Return the finest round number of degrees that divides a span into at most so many parts."""
+    """Return the finest round number of degrees that divides a span into at most `most` parts."""
     return next((step for step in (*FINE_STEPS, *STEPS) if span <= step * most), STEPS[-1])
 
 
 def ticks(low: float, high: float, most: int) -> tuple[float, ...]:
-    """Return the round degrees between two, at most one more than so many."""
+    """Return the round degrees between two, at most `most` plus one."""
     step = tick_step(high - low, most)
     return tuple(index * step for index in range(math.ceil(low / step), math.floor(high / step) + 1))
 
 
 def degrees_text(degrees: float, step: float, letters: str) -> str:
-    """Write a latitude or longitude with the digits that its step needs.
+    """Return a latitude or longitude as text, with the digits that its step needs.
 
     >>> degrees_text(-8.8, 0.05, "EW"), degrees_text(36.95, 0.05, "NS"), degrees_text(190, 10, "EW")
     ('8.80°W', '36.95°N', '170°W')

@@ -35,25 +35,25 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MOST_CARRIED: Final = 8
-"""Of what an entity carries, so many are named."""
+"""The largest number of named cargo items of an entity."""
 
 COAST_NOTE: Final = f"coasts ± {metres_text(ACCURACY)}"
 
 FAR_FROM_PLACE: Final = 24.0
-"""Points between a place and its name at most; more would not be seen to belong together."""
+"""The largest distance in points between a place and its name; beyond it they look unrelated."""
 
 FEW: Final = 3
-"""Names that a note lists; more it counts."""
+"""The largest number of names in a note; more are only counted."""
 
 FARTHEST: Final = 60.0
-"""Points from the middle of a polygon beyond which its label is not moved to get out of it."""
+"""Points from the centre of a polygon beyond which its label is not moved outside."""
 
 
 @dataclass(frozen=True, slots=True)
 class Writing:
-    """What is written where: the lines of each label with its box, the scale bar, and notes.
+    """The layout of the text: the lines of each label with its box, the scale bar, and notes.
 
-    `unnamed` are those near whose places there is no room for their names.
+    `unnamed` lists the entities without room for their names.
     """
 
     blocks: Mapping[str, Sequence[Line]]
@@ -67,7 +67,7 @@ class Writing:
 
 
 def writing_of(scene: Scene, lines: Sequence[Spot]) -> Writing:
-    """Return where everything is written; better not over `lines`, spots along what is drawn."""
+    """Return the layout of all text; it avoids `lines`, spots along drawn lines."""
     pointers = {name: _pointer(scene, name) for name in sorted(scene.far)}
     markers = (
         *(around(scene.middle(n), (2 * RADIUS + 3,) * 2) for n in scene.near() if not scene.is_polygon(n)),
@@ -94,7 +94,7 @@ def writing_of(scene: Scene, lines: Sequence[Spot]) -> Writing:
 
 
 def write_labels(axes: Axes, scene: Scene, writing: Writing) -> None:
-    """Write all names, the scale bar and the notes, so that nothing is written over anything else."""
+    """Write all names, the scale bar and the notes, so that no two overlap."""
     draw_scale(axes, writing.scale, *_scale(scene.sheet), COAST_NOTE if scene.land else "")
     for box, lines_of_note, names in writing.notes:
         draw_block(axes, box, lines_of_note, names=names)
@@ -106,7 +106,7 @@ def write_labels(axes: Axes, scene: Scene, writing: Writing) -> None:
 
 
 def _scale(sheet: Sheet) -> tuple[float, str]:
-    """Return how long the scale bar is, in points, and what it says."""
+    """Return the length of the scale bar, in points, and its text."""
     metres = scale_length(sheet.view.width)
     return (metres * sheet.width / sheet.view.width, metres_text(metres))
 
@@ -114,7 +114,7 @@ def _scale(sheet: Sheet) -> tuple[float, str]:
 def _note(
     scene: Scene, words: Sequence[str], names: tuple[str, ...], taken: Sequence[Box]
 ) -> tuple[tuple[Box, Sequence[Line], tuple[str, ...]], ...]:
-    """Return a note about some names, nothing where there are none."""
+    """Return a note about these names, empty without any."""
     if not names:
         return ()
     lines = [Line(line, 7.0, ink=QUIET) for line in _wrapped(words, scene.sheet.width / 2)]
@@ -137,7 +137,7 @@ def _wrapped(words: Sequence[str], width: float) -> list[str]:
 
 
 def _lead(axes: Axes, scene: Scene, name: str, box: Box, want: Wanted) -> None:
-    """Draw a hair line to what a label names, where it does not stand in it or beside it."""
+    """Draw a leader line from a label to its object, unless it stands inside it or beside it."""
     named = shapely.Point(want.at)
     if scene.is_polygon(name) and name not in scene.far:
         named = shapely.Polygon(scene.outlines[name])
@@ -147,14 +147,17 @@ def _lead(axes: Axes, scene: Scene, name: str, box: Box, want: Wanted) -> None:
 
 
 def _freedom(scene: Scene, name: str) -> float:
-    """Order labels: what stands out, then markers, then polygons, small before large, which have the most room."""
+    """Return the sort key of a label: prominent entities, then markers, then polygons by size.
+
+    Large polygons come last, since they have most room.
+    """
     if name in scene.highlight or name in scene.marked or name in scene.far:
         return -2.0
     return area_of(scene.outlines[name]) if name not in scene.far and scene.is_polygon(name) else -1.0
 
 
 def _block(scene: Scene, name: str) -> list[Line]:
-    """Return the lines of a label: the name, where it is bound for, how far it is, what it carries."""
+    """Return the lines of a label: the name, the destination, the distance, the cargo."""
     entity = scene.entities[name]
     if name in scene.members:
         return [Line(f"{entity.kind} ×{len(scene.members[name])}", bold=True)]
@@ -190,7 +193,7 @@ def _wanted(scene: Scene, name: str, size: Spot, pointers: Mapping[str, tuple[Sp
 
 
 def _inside(outline: Sequence[Spot], size: Spot, view: Box) -> tuple[Spot, ...]:
-    """Return middles of a label that lies inside a polygon and the view: near its corners first."""
+    """Return possible centres of a label inside a polygon and the view: near its corners first."""
     polygon = shapely.Polygon(outline).buffer(-3.0).intersection(shapely.box(*view))
     if polygon.is_empty:
         return ()
@@ -209,7 +212,7 @@ def _inside(outline: Sequence[Spot], size: Spot, view: Box) -> tuple[Spot, ...]:
 
 
 def _along(outline: Sequence[Spot]) -> list[Spot]:
-    """Return spots along a border, some points apart."""
+    """Return evenly spaced spots along a border."""
     spots: list[Spot] = []
     for (x1, y1), (x2, y2) in pairwise([*outline, outline[0]]):
         parts = min(max(1, round(math.dist((x1, y1), (x2, y2)) / SPACING)), 200)
@@ -218,7 +221,7 @@ def _along(outline: Sequence[Spot]) -> list[Spot]:
 
 
 def _pointer(scene: Scene, name: str) -> tuple[Spot, Spot]:
-    """Return the spot at the border of the sheet towards something far, and a spot on the way back."""
+    """Return the spot at the border of the sheet towards a far entity, and a spot on the way back."""
     frame, (x, y) = scene.sheet.box.grown(-14.0), scene.sheet.box.centre
     far_x, far_y = scene.middle(name)
     across = abs(far_x - x) / (frame.width / 2)
@@ -228,7 +231,7 @@ def _pointer(scene: Scene, name: str) -> tuple[Spot, Spot]:
 
 
 def _corner(sheet: Sheet, size: Spot, taken: Sequence[Box]) -> Box:
-    """Return where the scale bar or a note goes: the corner where it is least in the way."""
+    """Return the box for the scale bar or a note, in the emptiest corner."""
     box, (wide, high) = sheet.box.grown(-12.0), size
     corners = [
         Box(left, bottom, left + wide, bottom + high)

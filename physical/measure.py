@@ -26,14 +26,14 @@ _GAUSS: Final = (
 
 
 QUARTER: Final = 10_000_000.0
-"""Metres from the equator to a pole; farther off no local frame serves, and vertices are near enough."""
+"""Metres from the equator to a pole; beyond it no local frame is usable, and distances between vertices suffice."""
 
 
 def area(geometry: Geometry) -> float:
-    """Return the area on the ellipsoid in square metres; a point has none.
+    """Return the area on the ellipsoid in square metres; 0 for a point.
 
-    The edges are straight in latitude and longitude, so the area is an integral of the equal-area
-    projection's height along each of them.
+    The edges are straight in latitude and longitude, so the area is an integral of the equal-area projection's height
+    along each of them.
     """
     return 0.0 if geometry.is_point else _area(geometry)
 
@@ -55,7 +55,7 @@ def _area(geometry: Geometry) -> float:
 
 
 def distance(a: Geometry, b: Geometry) -> float:
-    """Return the metres between the nearest points of two geometries, 0 where they meet."""
+    """Return the metres between the nearest points of two geometries, 0 if they meet."""
     if a.is_point and b.is_point:
         return _between(a.ring[0], b.ring[0])
     return _apart(a, b)
@@ -64,10 +64,10 @@ def distance(a: Geometry, b: Geometry) -> float:
 @lru_cache(maxsize=1 << 12)
 def _apart(a: Geometry, b: Geometry) -> float:
     if _between(_middle(a), _middle(b)) > QUARTER and not planar(a).intersects(planar(b)):
-        # Around the other side of the earth a frame turns areas inside out.
+        # A frame turns areas on the other side of the earth inside out.
         return min(_between(one, other) for one in a.ring for other in b.ring)
     frame = local_frame(_middle(a))
-    for _ in range(2):  # near where they are nearest, the frame is exact
+    for _ in range(2):  # the frame is exact close to the nearest points
         line = shapely.shortest_line(frame.project(planar(a)), frame.project(planar(b)))
         (x1, y1), (x2, y2) = line.coords
         nearest = frame.position(x1, y1), frame.position(x2, y2)
@@ -86,7 +86,7 @@ def _middle(geometry: Geometry) -> PositionE7:
 
 
 def centroid(geometry: Geometry) -> Geometry:
-    """Return the centre of area; of a moved polygon, the point to which it was moved."""
+    """Return the centre of area; for a moved polygon, the point to which it was moved."""
     return geometry if geometry.is_point else _centroid(geometry)
 
 
@@ -103,7 +103,7 @@ def _centroid(geometry: Geometry) -> Geometry:
 
 
 def interior_point(geometry: Geometry) -> Geometry:
-    """Return a point well inside a polygon; of a point, itself."""
+    """Return a point well inside a polygon; for a point, itself."""
     return geometry if geometry.is_point else _inside(geometry)
 
 
@@ -122,10 +122,10 @@ def _inside(geometry: Geometry) -> Geometry:
 
 
 def deep_spot(shape: shapely.Polygon, clearance: float) -> tuple[float, float] | None:
-    """Return a spot of a polygon well inside it; None if that isn't farther from its border than `clearance`.
+    """Return a spot well inside a polygon; None if none is farther from its border than `clearance`.
 
-    The middle of what is left when the border is moved inwards, as far as possible in steps of a fifth. The area
-    is at most length of the border times the greatest depth, so something is left at the ratio of the two.
+    The border is moved inwards as far as possible, in steps of a fifth; the result is the middle of the rest. The area
+    is at most the border's length times the greatest depth, so the rest is not empty at the ratio of the two.
     """
     depth = 2 * shape.area / shape.length
     while depth > clearance:
@@ -142,13 +142,13 @@ def deep_spot(shape: shapely.Polygon, clearance: float) -> tuple[float, float] |
 
 @lru_cache(maxsize=1 << 10)
 def waypoint(geometry: Geometry) -> Geometry:
-    """Return where to send what should go there: the centroid if it lies inside, else an interior point."""
+    """Return the waypoint for a geometry: the centroid if it lies inside, else an interior point."""
     middle = centroid(geometry)
     return middle if geometry.is_point or contains(geometry, middle) else interior_point(geometry)
 
 
 def metres_text(metres: float) -> str:
-    """Write a length.
+    """Return a length as text.
 
     >>> metres_text(500.0), metres_text(2400.0), metres_text(5000.0), metres_text(1234567.0)
     ('500 m', '2.4 km', '5 km', '1,235 km')

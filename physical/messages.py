@@ -1,4 +1,4 @@
-"""Wordings that messages of several rooms share: a count with its noun, and how a missing extra is installed."""
+"""Wordings shared by several packages: a count with its noun, and the installation of a missing extra."""
 
 
 def counted(count: int, one: str, many: str = "") -> str:
@@ -11,7 +11,7 @@ def counted(count: int, one: str, many: str = "") -> str:
 
 
 def install_extra(extra: str) -> str:
-    """Return a hint that fits however bigactors was installed, in a clone or from a wheel: no registry has it."""
+    """Return a hint for any installation of bigactors, from a clone or a wheel: no registry has it."""
     return (
         f"install bigactors as you did, with [{extra}] behind its folder or its wheel: "
         f"pip install '.[{extra}]' in a clone (-e as before), pip install 'FILE.whl[{extra}]'"

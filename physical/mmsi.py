@@ -1,4 +1,4 @@
-"""Tell the type of a station from its MMSI (ITU-R M.585) and from messages that only such a station sends.
+"""The kind of a station, from its MMSI (ITU-R M.585) and from messages of a single kind of station.
 
 >>> kind_of(2442103, 4), kind_of(244660274, 1), kind_of(992446001, 21)
 ('BaseStation', 'Vessel', 'AidToNavigation')
@@ -38,11 +38,11 @@ _BY_PREFIX: Final = (
     ("8", HANDHELD_RADIO),
     ("", VESSEL),
 )
-# Followed by their maker's number instead: transmitters for search and rescue, man over board, EPIRB.
+# Followed by the maker's number instead: transmitters for search and rescue, man over board, EPIRB.
 _BEACONS: Final = ("970", "972", "974")
 _COUNTRIES: Final = range(201, 776)
 
-# Sent by one kind of station only; buoys and shore stations with a vessel's number are common.
+# Sent by one kind of station only; buoys and shore stations often have a vessel's number.
 _BY_MESSAGE: Final = {4: BASE_STATION, 9: AIRCRAFT, 17: BASE_STATION, 21: AID_TO_NAVIGATION}
 
 # Sent by craft of classes A and B, and over long range.
@@ -50,7 +50,7 @@ _FROM_CRAFT: Final = frozenset({1, 2, 3, 5, 18, 19, 24, 27})
 
 
 def digits(mmsi: int) -> str:
-    """Write an MMSI with its nine digits: the leading zeros count.
+    """Return an MMSI with its nine digits, leading zeros included.
 
     >>> digits(2442103)
     '002442103'
@@ -61,7 +61,7 @@ def digits(mmsi: int) -> str:
 
 
 def entity_name(mmsi: int) -> str:
-    """Name the entity that has an MMSI.
+    """Return the name of the entity with an MMSI.
 
     >>> entity_name(244660274)
     'mmsi244660274'
@@ -70,7 +70,7 @@ def entity_name(mmsi: int) -> str:
 
 
 def kind_by_range(mmsi: int) -> str:
-    """Say what a station is from its number alone; `UnknownStation` for numbers that nobody assigns.
+    """Return the kind of a station by its number alone; `UnknownStation` for an unassigned number.
 
     >>> kind_by_range(111232512), kind_by_range(970010119), kind_by_range(123456789)
     ('SearchAndRescueAircraft', 'DistressBeacon', 'UnknownStation')
@@ -85,10 +85,10 @@ def kind_by_range(mmsi: int) -> str:
 
 
 def kind_of(mmsi: int, msg_type: int) -> str:
-    """Say what a station is from its number and from one message of its.
+    """Return the kind of a station from its number and from one of its messages.
 
-    A number of a special range decides; else a message that only one kind of station sends; else the number.
-    A craft with a number that nobody assigns (a transponder not set up) is a vessel all the same.
+    A number of a special range decides; else a message that only one kind of station sends; else the number. A craft
+    with an unassigned number (an unconfigured transponder) is still a vessel.
     """
     by_range = kind_by_range(mmsi)
     if by_range not in (VESSEL, UNKNOWN_STATION):

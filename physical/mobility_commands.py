@@ -13,7 +13,7 @@ from physical.shape import Geometry
 
 @dataclass(frozen=True, slots=True)
 class Waypoint:
-    """Go to a point, within a band of altitudes if one is given."""
+    """Go to a point, within an optional band of altitudes."""
 
     entity: str
     point: Geometry
@@ -26,7 +26,7 @@ class Waypoint:
 
 @dataclass(frozen=True, slots=True)
 class JoinChannel:
-    """Begin to use a channel."""
+    """Start using a channel."""
 
     entity: str
     channel: str
@@ -34,7 +34,7 @@ class JoinChannel:
 
 @dataclass(frozen=True, slots=True)
 class LeaveChannel:
-    """Cease to use a channel."""
+    """Stop using a channel."""
 
     entity: str
     channel: str
@@ -44,7 +44,7 @@ MobilityCommand = Waypoint | JoinChannel | LeaveChannel
 
 
 def go_to(entity: str, target: PhysicalProperty) -> Waypoint:
-    """Return the command that moves an entity to a target: the centroid of its polygon, if that is inside."""
+    """Return the command that moves an entity to a target: its centroid if that is inside, else an interior point."""
     return Waypoint(entity, waypoint(target.geometry), target.altitude)
 
 

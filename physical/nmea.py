@@ -1,7 +1,7 @@
-"""Read NMEA 0183 sentences: checksums, tag blocks, fragments of AIS messages, and the times that some of them say.
+"""NMEA 0183 sentences: checksums, tag blocks, fragments of AIS messages, and the times in some sentences.
 
-Text only: what an AIS payload says is `ais_decode`'s business. Every function is pure and total over bytes:
-what cannot be read comes back as a `Reason`, never as an exception, because one bad line must not end a feed.
+This module reads only the text; `ais_decode` decodes the payloads. Every function is pure and total over bytes:
+unreadable input yields a `Reason`, never an exception, because one bad line must not end a feed.
 """
 
 import re
@@ -15,14 +15,14 @@ from operator import xor
 from physical.written_times import LATEST, epoch_seconds
 
 MAX_LINE = 8_192
-"""The longest line read, in bytes: a sentence has at most 82 and a tag block 80, but some loggers end no lines."""
+"""The longest line in bytes: a sentence has at most 82 and a tag block 80, but some loggers write no line ends."""
 
 _ARMOUR = bytes(range(48, 88)) + bytes(range(96, 120))
 _OLD_GROUP = re.compile(r"(\d+)G(\d+):(.+)")  # `1G2:1234`, as some write `g:1-2-1234`
 
 
 class Reason(StrEnum):
-    """Why a line, or a message, gave nothing (or not all that it could)."""
+    """The reason for a missing or incomplete result of a line or message."""
 
     OVERLONG = "line too long"
     MALFORMED = "malformed sentence"
@@ -42,10 +42,10 @@ class Reason(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class TagBlock:
-    """What stands before a sentence between two backslashes.
+    """The block between two backslashes before a sentence.
 
-    `time` is in seconds since 1970, `source` the station that received the sentence, `group` the number that
-    lines belonging together share; the sentence is the one numbered `number` of `total` in it.
+    `time` is in seconds since 1970, `source` the station that received the sentence, `group` the common number of a
+    group of lines. The sentence is number `number` of `total` in the group.
     """
 
     time: float | None = None
@@ -57,7 +57,7 @@ class TagBlock:
 
 @dataclass(frozen=True, slots=True)
 class Sentence:
-    """One sentence whose checksum is right; `raw` runs from the start delimiter to the checksum."""
+    """A sentence with a correct checksum; `raw` runs from the start delimiter to the checksum."""
 
     raw: bytes
     address: str
@@ -66,7 +66,7 @@ class Sentence:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """One fragment of an AIS message, `number` of `total`; `bits` is how many bits its payload carries."""
+    """One fragment of an AIS message, `number` of `total`; `bits` is the number of bits in its payload."""
 
     raw: bytes
     talker: str
@@ -79,7 +79,7 @@ class Part:
 
 
 def checksum(body: bytes) -> int:
-    """XOR all bytes, as between the start delimiter and the asterisk of a sentence.
+    """Return the XOR of all bytes, as between the start delimiter and the asterisk of a sentence.
 
     >>> f"{checksum(b'AIVDM,1,1,,B,,0'):02X}"
     '25'
@@ -88,7 +88,7 @@ def checksum(body: bytes) -> int:
 
 
 def parse_tag_block(block: bytes) -> TagBlock | Reason:
-    r"""Read the time (`c:`), source (`s:`) and group (`g:`) of a tag block; other fields are passed over.
+    r"""Return the time (`c:`), source (`s:`) and group (`g:`) of a tag block; other fields are ignored.
 
     >>> parse_tag_block(b"g:1-2-1234,s:r3669961,c:1120959341*0D")
     TagBlock(time=1120959341.0, source='r3669961', group='1234', number=1, total=2)
@@ -106,7 +106,7 @@ def parse_tag_block(block: bytes) -> TagBlock | Reason:
 
 
 def together(blocks: Iterable[TagBlock]) -> TagBlock | None:
-    """Return what several tag blocks before one sentence say; of two that say the same thing the first counts."""
+    """Return the union of several tag blocks before one sentence; the first value of each field counts."""
     known: TagBlock | None = None
     for block in blocks:
         if known is None:
@@ -120,19 +120,19 @@ def together(blocks: Iterable[TagBlock]) -> TagBlock | None:
 
 
 def address(sentence: bytes) -> str:
-    """Name the talker and kind of a sentence without looking at the rest of it: `AIVDM`, `GPRMC`, `PGHP`.
+    """Return the talker and kind of a sentence, without a check of its rest: `AIVDM`, `GPRMC`, `PGHP`.
 
-    Empty for what does not start like a sentence.
+    Empty for text that does not start like a sentence.
     """
     if sentence[:1] not in (b"!", b"$"):
         return ""
     head = sentence[1:8].split(b",", 1)[0]
-    # `--` is what some software writes where it does not know the talker
+    # some software writes `--` for an unknown talker
     return head.decode("ascii") if head.removeprefix(b"--").isalnum() else ""
 
 
 def parse_sentence(text: bytes) -> Sentence | Reason:
-    """Check the checksum of a sentence, which ends it, and split it into its fields."""
+    """Return the fields of a sentence, after a check of the checksum at its end."""
     star = text.find(b"*")
     if star < 0 or len(text) < star + 3:
         return Reason.NO_CHECKSUM
@@ -145,7 +145,7 @@ def parse_sentence(text: bytes) -> Sentence | Reason:
 
 
 def part_of(sentence: Sentence) -> Part | Reason:
-    """Read the fragment that a `VDM` or `VDO` sentence carries."""
+    """Return the fragment in a `VDM` or `VDO` sentence."""
     if len(sentence.fields) != 6:
         return Reason.MALFORMED
     total, number, sequence, channel, payload, fill = sentence.fields
@@ -161,14 +161,14 @@ def part_of(sentence: Sentence) -> Part | Reason:
 
 
 def is_clock(address: str) -> bool:
-    """Tell whether sentences with an address say the date and the time of what comes after them."""
+    """Whether sentences with an address carry the date and time of the following ones."""
     return address == "PGHP" or address[2:] in ("RMC", "ZDA")
 
 
 def clock_of(sentence: Sentence) -> float | Reason | None:
-    """Read the time, in seconds since 1970, that a `$PGHP`, `$..RMC` or `$..ZDA` gives to the sentences after it.
+    """Return the time, in seconds since 1970, that a `$PGHP`, `$..RMC` or `$..ZDA` gives to the following sentences.
 
-    None where the sentence says itself that it has no valid time (a receiver without a fix).
+    None if the sentence declares its time invalid (a receiver without a fix).
     """
     reader = _pghp_time if sentence.address == "PGHP" else _CLOCKS[sentence.address[2:]]
     return _read_time(reader, sentence.fields)
@@ -204,7 +204,7 @@ def _rmc_time(fields: tuple[bytes, ...]) -> float | None:
 
 
 def _zda_time(fields: tuple[bytes, ...]) -> float | None:
-    """Read `$GPZDA,hhmmss.ss,dd,mm,yyyy,...`, which is UTC; what follows is the local zone."""
+    """Read `$GPZDA,hhmmss.ss,dd,mm,yyyy,...` in UTC; the local zone follows."""
     if not any(fields[:4]):
         return None
     day, month, year = (int(field) for field in fields[1:4])
@@ -225,7 +225,7 @@ _CLOCKS = {"RMC": _rmc_time, "ZDA": _zda_time}
 
 
 def _field(text: str) -> tuple[str, str]:
-    """Return the code of a field of a tag block and its value; a group in the old form as in the new."""
+    """Return the code and the value of a tag block's field; the old form of a group becomes the new one."""
     if old := _OLD_GROUP.fullmatch(text):
         return "g", "-".join(old.groups())
     code, _, value = text.partition(":")
@@ -233,7 +233,7 @@ def _field(text: str) -> tuple[str, str]:
 
 
 def _group(text: str | None) -> tuple[str | None, int, int]:
-    """Take the shared number of a group written `sentence-total-number`, the sentence's number and the total."""
+    """Return the group's common number, the sentence's number and the total of `number-total-group`."""
     if text is None:
         return None, 1, 1
     number, total, group = text.split("-")
@@ -243,7 +243,7 @@ def _group(text: str | None) -> tuple[str | None, int, int]:
 
 
 def _hexadecimal(text: bytes) -> int:
-    """Read the two digits of a checksum; -1, which no checksum is, where they are none."""
+    """Return the value of a checksum's two digits; -1, which no checksum has, for other text."""
     try:
         return int(text, 16) if len(text) <= 2 and text.isalnum() else -1
     except ValueError:
@@ -251,5 +251,5 @@ def _hexadecimal(text: bytes) -> int:
 
 
 def _digit(text: bytes) -> int:
-    """Read one decimal digit; -1 for anything else."""
+    """Return the value of one decimal digit; -1 for other text."""
     return text[0] - 48 if len(text) == 1 and text.isdigit() else -1

@@ -1,4 +1,4 @@
-r"""Find the sentences of a line, and what loggers write around them: tag blocks, times, their own words.
+r"""The sentences of a line, and the text of loggers around them: tag blocks, times, other words.
 
 A line may hold no sentence, one, or several. A sentence begins with `!` or `$` and an address, and ends with its
 checksum.
@@ -24,18 +24,18 @@ _FRAME: Final = re.compile(
 )
 _BLOCK: Final = re.compile(rb"\\([^\\]*)\\")
 _TORN: Final = re.compile(rb"\\(?:[a-z]|\d+G\d+):")
-"""How a tag block begins, of which the end is missing."""
+"""The beginning of a tag block without its end."""
 
 
 @dataclass(frozen=True, slots=True)
 class Framed:
-    """One sentence of a line; none where a line is a tag block and no more.
+    """One sentence of a line; empty for a line with only a tag block.
 
     Attributes:
         sentence: From its start delimiter to its checksum.
-        tag: What the tag blocks before it say together, if there are any.
-        time: What the logger wrote beside it, in seconds since 1970.
-        reasons: What could not be read of its tag blocks.
+        tag: The union of the tag blocks before it, if there are any.
+        time: The logger's time beside it, in seconds since 1970.
+        reasons: The mistakes in its tag blocks.
     """
 
     sentence: bytes
@@ -47,8 +47,8 @@ class Framed:
 def framed_in(line: bytes) -> tuple[Framed, ...]:
     """Return the sentences of a line, in order.
 
-    What a logger writes stands before each of its sentences, or behind each: before, where a time stands before the
-    first. A sentence beside which no time stands has that of its neighbour.
+    A logger writes its text before each sentence, or behind each: before, if there is a time before the first sentence.
+    A sentence without a time takes that of its neighbour.
     """
     found = list(_FRAME.finditer(line))
     if not found:
@@ -65,7 +65,7 @@ def framed_in(line: bytes) -> tuple[Framed, ...]:
 
 
 def has_frame(text: bytes) -> bool:
-    """Tell whether a sentence is anywhere in a text."""
+    """Whether a text contains a sentence."""
     return _FRAME.search(text) is not None
 
 
@@ -82,7 +82,7 @@ def _framed(found: re.Match[bytes], time: float | None, *, torn: bool) -> Framed
 
 
 def _times(around: list[bytes]) -> list[float | None]:
-    """Return the time of each sentence from what stands around them."""
+    """Return the time of each sentence, from the texts around them."""
     first = _time(around[0])
     if first is not None:
         return _carried([first, *map(_time, around[1:-1])])
@@ -91,7 +91,7 @@ def _times(around: list[bytes]) -> list[float | None]:
 
 
 def _carried(times: list[float | None]) -> list[float | None]:
-    """Return times in which a missing one is the one before."""
+    """Return times in which each missing one is replaced by the previous one."""
     found, known = list[float | None](), None
     for time in times:
         known = known if time is None else time
@@ -108,7 +108,7 @@ def _last_time(text: bytes) -> float | None:
 
 
 def _untorn(text: bytes) -> str:
-    """Return a logger's words, without a torn tag block."""
+    """Return a logger's text, without a torn tag block."""
     torn = _TORN.search(text)
     return (text[: torn.start()] if torn else text).decode("ascii", errors="replace")
 

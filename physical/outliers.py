@@ -13,28 +13,28 @@ from physical.measure import distance
 from physical.shape import Geometry, point
 
 CELL: Final = 500_000.0
-"""The edge in metres of the cubes that divide the earth: entities in neighbouring cubes are near each other."""
+"""The edge in metres of the cubes that divide space: entities in neighbouring cubes are near each other."""
 
 RADIUS: Final = 6_371_000.0
 
 REMOTE: Final = 1_000_000.0
-"""Metres from everything else at which a position is probably a mistake."""
+"""The distance in metres from everything else at which a position is probably a mistake."""
 
 MOST: Final = 20
-"""How many outliers are reported; each is measured against all other entities."""
+"""The largest number of reported outliers; each is measured against all other entities."""
 
 WIDEST: Final = 5.0
-"""Degrees that a world extends at most of which it is asked whether all of it is in the wrong place."""
+"""The largest extent in degrees of a world that is checked for a wrong position as a whole."""
 
 ON_DRY_LAND: Final = "stands on land"
 ON_LAND: Final = 0.02
-"""Degrees around a position that are all land where nothing floats on a sea or a lake."""
+"""The radius in degrees of a window: if it is all land, nothing floats at its centre on a sea or a lake."""
 
 RIVER: Final = 1.0
-"""Degrees around a position that are all land where a harbour on a river is unlikely: some 100 km."""
+"""The radius in degrees of a window: if it is all land, a river harbour at its centre is unlikely (some 100 km)."""
 
 FAR_OUT: Final = 1.0
-"""Degrees of latitude to the nearest coast that few missions are away: some 100 km."""
+"""Degrees of latitude to the nearest coast that few missions exceed: some 100 km."""
 
 NEAR: Final = 0.2
 """Degrees to a coast within which most missions at sea are."""
@@ -46,14 +46,14 @@ AROUND: Final[tuple[Cube, ...]] = tuple(product((-1, 0, 1), repeat=3))
 
 
 def apart(geometry: Geometry, rest: Iterable[Geometry]) -> float:
-    """Return the metres to the nearest of the rest, infinity if there is none."""
+    """Return the metres to the nearest of the others, infinity without any."""
     return min((distance(geometry, each) for each in rest), default=math.inf)
 
 
 def outliers(geometries: Mapping[Key, Geometry]) -> dict[Key, float]:
-    """Return the entities a thousand kilometres and more from the majority, with their distance to it in metres.
+    """Return the entities at least a thousand kilometres from the majority, with their distance to it in metres.
 
-    Of two halves the first counts as the majority. At most twenty are returned.
+    Of two equal groups the first is the majority. At most twenty are returned.
     """
     parts = _parts(geometries)
     most = max(parts, key=len, default=[])
@@ -70,17 +70,17 @@ def outliers(geometries: Mapping[Key, Geometry]) -> dict[Key, float]:
 
 
 def is_swapped(geometry: Geometry, rest: Iterable[Geometry], metres: float) -> bool:
-    """Tell whether a distant entity would be near with its latitude and longitude exchanged."""
+    """Whether a distant entity would be near with its latitude and longitude exchanged."""
     latitude, longitude = geometry.vertices[0]
     return abs(longitude) <= 90 and apart(point(longitude, latitude), rest) < metres / 10
 
 
 def all_swapped(geometries: Iterable[Geometry], afloat: Iterable[Geometry]) -> str:
-    """Return why all latitudes and longitudes of a small world seem to be exchanged, nothing where they do not.
+    """Return why all latitudes and longitudes of a small world seem to be exchanged; empty if they do not.
 
-    They do where everything that floats stands on land, 100 km from any water, and exchanged would be on water and
-    not far out; and where everything is far from any coast, and exchanged would be near one. What is known of coasts
-    and lakes is good to a kilometre; of rivers and canals nothing is known.
+    There are two signs of an exchange. First, all floating entities are on land, 100 km from any water, and exchanged
+    they would be on water near a coast. Second, all entities are far from any coast, and exchanged they would be near
+    one. The data on coasts and lakes are accurate to a kilometre; there are none on rivers and canals.
     """
     spots = [vertex for geometry in geometries for vertex in geometry.vertices]
     floating = [geometry.vertices[0] for geometry in islice(afloat, MOST)]
@@ -99,7 +99,7 @@ def all_swapped(geometries: Iterable[Geometry], afloat: Iterable[Geometry]) -> s
 
 
 def _is_coastal(spot: Position) -> bool:
-    """Tell whether a position is on water, and not far out."""
+    """Whether a position is on water, and near a coast."""
     return _share([spot], ON_LAND) < 1 and _share([spot], FAR_OUT) > 0
 
 
@@ -109,7 +109,7 @@ def _extent(spots: list[Position]) -> float:
 
 
 def _share(spots: list[Position], around: float) -> float:
-    """Return how much land there is in a window around positions, with some degrees of latitude on each side."""
+    """Return the share of land in a window around positions, extended by some degrees of latitude on each side."""
     latitudes, longitudes = zip(*spots, strict=True)
     wide = around / max(0.1, math.cos(math.radians(max(map(abs, latitudes)))))
     south_west = max(-90.0, min(latitudes) - around), min(longitudes) - wide
@@ -117,7 +117,7 @@ def _share(spots: list[Position], around: float) -> float:
 
 
 def _parts(geometries: Mapping[Key, Geometry]) -> list[list[Key]]:
-    """Return groups of near entities, in the given order; by cubes, so that thousands are quick."""
+    """Return groups of near entities, in the given order; cubes make this fast for thousands."""
     cubes = {key: {_cube(vertex) for vertex in geometry.vertices} for key, geometry in geometries.items()}
     holding: dict[Cube, list[Key]] = {}
     for key, of in cubes.items():
@@ -129,7 +129,7 @@ def _parts(geometries: Mapping[Key, Geometry]) -> list[list[Key]]:
             continue
         seen.add(key)
         part = [key]
-        for near in part:  # grows while it is gone through
+        for near in part:  # the list grows during the loop
             for cube in cubes[near]:
                 for shift in AROUND:
                     found = holding.pop(tuple(map(sum, zip(cube, shift, strict=True))), [])
@@ -144,7 +144,7 @@ def _is_wide(geometry: Geometry) -> bool:
 
 
 def _cube(position: Position) -> Cube:
-    """Return the cube of space that a position is in."""
+    """Return the cube of space that contains a position."""
     latitude, longitude = map(math.radians, position)
     ring = math.cos(latitude)
     spot = (ring * math.cos(longitude), ring * math.sin(longitude), math.sin(latitude))

@@ -11,7 +11,7 @@ from physical.shape import Geometry
 
 @dataclass(frozen=True, slots=True)
 class Velocity:
-    """Speed over ground in metres a second, course in degrees clockwise from true north."""
+    """Speed over ground in metres per second, course in degrees clockwise from true north."""
 
     speed: float
     course: float
@@ -19,18 +19,18 @@ class Velocity:
 
 @dataclass(frozen=True, slots=True)
 class PhysicalProperty:
-    """What is known of one entity.
+    """The known facts about one entity.
 
     Attributes:
-        entity: Its unique name, given by the naming service.
-        kind: What it is, such as `Vessel`.
-        geometry: Where it is.
-        altitude: The altitudes that it takes up, if known.
-        channels: The channels that it is on, sorted, each once.
-        carried_by: The entity that carries it.
-        time: When it was so, in seconds since 1970 UTC. Time, source and velocity are outside equality.
-        source: Who says so, such as `ais`.
-        velocity: How it moves.
+        entity: Its unique name, from the naming service.
+        kind: Its kind, such as `Vessel`.
+        geometry: Its position or area.
+        altitude: Its band of altitudes, if known.
+        channels: Its channels, sorted and distinct.
+        carried_by: Its carrier.
+        time: The time of these facts, in seconds since 1970 UTC. Equality ignores time, source and velocity.
+        source: The origin of these facts, such as `ais`.
+        velocity: Its velocity.
     """
 
     entity: str

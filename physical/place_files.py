@@ -14,19 +14,20 @@ GEOJSON: Final = (".geojson", ".json")
 WAYPOINTS: Final = ".waypoints"
 PLAN: Final = ".plan"
 PLACES: Final = (*GEOJSON, WAYPOINTS, PLAN)
-"""The endings of files of places."""
+"""The suffixes of place files."""
 
 
 def read_places(suffix: str, data: bytes) -> tuple[PhysicalProperty, ...]:
-    """Return the places of a file: of a mission its points, `waypoint0` (home), `waypoint1`, ...
+    """Return the places of a file; those of a mission are `waypoint0` (home), `waypoint1`, ...
 
-    Raises PhysicalError with the place of the first mistake (GeoJSONError with all).
+    Raises:
+        PhysicalError: With the position of the first mistake (GeoJSONError with all mistakes).
     """
     return read_place_file(suffix, data).properties
 
 
 def read_place_file(suffix: str, data: bytes) -> Read:
-    """Return the places of a file with the account of what was in it; raises as `read_places` does."""
+    """Return the places of a file with the account of its content; raises like `read_places`."""
     match suffix.lower():
         case ".waypoints":
             return read_mission(read_waypoints(_text(data)))
@@ -36,4 +37,4 @@ def read_place_file(suffix: str, data: bytes) -> Read:
 
 
 def _text(data: bytes) -> str:
-    return data.decode("utf-8", errors="replace")  # what isn't text is refused with its line
+    return data.decode("utf-8", errors="replace")  # the reader refuses other text, with its line

@@ -1,7 +1,7 @@
-"""Place a mover: translate it as a rigid shape, in the local metric frame of the place that it moves in.
+"""Placement of a mover: a rigid translation, in the local metric frame of the place around it.
 
-A mover is a point or a polygon. A polygon keeps its metric shape (to the frame's 4e-5 at 100 km) and its
-heading in the frame; every placement is computed from the polygon as first given, so nothing accumulates.
+A mover is a point or a polygon. A polygon keeps its metric shape (to the frame's 4e-5 at 100 km) and its heading in the
+frame. Every placement is computed from the original polygon, so errors do not accumulate.
 """
 
 from __future__ import annotations
@@ -21,26 +21,26 @@ from physical.measure import centroid
 from physical.shape import Geometry, canonical, contains, covers, intern, planar
 
 MARGINS: Final = (0.05, 0.5, 5.0)
-"""Metres that a placement keeps from borders: the first with which it stands as it should after rounding."""
+"""Metres between a placement and the borders; the first value that survives rounding is used."""
 
 MAX_PIECES: Final = 60_000
-"""How many pieces the erosion of a polygon by a mover may have."""
+"""The largest number of pieces in the erosion of a polygon by a mover."""
 
 CONVEXITY: Final = 0.03
-"""Metres by which a convex polygon may be dented: its coordinates are rounded to 1 cm."""
+"""The permitted depth in metres of dents in a convex polygon: its coordinates are rounded to 1 cm."""
 
 Offset = tuple[float, float]
 """Metres to the east and to the north."""
 
 
 def template(mover: Geometry) -> Geometry:
-    """Return the geometry that a mover is a placement of: itself, if it was never moved."""
+    """Return the original geometry of a mover: itself, if it was never moved."""
     return mover.template or mover
 
 
 @lru_cache(maxsize=1 << 12)
 def outline(polygon: Geometry) -> tuple[Offset, ...]:
-    """Return the vertices of an unmoved polygon as metres from its centroid; long edges are divided."""
+    """Return the vertices of an unmoved polygon in metres from its centroid; long edges are divided."""
     frame = local_frame(centroid(polygon).ring[0])
     return tuple(frame.project(planar(polygon)).exterior.coords[:-1])
 
@@ -64,14 +64,14 @@ def translate_to(mover: Geometry, position: Geometry) -> Geometry:
 
 
 def nearest_placement(mover: Geometry, target: Geometry, holes: Sequence[Geometry] = ()) -> Geometry | None:
-    """Return the mover placed nearest to the target's centroid, inside the target and swallowed by no hole.
+    """Return the placement nearest to the target's centroid, inside the target and outside all holes.
 
-    A point is swallowed by a hole that it lies in or on the border of; a polygon by one that contains it.
-    The placement keeps 5 cm from every border that bounds it. None where it fits nowhere, or only with less.
-    Of several nearest, the northern-most, then the eastern-most.
+    A point is in a hole if it lies inside it or on its border, a polygon if the hole contains it. The placement keeps 5
+    cm from every border that bounds it. The result is None if there is no such placement. Ties go to the northern-most,
+    then to the eastern-most one.
 
     Raises:
-        GeometryError: The borders are too detailed for the mover.
+        GeometryError: If the borders are too detailed for the mover.
     """
     if target.is_point:
         return None
@@ -82,7 +82,7 @@ _ANY_POINT: Final = intern(((0, 0),))
 
 
 def still(mover: Geometry) -> Geometry:
-    """Return a mover as it was first given; of points one stands for all: where a point was doesn't matter."""
+    """Return the original geometry of a mover; one point stands for all, since a point has no shape."""
     return _ANY_POINT if mover.is_point else template(mover)
 
 
@@ -115,7 +115,7 @@ def _stands(mover: Geometry | None, target: Geometry, holes: Iterable[Geometry])
 
 
 def swallows(hole: Geometry, mover: Geometry) -> bool:
-    """Whether a mover is in a hole: a point in or on the border of it, a polygon contained in it."""
+    """Whether a mover is in a hole: a point inside it or on its border, a polygon contained in it."""
     return contains(hole, mover) if hole.is_point or not mover.is_point else covers(hole, mover)
 
 
@@ -131,9 +131,9 @@ def _free(mover: Geometry, frame: Frame, target: Geometry, holes: Iterable[Geome
 
 
 def _reach(space: shapely.Polygon, taken: Sequence[shapely.Polygon], offsets: Sequence[Offset]) -> float:
-    """Return how far from the origin a nearest placement can be: some way beyond where a disc around it fits.
+    """Return an upper bound of the distance from the origin to the nearest placement: where a disc around it fits.
 
-    Borders farther away don't matter, which makes placing in a country as quick as in a harbour.
+    Borders farther away don't matter, which makes placement in a country as fast as in a harbour.
     """
     radius = max(math.hypot(*offset) for offset in offsets) + 2 * MARGINS[-1]
     roomy = space.buffer(-radius).difference(shapely.union_all([hole.buffer(radius) for hole in taken]))
@@ -142,10 +142,10 @@ def _reach(space: shapely.Polygon, taken: Sequence[shapely.Polygon], offsets: Se
 
 
 def room(space: shapely.Polygon, mover: Geometry, reach: float = math.inf) -> shapely.Geometry:
-    """Return where an unmoved mover's centroid may be for it to be inside a polygon in a metric frame.
+    """Return the positions of an unmoved mover's centroid at which it is inside a polygon in a metric frame.
 
-    The Minkowski erosion: the mover is inside where one of its vertices is, and its border doesn't meet the
-    polygon's. Only what is within reach of the origin, in metres, is asked for.
+    This is the Minkowski erosion: the mover is inside if one of its vertices is, and its border doesn't meet the
+    polygon's. The result is valid within `reach` metres of the origin.
     """
     offsets = outline(mover)
     far = reach + max(math.hypot(*offset) for offset in offsets)
@@ -154,7 +154,7 @@ def room(space: shapely.Polygon, mover: Geometry, reach: float = math.inf) -> sh
 
 
 def _obstacle(edges: Sequence[tuple[Offset, Offset]], offsets: Sequence[Offset]) -> shapely.Geometry:
-    """Return where a mover's centroid is when its border (of a convex one, any of it) meets an edge."""
+    """Return the positions of a mover's centroid at which its border (of a convex one, any part) meets an edge."""
     parts = [offsets] if is_convex(offsets) else list(pairwise([*offsets, offsets[0]]))
     if len(edges) * len(parts) > MAX_PIECES:
         raise GeometryError(
@@ -169,13 +169,13 @@ def _obstacle(edges: Sequence[tuple[Offset, Offset]], offsets: Sequence[Offset])
 
 
 def is_convex(offsets: Sequence[Offset]) -> bool:
-    """Whether a polygon is convex, but for dents that rounding leaves."""
+    """Whether a polygon is convex, up to dents from rounding."""
     hull = shapely.MultiPoint(offsets).convex_hull.exterior
     return all(bool(hull.distance(shapely.Point(offset)) <= CONVEXITY) for offset in offsets)
 
 
 def nearest_spot(free: shapely.Geometry) -> Offset | None:
-    """Return the point of a planar shape nearest to the origin; among equals (to 1 cm) the northern-most."""
+    """Return the point of a planar shape nearest to the origin; ties (to 1 cm) go to the northern-most."""
     if free.is_empty:
         return None
     if free.contains(shapely.Point(0, 0)):

@@ -1,8 +1,8 @@
-"""QGroundControl plans (`.plan`): JSON with a mission, a fence and rally points; the mission is read and written.
+"""QGroundControl plans (`.plan`): JSON with a mission, a fence and rally points; only the mission is read and written.
 
-Its items become those of waypoint files, so that both are read as places in one way. Surveys and corridor scans
-hold the simple items that they stand for; those are taken. A landing pattern stands for the items that it is flown
-as. Other complex items, fences and rally points are counted.
+Its items become those of waypoint files, so that both are read as places in one way. Surveys and corridor scans contain
+simple items, which are read. A landing pattern is read as the items of its flight. Other complex items, fences and
+rally points are counted.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from physical.waypoints import (
 
 FILE_TYPE: Final = "Plan"
 MAX_DEPTH: Final = 8
-"""Complex items within complex items."""
+"""The depth limit of complex items within complex items."""
 
 _ARDUPILOT, _PLANE = 3, 1
 
@@ -60,7 +60,7 @@ def read_plan_places(text: str) -> Read:
 
 
 def _items(document: Mapping[str, Any], lost: Counter[str]) -> tuple[MissionItem, ...]:
-    """Return the items of the mission; counts the complex items that are not read."""
+    """Return the items of the mission; unread complex items are counted in `lost`."""
     mission = _member(document, "mission")
     items = [_home(mission.get("plannedHomePosition"))]
     for index, raw in enumerate(_simple(mission.get("items"), MAX_DEPTH, lost), 1):
@@ -77,9 +77,9 @@ def write_plan(
     home_altitude: float = 0.0,
     bands: Sequence[Band | None] = (),
 ) -> str:
-    """Return a plan that visits points at an altitude in metres above home; home is the first unless given.
+    """Return a plan that visits points at an altitude in metres above home; home is the first point by default.
 
-    A point with a band of altitudes above sea level is visited within it instead.
+    A point with a band of altitudes above sea level is visited within that band instead.
     """
     start, *stops = stops_of(points, altitude, home, home_altitude, bands)
     mission = {
@@ -135,7 +135,7 @@ def _member(document: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 
 
 def _simple(items: object, depth: int, lost: Counter[str]) -> Iterator[Mapping[str, Any]]:
-    """Yield the simple items, those that complex ones stand for too; count complex ones that are not read."""
+    """Yield the simple items, also those inside complex ones; unread complex items are counted in `lost`."""
     if not isinstance(items, list) or depth == 0:
         raise _fail("the mission has no list of items", "save it anew")
     for item in items:
@@ -161,7 +161,7 @@ def _is_complex(value: object) -> bool:
 
 
 def _landing(item: Mapping[str, Any]) -> tuple[Mapping[str, Any], ...]:
-    """Return the items that a landing pattern is flown as: its start, the approach, the landing; none of another."""
+    """Return the flown items of a landing pattern: its start, the approach, the landing; none of other items."""
     land = _LANDINGS.get(str(item.get("complexItemType")))
     names = ("landingApproachCoordinate", "loiterCoordinate")
     approach = next((item[name] for name in names if name in item), None)
@@ -209,7 +209,7 @@ def _item(raw: Mapping[str, Any], index: int) -> MissionItem:
 
 
 def _made(index: int, frame: int, command: int, parameters: Sequence[object], where: str) -> MissionItem:
-    """Return an item; null means *the vehicle's own*: no position, and no altitude that is known."""
+    """Return an item; null means *the vehicle's own*: no position, and an unknown altitude."""
     p1, p2, p3, p4, latitude, longitude, height = (_number(value, where) for value in parameters)
     said = parameters[4] is not None and parameters[5] is not None
     goes = said and goes_to(index, frame, command, latitude, longitude)
@@ -222,7 +222,7 @@ def _made(index: int, frame: int, command: int, parameters: Sequence[object], wh
 
 
 def _fence(fence: object) -> Iterator[str]:
-    """Yield what each part of a fence is."""
+    """Yield the kind of each part of a fence."""
     for circle in _listed(fence, "circles"):
         yield f"fence circle ({_side(circle)})"
     for polygon in _listed(fence, "polygons"):

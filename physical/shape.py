@@ -1,10 +1,9 @@
 """Geometry on the WGS 84 earth: interned, canonical values and the relations between them.
 
-**The frame.** An edge is a straight line in latitude and longitude (RFC 7946 §3.1.1), going the shorter way
-around, and coordinates are whole numbers of 1e-7 degree. So every question of containment is asked in one
-plane, where both operands are exact; only metres need a projection (`measure`, `placement`). A world
-shifted around the earth behaves the same. What encloses a pole or reaches half around the earth has no
-place in this plane and is refused.
+**The frame.** An edge is a straight line in latitude and longitude (RFC 7946 §3.1.1), the shorter way around;
+coordinates are integers of 1e-7 degree. So every containment is decided in one plane, where both operands are exact.
+Only metres need a projection (`measure`, `placement`). A world shifted around the earth behaves the same. A polygon
+that encloses a pole or reaches half around the earth does not fit this plane and is refused.
 """
 
 from __future__ import annotations
@@ -32,21 +31,21 @@ SMALLEST_RADIUS: Final = 0.5
 LARGEST_RADIUS: Final = 10_000_000.0
 SHOWN_VERTICES: Final = 8
 MEMO: Final = 1 << 14
-"""How many answers about polygons are remembered; none about points, of which live feeds bring ever new ones."""
+"""The size of caches for polygons; points are not cached, since live feeds bring ever new ones."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False, weakref_slot=True)
 class Geometry:
-    """A point or a polygon; equal geometries are one object, so `==` and `hash` cost nothing.
+    """A point or a polygon; equal geometries are one object, so `==` and `hash` are free.
 
-    Made only by `point`, `polygon`, `circle`, `box` and by what moves them (`physical.placement`).
+    Only `point`, `polygon`, `circle`, `box` and the functions that move them (`physical.placement`) create geometries.
 
     Attributes:
-        ring: Latitudes and longitudes in 1e-7 degree: one pair for a point; a polygon's vertices
-            counter-clockwise from its least one, without those amid a straight edge, the first not repeated.
-        template: The polygon that this one is a placement of, if it was moved. A moved polygon is always
-            computed from its template, so going there and back gives the same value.
-        anchor: Where the template's centroid is in this placement.
+        ring: Latitudes and longitudes in 1e-7 degree. A point has one pair. A polygon has its vertices
+            counter-clockwise from the least one, without those amid a straight edge; the first is not repeated.
+        template: The original polygon of a moved one, else None. Every placement is computed from its template, so
+            moving there and back gives the same value.
+        anchor: The position of the template's centroid in this placement.
         key: The hash, the same in every process.
     """
 
@@ -71,7 +70,7 @@ class Geometry:
         return self
 
     def __repr__(self) -> str:
-        """Show the call that makes it; long polygons are elided.
+        """Return the call that creates it; long polygons are elided.
 
         >>> box((37.04, -8.59), (36.94, -8.79))
         polygon([(36.94, -8.79), (36.94, -8.59), (37.04, -8.59), (37.04, -8.79)])
@@ -104,7 +103,7 @@ _LOCK: Final = Lock()
 def intern(
     ring: tuple[PositionE7, ...], template: Geometry | None = None, anchor: PositionE7 | None = None
 ) -> Geometry:
-    """Return the one geometry with these (canonical) fields."""
+    """Return the unique geometry with these (canonical) fields."""
     fields = (ring, template, anchor)
     with _LOCK:
         known = _INTERNED.get(fields)
@@ -115,7 +114,7 @@ def intern(
         return known
 
 
-# --- making ---------------------------------------------------------------------------------------
+# --- construction ---------------------------------------------------------------------------------
 
 
 def point(latitude: float, longitude: float) -> Geometry:
@@ -204,8 +203,8 @@ def _position(latitude: float, longitude: float) -> PositionE7:
             raise GeometryError(
                 "not-a-number", f"the {name} {value!r:.60} is not a number", "write it in degrees"
             )
-        if not -limit <= value <= limit:  # false of NaN too
-            # An int may be too long to be shown or made a float.
+        if not -limit <= value <= limit:  # also rejects NaN
+            # An int may be too long to print or to convert to float.
             shown = value if isinstance(value, float) or abs(value) < E7 else "given"
             swapped = name == "latitude" and -180 <= latitude <= 180 and isinstance(longitude, int | float)
             doubt = "are they swapped? " if swapped and -90 <= longitude <= 90 else ""
@@ -251,7 +250,7 @@ def _pole() -> GeometryError:
 
 
 def _unrolled(ring: Sequence[PositionE7]) -> list[PositionE7]:
-    """Return a ring with its longitudes made continuous, the western-most in [-180, 180) degrees."""
+    """Return a ring with continuous longitudes, the western-most in [-180, 180) degrees."""
     steps = [normal_longitude(there[1] - here[1]) for here, there in pairwise([*ring, ring[0]])]
     if sum(steps) != 0:
         raise _pole()
@@ -341,7 +340,7 @@ def _bounds(geometry: Geometry) -> tuple[int, int, int, int]:
 
 
 def contains(outer: Geometry, inner: Geometry) -> bool:
-    """Whether all of `inner`, its border too, lies in the interior of `outer`. A point contains nothing."""
+    """Whether all of `inner`, with its border, lies in the interior of `outer`; a point contains nothing."""
     if outer.is_point or outer is inner:
         return False
     if inner.is_point:
@@ -350,14 +349,14 @@ def contains(outer: Geometry, inner: Geometry) -> bool:
 
 
 def covers(outer: Geometry, inner: Geometry) -> bool:
-    """Whether a polygon has a point in it or on its border."""
+    """Whether a point is inside a polygon or on its border."""
     return _relates(shapely.intersects_xy, outer, inner)
 
 
 def _relates(relation: Callable[[shapely.Geometry, int, int], Any], outer: Geometry, inner: Geometry) -> bool:
-    """Not remembered: what moves is at each place once."""
+    """Return a relation of a polygon and a point; it is not cached, since a mover is at each point once."""
     (north, east), (left, bottom, right, top) = inner.ring[0], _bounds(outer)
-    if not bottom <= north <= top:  # most pairs are decided here, a hundred times faster
+    if not bottom <= north <= top:  # decides most pairs, a hundred times faster
         return False
     if east > right:
         east -= TURN
@@ -369,7 +368,7 @@ def _relates(relation: Callable[[shapely.Geometry, int, int], Any], outer: Geome
 @lru_cache(maxsize=MEMO)
 def _contains_polygon(outer: Geometry, inner: Geometry) -> bool:
     (_, south, _, north), (_, lowest, _, highest) = _bounds(outer), _bounds(inner)
-    if lowest <= south or highest >= north:  # so are most of these
+    if lowest <= south or highest >= north:  # decides most pairs
         return False
     fixed = planar(outer)
     return bool(shapely.contains_properly(fixed, beside(fixed, planar(inner))))
@@ -379,8 +378,8 @@ def _contains_polygon(outer: Geometry, inner: Geometry) -> bool:
 def overlaps(a: Geometry, b: Geometry) -> bool:
     """Whether two different polygons share interior, and neither contains the other.
 
-    Sharing no more than a border is not overlapping. A polygon that touches the border of another from inside
-    is not contained in it, hence overlaps it.
+    A common border alone is no overlap. A polygon that touches the border of another from inside is not contained in
+    it, hence overlaps it.
     """
     return share_interior(a, b) and not (equal(a, b) or contains(a, b) or contains(b, a))
 
@@ -400,5 +399,5 @@ def share_interior(a: Geometry, b: Geometry) -> bool:
 
 
 def equal(a: Geometry, b: Geometry) -> bool:
-    """Whether two geometries are the same points of the earth, whatever they are placements of."""
+    """Whether two geometries have the same points, whatever their templates."""
     return a.ring == b.ring

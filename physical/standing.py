@@ -1,7 +1,7 @@
-"""Where a vehicle that circles can stay: its circle crosses no border of the places that matter.
+"""The places where a circling vehicle can stay: its circle crosses no relevant border.
 
-No rule tells two points apart that lie in the same places. So a vehicle is where P has it as long as it stays in the
-places of its point in P, and out of all others: those are its surroundings.
+The rules do not distinguish two points in the same places. So a vehicle matches P as long as it stays in the places of
+its point in P, and out of all others: these are its surroundings.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ from physical.placement import nearest_spot, placed, room, template
 from physical.shape import Geometry, contains, planar, point
 
 CLEARANCE: Final = 1.002
-"""How much more than its circle is kept clear: arcs are cut into chords, and positions are rounded."""
+"""The factor of the cleared circle: arcs are cut into chords, and positions are rounded."""
 
 HALVINGS: Final = 24
-"""Steps in which the widest circle is found."""
+"""The number of bisection steps for the widest circle."""
 
 _ANY_POINT: Final = point(0, 0)
 
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """What a vehicle has to stay in, and out of: sorted geometries, each once."""
+    """The places that a vehicle has to stay in, and out of: sorted geometries, each once."""
 
     inside: tuple[Geometry, ...] = ()
     outside: tuple[Geometry, ...] = ()
@@ -45,16 +45,13 @@ def surroundings_of(spot: Geometry, places: Iterable[Geometry]) -> Surroundings:
 
 
 def stands(around: Surroundings, mover: Geometry) -> bool:
-    """Tell whether a mover's placement keeps to its surroundings."""
+    """Whether a mover's placement keeps to its surroundings."""
     inside = all(contains(place, mover) for place in around.inside)
     return inside and not any(contains(place, mover) for place in around.outside)
 
 
 def standing(mover: Geometry, target: Geometry, around: Surroundings, radius: float) -> Geometry | None:
-    """Return the mover placed nearest to the target's centroid so that a circle around it keeps to the surroundings.
-
-    None where there is no such place.
-    """
+    """Return the placement nearest to the target's centroid whose circle keeps to the surroundings, or None."""
     if target.is_point:
         return target
     return _standing(_still(mover), target, around, radius)
@@ -71,7 +68,7 @@ def widest(mover: Geometry, target: Geometry, around: Surroundings) -> float:
 
 
 def leads_straight(mover: Geometry, start: Geometry, end: Geometry, around: Surroundings) -> bool:
-    """Tell whether a mover keeps to its surroundings all the way from one placement straight to another."""
+    """Whether a mover keeps to its surroundings all the way from one placement straight to another."""
     frame = local_frame(centroid(end).ring[0])
     ends = [frame.metres(centroid(each).ring[0]) for each in (start, end)]
     way = shapely.LineString(ends) if ends[0] != ends[1] else shapely.Point(ends[0])
@@ -101,7 +98,7 @@ def _standing(mover: Geometry, target: Geometry, around: Surroundings, radius: f
 def _kept(
     mover: Geometry, frame: Frame, target: Geometry, around: Surroundings, radius: float
 ) -> shapely.Geometry:
-    """Return where a mover may stand, in a metric frame."""
+    """Return the permitted positions of a mover, in a metric frame."""
     kept = radius * CLEARANCE
     inside, outside = _borders(mover, frame, Surroundings((target, *around.inside), around.outside))
     space = shapely.intersection_all([shape.buffer(-kept) for shape in inside])
@@ -112,7 +109,7 @@ def _kept(
 def _borders(
     mover: Geometry, frame: Frame, around: Surroundings
 ) -> tuple[list[shapely.Geometry], list[shapely.Geometry]]:
-    """Return where a mover is in each place that it stays in, and in each that it stays out of."""
+    """Return the positions of a mover inside each place that it stays in, and inside each that it stays out of."""
     return tuple([_room(frame, place, mover) for place in some] for some in (around.inside, around.outside))  # type: ignore[return-value]
 
 

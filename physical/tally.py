@@ -1,4 +1,4 @@
-"""Tallies: what was in a file, what a reader took of it, and what it left out, by kind."""
+"""Tallies: the content of a file by kind, as far as a reader took it or left it out."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from physical.messages import counted
 from physical.physical_property import PhysicalProperty
 
 MAX_KINDS: Final = 100
-"""How many kinds are counted apart; a file may have any number of them."""
+"""The largest number of separately counted kinds; a file may have any number of them."""
 
 OTHERS: Final = "of other kinds"
 
@@ -21,15 +21,15 @@ Kinds = tuple[tuple[str, int], ...]
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """The account of a file: every thing in it is in one kind, taken or left out.
+    """The account of a file: every thing in it belongs to one kind, taken or left out.
 
     Attributes:
-        total: How many things were in the file, counted apart from their kinds.
-        one: What a thing is called.
-        many: What several are called.
-        taken: How many of which kind the reader took.
-        left_out: How many of which kind it did not take, and why.
-        asides: What is missing of things that were taken.
+        total: The number of things in the file, counted independently of their kinds.
+        one: The noun for a thing.
+        many: The plural.
+        taken: The number of things taken, by kind.
+        left_out: The number of things left out, by kind, with the reason in the kind.
+        asides: The number of missing parts of taken things, by kind.
     """
 
     total: int = 0
@@ -44,22 +44,22 @@ class Tally:
 
     @property
     def adds_up(self) -> bool:
-        """Whether the kinds add up to what was in the file."""
+        """Whether the kinds add up to the total."""
         return self.total == sum(count for _, count in (*self.taken, *self.left_out))
 
     def rows(self) -> tuple[str, ...]:
-        """Describe the account: the total and what was taken in the first row, then a row for each kind left out."""
+        """Return the account as rows: the total and the taken kinds first, then a row for each kind left out."""
         found = ", ".join(counted(count, kind, _plural(kind)) for kind, count in self.taken)
         head = f"{counted(self.total, self.one, self.many)}" + (f": {found}" if found else "")
         return (head, *self.missing())
 
     def missing(self) -> tuple[str, ...]:
-        """Describe what was not taken, a row for each kind."""
+        """Return a row for each kind left out."""
         left = (f"{count:,} x {kind}, not read" for kind, count in self.left_out)
         return (*left, *(f"{count:,} x {kind}" for kind, count in self.asides))
 
     def summary(self) -> tuple[str, ...]:
-        """Describe the account in few rows, for what has many kinds: what was not taken is in one."""
+        """Return the account in few rows, for a file of many kinds: one row has all kinds left out."""
         head = self.rows()[0]
         left = (f"not read: {in_a_line(self.left_out)}",) if self.left_out else ()
         return (head, *left, *(f"{count:,} x {kind}" for kind, count in self.asides))
@@ -67,18 +67,18 @@ class Tally:
 
 @dataclass(frozen=True, slots=True)
 class Read:
-    """What a reader made of a file: properties of entities, and the accounts of what was in it."""
+    """The result of a reader: properties of entities, and the accounts of the file's content."""
 
     properties: tuple[PhysicalProperty, ...]
     tallies: tuple[Tally, ...]
 
     def missing(self) -> tuple[str, ...]:
-        """Describe all that was not taken, a row for each kind."""
+        """Return a row for each kind left out."""
         return tuple(row for tally in self.tallies for row in tally.missing())
 
 
 class Counting:
-    """Counts what a reader comes across, in bounded memory."""
+    """Counts the findings of a reader, in bounded memory."""
 
     def __init__(self) -> None:
         self.taken = Counter[str]()
@@ -94,12 +94,12 @@ class Counting:
         _add(self.left_out, kind, count)
 
     def note(self, kind: str, count: int = 1) -> None:
-        """Count what is missing of things that are taken."""
+        """Count missing parts of taken things."""
         _add(self.asides, kind, count)
 
     @property
     def total(self) -> int:
-        """How many things were counted."""
+        """The number of counted things."""
         return self.taken.total() + self.left_out.total()
 
     def tally(self, total: int, one: str, many: str = "") -> Tally:
@@ -127,7 +127,7 @@ def _sorted(counts: Mapping[str, int]) -> Kinds:
 
 
 def in_a_line(kinds: Iterable[tuple[str, int]], most: int = 12) -> str:
-    """Return counts by kind in a line: those that say why first, then the most frequent.
+    """Return counts by kind in a line: those with a reason first, then the most frequent.
 
     >>> in_a_line([("ATTITUDE", 2), ("HEARTBEAT", 10), ("GPS_RAW_INT without a fix", 1)])
     '1 x GPS_RAW_INT without a fix, 10 x HEARTBEAT, 2 x ATTITUDE'

@@ -1,4 +1,4 @@
-"""Tracks as GeoJSON: a LineString for each, with the time of each position in `coordTimes`, as GPX has it."""
+"""Tracks as GeoJSON: a LineString for each, with the time of each position in `coordTimes`, as in GPX."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from physical.written_times import LATEST
 
 
 class Fix(NamedTuple):
-    """A position in 1e-7 degree, when it was taken (seconds since 1970 UTC), and its height in metres, if known."""
+    """A position in 1e-7 degree, with its time (seconds since 1970 UTC) and its height in metres, if known."""
 
     position: PositionE7
     time: float | None = None
@@ -21,7 +21,7 @@ class Fix(NamedTuple):
 
 
 class Track(NamedTuple):
-    """Where something was, in the order of time."""
+    """The positions of one entity, in order of time."""
 
     name: str
     kind: str
@@ -31,7 +31,7 @@ class Track(NamedTuple):
 def write_tracks(tracks: Iterable[Track]) -> str:
     """Return a feature collection of tracks; a track of one position is a Point.
 
-    What crosses the antimeridian is cut there (RFC 7946 §3.1.9). Heights are written where all of a track are known.
+    A track is cut at the antimeridian (RFC 7946 §3.1.9). Its heights are written if all are known.
     """
     features = [_feature(track) for track in tracks]
     return json.dumps({"type": "FeatureCollection", "features": features}, ensure_ascii=False) + "\n"
@@ -62,7 +62,7 @@ def _feature(track: Track) -> dict[str, Any]:
 
 
 def _parts(fixes: Sequence[Fix]) -> Iterator[list[Fix]]:
-    """Yield the parts of a track between which it crosses the antimeridian."""
+    """Yield the parts of a track, split where it crosses the antimeridian."""
     part = list(fixes[:1])
     for before, here in pairwise(fixes):
         if abs(here.position[1] - before.position[1]) > TURN // 2:
@@ -74,7 +74,7 @@ def _parts(fixes: Sequence[Fix]) -> Iterator[list[Fix]]:
 
 
 def _crossing(before: Fix, after: Fix) -> tuple[Fix, Fix]:
-    """Return where a track leaves one side of the antimeridian, and where it enters the other."""
+    """Return the points where a track leaves one side of the antimeridian and enters the other."""
     side = TURN // 2 if before.position[1] > 0 else -TURN // 2
     to_side, from_side = abs(side - before.position[1]), abs(after.position[1] + side)
     share = to_side / (to_side + from_side) if to_side + from_side else 0.0

@@ -1,4 +1,4 @@
-"""Check text from outside: names, JSON, and quotations of either.
+"""Checks of text from outside: names, JSON, and quotations of either.
 
 Checked text can be printed, encoded and recorded without further checks.
 """
@@ -15,17 +15,17 @@ from physical.errors import PhysicalError
 
 MAX_WORD: Final = 200
 MAX_TEXT: Final = 2_000
-"""Characters of a message or of a reason."""
+"""The maximum length of a message or a reason, in characters."""
 
 MAX_DIGITS: Final = 300
-"""Digits of a whole number in JSON: each such number is a float, too, and is read at once."""
+"""The maximum digits of an integer in JSON: every such integer fits a float, and parsing is fast."""
 
 _SURROGATE: Final = re.compile(rb"\\u[dD][89a-fA-F]|\xed[\xa0-\xbf]")
-"""How JSON writes half of a surrogate pair: with an escape, or in bytes that are no UTF-8."""
+"""The forms of half a surrogate pair in JSON: an escape, or bytes that are invalid UTF-8."""
 
 
 def is_word(value: object) -> TypeGuard[str]:
-    """Tell whether a value may name something: 1 to 200 characters that can be printed, and not only spaces.
+    """Whether a value is a valid name: 1 to 200 printable characters, not only spaces.
 
     >>> is_word("oilSpill0"), is_word(" "), is_word("a" * 201), is_word(chr(0xD800)), is_word(7)
     (True, False, False, False, False)
@@ -36,14 +36,14 @@ def is_word(value: object) -> TypeGuard[str]:
 
 
 def is_text(value: object) -> TypeGuard[str]:
-    """Tell whether a value is a message: valid Unicode of at most 2,000 characters."""
+    """Whether a value is a message: valid Unicode of at most 2,000 characters."""
     if not isinstance(value, str) or len(value) > MAX_TEXT:
         return False
     return not any("\ud800" <= sign <= "\udfff" for sign in value)
 
 
 def legible(text: str, most: int = MAX_TEXT) -> str:
-    r"""Return a foreign text as it can be quoted: what has no sign of its own gets one, what is too long is cut.
+    r"""Return a foreign text for quotation: unprintable characters are replaced, and a long text is cut.
 
     >>> legible("a\ud800b"), legible("abcdefgh", 6)
     ('a�b', 'abc...')
@@ -57,11 +57,12 @@ def legible(text: str, most: int = MAX_TEXT) -> str:
 
 
 def read_json(text: str | bytes, most: int) -> object:
-    """Return what a JSON text says; all of it can be written again.
+    """Return the value of a JSON text; it can be encoded as JSON again.
 
-    Raises PhysicalError where it is longer than `most` bytes or characters, is no UTF-8 or no JSON, is nested too
-    deeply, says a key of an object twice, or has a number that is infinite, none or of more than 300 digits, or half
-    of a surrogate pair.
+    Raises:
+        PhysicalError: If the text is longer than `most` bytes or characters, is no UTF-8 or no JSON, or is nested too
+            deeply. Also for a repeated key in an object, for a number that is infinite, NaN or longer than 300 digits,
+            and for half of a surrogate pair.
     """
     if len(text) > most:
         raise PhysicalError("too-large", f"the text is over {most:,} bytes", "simplify it")

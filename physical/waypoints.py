@@ -1,7 +1,7 @@
 """Waypoint files: `QGC WPL 110`, plain text of tab-separated columns (paper, Example 1).
 
-A line is: index, current, frame, command, four parameters, latitude, longitude, altitude, autocontinue; the
-numbers are those of MAVLink. Item 0 is the home position, if it is a position above sea level.
+A line is: index, current, frame, command, four parameters, latitude, longitude, altitude, autocontinue; the numbers are
+those of MAVLink. Item 0 is the home position, if it is a position above sea level.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ EMPTY: Final[Mapping[str, int]] = MappingProxyType({})
 
 
 class AltitudeFrame(IntEnum):
-    """What altitudes are above (MAV_FRAME); in a file, the `INT` frames are written like the others."""
+    """The reference of an altitude (MAV_FRAME); in a file, the `INT` frames are written like the others."""
 
     SEA_LEVEL = 0
     HOME = 3
@@ -59,14 +59,14 @@ class Command(IntEnum):
 
 
 _USERS: Final = range(31000, 31005)
-"""Waypoints that a user defines (MAV_CMD_WAYPOINT_USER_1 to 5)."""
+"""User-defined waypoints (MAV_CMD_WAYPOINT_USER_1 to 5)."""
 
 _GOING: Final = frozenset({*map(int, Command), *_USERS})
 _ABOVE_SEA: Final = frozenset({AltitudeFrame.SEA_LEVEL, AltitudeFrame.SEA_LEVEL_INT})
 _ABOVE_HOME: Final = frozenset({AltitudeFrame.HOME, AltitudeFrame.HOME_INT})
 _GLOBAL: Final = frozenset(map(int, AltitudeFrame))
 _HOMES: Final = (Command.WAYPOINT, 0)
-"""How home is written: as a waypoint, or without a command."""
+"""The commands of a home item: a waypoint, or no command."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,11 +75,11 @@ class MissionItem:
 
     Attributes:
         index: Its number; 0 is home.
-        frame: What the altitude is above (MAV_FRAME).
-        command: What to do (MAV_CMD).
+        frame: The reference of the altitude (MAV_FRAME).
+        command: The command (MAV_CMD).
         parameters: The command's four parameters.
-        point: Where, if the command goes somewhere.
-        altitude: Metres in its frame, if the file says any.
+        point: The position, if the command goes to one.
+        altitude: Metres in its frame, if the file has one.
     """
 
     index: int
@@ -91,7 +91,7 @@ class MissionItem:
 
     @property
     def is_home(self) -> bool:
-        """Whether this is where the vehicle starts: item 0, if it is a position above sea level."""
+        """Whether this is the vehicle's start: item 0, if it is a position above sea level."""
         return (
             self.index == 0 and self.command in _HOMES and self.frame in _ABOVE_SEA and self.point is not None
         )
@@ -125,9 +125,9 @@ def read_waypoints(text: str) -> tuple[MissionItem, ...]:
 
 
 def goes_to(index: int, frame: int, command: int, latitude: float, longitude: float) -> bool:
-    """Tell whether an item of a mission is a position that the vehicle goes to, or home.
+    """Whether a mission item is home or a position that the vehicle goes to.
 
-    Latitude 0 and longitude 0 mean *where it is*, or that nothing was said; of frames that are not global the numbers
+    Latitude 0 and longitude 0 mean *the present position*, or no position. In frames that are not global the numbers
     are metres.
     """
     there = frame in _GLOBAL and (latitude, longitude) != (0.0, 0.0)
@@ -135,10 +135,10 @@ def goes_to(index: int, frame: int, command: int, latitude: float, longitude: fl
 
 
 def waypoint_places(items: Sequence[MissionItem], prefix: str = "waypoint") -> tuple[PhysicalProperty, ...]:
-    """Return the positions that a mission goes to as places named by their index; home is `<prefix>0`.
+    """Return the destinations of a mission as places named by their index; home is `<prefix>0`.
 
-    Altitudes above home are made altitudes above sea level where the file says that of home; those above terrain are
-    not known.
+    Altitudes above home are converted to altitudes above sea level if the file has that of home; those above terrain
+    are unknown.
     """
     home = next((item.altitude for item in items if item.is_home), None)
     return tuple(
@@ -149,7 +149,7 @@ def waypoint_places(items: Sequence[MissionItem], prefix: str = "waypoint") -> t
 
 
 def read_mission(items: Sequence[MissionItem], beside: Mapping[str, int] = EMPTY) -> Read:
-    """Return the places of a mission with the account of its items, and of what is in the file beside them."""
+    """Return the places of a mission with the account of its items, and of the other things in the file (`beside`)."""
     places, counting = waypoint_places(items), Counting()
     for item in items:
         if item.point is None:
@@ -174,7 +174,7 @@ def _is_above_terrain(item: MissionItem) -> bool:
 
 
 def _nowhere(item: MissionItem) -> str:
-    """Say what an item is that is no place."""
+    """Return the description of an item without a place."""
     name = command_name(item.command)
     if item.command in POSITIONS or item.command not in _GOING:
         home = item.index == 0 and item.command in _HOMES
@@ -193,15 +193,15 @@ def write_waypoints(
 ) -> str:
     """Return a waypoint file that visits points at an altitude in metres above home.
 
-    A point with a band of altitudes above sea level is visited within it instead. Home, the first point unless given,
-    is written as item 0.
+    A point with a band of altitudes above sea level is visited within that band instead. Item 0 is home, by default the
+    first point.
     """
     stops = stops_of(points, altitude, home, home_altitude, bands)
     return "".join(f"{line}\n" for line in (HEADER, *(_line(i, stop) for i, stop in enumerate(stops))))
 
 
 class Stop(NamedTuple):
-    """A point that a written mission visits: an altitude in metres, and what it is above."""
+    """A stop of a written mission: a point, the reference of its altitude, and the altitude in metres."""
 
     point: Geometry
     frame: AltitudeFrame
@@ -215,13 +215,13 @@ def stops_of(
     home_altitude: float,
     bands: Sequence[Band | None],
 ) -> tuple[Stop, ...]:
-    """Return home and the points that are visited, each with its altitude; raises PhysicalError."""
+    """Return home and the visited points, each with its altitude; raises PhysicalError."""
     at = [home or points[0], *points] if points else []
     if not at or not all(each.is_point for each in at):
         raise PhysicalError(
             "waypoint-file", "a waypoint file visits points", "take the waypoints of polygons"
         )
-    above_home = Band(altitude, altitude).low  # a finite number
+    above_home = Band(altitude, altitude).low  # raises an error unless it is a finite number
     heights = [*bands, *[None] * (len(points) - len(bands))]
     start, *stops = map(_beside_zero, at)
     return (
@@ -231,7 +231,7 @@ def stops_of(
 
 
 def _beside_zero(at: Geometry) -> Geometry:
-    """Return a point as it is written: latitude 0 and longitude 0 would mean *where the vehicle is*; so 1 cm beside."""
+    """Return the point to write: (0, 0) would mean *the present position*, so it is moved by 1 cm."""
     return point(1e-7, 0.0) if at is point(0.0, 0.0) else at
 
 
@@ -244,7 +244,7 @@ def _stop(at: Geometry, band: Band | None, above_home: float) -> Stop:
 
 
 def visited(commands: Iterable[MobilityCommand], entity: str) -> tuple[Geometry, ...]:
-    """Return the points that a trace's mobility commands send an entity to, in order."""
+    """Return the points to which a trace's mobility commands send an entity, in order."""
     return tuple(
         command.point for command in commands if isinstance(command, Waypoint) and command.entity == entity
     )

@@ -1,4 +1,4 @@
-"""Times as loggers write them beside a sentence: ISO 8601, digits in a row, seconds since 1970 or parts of them."""
+"""Times in the text of loggers: ISO 8601, plain digits, or seconds since 1970 or fractions of them."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from datetime import UTC, datetime
 from typing import Final
 
 LATEST: Final = 2.0**32
-"""Times are before this, in seconds since 1970 UTC (the year 2106): what a file says may be any number."""
+"""The exclusive upper bound of times, in seconds since 1970 UTC (the year 2106): a file may contain any number."""
 
 _UNITS: Final = ((10**11, 1), (10**14, 10**3), (10**17, 10**6), (10**20, 10**9))
-"""A number below the first is a time in the unit of which a second has the second."""
+"""Pairs of a limit and a divisor: a number below the limit is a time in units of 1/divisor seconds."""
 
 _EPOCH: Final = re.compile(r"(\d{1,20})(?:\.(\d{1,12}))?")
 _COMPACT: Final = r"(?:19|20)\d{6}T?\d{6}(?:\.\d{1,9})?Z?"
@@ -24,12 +24,13 @@ _EARLIEST: Final = 315_532_800.0
 
 
 def epoch_seconds(text: str) -> float:
-    """Return a number of seconds, milliseconds, microseconds or nanoseconds since 1970 in seconds.
+    """Return seconds since 1970 from a number of seconds, milliseconds, microseconds or nanoseconds.
 
     >>> epoch_seconds("1772596000"), epoch_seconds("1772596000576705"), epoch_seconds("1772596000.25")
     (1772596000.0, 1772596000.576705, 1772596000.25)
 
-    Raises ValueError where it is no such number, or a time after 2106.
+    Raises:
+        ValueError: If the text is no such number, or a time after 2106.
     """
     found = _EPOCH.fullmatch(text)
     if not found or not text.isascii():
@@ -43,7 +44,7 @@ def epoch_seconds(text: str) -> float:
 
 
 def time_beside(text: str, *, last: bool = False) -> float | None:
-    """Return the first time (or the last) that stands in a logger's text, in seconds since 1970; UTC unless it says.
+    """Return the first time (or the last) in a logger's text, in seconds since 1970; UTC unless it has a zone.
 
     >>> time_beside("2026-03-04T03:57:10.000Z "), time_beside("( MSG: 1, timestamp: 20260304035711)")
     (1772596630.0, 1772596631.0)
@@ -53,7 +54,7 @@ def time_beside(text: str, *, last: bool = False) -> float | None:
 
 
 def moment_text(time: float) -> str:
-    """Write a time as a reader of missions does.
+    """Return a time as text, as in missions.
 
     >>> moment_text(1772596630.0)
     '2026-03-04T03:57:10Z'
@@ -78,7 +79,7 @@ def _time(found: re.Match[str]) -> float | None:
 
 
 def _clock(text: str) -> float:
-    """Read a date and a time of day; UTC where no zone is said."""
+    """Return a date and a time of day in seconds since 1970; UTC by default."""
     found = datetime.fromisoformat(_isoformat(text))
     return (found if found.tzinfo else found.replace(tzinfo=UTC)).timestamp()
 

@@ -1,7 +1,7 @@
-"""The automorphisms of a rule: occurrences that one maps to another count once.
+"""The automorphisms of a rule: occurrences that a symmetry maps to each other count once.
 
-A symmetry of a redex permutes nodes, links, regions and sites. It is one of the rule if it makes the same of the
-reactum: `A{x} | A{y} --> B{x} | B{y}` has one, `A{x} | A{y} --> B{x} | A{y}` has none.
+A symmetry of a redex permutes its nodes, links, regions and sites. It is a symmetry of the rule if it also preserves
+the reactum: `A{x} | A{y} --> B{x} | B{y}` has one, `A{x} | A{y} --> B{x} | A{y}` has none.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ from bigraphs.system import Rule
 
 @dataclass(frozen=True, slots=True)
 class Symmetry:
-    """Where a symmetry takes each node and each link."""
+    """The image of each node and each link under a symmetry."""
 
     nodes: tuple[int, ...]
     links: tuple[int, ...]
 
     def of(self, occurrence: Occurrence) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """Return the nodes and links of the same occurrence, seen through the symmetry."""
+        """Return the nodes and links of an occurrence, permuted by the symmetry."""
         nodes, links = occurrence.nodes, occurrence.links
         return tuple([nodes[node] for node in self.nodes]), tuple([links[link] for link in self.links])
 
 
 class Representatives:
-    """Chooses one of the occurrences that the symmetries of a rule make of one another.
+    """Selects one representative of each set of symmetric occurrences.
 
-    Twins (`Pattern.twins`) are kept in order by the search; here the others are dealt with.
+    The search already orders twins (`Pattern.twins`); this class handles all other symmetries.
     """
 
     def __init__(self, pattern: Pattern, symmetries: Sequence[Symmetry]) -> None:
@@ -44,18 +44,18 @@ class Representatives:
         self.symmetries = symmetries
 
     def choose(self, occurrences: list[Occurrence]) -> list[Occurrence]:
-        """Return one of each that are equal, in the order given."""
+        """Return the representatives among the occurrences, in the given order."""
         return list(filter(self.chosen, occurrences)) if self.symmetries else occurrences
 
     def chosen(self, occurrence: Occurrence) -> bool:
-        """Say whether an occurrence is the least of those that it stands for."""
+        """Return whether an occurrence is the least of its symmetric images."""
         mine = (occurrence.nodes, occurrence.links)
         return all(self.ordered(*symmetry.of(occurrence)) >= mine for symmetry in self.symmetries)
 
     def ordered(
         self, nodes: tuple[int, ...], links: tuple[int, ...]
     ) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """Put twins in order, as the search does."""
+        """Return the nodes and links with twins in order, as the search returns them."""
         if not self.twins:
             return nodes, links
         found = list(nodes)
@@ -66,7 +66,7 @@ class Representatives:
 
 
 def symmetries(rule: Rule, pattern: Pattern) -> tuple[Symmetry, ...]:
-    """Return the symmetries of a rule up to exchanging twins, without the identity."""
+    """Return the symmetries of a rule up to exchanges of twins, without the identity."""
     width = len(rule.redex.sites)
     closed = _with_markers(rule.redex, range(width), width)
     result = _with_markers(rule.reactum, rule.instantiation, width)
@@ -82,7 +82,7 @@ def symmetries(rule: Rule, pattern: Pattern) -> tuple[Symmetry, ...]:
 
 
 def _with_markers(bigraph: Bigraph, sites: Sequence[int], width: int) -> Bigraph:
-    """Return a ground bigraph with a node for each site, whose control tells which site of the redex it is."""
+    """Return a ground bigraph in which a node replaces each site; its control is the number of the redex site."""
     kinds = [Control(f"${site}", 0) for site in range(width)]
     markers = [
         Node(f"${site}", None, (), parents) for site, parents in zip(sites, bigraph.sites, strict=True)
@@ -96,7 +96,7 @@ def _with_markers(bigraph: Bigraph, sites: Sequence[int], width: int) -> Bigraph
 
 
 def _self_matches(marked: Bigraph) -> list[Occurrence]:
-    """Return every map of a redex to itself that keeps nodes, nesting and links; twins in order."""
+    """Return every map of a redex to itself that preserves nodes, nesting and links; twins are in order."""
     site = Control("$", 0)
     kinds = [control for control in marked.signature.controls if not control.name.startswith("$")]
     alike = replace(
@@ -121,7 +121,7 @@ def _plain(control: str) -> str:
 
 
 def _region_map(marked: Bigraph, symmetry: Occurrence) -> dict[Place, Place] | None:
-    """Return where a map takes the regions, or None if the nodes of one do not come to lie in one."""
+    """Return the images of the regions, or None if the nodes of one region are not mapped to one region."""
     tops = [
         {number for number, node in enumerate(marked.nodes) if ~region in node.parents}
         for region in range(marked.regions)
@@ -137,7 +137,7 @@ def _region_map(marked: Bigraph, symmetry: Occurrence) -> dict[Place, Place] | N
 
 
 def _seen_through(result: Bigraph, marked: Bigraph, symmetry: Occurrence, size: int) -> Bigraph:
-    """Return the reactum with its regions, names and sites renamed as a symmetry of the redex says."""
+    """Return the reactum with its regions, names and sites renamed by a symmetry of the redex."""
     regions = _region_map(marked, symmetry) or {}
     names = marked.outer_names
     renamed = {name: names[symmetry.links[number]] for number, name in enumerate(names)}

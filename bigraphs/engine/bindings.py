@@ -1,4 +1,4 @@
-"""Bind a pattern's links to a state's links, port by port or, for unordered ports, in every possible way."""
+"""Binding of a pattern's links to a state's links: port by port or, for unordered ports, in every possible way."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from bigraphs.engine.world import World
 
 
 def binding(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
-    """Return what binds the links of a node in each way that fits."""
+    """Return the step that binds the links of a node in each possible way."""
     ports = pattern.ports[node]
     if not ports:
         return lambda run, used, _: then(run, used)
@@ -45,7 +45,7 @@ def _in_order(world: World, pattern: Pattern, ports: tuple[int, ...], then: Step
 
 
 def _in_any_order(world: World, pattern: Pattern, ports: tuple[int, ...], then: Step) -> Placing:
-    """Give each link of a node one of the slot's links that it has as often."""
+    """Return the step for unordered ports: each link of a node takes a link with enough ports on the slot."""
     fits = _fitting(world, pattern)
     wanted = sorted(Counter(ports).items())
 
@@ -77,7 +77,7 @@ def _in_any_order(world: World, pattern: Pattern, ports: tuple[int, ...], then: 
 
 
 def _fitting(world: World, pattern: Pattern) -> Callable[[State, int, int], bool]:
-    """Return what says whether a link of the pattern may be a link of the state: an edge needs an edge as large."""
+    """Return the test whether a pattern link may bind a state link; an edge needs an edge of the same size."""
     names, fixed = pattern.names, len(world.names)
     sizes = [len(nodes) for nodes in pattern.on]
 

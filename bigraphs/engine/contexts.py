@@ -1,4 +1,4 @@
-"""The context of an occurrence: whether rules may act there, and what conditions see."""
+"""The context of an occurrence: whether rules may act there, and the part that conditions inspect."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bigraphs.system import Condition, Where
 
 
 class Surroundings:
-    """What is above the places of one state, looked up once; `passive` says whether to care for passive controls."""
+    """The ancestors of places in one state, cached; `passive` is whether passive controls have to be considered."""
 
     def __init__(self, state: State, *, passive: bool) -> None:
         self.state = state
@@ -21,7 +21,7 @@ class Surroundings:
         self._above: dict[int, int] = {}
 
     def above(self, place: int) -> int:
-        """Return the mask of a place, if it is a node, and of all that it is in."""
+        """Return the mask of a node and all its ancestors; 0 for a region."""
         if place < 0:
             return 0
         found = self._above.get(place)
@@ -37,7 +37,7 @@ class Surroundings:
         return found
 
     def admits(self, pattern: Pattern, occurrence: Occurrence) -> bool:
-        """Say whether all regions are in active places, none of them inside of what is matched."""
+        """Return whether all regions are in active places outside the matched nodes."""
         parents, nodes, used = self.state.parents, occurrence.nodes, occurrence.mask
         for node in pattern.roots:
             for place in parents[nodes[node]]:
@@ -48,7 +48,7 @@ class Surroundings:
         return True
 
     def is_active(self, above: int) -> bool:
-        """Say whether rules act inside of all these nodes."""
+        """Return whether all these nodes are active."""
         world = self.state.world
         return all(world.active[world.control_of[self.state.labels[slot]]] for slot in bits(above))
 
@@ -62,10 +62,10 @@ def _mask(places: tuple[int, ...]) -> int:
 
 
 class ConditionCheck:
-    """A condition of a rule, ready to be asked.
+    """A compiled condition of a rule.
 
-    A condition is about what is in its part of the state alone: an edge of its pattern needs an edge that goes
-    nowhere else, and what an occurrence of the redex is in has a hole there.
+    A condition sees only its part of the state. An edge of its pattern matches only an edge whose points all lie in
+    that part. A node that contains the occurrence of the redex has a site in its place.
     """
 
     def __init__(self, world: World, condition: Condition) -> None:
@@ -74,7 +74,7 @@ class ConditionCheck:
         self.matcher = Matcher(world, compile_pattern(world, without_idle(condition.pattern)))
 
     def holds(self, state: State, occurrence: Occurrence) -> bool:
-        """Say whether the condition holds of an occurrence; what is inside of it is asked only if it may matter."""
+        """Return whether the condition holds at an occurrence; it skips the search if a needed control is missing."""
         if not all(state.by_control[control] & ~occurrence.mask for control in self.matcher.pattern.controls):
             return not self.positive
         inside = below(state, occurrence.mask) & ~occurrence.mask
@@ -84,7 +84,7 @@ class ConditionCheck:
 
 
 def occurs(matcher: Matcher, state: State, allowed: int = -1) -> bool:
-    """Say whether a pattern is anywhere among the allowed slots, in active places or not."""
+    """Return whether a pattern occurs among the allowed slots, in active places or not."""
     if not matcher.wide:
         return bool(matcher.find(state, allowed, once=True))
     around = Surroundings(state, passive=False)
@@ -92,7 +92,7 @@ def occurs(matcher: Matcher, state: State, allowed: int = -1) -> bool:
 
 
 def below(state: State, slots: int) -> int:
-    """Return the mask of all that is in these nodes, however deep."""
+    """Return the mask of all descendants of these nodes."""
     found, waiting = 0, slots
     while waiting:
         low = waiting & -waiting
@@ -104,7 +104,7 @@ def below(state: State, slots: int) -> int:
 
 
 def without_idle(pattern: Bigraph) -> Bigraph:
-    """Return a pattern without what asks for nothing: regions without nodes, sites in regions, idle links."""
+    """Return a pattern without parts that match anything: empty regions, sites in regions, idle links."""
     used = sorted({place for node in pattern.nodes for place in node.parents if place < 0}, reverse=True)
     rank = {place: ~number for number, place in enumerate(used)}
     names = {link for node in pattern.nodes for link in node.ports if isinstance(link, str)}

@@ -1,4 +1,4 @@
-"""Decode a state, or its key, to the bigraph that it represents."""
+"""Decoding of a state, or of its key, to its bigraph."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from bigraphs.engine.world import REFERENCE, World
 
 
 def to_bigraph(state: State) -> Bigraph:
-    """Return the bigraph, its anonymous nodes in the order of their slots, named ones first by name."""
+    """Return the bigraph: named nodes first, by name, then anonymous nodes in slot order."""
     world, slots = state.world, list(bits(state.occupied()))
     rank = {slot: place for place, slot in enumerate(slots)}
     edges = {edge: place for place, edge in enumerate(_live_edges(state))}
@@ -31,7 +31,7 @@ def _live_edges(state: State) -> list[int]:
 
 
 def from_key(world: World, key: Key) -> State:
-    """Return the state that a key of `State.key` tells, its nodes in one order that the key decides."""
+    """Return a state with this key of `State.key`; the key alone determines the order of its nodes."""
     builder = _Builder(world)
     *regions, shared = codes_in(world, key)
     for region, codes in enumerate(regions):
@@ -41,14 +41,14 @@ def from_key(world: World, key: Key) -> State:
 
 
 class _Builder:
-    """Nodes, put down from the regions inwards."""
+    """A state under construction, from the regions inwards."""
 
     def __init__(self, world: World) -> None:
         self.world = world
         self.labels: list[int] = []
         self.parents: list[list[int]] = []
         self.ports: list[tuple[int, ...]] = []
-        self.homes: dict[int, list[int]] = {}  # where a shared node is referred to
+        self.homes: dict[int, list[int]] = {}  # the places of each shared node
 
     def region(self, region: int, codes: list[int]) -> None:
         for code in codes:
@@ -92,6 +92,6 @@ class _Builder:
 
 
 def history_free(state: State) -> str:
-    """Return a canonical text of a state that does not depend on what other states were seen before it."""
+    """Return a canonical text of a state that does not depend on earlier states."""
     found = canonical(to_bigraph(state))
     return repr((found.nodes, found.regions, found.edges))

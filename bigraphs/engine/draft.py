@@ -1,4 +1,4 @@
-"""A state during rewriting: every change goes through here and is recorded."""
+"""A state during rewriting: it performs and records every change."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from bigraphs.errors import BigraphError
 
 
 class Draft:
-    """A copy of a state that is being changed.
+    """A changing copy of a state.
 
     Attributes:
-        changed: The mask of the slots whose control, places or links are not what they were.
-        emptied: The mask of the slots in which something else is now.
-        relinked: The mask of the links on which something else is now.
-        removed: The mask of the slots whose node is gone, even if there is another one in its place.
-        counted: The controls of which there is a node more or less.
+        changed: The mask of the slots with a new control, new places or new links.
+        emptied: The mask of the slots with changed content.
+        relinked: The mask of the links with changed points.
+        removed: The mask of the slots whose node was removed, even if a new node uses the slot.
+        counted: The controls whose number of nodes changed.
     """
 
     __slots__ = ("changed", "counted", "emptied", "relinked", "removed", "state")
@@ -28,14 +28,14 @@ class Draft:
         self.counted: set[int] = set()
 
     def touched_by_links(self) -> int:
-        """Return the mask of what is on the links that changed."""
+        """Return the mask of the nodes on changed links."""
         found = 0
         for link in bits(self.relinked):
             found |= self.state.points[link]
         return found
 
     def move(self, slot: int, places: tuple[int, ...]) -> None:
-        """Put a node into other places."""
+        """Move a node to other places."""
         kids, bit = self.state.kids, 1 << slot
         for place in self.state.parents[slot]:
             kids[place] &= ~bit
@@ -49,7 +49,7 @@ class Draft:
         self.changed |= bit
 
     def relink(self, slot: int, links: tuple[int, ...]) -> None:
-        """Link the ports of a node otherwise."""
+        """Link the ports of a node to other links."""
         points, bit = self.state.points, 1 << slot
         for link in self.state.ports[slot]:
             points[link] &= ~bit
@@ -61,12 +61,12 @@ class Draft:
         self.changed |= bit
 
     def relabel(self, slot: int, label: int) -> None:
-        """Give a node another name."""
+        """Give a node another label."""
         self.state.labels[slot] = label
         self.changed |= 1 << slot
 
     def new_edge(self) -> int:
-        """Return an edge with nothing on it, the least there is."""
+        """Return the first edge that is idle and was idle before the rewrite, or a new one."""
         points, first = self.state.points, len(self.state.world.names)
         for edge in range(first, len(points)):
             if not points[edge] and not self.relinked >> edge & 1:
@@ -77,7 +77,7 @@ class Draft:
         return len(points) - 1
 
     def new_slot(self, label: int) -> int:
-        """Return a slot with a new node in it, which is nowhere yet."""
+        """Return a slot with a new node, which has no place yet."""
         state = self.state
         if state.free:
             slot = (state.free & -state.free).bit_length() - 1
@@ -109,7 +109,7 @@ class Draft:
         self.removed |= 1 << slot
 
     def remove_all(self, slot: int) -> None:
-        """Take a node away with all that is in it and nowhere else."""
+        """Remove a node and all descendants that have no place outside it."""
         state, waiting = self.state, [slot]
         while waiting:
             gone = waiting.pop()
@@ -122,7 +122,7 @@ class Draft:
             self.remove(gone)
 
     def copy_all(self, slot: int, places: tuple[int, ...]) -> None:
-        """Put a copy of a node, with all that is in it, into other places; links are shared by the copies."""
+        """Copy a node with all its descendants into these places; the copies share links."""
         state, waiting = self.state, [(slot, places)]
         while waiting:
             copied, places = waiting.pop()
@@ -142,6 +142,6 @@ class Draft:
             raise BigraphError("copy", "the rule would copy a node that other places share")
 
     def finish(self) -> State:
-        """Return the state with its codes."""
+        """Return the state with updated codes."""
         self.state.recode((self.changed | self.emptied) & ~self.state.free)
         return self.state

@@ -1,7 +1,7 @@
-"""What rules have in common that differ in their controls only, such as the thousands of instances of one rule.
+"""Forms of rules: rules that differ only in their controls, such as thousands of instances of one rule, share one.
 
-A canonical form depends on controls only by their order, symmetries only by which of them are equal. So both are
-worked out for the first rule of a form.
+A canonical form depends only on the order of the controls. Symmetries depend only on their equality. So both are
+computed once per form.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _Rank: TypeAlias = Callable[[str], Hashable]
 
 
 class Forms:
-    """The forms of one system's rules, as they are met."""
+    """The forms of one system's rules, with their cached results."""
 
     def __init__(self) -> None:
         self._tidy: dict[Hashable, tuple[Bigraph, list[str]]] = {}
@@ -41,7 +41,7 @@ class Forms:
         return relabelled(first, dict(zip(others, controls, strict=True)), side.signature)
 
     def symmetries(self, rule: Rule, pattern: Pattern) -> tuple[Symmetry, ...]:
-        """Return the symmetries of a rule, whose redex is this pattern."""
+        """Return the symmetries of a rule with the redex `pattern`."""
         ranks: dict[str, int] = {}
 
         def rank(control: str) -> int:
@@ -55,7 +55,7 @@ class Forms:
 
 
 def _form(side: Bigraph, rank: _Rank) -> Hashable:
-    """Return all of a side but its controls, which are told by their ranks and whether their ports are ordered."""
+    """Return a side in which ranks replace the controls; it keeps whether their ports are ordered."""
 
     def row(node: Node) -> Hashable:
         ordered = len(node.ports) > 1 and side.signature[node.control].ordered

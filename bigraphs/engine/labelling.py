@@ -1,12 +1,14 @@
-"""States up to the numbers of their edges: an exact canonical key by refinement and individualisation.
+"""Canonical keys of states up to edge numbers: an exact form by refinement and individualisation.
 
-Without edges and shared nodes the key of a state is canonical already. Otherwise what the codes say is unfolded
-into a small graph: a vertex for each node with an edge in it, a vertex for each edge; an empty node with one port on
-an edge is no vertex but an incidence between what it is in and that edge, and what has no edge in it is a part of
-its parent's label. Vertices are coloured by what is around them until nothing splits; where a tie is left, each
-tied vertex is singled out in turn, and the least encoding wins. Ties that a symmetry explains are tried once
-(McKay): edges with the same incidences are told apart from the start, and a symmetry found at a leaf prunes what
-it maps to what was seen.
+The key of a state without edges and shared nodes is already canonical. Otherwise the codes are unfolded into a small
+graph. It has a vertex for each node with an edge in it, and a vertex for each edge. An empty node with a single port on
+an edge is an incidence between its parent and that edge, not a vertex. Content without edges becomes part of its
+parent's label.
+
+Vertices are coloured by their neighbours until the colours are stable. If a tie remains, each tied vertex is
+individualised in turn, and the least encoding wins. Two kinds of symmetry reduce the search (McKay). Edges with the
+same incidences get different colours at the start. A symmetry found at a leaf prunes branches that it maps to earlier
+branches.
 """
 
 from __future__ import annotations
@@ -19,23 +21,21 @@ from bigraphs.engine.state import Key, State, codes_in
 from bigraphs.engine.world import REFERENCE, Row, World
 
 Incidence: TypeAlias = tuple[int, int]
-"""A label, and an edge (or the link that stands for a shared node)."""
+"""A label and an edge; the negative number of a shared node serves as an edge."""
 
 Around: TypeAlias = list[tuple[int, int]]
-"""What a vertex is next to: labels, shifted to stand above a colour, and vertices."""
+"""The neighbours of a vertex: pairs of a label, shifted above the colours, and a vertex."""
 
 
 class Profile(NamedTuple):
-    """What a code says of its own node: a label, its edges, and the codes of the nodes in it that have some."""
+    """The top of a subtree: the label of its node, its edges, and the codes of its children with edges."""
 
     label: int
     incidences: tuple[Incidence, ...]
     kids: tuple[int, ...]
 
 
-_SHIFT = (
-    20  # a label above a vertex is one small integer, as long as there are not more than a million vertices
-)
+_SHIFT = 20  # a shifted label plus a colour is one small integer, for up to a million vertices
 _IN, _HOLDS, _EDGE = 0 << _SHIFT, 1 << _SHIFT, 2
 
 
@@ -48,11 +48,11 @@ class Labelling:
         self._profiles: dict[int, Profile] = {}
 
     def canonical(self, state: State) -> Key:
-        """Return a key that two states of this world share if, and only if, they are the same bigraph."""
+        """Return a key that two states of this world share if and only if they are the same bigraph."""
         return self.canonical_of(state.key())
 
     def canonical_of(self, key: Key) -> Key:
-        """Return the canonical key of the state that has a key."""
+        """Return the canonical key of the state with this raw key."""
         if self.world.plain:
             return key
         graph = _Graph(self)
@@ -64,15 +64,15 @@ class Labelling:
         return graph.key()
 
     def number(self, label: object) -> int:
-        """Return the number of a label; those below are kept for relations between places."""
+        """Return the number of a label; the numbers 0 to 2 are reserved for relations between places."""
         return self._labels.setdefault(label, len(self))
 
     def __len__(self) -> int:
-        """Return how many numbers of labels there are."""
+        """Return the end of the range of label numbers."""
         return len(self._labels) + 3
 
     def profile(self, code: int) -> Profile:
-        """Return what a code says."""
+        """Return the profile of a code."""
         found = self._profiles.get(code)
         if found is None:
             found = self._profiles[code] = self._make_profile(self.world.rows[code])
@@ -90,7 +90,7 @@ class Labelling:
     def sort_kids(
         self, kids: tuple[int, ...]
     ) -> tuple[tuple[int, ...], tuple[Incidence, ...], tuple[int, ...]]:
-        """Return the codes that have no edges, those that are incidences as such, and the others."""
+        """Return the codes without edges, the incidences, and the other codes."""
         bare, incidences, inside = [], [], []
         for code in kids:
             if self.world.bare[code]:
@@ -110,7 +110,7 @@ class Labelling:
         return self.number(("leaf", label, self._named(ports), place, kids)), link
 
     def _edge_ports(self, label: int, ports: tuple[int, ...]) -> list[Incidence]:
-        """Return the ports on edges, numbered where their order counts."""
+        """Return the ports on edges, numbered where their order matters."""
         fixed, world = len(self.world.names), self.world
         ordered = label != REFERENCE and world.ordered[world.control_of[label]]
         return [(port if ordered else 0, link) for port, link in enumerate(ports) if not 0 <= link < fixed]
@@ -121,7 +121,7 @@ class Labelling:
 
 
 def labels_in(key: Key) -> Iterator[int]:
-    """Yield the numbers of the labels in a canonical key."""
+    """Yield the label numbers in a canonical key."""
     numbers, place = array("I" if key[:1] == b"~" else "Q", key[1:]), 0
     while place < len(numbers):
         end = place + 2 + numbers[place + 1]
@@ -131,7 +131,7 @@ def labels_in(key: Key) -> Iterator[int]:
 
 
 class _Graph:
-    """The part of a state that refinement has to look at."""
+    """The part of a state that needs refinement."""
 
     def __init__(self, labelling: Labelling) -> None:
         self.labelling = labelling
@@ -148,7 +148,7 @@ class _Graph:
         self._add(self.labelling.profile(code), parent)
 
     def _add(self, profile: Profile, parent: int) -> None:
-        """Add a node, and all in it that has an edge."""
+        """Add a node and all its descendants with edges."""
         waiting = [(profile, parent, 0)]
         while waiting:
             profile, parent, twin = waiting.pop()
@@ -193,7 +193,7 @@ class _Graph:
             self.labels[edge] = (_EDGE, rank)
 
     def encode(self, colours: list[int]) -> Key:
-        """Return vertex by vertex, in the order of their colours, its label and what it is next to."""
+        """Return the label and neighbours of each vertex, in the order of their colours."""
         parts: list[int] = []
         order = [0] * len(colours)
         for vertex, colour in enumerate(colours):
@@ -210,7 +210,7 @@ class _Graph:
 
 
 def _refine(around: list[Around], colours: list[int]) -> list[int]:
-    """Split colours by the colours around, until nothing splits; colours are ranks."""
+    """Split colours by the colours of neighbours until they are stable; colours are ranks."""
     count = len(set(colours))
     while True:
         keys = [
@@ -225,7 +225,7 @@ def _refine(around: list[Around], colours: list[int]) -> list[int]:
 
 
 class _Search:
-    """One search tree: refine, single out, compare leaves."""
+    """A search tree: refine, individualise, compare leaves."""
 
     def __init__(self, graph: _Graph) -> None:
         self.graph = graph
@@ -240,7 +240,7 @@ class _Search:
         return self.best
 
     def visit(self, colours: list[int], path: list[int]) -> int:
-        """Search below one node of the tree; return the depth at which the search is to go on."""
+        """Search below one node of the tree; return the depth at which the search continues."""
         self.graph.labelling.world.pause()
         cell = _first_tie(colours)
         if not cell:
@@ -267,10 +267,10 @@ class _Search:
         return len(path)
 
     def seen_by_symmetry(self, vertex: int, tried: list[int], path: list[int]) -> bool:
-        """Say whether symmetries that fix the path map a tried vertex to this one."""
+        """Return whether symmetries that fix the path map a tried vertex to this one."""
         fixing = [symmetry for symmetry in self.symmetries if all(symmetry[step] == step for step in path)]
         orbit, waiting = {vertex}, [vertex]
-        for member in waiting:  # grows while it is walked; inverses are powers, as the group is finite
+        for member in waiting:  # the list grows during the loop; inverses are powers, as the group is finite
             for symmetry in fixing:
                 if symmetry[member] not in orbit:
                     orbit.add(symmetry[member])

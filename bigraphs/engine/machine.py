@@ -26,16 +26,16 @@ from bigraphs.errors import BigraphError
 from bigraphs.system import System
 
 MOST_INSTANTANEOUS: Final = 100_000
-"""How many instantaneous reactions may follow one another."""
+"""The largest number of consecutive instantaneous reactions."""
 MANY_INSTANTANEOUS: Final = 100
-"""After how many of them states are compared: a sequence that returns to one never ends."""
+"""The number of reactions after which states are compared: a sequence that revisits a state never ends."""
 
 
 class Step(NamedTuple):
-    """One thing that can happen: the rule, where, and the state that it leads to.
+    """A possible step: the rule, its occurrence, and the target state.
 
-    `reactions` counts it and the instantaneous reactions that follow, which are counted once where several occurrences
-    have equal results.
+    `reactions` counts the step and the instantaneous reactions after it. If several occurrences have equal results,
+    only the first one counts these reactions.
     """
 
     reaction: Reaction
@@ -47,8 +47,8 @@ class Step(NamedTuple):
 class Machine:
     """A system compiled for its world.
 
-    Results do not depend on the order in which terms are written: the initial state and both sides of each rule
-    are put into canonical form first.
+    The initial state and both sides of each rule are first put into canonical form, so results do not depend on the
+    order of terms in the source.
     """
 
     def __init__(self, system: System, pause: Callable[[], None] = lambda: None) -> None:
@@ -80,7 +80,7 @@ class Machine:
         self.initial = initial
 
     def _classes(self) -> list[tuple[int, bool]]:
-        """Return for each class of priority the mask of its rules, and whether it is instantaneous."""
+        """Return for each priority class the mask of its rules, and whether it is instantaneous."""
         waiting = iter(range(len(self.reactions)))
         return [
             (sum(1 << next(waiting) for rule in each.rules if rule.weight != 0), each.instantaneous)
@@ -88,15 +88,15 @@ class Machine:
         ]
 
     def start(self) -> tuple[Spot, int]:
-        """Return the initial state after the instantaneous rules, and how many of their reactions that took."""
+        """Return the initial state after the instantaneous rules, and the number of their reactions."""
         return self.settle(self.first())
 
     def first(self) -> Spot:
-        """Return the initial state as it was given, before the instantaneous rules."""
+        """Return the initial state before the instantaneous rules."""
         return Spot(make_state(self.world, self.initial), self.index)
 
     def holding(self, state: State) -> set[int]:
-        """Return the numbers of the predicates that occur in a state."""
+        """Return the numbers of the predicates that hold in a state."""
         possible = numbers_in(self.predicate_index.possible(state))
         return {number for number in possible if occurs(self._predicate(number), state)}
 
@@ -106,14 +106,14 @@ class Machine:
         return Counter(self.world.controls[node.control] for node in pattern.nodes)
 
     def _predicate(self, number: int) -> Matcher:
-        """Return what finds a predicate; it is compiled when a state first has the nodes for it."""
+        """Return the matcher of a predicate; it is compiled when a state first has enough nodes for it."""
         if number not in self.predicates:
             pattern = without_idle(self.system.predicates[number].pattern)
             self.predicates[number] = Matcher(self.world, compile_pattern(self.world, pattern))
         return self.predicates[number]
 
     def steps(self, spot: Spot) -> Iterator[Step]:
-        """Yield all that can happen: every occurrence in the first class of priority that has any."""
+        """Yield all possible steps: every occurrence in the highest ordinary priority class that has any."""
         enabled = self.enabled(spot)
         settled: set[Key] = set()
         for reaction, found in enabled:
@@ -124,7 +124,7 @@ class Machine:
             yield Step(reaction, found, target, 1 + count)
 
     def enabled(self, spot: Spot) -> list[tuple[Reaction, Occurrence]]:
-        """Return every occurrence in the first ordinary class of priority that has any."""
+        """Return every occurrence in the highest ordinary priority class that has any."""
         askable = spot.askable()
         for rules, instant in self.classes:
             if instant or not rules & askable:
@@ -135,7 +135,7 @@ class Machine:
         return []
 
     def _counted(self, result: Spot, count: int, settled: set[Key]) -> int:
-        """Return a number of instantaneous reactions, 0 where those that follow an equal result are counted already."""
+        """Return the number of instantaneous reactions to count: 0 if an equal result was counted already."""
         key = self.labelling.canonical(result.state)
         if key in settled:
             return 0
@@ -143,10 +143,13 @@ class Machine:
         return count
 
     def settle(self, spot: Spot) -> tuple[Spot, int]:
-        """Apply instantaneous rules until none can be applied, or an ordinary class above them is enabled.
+        """Apply instantaneous rules until none applies or a higher ordinary class is enabled.
 
-        Of a class the first rule that can be applied is, again and again. Each class is run to its end before higher
-        ones are asked again. Raises BigraphError if that does not end.
+        The first applicable rule of a class fires, repeatedly. Each class runs to its end before higher classes are
+        tried again.
+
+        Raises:
+            BigraphError: If the reactions do not end.
         """
         count = 0
         seen: set[Key] = set()
@@ -158,7 +161,7 @@ class Machine:
         return spot, count
 
     def urgent(self, spot: Spot) -> int | None:
-        """Return which instantaneous class acts now; None if an ordinary one goes first, or none can act."""
+        """Return the instantaneous class that acts now; None if an ordinary class precedes it, or none can act."""
         askable = spot.askable()
         for number, (rules, instant) in enumerate(self.classes):
             if rules & askable and any(True for _ in spot.enabled(rules)):
@@ -166,14 +169,14 @@ class Machine:
         return None
 
     def instant(self, spot: Spot, rules: int) -> Spot | None:
-        """Apply the first rule that can be; of its results the one with the least canonical form."""
+        """Apply the first applicable rule; of its results choose the one with the least canonical form."""
         for reaction, live in spot.enabled(rules):
             targets = self.results(spot, reaction, live)
             return targets[self.outlines.least([target.state for target in targets])]
         return None
 
     def results(self, spot: Spot, reaction: Reaction, live: list[Occurrence]) -> list[Spot]:
-        """Return what a rule makes of each of some occurrences."""
+        """Return the result of a rule at each of these occurrences."""
         targets = [spot.after(reaction.apply(spot.state, found)[0]) for found in live]
         for target in targets:
             target.lost |= spot.lost

@@ -1,4 +1,4 @@
-"""Node identity: which node of a state is which node of the next."""
+"""Node identity across a step: the nodes of a state that survive in the next state."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from bigraphs.engine.state import State, bits
 
 
 def identities(spot: Spot, step: Step) -> Iterator[tuple[int, int]]:
-    """Yield the number of each node before a step with its number after it, where it is the same node.
+    """Yield the number of each surviving node before a step with its number after it.
 
-    A node that the rule does not touch is itself, and so is one of the redex that is in the reactum
-    (`bigraphs.engine.tracking`). Numbers are those of the bigraphs that `to_bigraph` makes of the two states.
+    A node outside the redex survives. A node of the redex survives if it is in the reactum
+    (`bigraphs.engine.tracking`). The numbers are those in the bigraphs that `to_bigraph` returns for the two states.
     """
     before, after = _numbers(spot.state), _numbers(step.target.state)
     for slot, number in before.items():
@@ -22,7 +22,7 @@ def identities(spot: Spot, step: Step) -> Iterator[tuple[int, int]]:
 
 
 def _numbers(state: State) -> dict[int, int]:
-    """Return the number that each slot has in the bigraph of a state: named nodes first, by name."""
+    """Return the number of each slot in the bigraph of a state: named nodes first, by name."""
     names = state.world.name_of
 
     def key(slot: int) -> tuple[bool, str, int]:

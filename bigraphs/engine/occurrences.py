@@ -1,4 +1,4 @@
-"""The occurrences of all rules in one state, mostly carried over from the previous state."""
+"""The occurrences of all rules in one state, mostly inherited from the previous state."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from bigraphs.engine.state import State
 
 
 class Spot:
-    """A state with the occurrences of the rules that were asked for.
+    """A state with the occurrences of the rules that were requested.
 
-    What a rewrite did not touch occurs as before; so of the state before only those occurrences are dropped that
-    have a touched node, and only those are searched that have one. A node is touched if its places or links
-    changed; for a rule that wants it to hold certain nodes and no others, also if what is in it changed; for a rule
-    with edges, also if something else on one of its links changed. An index tells which rules that is about: only
-    they are asked again. All this is done when a spot is first asked or kept, since most lead to a known state.
+    A rewrite preserves every occurrence without a touched node. So only inherited occurrences with a touched node are
+    dropped, and only occurrences with a touched node are searched. A node is touched if its places or links changed.
+    For a rule with nodes without sites, a node is also touched if its content changed. For a rule with edges, a node is
+    also touched if the points of one of its links changed. An index finds the rules concerned; only these are searched
+    again. The update happens when a spot is first queried or stored, since most spots lead to a known state.
 
     Attributes:
         state: The state.
         known: The mask of the rules whose occurrences are known.
-        found: The occurrences of each rule that is known to have any, by its number.
+        found: The occurrences of each known rule that has any, by its number.
         having: The mask of the rules in `found`.
-        lacking: Which rules a state has too few nodes for (see `RuleIndex`), once that was asked.
-        lost: The slots whose nodes are not the same ones as before the last step.
+        lacking: The rules for which the state has too few nodes (see `RuleIndex`), once computed.
+        lost: The mask of the slots whose nodes did not survive the last step.
     """
 
     __slots__ = (
@@ -64,14 +64,14 @@ class Spot:
         self.lost = 0
 
     def after(self, draft: Draft) -> Spot:
-        """Return the state that a rewrite of this one has made."""
+        """Return the spot that a rewrite of this one leads to."""
         spot = Spot(draft.finish(), self._index)
         spot._from = self, draft
         spot.lost = draft.removed
         return spot
 
     def carry(self) -> None:
-        """Take over the occurrences of the spot before, and let go of it."""
+        """Inherit the occurrences of the previous spot, and release it."""
         if self._from is None:
             return
         before, draft = self._from
@@ -88,7 +88,7 @@ class Spot:
             (self._before if concerned >> number & 1 else self.found)[number] = found
 
     def parts(self) -> tuple[object, ...]:
-        """Return what a spot is made of, as plain values."""
+        """Return the parts of a spot, as plain values."""
         self.carry()
         touched = self._changed, self._emptied, self._linked
         return (
@@ -102,7 +102,7 @@ class Spot:
         )
 
     def remade(self, parts: tuple[Any, ...]) -> Spot:
-        """Return the spot of such parts, which are of this one's system."""
+        """Return the spot with these parts, which must belong to the same system."""
         state, known, found, known_before, before, touched, lost = parts
         spot = Spot(self.state.remade(state), self._index)
         spot.known, spot.found, spot._known_before, spot._before = known, found, known_before, before
@@ -112,7 +112,7 @@ class Spot:
         return spot
 
     def askable(self) -> int:
-        """Return the mask of the rules that are not known to have no occurrence."""
+        """Return the mask of the rules that may have an occurrence."""
         if self._possible < 0:
             self.carry()
             self.lacking = self.lacking or self._index.lacking(self.state)
@@ -121,21 +121,21 @@ class Spot:
         return self._possible & (~self.known | self.having)
 
     def enabled(self, rules: int) -> Iterator[tuple[Reaction, list[Occurrence]]]:
-        """Yield those of the rules in a mask that may act, in order, and where they may."""
+        """Yield the rules in a mask that can act, in order, each with its live occurrences."""
         for number in numbers_in(rules & self.askable()):
             reaction = self._index.reactions[number]
             if live := self.live(reaction):
                 yield reaction, live
 
     def occurrences(self, reaction: Reaction) -> list[Occurrence]:
-        """Return every occurrence of a rule, wherever it is, one of each that its symmetries make equal."""
+        """Return every occurrence of a rule, one representative of each set of symmetric ones."""
         number = reaction.number
         if not self.known >> number & 1:
             self.state.world.pause()
             found = self._carried(reaction) if self._known_before >> number & 1 else self._fresh(reaction)
             self.known |= 1 << number
             if found:
-                self.found[number] = sorted(found)  # so their order does not tell how they were found
+                self.found[number] = sorted(found)  # sorted, so the order does not depend on the search
                 self.having |= 1 << number
         return self.found.get(number, [])
 
@@ -152,7 +152,7 @@ class Spot:
         return found + reaction.representatives.choose(fresh) if fresh else found
 
     def live(self, reaction: Reaction) -> list[Occurrence]:
-        """Return the occurrences where the rule may act and its conditions hold."""
+        """Return the occurrences in active places whose conditions hold."""
         found = self.occurrences(reaction)
         if reaction.wide and found:
             around = self._around = self._around or Surroundings(self.state, passive=self.state.world.passive)

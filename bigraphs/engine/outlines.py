@@ -1,4 +1,4 @@
-"""What a state looks like whatever was seen before it: digests of its subtrees, kept for each code."""
+"""Outlines of states that do not depend on earlier states: digests of subtrees, cached by code."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Outline: TypeAlias = list[list[bytes]]
 
 
 class Outlines:
-    """The outlines of the states of one world: all but which edge a link is, and where a shared node is twice."""
+    """The outlines of the states of one world; they ignore the identities of edges and of shared nodes."""
 
     def __init__(self, labelling: Labelling) -> None:
         self.labelling = labelling
@@ -21,10 +21,10 @@ class Outlines:
         self._digests: dict[int, bytes] = {}
 
     def least(self, states: list[State]) -> int:
-        """Return which of several states comes first in an order that isomorphic states share.
+        """Return the position of the least state, in an order that isomorphic states share.
 
-        Outlines decide it as a rule, else whether all the states of the least outline are one. Canonical forms that do
-        not depend on what was seen before, which take long, are made where neither does.
+        Usually the outlines decide. Otherwise the states with the least outline are often isomorphic, and any of them
+        serves. In the remaining cases, slow canonical forms decide, which do not depend on earlier states.
         """
         if len(states) == 1:
             return 0
@@ -39,7 +39,7 @@ class Outlines:
         return min(sorted(distinct.values()), key=lambda number: history_free(states[number]))
 
     def outline(self, state: State) -> Outline:
-        """Return the digests of what is in each region, sorted."""
+        """Return the sorted digests of the subtrees in each region."""
         regions = range(self.world.regions)
         return [
             sorted(self._digest(state.codes[slot]) for slot in bits(state.kids[~region]))
@@ -47,7 +47,7 @@ class Outlines:
         ]
 
     def _digest(self, code: int) -> bytes:
-        """Return the digest of a subtree; those of what is in it first, without recursion."""
+        """Return the digest of a subtree; it computes the children first, without recursion."""
         rows, digests = self.world.rows, self._digests
         waiting = [] if code in digests else [code]
         while waiting:
@@ -60,7 +60,7 @@ class Outlines:
         return digests[code]
 
     def _of(self, label: int, ports: tuple[int, ...], inside: list[bytes]) -> bytes:
-        from hashlib import blake2b  # noqa: PLC0415 - few systems compare outlines, and it takes time to load
+        from hashlib import blake2b  # noqa: PLC0415 - few systems compare outlines, and the import is slow
 
         if label == REFERENCE:
             return b""

@@ -11,7 +11,7 @@ from bigraphs.engine.world import World
 from bigraphs.errors import BigraphError
 
 MOST_NODES: Final = 150
-"""How many nodes a pattern may have: a search goes as deep as that, some frames for each."""
+"""The largest number of nodes of a pattern; the search uses several stack frames per node."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,17 +19,19 @@ class Pattern:
     """A pattern over one world; nodes and links are numbered as in its bigraph, edges after names.
 
     Attributes:
+        controls: The control of each node.
         labels: The label of each node, or -1 for a node without a name.
-        parents: The nodes that each node is in.
-        homes: The regions that each node is in.
-        kids: The nodes in each node.
+        parents: The parent nodes of each node.
+        homes: The regions of each node.
+        kids: The child nodes of each node.
         sited: Whether each node has a site.
         ports: The links of each node.
         on: The nodes on each link.
-        names: How many of the links are names; the others are edges.
-        sites: The nodes that each site is in.
-        roots: The nodes that are in a region.
-        twins: Groups of nodes that are interchangeable, whatever the rest of a rule says.
+        names: The number of links that are names; the others are edges.
+        regions: The number of regions.
+        sites: The parent nodes of each site.
+        roots: The nodes in a region.
+        twins: Groups of nodes that are interchangeable in every rule.
     """
 
     controls: tuple[int, ...]
@@ -57,19 +59,19 @@ class Pattern:
         return range(self.names, len(self.on))
 
     def form(self, world: World) -> Hashable:
-        """Return all that decides how it is looked for, so all but which controls and names its nodes have."""
+        """Return the part that determines the search plan: all but the particular controls and names of the nodes."""
         ordered = tuple([world.ordered[control] for control in self.controls])
         named = tuple([label >= 0 for label in self.labels])
         places = self.parents, self.homes, self.sited, self.sites, self.regions
         return ordered, named, places, self.ports, self.names, self.twins
 
     def wide(self) -> bool:
-        """Say whether a part of it might lie inside what another one holds."""
+        """Return whether one part of it may match inside the content of another."""
         parts = len(self.components()) > 1 or any(len(around) > 1 for around in self.parents)
         return parts and any(self.sited)
 
     def components(self) -> list[set[int]]:
-        """Return the sets of nodes that places connect."""
+        """Return the sets of nodes that are connected by nesting."""
         left, found = set(range(self.size)), []
         while left:
             part, waiting = set[int](), [min(left)]
@@ -84,7 +86,7 @@ class Pattern:
 
 
 def compile_pattern(world: World, bigraph: Bigraph) -> Pattern:
-    """Return a pattern; raises BigraphError if it is too large."""
+    """Return the compiled pattern; raises BigraphError if it is too large."""
     check_size(bigraph)
     number: dict[int | str, int] = {name: link for link, name in enumerate(bigraph.outer_names)}
     fixed, inside = len(bigraph.outer_names), children(bigraph)
@@ -120,7 +122,7 @@ def compile_pattern(world: World, bigraph: Bigraph) -> Pattern:
 def _twins(
     bigraph: Bigraph, ports: tuple[tuple[int, ...], ...], inside: dict[int, list[int]], sited: Iterable[int]
 ) -> tuple[tuple[int, ...], ...]:
-    """Group empty nodes that are alike, in the same places, and on the same links."""
+    """Return groups of empty nodes with the same control, places and links."""
     groups: dict[object, list[int]] = {}
     held = set(sited)
     for number, node in enumerate(bigraph.nodes):
@@ -137,7 +139,7 @@ def check_size(bigraph: Bigraph) -> None:
 
 
 def check_solid(redex: Bigraph, what: str) -> None:
-    """Raise BigraphError unless each occurrence of a redex takes a state apart in one way (Milner's solid redexes)."""
+    """Raise BigraphError unless each occurrence of a redex decomposes a state uniquely (Milner's solid redexes)."""
     inhabited = {place for node in redex.nodes for place in node.parents}
     idle = sorted(set(redex.outer_names) - {link for node in redex.nodes for link in node.ports})
     if not redex.nodes:

@@ -1,4 +1,4 @@
-"""Prepared rules: the pattern to find, and the changes at an occurrence, node by node."""
+"""Compiled rules: the pattern to find, and the changes at an occurrence, node by node."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _Places: TypeAlias = Callable[[tuple[int, ...]], tuple[int, ...]]
 
 @dataclass(frozen=True, slots=True)
 class NodeChange:
-    """What becomes of one node of the reactum.
+    """The change of one node of the reactum.
 
-    `old` is the node of the redex that it is, or -1. `places` are nodes of the reactum or regions, None where it
-    stays; `links` are links of the reactum, None where it keeps them.
+    `old` is its node of the redex, or -1 for a new node. `places` are nodes of the reactum or regions; None if they
+    stay. `links` are links of the reactum; None if they stay.
     """
 
     node: int
@@ -42,7 +42,7 @@ class NodeChange:
 
 @dataclass(frozen=True, slots=True)
 class SiteChange:
-    """What becomes of what a site of the redex holds: it goes to the first of the `uses`, the others get copies."""
+    """The change of a site's content: it moves to the first of the `uses`, the others receive copies."""
 
     site: int
     uses: tuple[tuple[int, ...], ...]
@@ -50,13 +50,13 @@ class SiteChange:
 
 
 class Reaction:
-    """A rule of one world: its matcher, and what it changes; both are made when they are first asked for.
+    """A rule of one world: its matcher and its changes, both compiled on first use.
 
     Attributes:
         label: The name of the rule, with its parameters.
-        controls: How many nodes of each control the redex has.
-        wide: Whether an occurrence may have to be refused for where its regions are.
-        exact: The controls of the nodes of the redex that have no site.
+        controls: The number of redex nodes of each control.
+        wide: Whether the places of an occurrence's regions must be checked.
+        exact: The controls of the redex nodes without a site.
         closed: Whether the redex has edges.
     """
 
@@ -86,12 +86,12 @@ class Reaction:
 
     @cached_property
     def matcher(self) -> Matcher:
-        """What finds the redex."""
+        """The matcher of the redex."""
         return Matcher(self.world, self.pattern)
 
     @cached_property
     def wide(self) -> bool:
-        """Whether an occurrence may have to be refused for where its regions are."""
+        """Whether the places of an occurrence's regions must be checked."""
         return self.world.passive or self.matcher.wide
 
     @cached_property
@@ -101,17 +101,17 @@ class Reaction:
 
     @cached_property
     def representatives(self) -> Representatives:
-        """What chooses among occurrences that are one; made when the rule has an occurrence."""
+        """The selection among symmetric occurrences; compiled at the rule's first occurrence."""
         return Representatives(self.pattern, self._forms.symmetries(self.rule, self.pattern))
 
     @cached_property
     def tracked(self) -> tuple[int, ...]:
-        """For each node of the reactum the node of the redex that it is, or -1."""
+        """For each node of the reactum its node of the redex, or -1."""
         return track(self.rule.redex, self.rule.reactum)
 
     @cached_property
     def edges(self) -> tuple[int, ...]:
-        """For each edge of the reactum the edge of the redex that it is, or -1."""
+        """For each edge of the reactum its edge of the redex, or -1."""
         return track_edges(self.rule.redex, self.rule.reactum, self.tracked)
 
     @cached_property
@@ -121,13 +121,13 @@ class Reaction:
 
     @cached_property
     def removed(self) -> tuple[int, ...]:
-        """The nodes of the redex that are none of the reactum."""
+        """The nodes of the redex that are not in the reactum."""
         kept = set(self.tracked)
         return tuple(node for node in range(self.pattern.size) if node not in kept)
 
     @cached_property
     def changes(self) -> tuple[NodeChange, ...]:
-        """What becomes of each node of the reactum, those first that others are in."""
+        """The change of each node of the reactum, parents first."""
         return tuple(self._node_change(number) for number in top_down(self.rule.reactum))
 
     @cached_property
@@ -137,19 +137,19 @@ class Reaction:
 
     @cached_property
     def kept(self) -> tuple[NodeChange, ...]:
-        """The changes of nodes that are there already, and are put or linked otherwise."""
+        """The changes of surviving nodes with new places or new links."""
         old = (change for change in self.changes if change.old >= 0)
         return tuple(change for change in old if change.places is not None or change.links is not None)
 
     @cached_property
     def sites(self) -> tuple[SiteChange, ...]:
-        """What becomes of what the sites hold, where that does not just stay."""
+        """The changes of the sites whose content does not simply stay."""
         changes = map(self._site_change, range(len(self.rule.redex.sites)))
         return tuple(change for change in changes if not change.stays or len(change.uses) != 1)
 
     @cached_property
     def placed(self) -> bool:
-        """Whether something is put directly into a region."""
+        """Whether a change puts something directly into a region."""
         nodes = [change.places or () for change in self.changes]
         uses = [use for change in self.sites for use in change.uses]
         return any(place < 0 for places in (*nodes, *uses) for place in places)
@@ -188,7 +188,7 @@ class Reaction:
         return SiteChange(site, (*staying, *uses), bool(staying))
 
     def apply(self, state: State, occurrence: Occurrence) -> tuple[Draft, dict[int, int]]:
-        """Return the state that the rule makes of an occurrence, and the slots of the reactum's nodes in it."""
+        """Return the state after the rule acts at an occurrence, and the slots of the reactum's nodes in it."""
         nodes = occurrence.nodes
         regions = self._region_places(state, occurrence) if self.placed else []
         contents = self._contents(state, occurrence) if self.sites else []
@@ -217,7 +217,7 @@ class Reaction:
         return draft, slots
 
     def _name(self, draft: Draft, state: State, slots: dict[int, int]) -> None:
-        """Give the reactum's nodes their names; what an anonymous node of the redex matched loses its own."""
+        """Name the nodes of the reactum; a node that an anonymous redex node matched loses its name."""
         for number, label in enumerate(self.labels):
             name = self.world.name_of[label]
             if name is not None and self.tracked[number] < 0 and label in state.labels:
@@ -236,7 +236,7 @@ class Reaction:
         return found
 
     def _contents(self, state: State, occurrence: Occurrence) -> list[int]:
-        """Return the mask of what each site holds."""
+        """Return the mask of the content of each site."""
         if self.world.sharing:
             return site_contents(self.pattern, state, occurrence.nodes, occurrence.mask)
         return [state.kids[occurrence.nodes[home]] & ~occurrence.mask for (home,) in self.pattern.sites]
@@ -255,7 +255,7 @@ class Reaction:
     def _change_contents(
         self, draft: Draft, state: State, occurrence: Occurrence, contents: list[int], places: _Places
     ) -> None:
-        """Move, copy and drop what the sites hold."""
+        """Move, copy and drop the content of the sites."""
         changes = {change.site: change for change in self.sites}
         for slot in bits(_union(contents[site] for site in changes)):
             within = [site for site, held in enumerate(contents) if held >> slot & 1]

@@ -1,4 +1,4 @@
-"""Which of thousands of rules may occur in a state, and which of them a change concerns, as masks of their numbers."""
+"""Indexes that exclude most of thousands of rules, for a state and after a change, as masks of rule numbers."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _GROUP: Final = 16
 class RuleIndex:
     """Patterns by the controls of their nodes; pattern `n` is bit `n` of a mask.
 
-    `short[control][k]` are the patterns for which k nodes of a control are too few, so that a state is asked once
-    for each control, however many patterns there are. Controls are taken in groups: a step changes the numbers of a
-    few, and leaves what the other groups say.
+    `short[control][k]` is the mask of the patterns that need more than k nodes of a control. So a state needs one
+    lookup per control, however many patterns there are. Controls are divided into groups: a step changes the counts of
+    a few controls, and the results of the other groups stay valid.
     """
 
     def __init__(self, needs: Sequence[Counter[int]]) -> None:
@@ -34,7 +34,7 @@ class RuleIndex:
         self._group_of = {control: place // _GROUP for place, (control, _) in enumerate(ordered)}
 
     def possible(self, state: State) -> int:
-        """Return the patterns for all of whose nodes a state has nodes enough."""
+        """Return the patterns for which a state has enough nodes of every control."""
         return self.spared(self.lacking(state))
 
     def spared(self, lacking: Sequence[int]) -> int:
@@ -45,11 +45,11 @@ class RuleIndex:
         return self.all & ~found
 
     def lacking(self, state: State) -> list[int]:
-        """Return for each group of controls the patterns for which a state has too few nodes of one of them."""
+        """Return for each group of controls the patterns that need more nodes of one of them than the state has."""
         return [_lacking(group, state) for group in self._groups]
 
     def lacking_after(self, before: Sequence[int], state: State, controls: Iterable[int]) -> list[int]:
-        """Return the same for the state after a step that changed the numbers of the nodes of these controls."""
+        """Return the same after a step that changed the node counts of these controls."""
         found = list(before)
         for group in {self._group_of.get(control, -1) for control in controls} - {-1}:
             found[group] = _lacking(self._groups[group], state)
@@ -66,7 +66,7 @@ def _lacking(group: Sequence[tuple[int, list[int]]], state: State) -> int:
 
 
 class ReactionIndex(RuleIndex):
-    """The reactions of a system, by what may make or end an occurrence of each."""
+    """The reactions of a system, by the changes that may create or destroy an occurrence of each."""
 
     def __init__(self, reactions: Sequence[Reaction]) -> None:
         super().__init__([reaction.controls for reaction in reactions])
@@ -76,7 +76,7 @@ class ReactionIndex(RuleIndex):
         self._closed = sum(1 << reaction.number for reaction in reactions if reaction.closed)
 
     def concerned(self, before: State, after: State, changed: int, emptied: int, linked: int) -> int:
-        """Return the reactions whose occurrences may be others now that these slots were touched (see `Spot`)."""
+        """Return the reactions whose occurrences may change when these slots are touched (see `Spot`)."""
         holding = self._holding
         if after.world.sharing:
             return _union(holding, _controls(before, after, changed | emptied | linked))
@@ -96,7 +96,7 @@ def _by_control(mentions: Iterable[tuple[int, Iterable[int]]]) -> dict[int, int]
 
 
 def _controls(before: State, after: State, slots: int) -> set[int]:
-    """Return the controls of the nodes that are in these slots or were in them."""
+    """Return the controls of the nodes in these slots, before and after."""
     labels = {
         each.labels[slot] for slot in bits(slots) for each in (before, after) if slot < len(each.labels)
     }
@@ -111,7 +111,7 @@ def _union(masks: dict[int, int], controls: Iterable[int]) -> int:
 
 
 def numbers_in(mask: int) -> Iterator[int]:
-    """Yield the numbers in a mask that is seldom asked for twice, from the least."""
+    """Yield the numbers in a mask in ascending order, without the cache of `bits`: such masks rarely recur."""
     while mask:
         low = mask & -mask
         mask ^= low

@@ -1,11 +1,11 @@
-"""The search for occurrences: one plan for each form of a pattern and start node, made once, run on every state.
+"""The search for occurrences: one plan per pattern form and start node, compiled once and run on every state.
 
-A plan places the nodes of a pattern one after the other, next to those that are placed already, so that its
-candidates are an intersection of a few masks. An occurrence maps nodes injectively and keeps controls, nesting
-and links: a node without a site has nothing else in it, an edge is matched with all of its points, a name by any
-link. Only a region all of whose nodes are in other nodes, too, may lie nowhere. Whether the regions lie where rules
-may act is asked afterwards (`bigraphs.engine.contexts`), since that can change without any node of the occurrence
-being touched. Patterns that differ in their controls only have one form.
+A plan places the nodes of a pattern one after the other, each close to the placed ones, so that the candidates are an
+intersection of a few masks. An occurrence maps nodes injectively and preserves controls, nesting and links. A node
+without a site has no other content. An edge matches with all its points, a name matches any link. A region may have no
+place only if all its nodes have other parents. `bigraphs.engine.contexts` checks afterwards whether the regions are
+active, since that can change although no node of the occurrence is touched. Patterns that differ only in their controls
+have one form.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from bigraphs.engine.state import State, bits
 from bigraphs.engine.world import World
 
 _SELDOM: Final = 8
-"""Up to how many searches a pattern is looked for everywhere, and not where a state was touched."""
+"""Up to this number of searches, a pattern is searched everywhere instead of only at touched nodes."""
 
 
 class _Plans:
-    """What places the patterns of one form, from each of their nodes on, and how often they were looked for."""
+    """The plans of one pattern form, one per start node, and the number of searches with them."""
 
     __slots__ = ("placings", "searches")
 
@@ -43,18 +43,18 @@ class Matcher:
         self._plans: _Plans = world.plans.setdefault(pattern.form(world), _Plans(pattern.size))
 
     def plan(self, first: int) -> Placing:
-        """Return what places the whole pattern from one node on; it is made when it is first asked for."""
+        """Return the plan that places the whole pattern from a start node on; it is compiled on first use."""
         found = self._plans.placings[first]
         if found is None:
             found = self._plans.placings[first] = _plan(self.world, self.pattern, first)
         return found
 
     def unplanned(self) -> bool:
-        """Say whether it has searched so seldom that to look everywhere costs less than to plan from each node."""
+        """Return whether searches were so rare that a full search costs less than a plan for each start node."""
         return self._plans.searches < _SELDOM
 
     def find(self, state: State, allowed: int = -1, *, once: bool = False) -> list[Occurrence]:
-        """Return every occurrence within the allowed slots, or one of them."""
+        """Return every occurrence within the allowed slots; with `once` at most one."""
         self._plans.searches += 1
         pattern, run = self.pattern, Run(state, self.pattern, allowed, once=once)
         if not pattern.size:
@@ -68,7 +68,7 @@ class Matcher:
         return run.found
 
     def find_at(self, state: State, touched: int) -> list[Occurrence]:
-        """Return every occurrence that has a node among the touched ones."""
+        """Return every occurrence with a touched node."""
         run = Run(state, self.pattern, -1, once=False)
         controls = self.pattern.controls
         for slot in bits(touched & ~state.free):
@@ -76,12 +76,12 @@ class Matcher:
             for node, wanted in enumerate(controls):
                 if wanted == control:
                     self.plan(node)(run, 0, slot)
-            run.allowed &= ~(1 << slot)  # what holds this slot has been found
+            run.allowed &= ~(1 << slot)  # all occurrences with this slot have been found
         return run.found
 
 
 def _plan(world: World, pattern: Pattern, first: int) -> Placing:
-    """Return what places the whole pattern, from one node on."""
+    """Return the plan that places the whole pattern from a start node on."""
     order = _order(pattern, first)
     step = _end(world, pattern)
     for place in reversed(range(1, pattern.size)):
@@ -92,7 +92,7 @@ def _plan(world: World, pattern: Pattern, first: int) -> Placing:
 
 
 def _order(pattern: Pattern, first: int) -> list[int]:
-    """Return the nodes so that each is as near to those before as can be."""
+    """Return the nodes in an order in which each is as close as possible to the previous ones."""
     order, left = [first], set(range(pattern.size)) - {first}
     near = dict.fromkeys(left, 0)
     while left:
@@ -104,7 +104,7 @@ def _order(pattern: Pattern, first: int) -> list[int]:
 
 
 def _nearness(pattern: Pattern, node: int, placed: int) -> int:
-    """Return how much a placed node says about another one, as bits, the highest for what says most."""
+    """Return how much a placed node constrains another one, as bits; the strongest constraint is the highest bit."""
     return (
         8 * (placed in pattern.kids[node])
         + 4 * any(placed in pattern.on[link] for link in pattern.ports[node])
@@ -114,7 +114,7 @@ def _nearness(pattern: Pattern, node: int, placed: int) -> int:
 
 
 def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing) -> Step:
-    """Return the step that tries every slot for a node which the placed ones leave."""
+    """Return the step that tries every slot for a node that the placed nodes permit."""
     above = tuple(parent for parent in pattern.parents[node] if parent in bound)
     below = tuple(kid for kid in pattern.kids[node] if kid in bound)
     beside = next((other for other in sorted(bound) if _beside(pattern, node, other)), -1)
@@ -123,7 +123,7 @@ def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing
     before = [twin for twin in group if twin < node and twin in bound]
     after = [twin for twin in group if twin > node and twin in bound]
     between = [twin for twin in group if node < twin < min(after, default=pattern.size)]
-    reserve = len(between)  # twins that are still to be placed above this one
+    reserve = len(between)  # slots to leave for the twins that come between
 
     def step(run: Run, used: int) -> bool:
         run.steps += 1
@@ -156,7 +156,7 @@ def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing
 
 
 def _beside(pattern: Pattern, node: int, other: int) -> bool:
-    """Say whether two nodes are in one region and nowhere else, so that all their places are the same."""
+    """Return whether two nodes are in one region only, and in the same one, so that their places are equal."""
     alone = not pattern.parents[node] and not pattern.parents[other]
     return alone and len(pattern.homes[node]) == 1 and pattern.homes[node] == pattern.homes[other]
 
@@ -170,7 +170,7 @@ def _mask(places: tuple[int, ...]) -> int:
 
 
 def _placing(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
-    """Return what checks a slot for a node, binds its links, and goes on."""
+    """Return the step that checks a slot for a node, binds its links, and continues."""
     inside, sited = len(pattern.kids[node]), pattern.sited[node]
     above, rooted = len(pattern.parents[node]), bool(pattern.homes[node])
     alone = rooted and not above
@@ -197,7 +197,7 @@ def _placing(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
 
 
 def _end(world: World, pattern: Pattern) -> Step:
-    """Return the step that checks what only whole occurrences show, and keeps them."""
+    """Return the last step: it checks conditions on whole occurrences, and stores them."""
     roots = pattern.roots
     closed = [(link, pattern.on[link]) for link in pattern.closed if pattern.on[link]]
     above = [len(pattern.parents[node]) for node in range(pattern.size)]

@@ -1,4 +1,4 @@
-"""One search in progress, and its results."""
+"""A search in progress, and its results."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from bigraphs.engine.patterns import Pattern
 from bigraphs.engine.state import State
 
 OFTEN: Final = 0x3FF
-"""After how many steps, less one, a search pauses."""
+"""The number of steps between two pauses of a search, minus one."""
 
 
 class Occurrence(NamedTuple):
-    """Where a pattern is: the slot of each of its nodes, the link of each of its links, the mask of the slots.
+    """An occurrence of a pattern: the slot of each node, the link of each pattern link, and the mask of the slots.
 
-    A link of the pattern that is on no node has -1.
+    An idle link of the pattern has -1.
     """
 
     nodes: tuple[int, ...]
@@ -24,7 +24,7 @@ class Occurrence(NamedTuple):
 
 
 class Run:
-    """One search: the pattern, the state, what is placed so far, and what was found."""
+    """A search: the pattern, the state, the partial assignment, and the occurrences found."""
 
     __slots__ = ("allowed", "found", "links", "nodes", "once", "pattern", "state", "steps")
 
@@ -40,7 +40,7 @@ class Run:
 
 
 Step: TypeAlias = Callable[[Run, int], bool]
-"""Places what is left of a pattern beside the slots in a mask; says whether the search is over."""
+"""Places the remaining nodes of a pattern outside the slots in a mask; returns whether the search is over."""
 
 Placing: TypeAlias = Callable[[Run, int, int], bool]
-"""Places one node at a slot, and then what is left."""
+"""Places one node at a slot, then the remaining nodes."""

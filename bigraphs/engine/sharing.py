@@ -1,9 +1,10 @@
 """Regions and sites of an occurrence in a state whose nodes may have several parents.
 
-A place outside of an occurrence holds each region whose top nodes are all in it, unless it holds a larger one;
-what is in an occurrence is in each site whose places it is all in, unless there is a larger one. So there is one
-way to take a state apart, and it does not depend on how anything is numbered. A region whose nodes all have places in
-the pattern itself may lie nowhere (as in Sevegnani and Calder's bigraphs with sharing, where a site may be an orphan).
+A place outside an occurrence holds each region whose top nodes are all in it, except a region smaller than another such
+region. A node below an occurrence is in each site whose parents are all its parents, except a site smaller than another
+such site. So the decomposition of a state is unique and does not depend on any numbering. A region whose nodes all have
+parents in the pattern may have no place (as in Sevegnani and Calder's bigraphs with sharing, where a site may be an
+orphan).
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from bigraphs.engine.state import State, bits
 
 
 def shared_places_fit(pattern: Pattern, state: State, nodes: Sequence[int], used: int) -> bool:
-    """Say whether regions and sites account for all that an occurrence's nodes are in, and for all in them."""
+    """Return whether the regions and sites cover all outer parents and all content of an occurrence's nodes."""
     places = region_places(pattern, state, nodes, used)
     tops = _tops(pattern, nodes)
     for place, inside in _around(state, nodes, used).items():
@@ -73,7 +74,7 @@ def _site_masks(pattern: Pattern, nodes: Sequence[int]) -> list[int]:
 
 
 def _around(state: State, nodes: Sequence[int], used: int) -> dict[int, int]:
-    """Return the places around an occurrence, each with those of its nodes that are in it."""
+    """Return the places around an occurrence, each with the mask of the occurrence's nodes in it."""
     found: dict[int, int] = {}
     for slot in nodes:
         for place in state.parents[slot]:

@@ -1,7 +1,7 @@
-"""One state as arrays of integers: places, links, and containment as bit masks.
+"""A state as arrays of integers: places, links, and containment as bit masks.
 
-A node has a *slot*, which it keeps for as long as it lives; slot `n` is bit `n` of a mask. Place `~r` is region
-`r`, and as lists end with their regions it is also an index. Names are links from 0, edges follow them.
+A node keeps its *slot* for its whole life; slot `n` is bit `n` of a mask. Region `r` is place `~r`; as each list ends
+with the regions, `~r` is also an index. Links are numbered from 0, names first, then edges.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ class State:
     """A ground bigraph, over one world.
 
     Attributes:
-        labels: The label of each slot, -1 for one that is free.
+        labels: The label of each slot, -1 for a free slot.
         parents: The places of each slot.
-        kids: The mask of what is in each slot and, from the end, in each region.
-        ports: The links of each slot's ports, sorted where ports have no order.
-        points: The mask of what is on each link.
+        kids: The mask of the children in each slot and, from the end, in each region.
+        ports: The links of each slot's ports, sorted where ports are unordered.
+        points: The mask of the nodes on each link.
         by_control: The mask of the nodes of each control.
         codes: The code of each slot.
-        free: The mask of the slots that are free.
+        free: The mask of the free slots.
     """
 
     __slots__ = ("by_control", "codes", "free", "kids", "labels", "parents", "points", "ports", "world")
@@ -44,7 +44,7 @@ class State:
         self.free = 0
 
     def copy(self) -> State:
-        """Return a state that can be changed by itself."""
+        """Return an independent copy."""
         found = State.__new__(State)
         found.world = self.world
         found.labels = self.labels.copy()
@@ -58,12 +58,12 @@ class State:
         return found
 
     def parts(self) -> tuple[Any, ...]:
-        """Return what a state is made of, as plain values."""
+        """Return the parts of a state, as plain values."""
         lists = self.labels, self.parents, self.kids, self.ports, self.points, self.by_control, self.codes
         return *lists, self.free
 
     def remade(self, parts: tuple[Any, ...]) -> State:
-        """Return the state of such parts, which are of this one's world."""
+        """Return the state with these parts, which must belong to the same world."""
         found = State.__new__(State)
         found.world = self.world
         found.labels, found.parents, found.kids, found.ports, found.points, *rest = parts
@@ -75,7 +75,7 @@ class State:
         return ((1 << len(self.labels)) - 1) & ~self.free
 
     def key(self) -> Key:
-        """Return what tells this state from others, the numbers of its edges and shared nodes included."""
+        """Return a key of this state; it depends on the numbers of edges and shared nodes."""
         kids, codes = self.kids, self.codes
         if self.world.regions == 1 and not self.world.sharing:
             return array("I", sorted([codes[slot] for slot in bits(kids[-1])])).tobytes()
@@ -86,13 +86,13 @@ class State:
         return to_key(self.world, [*inside, [codes[slot] for slot in shared if len(self.parents[slot]) > 1]])
 
     def kid_code(self, slot: int) -> int:
-        """Return the code that a node has in a row of one of its parents."""
+        """Return the code of a node in the row of a parent."""
         if len(self.parents[slot]) > 1:
             return self.world.code((REFERENCE, (~slot,), (), 0))
         return self.codes[slot]
 
     def recode(self, dirty: int) -> None:
-        """Compute anew the codes of nodes that have changed, and of all that they are in."""
+        """Recompute the codes of changed nodes and of all their ancestors."""
         stale, pending, parents = dirty, dirty, self.parents
         while pending:
             low = pending & -pending
@@ -112,7 +112,7 @@ class State:
                     self._recode(path.pop())
 
     def _recode(self, slot: int) -> None:
-        """Compute the code of a node from those of what is in it."""
+        """Compute the code of a node from the codes of its children."""
         inside, codes = self.kids[slot], self.codes
         if self.world.sharing:
             kids = tuple(sorted([self.kid_code(kid) for kid in bits(inside)]))
@@ -148,7 +148,7 @@ def codes_in(world: World, key: Key) -> list[list[int]]:
 
 @lru_cache(maxsize=1 << 17)
 def bits(mask: int) -> tuple[int, ...]:
-    """Return the numbers of the bits that are set, from the least; the same masks are asked for again and again."""
+    """Return the numbers of the set bits, in ascending order; cached because the same masks recur."""
     found = []
     while mask:
         low = mask & -mask

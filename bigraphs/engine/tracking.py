@@ -1,4 +1,4 @@
-"""Node identity in a rule: which nodes of the reactum are nodes of the redex."""
+"""Node identity in a rule: the nodes of the reactum that are nodes of the redex."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ Pairing = Callable[[int, int], bool]
 
 
 def track(redex: Bigraph, reactum: Bigraph) -> tuple[int, ...]:
-    """Return for each node of the reactum the node of the redex that it is, or -1 if it is new.
+    """Return for each node of the reactum its node of the redex, or -1 for a new node.
 
-    A named node is its namesake. An anonymous one is a node of the same control that is not taken: one with the
-    same links in the same place if there is any, else with the same links, else in the same place, else any.
-    Places are compared as nodes, so a node that keeps its neighbours keeps its identity.
+    A named node is the node of the same name. An anonymous node takes a free node of the same control: preferably with
+    the same links and the same place, else the same links, else the same place, else any. Places are compared as nodes,
+    so a node that keeps its neighbours keeps its identity.
     """
     found = [-1] * len(reactum.nodes)
     for fits in _passes(redex, reactum, found):
@@ -27,7 +27,7 @@ def track(redex: Bigraph, reactum: Bigraph) -> tuple[int, ...]:
 
 
 def track_edges(redex: Bigraph, reactum: Bigraph, nodes: tuple[int, ...]) -> tuple[int, ...]:
-    """Return for each edge of the reactum the edge of the redex that it is, or -1: one that shares a tracked node."""
+    """Return for each edge of the reactum its edge of the redex, one that shares a tracked node, or -1."""
     found: list[int] = []
     for edge in range(reactum.edges):
         on = [nodes[number] for number, node in enumerate(reactum.nodes) if edge in node.ports]
@@ -57,7 +57,7 @@ def _passes(redex: Bigraph, reactum: Bigraph, found: list[int]) -> list[Pairing]
 
 
 def traced(places: Iterable[int], nodes: Sequence[int]) -> set[int | None]:
-    """Return places of the reactum as places of the redex; a new node is None."""
+    """Return places of the reactum as places of the redex; a new node becomes None."""
     return {(nodes[place] if nodes[place] >= 0 else None) if place >= 0 else place for place in places}
 
 
@@ -66,11 +66,11 @@ def _open(bigraph: Bigraph, number: int) -> list[str]:
 
 
 def top_down(bigraph: Bigraph) -> list[int]:
-    """Return the nodes, each after those that it is in."""
+    """Return the nodes, each after its parents."""
     inside, order = children(bigraph), list[int]()
     waiting = [len(node.parents) for node in bigraph.nodes]
     places: list[int] = [~region for region in range(bigraph.regions)]
-    for place in places:  # grows while it is walked
+    for place in places:  # the list grows during the loop
         for child in inside[place]:
             waiting[child] -= 1
             if waiting[child] == 0:

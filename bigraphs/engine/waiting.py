@@ -1,7 +1,7 @@
-"""States that wait to be expanded, first in, first out; those that wait long are packed.
+"""The queue of unexpanded states, first in, first out; it packs the states in its middle.
 
-A state with its occurrences is some kilobytes of lists. Neighbours in the queue differ little, so that a block of
-them takes some 40 bytes each, and packing and unpacking a tenth of the time in which they are expanded.
+An unpacked state with its occurrences takes some kilobytes of lists. Neighbours in the queue differ little, so a state
+in a packed block takes some 40 bytes. Packing and unpacking take a tenth of the expansion time.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from bigraphs.engine.occurrences import Spot
 from bigraphs.engine.world import Codes
 
 BLOCK: Final = 512
-"""How many states are packed together."""
+"""The number of states in a block."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,8 +23,9 @@ class Block:
     """Packed spots.
 
     Attributes:
-        kept: Which of them wait.
-        codes: What the codes of the subtrees in them are here, if they were packed elsewhere.
+        packed: The compressed spots.
+        kept: The positions of the spots that still wait.
+        codes: The translation of their subtree codes, if another process packed them.
     """
 
     packed: bytes
@@ -39,7 +40,7 @@ _Piece: TypeAlias = Block | list[Spot]
 
 
 class Waiting:
-    """A queue of the spots of one system: some at its head and its tail as they are, and packed blocks between."""
+    """A queue of the spots of one system: unpacked at its head and tail, packed blocks between."""
 
     def __init__(self, one: Spot) -> None:
         self._one = one
@@ -68,14 +69,14 @@ class Waiting:
             self._length += len(block)
 
     def popleft(self) -> Spot:
-        """Take the spot that has waited longest."""
+        """Remove and return the spot that has waited longest."""
         if not self._head:
             self._head.extend(self._spots(self._next()))
         self._length -= 1
         return self._head.popleft()
 
     def drop(self, count: int) -> None:
-        """Leave out those that have waited longest; what is packed is not unpacked for it."""
+        """Remove the spots that have waited longest; it unpacks only a block that is partly removed."""
         self._length -= count
         while count > len(self._head):
             count -= len(self._head)
@@ -89,7 +90,7 @@ class Waiting:
             self._head.popleft()
 
     def blocks(self) -> list[Block]:
-        """Return all that wait, packed."""
+        """Return all waiting spots, packed."""
         pieces = [list(self._head), *self._pieces, self._tail]
         return [piece if isinstance(piece, Block) else pack(piece) for piece in pieces if piece]
 
@@ -99,7 +100,7 @@ class Waiting:
         return self._pieces.popleft()
 
     def _end_tail(self) -> None:
-        """Make the tail a piece, packed if much waits before it."""
+        """Turn the tail into a piece, packed if the queue is long."""
         if self._tail:
             self._pieces.append(pack(self._tail) if self._length > 2 * BLOCK else self._tail)
             self._tail = []
@@ -118,8 +119,8 @@ def pack(spots: Sequence[Spot]) -> Block:
 
 
 def unpack(block: Block, one: Spot) -> Iterable[Spot]:
-    """Yield the spots of a block that wait, made as this one is."""
-    import pickle  # noqa: PLC0415 - as above
+    """Yield the waiting spots of a block; `one` is any spot of the same system."""
+    import pickle  # noqa: PLC0415 - a small system packs nothing
     import zlib  # noqa: PLC0415
 
     parts: list[tuple[Any, ...]] = pickle.loads(zlib.decompress(block.packed))

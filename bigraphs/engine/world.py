@@ -1,9 +1,9 @@
-"""What all states of one system share: numbers of controls and names, and interned subtrees.
+"""The common tables of all states of one system: numbers of controls and names, and interned subtrees.
 
-Controls, outer names and regions are small integers in here. A *label* is a control, or a control with a
-node's name. A *row* says of a node its label, its links, the codes of what is in it and, if it has several
-parents, the link that stands for itself; the number of a row is its *code*. Equal codes are equal subtrees, so a
-state is told by the codes of the nodes in its regions.
+Controls, outer names and regions are small integers here. A *label* is a control, or a control with a node's name. A
+*row* describes a node: its label, its links, the codes of its children and, if it has several parents, the link that
+identifies it. The number of a row is its *code*. Equal codes are equal subtrees, so the codes of the nodes in its
+regions identify a state.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from bigraphs.signature import Signature
 Row: TypeAlias = tuple[int, tuple[int, ...], tuple[int, ...], int]
 
 REFERENCE = -1
-"""The label of the row that stands, in each of its places, for a node that has several."""
+"""The label of a row that refers to a shared node; such a row stands in each of the node's places."""
 
 
 @dataclass(frozen=True, slots=True)
 class Codes:
-    """What the codes of a copy of a world are in the world itself: those below `first` are the same."""
+    """The translation from the codes of a copy of a world to its own; those below `first` are equal."""
 
     first: int
     here: list[int]
 
     def translated(self, codes: Iterable[int]) -> list[int]:
-        """Return codes of the copy as codes of the world."""
+        """Return the codes of the copy as codes of the world."""
         first, here = self.first, self.here
         return [code if code < first else here[code - first] for code in codes]
 
@@ -40,14 +40,14 @@ class World:
 
     Attributes:
         names: The outer names of every state, sorted; link `i` is name `i`, edges are numbered after them.
-        regions: How many regions every state has.
+        regions: The number of regions of every state.
         sharing: Whether a node may have several parents.
         plain: Whether no state has an edge or a shared node, so that equal keys are equal states.
         named: Whether nodes may have names.
-        rows: What each code stands for.
-        bare: For each code whether no edge and no shared node is in it.
-        plans: How patterns are looked for, by their forms (`bigraphs.engine.search`).
-        pause: What long searches call now and then; it may raise an exception to end them.
+        rows: The row of each code.
+        bare: For each code whether its subtree has no edge and no shared node.
+        plans: The search plans of patterns, by their forms (`bigraphs.engine.search`).
+        pause: Long searches call it at intervals; it may raise an exception to end them.
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class World:
         self.plans: dict[Hashable, Any] = {}
 
     def label(self, control: str, name: str | None) -> int:
-        """Return the label of a control with a node's name, if it has one."""
+        """Return the label of a control and an optional node name."""
         number = self.controls.get(control)
         if number is None:
             raise BigraphError("control", f"unknown control '{control}'", "give all rules one signature")
@@ -88,12 +88,12 @@ class World:
         return found
 
     def know(self, bigraph: Bigraph) -> None:
-        """Give each node's control and name a label."""
+        """Register the labels of a bigraph's nodes."""
         for node in bigraph.nodes:
             self.label(node.control, node.name)
 
     def code(self, row: Row) -> int:
-        """Return the code of a row, a new one if it has not been seen."""
+        """Return the code of a row; a new row gets the next code."""
         found = self.codes.get(row)
         if found is None:
             found = self.codes[row] = len(self.rows)
@@ -104,18 +104,18 @@ class World:
         return found
 
     def adopt(self, codes: Codes, rows: Iterable[Row]) -> None:
-        """Take over the next rows that a copy of this world has numbered."""
+        """Add the next rows that a copy of this world has numbered."""
         for label, ports, kids, itself in rows:
             codes.here.append(self.code((label, ports, tuple(sorted(codes.translated(kids))), itself)))
 
 
 def has_edges(bigraph: Bigraph) -> bool:
-    """Say whether a node is on an edge."""
+    """Return whether a node is on an edge."""
     return bigraph.edges > 0 and any(isinstance(link, int) for node in bigraph.nodes for link in node.ports)
 
 
 def has_sharing(bigraph: Bigraph) -> bool:
-    """Say whether a node or a site has several parents."""
+    """Return whether a node or a site has several parents."""
     return any(len(node.parents) > 1 for node in bigraph.nodes) or any(
         len(parents) > 1 for parents in bigraph.sites
     )

@@ -16,7 +16,7 @@ def example_names() -> tuple[str, ...]:
 
 
 def example_text(name: str) -> str:
-    """Return the text of an example; raises BigraphError for a name that none has."""
+    """Return the text of an example; raises BigraphError for an unknown name."""
     if name not in example_names():
         raise BigraphError("name", f"there is no example '{name}'", f"there are {', '.join(example_names())}")
     return (_HERE / f"{name}.big").read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ from bigraphs.transitions import Transition, TransitionSystem
 
 
 def to_dot(system: TransitionSystem) -> str:
-    """Return the states with their labels and the transitions with their rules and weights, in the language of dot."""
+    """Return states with labels, and transitions with rules and weights, in the dot language."""
     return "".join(f"{line}\n" for line in _lines(system))
 
 
@@ -28,7 +28,7 @@ def _lines(system: TransitionSystem) -> Iterator[str]:
 
 
 def describe(system: TransitionSystem, transition: Transition) -> str:
-    """Return the rules of a transition with its action and weight, where it has them."""
+    """Return the rules of a transition, with its action and weight if it has them."""
     rules = ", ".join(transition.rules)
     action = f"{transition.action}: " if transition.action is not None else ""
     weight = "" if system.kind is SystemKind.BRS else f" {number(round(transition.weight, 6))}"

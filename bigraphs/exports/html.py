@@ -1,7 +1,7 @@
 """A self-contained page of the state space; a click on a state shows its bigraph.
 
-The page holds states and transitions as data, and its script draws them: a picture of each state would take a
-hundred times as long, and as much room.
+The page holds states and transitions as data, and its script draws them: a prepared picture of each state would take a
+hundred times the time and the space.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from bigraphs.labels import link_label
 from bigraphs.transitions import TransitionSystem
 
 MOST_STATES: Final = 2_000
-"""How many states a page shows: more of them is no picture."""
+"""The largest number of states on a page; more are not readable."""
 
 
 def to_html(system: TransitionSystem, title: str) -> str:
-    """Return a page; of a larger system it holds the first states only, and says so."""
+    """Return a page; for a larger system it has only the first states and a note about it."""
     shown = first_states(system, MOST_STATES)
     data = json.dumps(_facts(shown), ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/")
     script = _resource("states.js")
@@ -41,7 +41,7 @@ def to_html(system: TransitionSystem, title: str) -> str:
 
 
 def _facts(shown: TransitionSystem) -> dict[str, Any]:
-    """Return what the page's script draws; equal nodes, of whichever states, are written once."""
+    """Return the data for the page's script; equal nodes of all states are written once."""
     nodes: dict[str, int] = {}
     rules: dict[str, int] = {}
     bigraphs = [shown.state(state) for state in range(len(shown))]
@@ -80,7 +80,7 @@ def _resource(name: str) -> str:
 
 
 def first_states(system: TransitionSystem, most: int) -> TransitionSystem:
-    """Return the part of a system that its first states are, with the transitions between them."""
+    """Return the first states of a system, with the transitions between them."""
     if len(system) <= most:
         return system
     return system.beginning(most)

@@ -10,7 +10,7 @@ from bigraphs.transitions import TransitionSystem
 
 
 def to_json(system: TransitionSystem) -> dict[str, Any]:
-    """Return states, transitions and whether they are all, as dictionaries, lists, strings and numbers."""
+    """Return states, transitions and completeness as dictionaries, lists, strings and numbers."""
     return {
         "kind": system.kind.value,
         "complete": system.complete,
@@ -36,7 +36,7 @@ def to_json(system: TransitionSystem) -> dict[str, Any]:
 
 
 def bigraph_json(bigraph: Bigraph) -> dict[str, Any]:
-    """Return a ground bigraph as plain data; a parent is a node's number, or `region 0`."""
+    """Return a ground bigraph as plain data; a parent is a node number or `region 0`."""
     return {
         "regions": bigraph.regions,
         "names": list(bigraph.outer_names),

@@ -1,9 +1,8 @@
 """A transition system as a Markov model: the common part of PRISM's and Storm's files.
 
-A BRS becomes a decision process in which every transition is a choice of its own. A state in which nothing can
-happen gets a loop and the label `deadlock`, as these checkers demand of every state that something follows it. Of
-an incomplete system, states that were not expanded are labelled `unexpanded` and get such a loop, too: nothing is
-decided beyond them.
+A BRS becomes a decision process in which every transition is a choice of its own. A deadlock state gets a loop and the
+label `deadlock`, since these checkers require a successor of every state. In an incomplete system, an unexpanded state
+gets a loop and the label `unexpanded`: nothing is decided beyond it.
 """
 
 from __future__ import annotations
@@ -93,9 +92,9 @@ def _moves(system: TransitionSystem) -> Iterator[Move]:
 
 
 def choices_of(kind: SystemKind, outgoing: Sequence[Transition]) -> list[int]:
-    """Return for each transition of a state the number of the choice that it belongs to.
+    """Return for each transition of a state the number of its choice.
 
-    In a BRS each is a choice of its own; else those of an action are one, and actions are sorted by their names.
+    In a BRS each transition is a choice of its own. Otherwise each action is a choice, numbered by its name.
     """
     if kind is SystemKind.BRS:
         return list(range(len(outgoing)))
@@ -113,7 +112,7 @@ def _labels(system: TransitionSystem, stuck: list[int]) -> Iterator[tuple[str, t
 
 
 def _rewards(system: TransitionSystem) -> Iterator[tuple[int, float]]:
-    """Yield the states whose predicates have rewards, with their sum."""
+    """Yield each state with a reward, and the sum of its predicates' rewards."""
     earning = [
         (float(predicate.reward), system.labels[number])
         for number, predicate in enumerate(system.system.predicates)
@@ -129,7 +128,7 @@ OWN_LABELS: Final = ("init", "deadlock", "unexpanded")
 
 
 def label_names(system: System) -> list[str]:
-    """Return the labels that the predicates of a system have in files, each another one."""
+    """Return the labels of a system's predicates in exported files, all distinct."""
     taken, names = set(OWN_LABELS), list[str]()
     for predicate in system.predicates:
         name = label_name(predicate.label)
@@ -141,7 +140,7 @@ def label_names(system: System) -> list[str]:
 
 
 def label_name(text: str) -> str:
-    """Return a label as PRISM and Storm can read it.
+    """Return a label in the syntax of PRISM and Storm.
 
     >>> label_name('at(1,"west")')
     'at_1_west'
@@ -150,7 +149,7 @@ def label_name(text: str) -> str:
 
 
 def number(value: float) -> str:
-    """Write a number so that reading it gives the same number, whole ones without a point.
+    """Return the shortest text that reads back as the same number, without a point for an integer.
 
     >>> number(0.1), number(2.0)
     ('0.1', '2')

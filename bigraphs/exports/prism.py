@@ -1,4 +1,4 @@
-"""PRISM's explicit files: transitions, labels, the same labels as formulas, rewards of states and of choices."""
+"""PRISM's explicit files: transitions, labels, the same labels as formulas, and rewards of states and choices."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from bigraphs.transitions import TransitionSystem
 
 
 def prism_files(system: TransitionSystem) -> dict[str, str]:
-    """Return the texts of the files by their suffixes: `.tra`, `.lab`, `.csl`, `.srew`, and `.trew` for an MDP.
+    """Return the file texts by suffix: `.tra`, `.lab`, `.csl`, `.srew`, and `.trew` for an MDP.
 
     Read them with `prism -importmodel model.tra,lab,srew -dtmc` (or `-ctmc`, `-mdp`).
     """
@@ -54,7 +54,7 @@ def _labels(model: Markov) -> Iterator[str]:
 
 
 def _formulas(model: Markov) -> Iterator[str]:
-    for name, states in model.labels[2:]:  # init and deadlock are PRISM's own
+    for name, states in model.labels[2:]:  # PRISM defines init and deadlock itself
         yield f'label "{name}" = {" | ".join(f"x={state}" for state in states) or "false"};'
 
 

@@ -1,4 +1,4 @@
-"""Storm's explicit files: transitions under the kind of model, labels, and rewards."""
+"""Storm's explicit files: the transitions with the kind of model, the labels, and the rewards."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from bigraphs.transitions import TransitionSystem
 
 
 def storm_files(system: TransitionSystem) -> dict[str, str]:
-    """Return the texts of the files by their suffixes: `.tra`, `.lab`, and where there are rewards `.srew`, `.trew`.
+    """Return the file texts by suffix: `.tra`, `.lab`, and `.srew` and `.trew` if there are rewards.
 
     Read them with `storm --explicit model.tra model.lab --staterew model.srew --transrew model.trew`.
     """
@@ -25,7 +25,7 @@ def storm_files(system: TransitionSystem) -> dict[str, str]:
             for move in model.moves
             if move.reward
         )
-    return {suffix: text for suffix, text in files.items() if text}  # Storm takes no empty file
+    return {suffix: text for suffix, text in files.items() if text}  # Storm rejects an empty file
 
 
 def _lines(lines: Iterable[str]) -> str:

@@ -91,9 +91,9 @@ def _text(at: tuple[float, float], words: str, size: float, colour: str, side: s
 
 
 def graph_svg(system: TransitionSystem) -> str:
-    """Return a picture of the states and transitions; hovering over an arrow shows its rules.
+    """Return a picture of the states and transitions; a tooltip on an arrow shows its rules.
 
-    States stand in rows by their distance from the first one, each near to those that it is reached from.
+    States stand in rows by their distance from the initial state, each near its predecessors.
     """
     places = places_of(system)
     width = max(x for x, _ in places) + 2 * RADIUS + 20
@@ -110,7 +110,7 @@ _MARKER: Final = (
 
 
 def places_of(system: TransitionSystem) -> list[tuple[float, float]]:
-    """Return where each state stands: in rows by distance from the first, near to what it was found from."""
+    """Return the position of each state: in rows by distance from the initial state, near its predecessor."""
     depth = [0] * len(system)
     rows: list[list[int]] = [[0]]
     for state in range(1, len(system)):

@@ -1,4 +1,4 @@
-"""Notations of bigraphs, read and written: BigraphER's, BigMC's and the paper's. Only this package uses lark."""
+"""Readers and writers of bigraph notations: BigraphER's, BigMC's and the paper's."""
 
 import lazy_loader
 

@@ -1,4 +1,4 @@
-"""Read systems from files: the suffix decides the language."""
+"""Systems from files; the suffix determines the language."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ from bigraphs.system import System, Value
 
 
 def load_system(path: Path | str, *, constants: Mapping[str, Value] | None = None) -> System:
-    """Read a `.big` or `.bgm` file.
+    """Return the system of a `.big` or `.bgm` file.
 
-    Raises NotationError for what its text has wrong, BigraphError for a file that cannot be read or has another suffix.
+    Raises:
+        NotationError: For mistakes in the text.
+        BigraphError: For an unreadable file, and for any other suffix.
     """
     file = Path(path)
     if file.suffix not in (".big", ".bgm") and file.exists():
@@ -30,7 +32,7 @@ def load_system(path: Path | str, *, constants: Mapping[str, Value] | None = Non
 
 
 def read_text(file: Path) -> str:
-    """Return the text of a file, of which no more is read than a text may be long."""
+    """Return the text of a file; raises an error instead of reading beyond the maximum length of a text."""
     if file.exists() and not file.is_file():
         raise BigraphError("file", f"'{file}' is a folder, a pipe or a device", "give a file")
     try:

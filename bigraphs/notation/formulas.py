@@ -1,7 +1,7 @@
 """The grammar of temporal formulas about systems of bigraphs.
 
-It has the operators of `specs/mission.lark`, with their priorities. Its atoms are labels of predicates and rules, in
-quotes where that is a word of the language.
+It has the operators and priorities of `specs/mission.lark`. Its atoms are labels of predicates and rules; a label that
+is a word of the language is quoted.
 """
 
 import re
@@ -17,7 +17,7 @@ from bigraphs.errors import NotationError
 from bigraphs.notation.reading import read
 
 MOST_WORDS: Final = 200
-"""A formula has so many words and signs at the most."""
+"""The largest number of words and signs in a formula."""
 
 GRAMMAR: Final = r"""
 ?asked: formula
@@ -90,20 +90,20 @@ _WORDS: Final = {
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A word or sign of a formula, and where it stands in the text."""
+    """A word or sign of a formula, with its offset in the text."""
 
     text: str
     start: int
 
     @property
     def end(self) -> int:
-        """Return where what follows it stands."""
+        """Return the offset after the word."""
         return self.start + len(self.text)
 
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """A formula as written: `kind` is its rule of the grammar; `start` and `end` are where it stands in the text."""
+    """A formula as written: `kind` is its rule of the grammar; `start` and `end` are its offsets in the text."""
 
     kind: str
     parts: "tuple[Term | Word, ...]"
@@ -112,7 +112,7 @@ class Term:
 
 
 def parse_formula(text: str) -> Term:
-    """Return a formula as written, with its fairness; raises NotationError where it is none, or too long."""
+    """Return a formula as written, with its fairness; raises NotationError for a syntax error or excessive length."""
     if sum(1 for _ in _WORD.finditer(text)) > MOST_WORDS:
         message = f"a formula of more than {MOST_WORDS} words and signs"
         raise NotationError("too-long", message, text, 0, hint="check its parts one by one")
@@ -126,7 +126,7 @@ def _parser() -> Lark:
 
 
 class _Build(Transformer_NonRecursive[Token, Term]):
-    """From lark's trees to terms."""
+    """Turns lark's trees into terms."""
 
     def __default__(self, data: str, children: list[Term | Token], meta: Meta) -> Term:
         parts = (

@@ -1,7 +1,7 @@
-"""Read texts by the tables that lark makes of a grammar, without lark: importing it takes longer than most files.
+"""An LALR parser that runs on lark's tables without lark, whose import takes longer than most files.
 
-The tables are plain data. What a text is read into is up to a *builder*: it has a method for each rule of the grammar,
-which takes where the text of the rule stands and what its parts were read into.
+The tables are plain data. A *builder* makes the value: it has a method for each rule of the grammar, with the span of
+the rule's text and the values of its parts as arguments.
 """
 
 from __future__ import annotations
@@ -18,44 +18,46 @@ if TYPE_CHECKING:
 
 END: Final = "$END"
 Lexer: TypeAlias = "tuple[Sequence[str], dict[str, dict[str, str]]]"
-"""The terminals to try, in their order; and which words that fit one of them are another."""
+"""The terminals to try, in order; and for some terminals, the words that are keywords instead."""
 Reduction: TypeAlias = "tuple[str, int, str | None, bool, Sequence[int | None]]"
-"""A rule's symbol, its length, its method (None: its parts go to the rule around it), whether a single part stands for
-it, and which parts count: a part's number, None for an optional one that is left out, ~number for many at once.
+"""A rule: its symbol, its length, its method, whether a single part replaces it, and its parts.
+
+A rule without a method passes its parts to the enclosing rule. A part is a number, None for an absent optional part, or
+~number for a list of parts.
 """
 
 
 class Span(NamedTuple):
-    """Where something was written: the first character and the one after the last."""
+    """A range of offsets in a text: the first character and the end."""
 
     start: int = 0
     end: int = 0
 
 
 class Token(str):
-    """A word of a text, and where it begins."""
+    """A word of a text, with its offset."""
 
     __slots__ = ("start",)
     start: int
 
     @property
     def span(self) -> Span:
-        """Where it stands."""
+        """The range of the word in the text."""
         return Span(self.start, self.start + len(self))
 
 
 class Unread(Exception):
-    """Ends the reading of a text that the grammar does not have."""
+    """Ends the parsing of a text at its first syntax error."""
 
 
 class Tables:
-    """The tables of a grammar, and what is compiled of them as texts need it.
+    """The tables of a grammar, with a cache of compiled patterns.
 
     Attributes:
-        terminals: For each terminal its text, or its pattern.
-        ignored: The terminals that say nothing.
-        lexers: Different states of the parser expect different terminals.
-        states: The lexer of each state, and what it does at each symbol: shift to a state, or ~reduction.
+        terminals: For each terminal whether it is literal, and its text or pattern.
+        ignored: The terminals without meaning, such as blanks.
+        lexers: The lexers; different parser states expect different terminals.
+        states: For each state its lexer, and its action for each symbol: a state to shift to, or ~reduction.
         reductions: The rules.
         starts: For each start symbol its first state and its last one.
     """
@@ -71,7 +73,7 @@ class Tables:
         self._tried: dict[tuple[int, str], list[tuple[str, int, Any]]] = {}
 
     def next_token(self, text: str, place: int, lexer: int) -> tuple[str, int, int]:
-        """Return the terminal that follows, and where it begins and ends; raises Unread if none does."""
+        """Return the next terminal with its start and end; raises Unread if none fits."""
         while place < len(text):
             name, end = self._scan(text, place, lexer)
             if name not in self.ignored:
@@ -95,7 +97,7 @@ class Tables:
         raise Unread
 
     def _candidates(self, lexer: int, first: str) -> list[tuple[str, int, Any]]:
-        """Return which terminals may begin with a character: texts with their lengths, and patterns."""
+        """Return the terminals that may begin with a character: literals with their lengths, and patterns."""
         found: list[tuple[str, int, Any]] = []
         for name in self.lexers[lexer][0]:
             literal, text = self.terminals[name]
@@ -108,7 +110,7 @@ class Tables:
         return found
 
     def read(self, text: str, start: str, builder: object) -> Any:
-        """Return what a builder makes of a text; raises Unread at the first word that does not fit."""
+        """Return the builder's value of a text; raises Unread at the first syntax error."""
         first, last = self.starts[start]
         path, values, spans = [first], list[Any](), list[Span | None]()
         place, name = 0, ""
@@ -135,7 +137,7 @@ class Tables:
         spans: list[Span | None],
         builder: object,
     ) -> None:
-        """Put a rule in the place of its parts."""
+        """Replace the parts of a rule by the value of the rule."""
         symbol, length, method, single, parts = reduction
         after = len(values) - length
         span = _around(spans[after:])
@@ -159,17 +161,17 @@ class Tables:
 
 
 class _Many(list[Any]):
-    """The parts of a rule that has no value of its own."""
+    """The parts of a rule without a value of its own."""
 
 
 def _around(spans: Sequence[Span | None]) -> Span | None:
-    """Return from where to where the parts of a rule go; None if nothing is written of it."""
+    """Return the span of a rule's parts; None if all are empty."""
     written = [span for span in spans if span is not None]
     return Span(written[0].start, written[-1].end) if written else None
 
 
 def kept_tables(file: Path, grammar: str, make: Callable[[], Lark]) -> Tables:
-    """Return a grammar's tables, from a file if it has them; otherwise they are made, and written to it if possible."""
+    """Return a grammar's tables, from the file if it is current; otherwise compute them and try to write the file."""
     with suppress(OSError, ValueError):
         kept = json.loads(file.read_bytes())
         if isinstance(kept, dict) and kept.get("grammar") == grammar:

@@ -1,4 +1,4 @@
-"""The tables of `bigraphs.notation.lalr`, made by lark."""
+"""The tables for `bigraphs.notation.lalr`, extracted from lark."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _reduction(rule: Rule) -> tuple[str, int, str | None, bool, list[int | None]
 
 
 def _parts(rule: Rule) -> Iterator[int | None]:
-    """Yield which parts of a rule count."""
+    """Yield the parts of a rule that its method receives, as in `Reduction`."""
     left_out = [
         len(ones) for ones in "".join(str(int(each)) for each in rule.options.empty_indices).split("0")
     ]

@@ -1,9 +1,8 @@
 """The notation of the paper's runtime, as syntax: `l0_Location.(u0_UAV[network] | $0) || l1_Location.$1`.
 
-A node is `name_Control[links].children`; name or control may be missing. The control is what follows the last
-underscore, if that begins with a capital: `my_uav_UAV` is a `UAV` named `my_uav`, `_UAV` is an anonymous one
-and `search_area` has no control. `||` separates regions, `|` neighbours, `->` redex and reactum; `1` is the
-empty region.
+A node is `name_Control[links].children`; name or control may be missing. The control follows the last underscore and
+begins with a capital: `my_uav_UAV` is a `UAV` named `my_uav`, `_UAV` is an anonymous one and `search_area` has no
+control. `||` separates regions, `|` neighbours, `->` redex and reactum; `1` is the empty region.
 """
 
 from __future__ import annotations
@@ -58,7 +57,7 @@ _SPLIT: Final = re.compile(r"(?P<name>.*)_(?P<control>[A-Z][^\W_]*)", re.DOTALL)
 
 @dataclass(frozen=True, slots=True)
 class SiteTerm:
-    """A site `$index`; `offset` counts characters of the text it was read from."""
+    """A site `$index`; `offset` is its position in the text."""
 
     index: int
     offset: int = field(default=0, compare=False)
@@ -69,7 +68,7 @@ class SiteTerm:
 
 @dataclass(frozen=True, slots=True)
 class NodeTerm:
-    """A node as written: what is `None` or empty was not written; `offset` is that of its first character."""
+    """A node as written: absent parts are None or empty; `offset` is the position of its first character."""
 
     name: str | None
     control: str | None = None
@@ -87,7 +86,7 @@ RegionTerm: TypeAlias = tuple[Term, ...]
 
 @dataclass(frozen=True, slots=True)
 class RuleTerm:
-    """A rule as written: the regions of its redex and of its reactum, side by side."""
+    """A rule as written: the regions of its redex and of its reactum."""
 
     redex: tuple[RegionTerm, ...]
     reactum: tuple[RegionTerm, ...]
@@ -116,19 +115,19 @@ def parse_rule(text: str) -> RuleTerm:
 
 
 def parse_regions(text: str) -> tuple[RegionTerm, ...]:
-    """Parse `region || region`, each site and each name written at most once; raises NotationError."""
+    """Parse `region || region`; raises NotationError, also for a repeated site or name."""
     regions: tuple[RegionTerm, ...] = read(_parser(), text, _WORDS, "regions")
     _check_side(regions, text)
     return regions
 
 
 def nodes(regions: tuple[RegionTerm, ...]) -> Iterator[NodeTerm]:
-    """Yield every node, parents before children, in the order written."""
+    """Yield every node, parents before children, in source order."""
     return (term for term in _walk(regions) if isinstance(term, NodeTerm))
 
 
 def sites(regions: tuple[RegionTerm, ...]) -> Iterator[SiteTerm]:
-    """Yield every site in the order written."""
+    """Yield every site in source order."""
     return (term for term in _walk(regions) if isinstance(term, SiteTerm))
 
 
@@ -142,12 +141,12 @@ def _walk(regions: tuple[RegionTerm, ...]) -> Iterator[Term]:
 
 
 def format_regions(regions: tuple[RegionTerm, ...]) -> str:
-    """Write regions so that `parse_regions` reads them back; raises BigraphError for what cannot be written."""
+    """Return the text of regions, which `parse_regions` reads; raises BigraphError for an unwritable name."""
     return " || ".join(_format_region(region) for region in regions)
 
 
 def format_term(term: Term) -> str:
-    """Write one node or site; raises BigraphError for a name that the notation has no way to write."""
+    """Return the text of one node or site; raises BigraphError for an unwritable name."""
     if isinstance(term, SiteTerm):
         return str(term)
     links = f"[{','.join(_writable(link, _LINK) for link in term.links)}]" if term.links else ""
@@ -209,7 +208,7 @@ def _parser() -> Lark:
 
 @v_args(inline=True)
 class _Build(Transformer[Token, Any]):
-    """Build terms while lark reads; a parenthesised or empty part is a tuple, spliced into its region."""
+    """Builds terms while lark reads; a parenthesised or empty part is a tuple, spliced into its region."""
 
     def rule(self, redex: tuple[RegionTerm, ...], reactum: tuple[RegionTerm, ...]) -> RuleTerm:
         return RuleTerm(redex, reactum)

@@ -1,4 +1,4 @@
-"""Convert the paper's notation to bigraphs and rules, and back."""
+"""Conversion of the paper's notation to bigraphs and rules, and back."""
 
 from __future__ import annotations
 
@@ -22,9 +22,11 @@ from bigraphs.signature import Signature, open_signature
 
 
 def read_bigraph(text: str, signature: Signature | None = None) -> Bigraph:
-    """Read `region || region`; links are outer names. Without a signature, controls are open.
+    """Return the bigraph of `region || region`; links are outer names. Without a signature, controls are open.
 
-    Raises NotationError for what does not parse or lacks a control, BigraphError for what is no bigraph.
+    Raises:
+        NotationError: For a syntax error or a node without a control.
+        BigraphError: If the text describes no valid bigraph.
     """
     regions = parse_regions(text)
     _check_controls(regions, text, {})
@@ -47,7 +49,7 @@ def read_rule(
     node_variables: frozenset[str] = frozenset(),
     link_constants: frozenset[str] = frozenset(),
 ) -> ReactionRule:
-    """Read `redex -> reactum`. A control may be left out in the reactum where the redex has it."""
+    """Return the rule of `redex -> reactum`; a node of the redex needs no control in the reactum."""
     term = parse_rule(text)
     known = {node.name: node.control for node in nodes(term.redex) if node.name and node.control}
     _check_controls(term.redex, text, {})
@@ -68,12 +70,12 @@ def read_rule(
 
 
 def write_bigraph(bigraph: Bigraph) -> str:
-    """Write a bigraph; raises BigraphError for what the notation has no way to say (edges, idle names, sharing)."""
+    """Return the text of a bigraph; raises BigraphError for edges, idle names and shared places."""
     return format_regions(regions_of(bigraph))
 
 
 def write_rule(rule: ReactionRule) -> str:
-    """Write a rule; `read_rule` reads it back, given the same signature, variables and constants."""
+    """Return the text of a rule; `read_rule` reads it with the same signature, variables and constants."""
     redex = regions_of(rule.redex)
     reactum = regions_of(rule.reactum, rule.instantiation, idle=frozenset(rule.redex.outer_names))
     return str(RuleTerm(redex, reactum))
@@ -82,7 +84,7 @@ def write_rule(rule: ReactionRule) -> str:
 def regions_of(
     bigraph: Bigraph, numbers: Sequence[int] | None = None, *, idle: frozenset[str] = frozenset()
 ) -> tuple[RegionTerm, ...]:
-    """Return the syntax of a bigraph, its sites written as `numbers` if given; `idle` names need not be written."""
+    """Return the syntax of a bigraph; `numbers` renumbers its sites, and `idle` names may be missing from the text."""
     _check_writable(bigraph, idle)
     inside, sited = children(bigraph), sites_in(bigraph)
     done: dict[Place, RegionTerm] = {}
@@ -102,7 +104,7 @@ def _node_term(node: Node, below: RegionTerm) -> NodeTerm:
 
 def _bottom_up(inside: dict[Place, list[int]], regions: int) -> list[Place]:
     order: list[Place] = [~region for region in range(regions)]
-    for place in order:  # grows while it is walked
+    for place in order:  # the list grows during the loop
         order.extend(inside[place])
     return order[::-1]
 

@@ -1,7 +1,7 @@
-"""The parser's tables, kept in a file: making them takes longer than parsing a mission.
+"""A file cache of the parser's tables: their computation takes longer than parsing a mission.
 
-The file is plain data (JSON). The build of a wheel writes it; in a checkout the first start after a change does, as
-Python does with `.pyc` files. Tables of another grammar, or of another lark, are made anew.
+The file is plain data (JSON). The build of a wheel writes it. In a checkout the first start after a change writes it,
+like Python's `.pyc` files. Tables of another grammar or another lark version are recomputed.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ from lark.lexer import TerminalDef
 def parser_with_tables(
     file: Path, made_from: str, make: Callable[[], Lark], callbacks: Mapping[str, Any]
 ) -> Lark:
-    """Return the parser that `make` makes, by the tables in a file where they were made from the same.
+    """Return the parser of `make`, built from the tables in a file if these are current.
 
     Args:
-        file: Where the tables are kept. Where it cannot be written they are made at each start.
-        made_from: All that the tables depend on, lark's version excepted.
-        make: Makes the parser.
-        callbacks: Those of the parser's options that are not kept: they do something.
+        file: The file of the tables. If it is not writable, each start recomputes them.
+        made_from: All inputs of the tables except lark's version.
+        make: Constructs the parser.
+        callbacks: The parser's options with functions, which the file cannot store.
     """
     identity = source_hash(f"{lark.__version__}\n{made_from}".encode()).hex()
     kept = _read(file)
     if kept.get("identity") == identity:
-        load: Callable[..., Lark] = Lark._load_from_dict  # noqa: SLF001 - as its standalone parsers do
+        load: Callable[..., Lark] = Lark._load_from_dict  # noqa: SLF001 - lark's standalone parsers do the same
         tables = kept["data"]["parser"]["parser"]
         tables["tokens"] = _numbered(tables["tokens"])
         tables["states"] = _numbered({state: _numbered(row) for state, row in tables["states"].items()})
@@ -58,12 +58,12 @@ def _read(file: Path) -> dict[str, Any]:
 
 
 def _numbered(members: dict[str, Any]) -> dict[int, Any]:
-    """Return a dictionary with the numbers that it had as keys: JSON has names only."""
+    """Return a dictionary with its keys as numbers again: JSON keys are strings."""
     return {int(key): value for key, value in members.items()}
 
 
 def write_tables(file: Path, tables: dict[str, Any]) -> None:
-    """Put tables into a file at once, if that is possible."""
+    """Write tables to a file atomically, if possible."""
     new = file.with_name(f".{file.name}.{os.getpid()}")
     try:
         new.write_text(json.dumps(tables, separators=(",", ":")), encoding="utf-8")

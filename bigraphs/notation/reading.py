@@ -1,4 +1,4 @@
-"""Bounded parsing: the checks before, and the error messages after, lark reads a text."""
+"""Bounded parsing: checks before lark reads a text, and error messages afterwards."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ _RESETS: Final = frozenset({"|", "||", "->", "-->", ";", ",", "="})
 
 
 def read(parser: Lark, text: str, words: Mapping[str, str], start: str) -> Any:
-    """Parse `text` from `start`; raises NotationError, in `words`, at the first thing that does not fit.
+    """Parse `text` from `start`; raises NotationError at the first syntax error, with terminals named by `words`.
 
     The parser must build its values while it parses, so that depth costs no recursion.
     """
-    from lark.exceptions import UnexpectedInput  # noqa: PLC0415 - it takes time to load, and tables may do without
+    from lark.exceptions import UnexpectedInput  # noqa: PLC0415 - slow to load
 
     check_bounds(text)
     try:
@@ -40,9 +40,10 @@ def read(parser: Lark, text: str, words: Mapping[str, str], start: str) -> Any:
 def read_into(
     builder: object, tables: Tables, make: Callable[[], Lark], text: str, words: Mapping[str, str], start: str
 ) -> Any:
-    """Return what a builder makes of a text, by the tables of the parser that `make` makes.
+    """Return the builder's value of a text, parsed by the tables of `make`'s parser.
 
-    Raises NotationError, in `words`, at the first thing that does not fit; lark says what was expected.
+    Raises:
+        NotationError: At the first syntax error, with terminals named by `words`; lark explains it.
     """
     check_bounds(text)
     try:
@@ -53,7 +54,10 @@ def read_into(
 
 
 def check_bounds(text: str) -> None:
-    """Refuse what is too long (in all, a word, in words) or nests deeper than 200, in linear time."""
+    """Raise NotationError if the text or a word is too long, has too many words or nests too deeply.
+
+    The check takes linear time.
+    """
     if len(text) > MAX_BYTES or len(text.encode("utf-8", "surrogatepass")) > MAX_BYTES:
         hint = "split it, or write it as relations (from_relations)"
         raise NotationError("too-long", "the text is longer than 1 MB", text, 0, hint=hint)
@@ -85,7 +89,7 @@ def _check_nesting(text: str) -> None:
 
 
 def _explain(found: UnexpectedInput, text: str, words: Mapping[str, str]) -> NotationError:
-    from lark.exceptions import UnexpectedCharacters, UnexpectedToken  # noqa: PLC0415 - as above
+    from lark.exceptions import UnexpectedCharacters, UnexpectedToken  # noqa: PLC0415 - slow to load
 
     if isinstance(found, UnexpectedToken):
         names = found.accepts or found.expected

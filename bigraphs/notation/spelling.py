@@ -1,7 +1,7 @@
-"""Suggest a word for one that is misspelt, and only where so few letters differ that it was probably meant.
+"""Suggestions for misspelt words, only if so few letters differ that the suggestion is probably right.
 
-What merely resembles it (`Lake` and `Tanker`) would lead astray: then `did_you_mean` is silent, and the caller lists
-what there is, or says how to declare it.
+A merely similar word (`Lake` and `Tanker`) would mislead. Then `did_you_mean` returns nothing, and the caller lists the
+known words or explains the declaration.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _DIGITS: Final = re.compile(r"[0-9]+")
 
 
 def did_you_mean(word: str, among: Iterable[str]) -> str:
-    """Return `did you mean '...'?`, or nothing.
+    """Return `did you mean '...'?`, or an empty string.
 
     >>> did_you_mean("chekc", ["check", "show"]), did_you_mean("Lake", ["Tanker"])
     ("did you mean 'check'?", '')
@@ -27,10 +27,10 @@ def did_you_mean(word: str, among: Iterable[str]) -> str:
 
 
 def nearest(word: str, among: Iterable[str]) -> tuple[str, ...]:
-    """Return the words that one was probably meant to be, the nearest first.
+    """Return the probable corrections of a word, the nearest first.
 
-    One letter in three may be missing, added, another or swapped with its neighbour, or all in another order; capitals
-    count like small letters. A number is no misspelling of another: `uav7` is not meant to be `uav1`.
+    One letter in three may be missing, added, changed or swapped with its neighbour, or all letters may be permuted.
+    Case is ignored. Numbers must be equal: `uav1` is no correction of `uav7`.
 
     >>> nearest("serchArea0", ["searchArea0", "searchArea1"]), nearest("uav7", ["uav1"]), nearest("see", ["sea"])
     (('searchArea0',), (), ('sea',))
@@ -46,7 +46,7 @@ def nearest(word: str, among: Iterable[str]) -> tuple[str, ...]:
 
 
 def listed(names: Iterable[str], many: str) -> str:
-    """Return the names that there are, the first eight of many.
+    """Return a list of the known names, cut after the first eight.
 
     >>> listed(["vhf", "r"], "channels"), listed(["vhf"], "channels"), listed([], "channels")
     ('the channels are r and vhf', 'the only channel is vhf', 'there are no channels')
@@ -71,7 +71,7 @@ def _differ_in_number(word: str, other: str) -> bool:
 
 
 def _distance(word: str, other: str, most: int) -> int | None:
-    """Return how many letters differ (Damerau and Levenshtein, each place changed once), None beyond `most`."""
+    """Return the number of edits (Damerau and Levenshtein, one per position), or None above `most`."""
     if sorted(word) == sorted(other):
         return int(word != other)
     if abs(len(word) - len(other)) > most:

@@ -1,4 +1,4 @@
-"""Parse `.bgm` files. `|` binds more tightly than `||`, as in BigMC's manual; `%check` ends a file."""
+"""The parser of `.bgm` files. `|` binds more tightly than `||`, as in BigMC's manual; `%check` ends a file."""
 
 from __future__ import annotations
 
@@ -84,16 +84,16 @@ _CHECK: Final = re.compile(r"^(?P<code>[^#\n]*)%check\b.*", re.DOTALL | re.MULTI
 _NAMED: Final = re.compile(r"(?P<name>\b[A-Za-z]\w*)\s*(?P<colon>:)\s*(?P<meant>[A-Za-z]\w*)")
 _DIRECTIVE: Final = re.compile(r"%[A-Za-z]+")
 _LINK_KINDS: Final = frozenset({"outername", "innername", "edge", "binding"})
-"""What another dialect says of a link after its name, `x:edge`."""
+"""The kinds of link in another dialect, which writes them after the name: `x:edge`."""
 _OTHER_WORDS: Final = {
     "%prop": "write '%property NAME matches(TERM)', or another property",
     "%binding": "links are not bound here: leave it out where no node is of this control",
     "%ltlSpec": "leave it out, and ask it of 'bigactors big check --ltl'",
     "%ctlSpec": "leave it out, and ask it of 'bigactors big check --ctl'",
 }
-"""Words of other dialects, and what to write."""
+"""Words of other dialects, and the replacements to suggest."""
 _DIALECT: Final = re.compile(r"^[^#\n]*%(?:agent|outername|innername)\b", re.MULTILINE)
-"""Words of the dialect in which a port that is linked to nothing is `idle`."""
+"""Words of a dialect that writes `idle` for an unlinked port."""
 MAX_QUERY: Final = 50
 OPTIONS: Final[dict[str, Any]] = {
     "parser": "lalr",
@@ -104,7 +104,7 @@ OPTIONS: Final[dict[str, Any]] = {
 
 
 def parse_bgm(text: str) -> tuple[Line, ...]:
-    """Parse a `.bgm` file up to `%check`; raises NotationError at the first thing that does not fit."""
+    """Parse a `.bgm` file up to `%check`; raises NotationError at the first syntax error."""
     ends = _CHECK.search(text)
     kept = text if ends is None else text[: ends.end("code")]
     try:
@@ -115,7 +115,7 @@ def parse_bgm(text: str) -> tuple[Line, ...]:
 
 
 def _named_apart(error: NotationError, text: str) -> NotationError | None:
-    """Return what to say of what another dialect has; None for anything else."""
+    """Return a specific error for a construct of another dialect; None for anything else."""
     if word := _DIRECTIVE.match(text, error.offset):
         return _other_word(word.group(), error, text)
     before = text[: error.offset].rstrip()
@@ -129,7 +129,7 @@ def _named_apart(error: NotationError, text: str) -> NotationError | None:
 
 
 def _other_word(word: str, error: NotationError, text: str) -> NotationError | None:
-    """Return what to say of a word that is not of this language; None if it only stands in a wrong place."""
+    """Return the error for a word of another dialect or an unknown word; None for a misplaced known word."""
     known = sorted({found.group() for found in _DIRECTIVE.finditer(GRAMMAR)} | {"%check"})
     if word in known:
         return None
@@ -139,7 +139,7 @@ def _other_word(word: str, error: NotationError, text: str) -> NotationError | N
 
 
 def _colon(named: re.Match[str], text: str) -> NotationError:
-    """Return what to say of `a:Ctrl` and `x:edge`."""
+    """Return the error for `a:Ctrl` or `x:edge`."""
     name, meant, at = named["name"], named["meant"], named.start("colon")
     port = text.rfind("[", 0, at) > text.rfind("]", 0, at)
     if port and meant in _LINK_KINDS:
@@ -160,14 +160,14 @@ def tables() -> Tables:
 
 @cache
 def make_parser() -> Lark:
-    """Return lark's parser, which is slow to make: it explains mistakes, and has the tables."""
+    """Return lark's parser, which explains mistakes and has the tables; its construction is slow."""
     from lark import Lark  # noqa: PLC0415 - lark takes time to load
 
     return Lark(GRAMMAR, **OPTIONS)
 
 
 class _Build:
-    """Makes syntax of what was read."""
+    """Builds syntax while the parser reads."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -232,7 +232,7 @@ class _Build:
         return self.nested(syntax.Operation("if", (condition, then, otherwise), at.start))
 
     def nested(self, query: Query) -> Query:
-        """Refuse what would nest too deeply to be walked."""
+        """Return the query; raise NotationError if it nests too deeply for a recursive walk."""
         depth, inner = 0, [query]
         while inner:
             depth += 1
@@ -266,7 +266,7 @@ def _parts(query: Query) -> tuple[Query, ...]:
 
 
 class _Port:
-    """The name on a port; None is one too."""
+    """The name on a port, None if unlinked; the wrapper distinguishes it from an absent port."""
 
     def __init__(self, name: str | None) -> None:
         self.name = name

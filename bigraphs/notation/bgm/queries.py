@@ -1,4 +1,4 @@
-"""Elaborate BigMC's properties to formulas."""
+"""Elaboration of BigMC's properties to formulas."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ _COMPARISONS: Final = frozenset({"==", "!=", "<", "<=", ">", ">="})
 
 
 def formula(query: Query, terms: Terms, declared: frozenset[str]) -> Formula | None:
-    """Return what a query asks, or None where a mistake has been noted; names in `declared` stand for themselves."""
+    """Return the formula of a query, or None after a recorded mistake; names in `declared` match only themselves."""
     reader = _Queries(terms, declared)
     return reader.formula(query)
 
 
 class _Queries:
-    """Queries over the terms of one file."""
+    """The elaboration of queries over the terms of one file."""
 
     def __init__(self, terms: Terms, declared: frozenset[str]) -> None:
         self.terms = terms

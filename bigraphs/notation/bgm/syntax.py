@@ -10,7 +10,7 @@ from bigraphs.signature import Status
 
 @dataclass(frozen=True, slots=True)
 class Hole:
-    """`$0`, what is left over of a place."""
+    """`$0`: a hole, the remaining content of a place."""
 
     index: int
     offset: int = field(default=0, compare=False)
@@ -18,7 +18,7 @@ class Hole:
 
 @dataclass(frozen=True, slots=True)
 class Prefix:
-    """`k[x, -].t`: a node, the names on its ports (None for `-`, unlinked), and what is in it."""
+    """`k[x, -].t`: a node, the names on its ports (None for `-`, unlinked), and its content."""
 
     control: str
     ports: tuple[str | None, ...] = ()
@@ -27,7 +27,7 @@ class Prefix:
 
 
 Term: TypeAlias = "tuple[Prefix | Hole, ...]"
-"""What is side by side in one place; nothing is `nil`."""
+"""The nodes and holes side by side in one place; `nil` is empty."""
 Wide: TypeAlias = tuple[Term, ...]
 """Places side by side, `t || u`."""
 
@@ -44,7 +44,7 @@ class ControlLine:
 
 @dataclass(frozen=True, slots=True)
 class NameLine:
-    """`%outer x`, `%name x` or `%inner x`: a name that stands for itself in rules."""
+    """`%outer x`, `%name x` or `%inner x`: a name that matches only itself in rules."""
 
     name: str
     inner: bool = False
@@ -63,7 +63,7 @@ class RuleLine:
 
 @dataclass(frozen=True, slots=True)
 class ModelLine:
-    """A term by itself: the first state."""
+    """A term by itself: the initial state."""
 
     term: Wide
     offset: int = field(default=0, compare=False)
@@ -80,7 +80,7 @@ class Operation:
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """`matches(t)`, `size()`, ... of a scope: `$pred->size()`; None is this state."""
+    """`matches(t)`, `size()`, ... of the states in a scope, `$pred->size()`; None is this state."""
 
     predicate: str
     term: Wide | None = None

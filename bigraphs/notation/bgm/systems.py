@@ -1,4 +1,4 @@
-"""Elaborate a `.bgm` file to a system with properties."""
+"""Elaboration of a `.bgm` file to a system with properties."""
 
 from __future__ import annotations
 
@@ -35,10 +35,13 @@ _ONE: Final = 1
 
 
 def read_bgm(text: str) -> System:
-    """Read a `.bgm` file; raises NotationError with all that does not make sense, or what does not parse.
+    """Return the system of a `.bgm` file.
 
-    All rules have one priority. Names declared with `%outer` (or `%name`) stand for themselves in rules, others
-    for any link; ports are in order, and `-` is a link with one end.
+    All rules have one priority. A name declared with `%outer` (or `%name`) matches only itself in rules; any other name
+    matches any link. Ports are ordered, and `-` is a link with one end.
+
+    Raises:
+        NotationError: With the first syntax error, or else with all other mistakes.
     """
     lines = parse_bgm(text)
     findings = Findings(text)
@@ -50,7 +53,7 @@ def read_bgm(text: str) -> System:
 
 
 class _Reading:
-    """One file on its way to a system."""
+    """The elaboration of one file."""
 
     def __init__(self, lines: Sequence[Line], findings: Findings) -> None:
         self.lines = lines
@@ -69,7 +72,7 @@ class _Reading:
         self.declared = frozenset(line.name for line in lines if isinstance(line, NameLine))
 
     def inferred(self) -> dict[str, Control]:
-        """Return the controls that a file without declarations uses, with a warning that names them."""
+        """Return the controls that a file without declarations uses, and add a warning that lists them."""
         wides = [
             wide
             for line in self.lines
@@ -93,7 +96,7 @@ class _Reading:
         return {kind: Control(kind, count) for kind, count in ports.items()}
 
     def system(self) -> System | None:
-        """Return the system, if all is well."""
+        """Return the system, or None after a recorded mistake."""
         for line in self.lines:
             if isinstance(line, NameLine) and line.inner:
                 self.add("initial", "a first state has no inner names", line.offset, len(line.name))
@@ -133,7 +136,7 @@ class _Reading:
         return None if found is None else lean(found)
 
     def no_holes(self, wide: Wide, what: str) -> bool:
-        """Note holes where there may be none; say whether there are any."""
+        """Record each hole as a mistake; return whether there are any."""
         found = holes(wide)
         for _, hole in found:
             self.add("site", f"{what} has no holes", hole.offset, 2)
@@ -171,7 +174,7 @@ class _Reading:
         return Rule(name, before, after, order, link_constants=constants, position=position)
 
     def without_rest(self, line: RuleLine) -> tuple[Wide, Wide]:
-        """Leave out holes beside the redex that are beside the reactum, too: what is there stays as it is."""
+        """Remove each hole that stands beside both the redex and the reactum: that content stays in any case."""
         redex, reactum = list(line.redex), list(line.reactum)
         for region, place in enumerate(redex):
             for hole in [term for term in place if isinstance(term, Hole)]:
@@ -204,7 +207,7 @@ class _Reading:
     def fitting(self, redex: Bigraph, reactum: Bigraph, line: RuleLine) -> bool:
         before = len(self.findings)
         for message, hint in faults(redex):
-            if "no port of the redex" not in message:  # a name that stands for itself is no other link
+            if "no port of the redex" not in message:  # a declared name matches only its own link
                 self.add("redex", message, line.offset, hint=hint)
         return len(self.findings) == before and redex.outer == reactum.outer
 
@@ -218,7 +221,7 @@ class _Reading:
 
 
 def _numbered(wide: Wide) -> Wide:
-    """Return the term with its holes numbered in the order written."""
+    """Return the term with its holes numbered in source order."""
     count = 0
 
     def term(each: Prefix | Hole) -> Prefix | Hole:

@@ -1,4 +1,4 @@
-"""Elaborate BigMC's terms to bigraphs: names are outer names, each `-` is an edge, holes are sites."""
+"""Elaboration of BigMC's terms to bigraphs: names are outer names, each `-` is an edge, holes are sites."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from bigraphs.signature import Signature
 
 @dataclass(frozen=True, slots=True)
 class Terms:
-    """The terms of one file, over its controls; where those are inferred, nodes may be `named`, `uav0_UAV`."""
+    """The elaboration of one file's terms; with inferred controls, nodes may be `named`, as in `uav0_UAV`."""
 
     signature: Signature
     findings: Findings
     named: bool = False
 
     def bigraph(self, wide: Wide, sites: Mapping[int, int], names: Iterable[str]) -> Bigraph | None:
-        """Return the bigraph of a term whose holes are these sites; None where a mistake has been noted.
+        """Return the bigraph of a term, or None after a recorded mistake.
 
-        `names` are outer names that it has at the least.
+        `sites` maps the holes to sites. The bigraph has at least the outer names `names`.
         """
         before = len(self.findings)
         nodes: list[Node] = []
@@ -73,13 +73,13 @@ class Terms:
 
 
 def name_and_kind(written: str) -> tuple[str | None, str]:
-    """Take the runtime's notation for a node apart, `uav0_UAV`: its name, if it has one, and its control."""
+    """Return the optional name and the control of a node in the runtime's notation, `uav0_UAV`."""
     name, _, kind = written.rpartition("_")
     return (name, kind) if name and kind[:1].isupper() else (None, written)
 
 
 def walk(wide: Wide) -> Iterator[tuple[Place, Prefix | Hole]]:
-    """Yield each node and hole with its parent, parents first; a node's number counts those before it."""
+    """Yield each node and hole with its parent, parents first; nodes are numbered in this order."""
     waiting: list[tuple[Place, Prefix | Hole]] = [
         (~region, term) for region in reversed(range(len(wide))) for term in reversed(wide[region])
     ]
@@ -93,7 +93,7 @@ def walk(wide: Wide) -> Iterator[tuple[Place, Prefix | Hole]]:
 
 
 def holes(wide: Wide) -> list[tuple[Place, Hole]]:
-    """Return each hole with its parent, in the order written."""
+    """Return each hole with its parent, in source order."""
     return [(place, term) for place, term in walk(wide) if isinstance(term, Hole)]
 
 

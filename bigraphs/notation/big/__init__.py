@@ -1,5 +1,5 @@
 """BigraphER's language with extensions: text → syntax → systems, and back.
 
-`parser` makes syntax of a text, `survey` looks at all names in it, the rest elaborates it: `values` numbers and
-strings, `expressions` bigraphs, `rules` rules and `systems` a whole `System`. `writer` goes the other way.
+`parser` makes syntax of a text and `survey` checks all its names. Then `values` evaluates numbers and strings,
+`expressions` bigraphs, `rules` rules, and `systems` a whole `System`. `writer` is the inverse.
 """

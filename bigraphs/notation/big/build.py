@@ -1,4 +1,4 @@
-"""Build declarations and files from what was read."""
+"""The builder of declarations and files."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from bigraphs.notation.lalr import Span, Token
 from bigraphs.signature import Status
 
 _KINDS: Final = {"abrs": "nbrs"}
-"""What BigraphER called kinds of systems before its version 1.9.3, and files still do."""
+"""Old names of system kinds, from BigraphER before 1.9.3; some files still use them."""
 _Change: TypeAlias = tuple[Any, Any, Any, Any, Any]
 
 
 class Build(Expressions):
-    """Declarations and files."""
+    """Builds declarations and files."""
 
     def modifier(self, _at: Span, word: Token) -> Token:
         return word

@@ -1,4 +1,4 @@
-"""Build expressions of bigraphs of what was read."""
+"""The builder of bigraph expressions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from bigraphs.notation.lalr import Span, Token
 
 
 class Expressions(Values):
-    """Expressions of bigraphs."""
+    """Builds expressions of bigraphs."""
 
     def ref(self, at: Span, name: Token, arguments: syntax.Arguments | None) -> syntax.Ref:
         return syntax.Ref(str(name), arguments or (), at)
@@ -51,7 +51,7 @@ class Expressions(Values):
         return syntax.Placed((tuple(range(count)),), count, at)
 
     def width(self, token: Token | None, default: int) -> int:
-        """Return how wide something is: what is wider than a bigraph may be is not even made."""
+        """Return a width; record a mistake if it exceeds the size limit of bigraphs, before such a term is built."""
         found = default if token is None else self.whole(token)
         if found <= syntax.MAX_SIZE:
             return found
@@ -94,5 +94,5 @@ class Expressions(Values):
 
 
 def _distinct(wires: tuple[syntax.Wire, ...]) -> tuple[syntax.Wire, ...]:
-    """Return wires where a closure written twice in a row counts once, as in BigraphER."""
+    """Return the wires; a closure written twice in a row counts once, as in BigraphER."""
     return tuple(wire for place, wire in enumerate(wires) if not place or wire != wires[place - 1])

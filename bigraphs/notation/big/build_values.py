@@ -1,4 +1,4 @@
-"""Build values of what was read; find numbers out of bounds and reserved names."""
+"""The builder of values; it checks the bounds of numbers and rejects reserved names."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from bigraphs.notation.lalr import Span, Token
 from bigraphs.system import Value
 
 LARGEST: Final = 2**62
-"""Whole numbers are smaller than this, as they are in BigraphER."""
+"""The exclusive upper bound of integers, as in BigraphER."""
 MAX_DEPTH: Final = 50
-"""How deep signs and powers of numbers nest."""
+"""The nesting limit of signs and powers."""
 
 
 class Values:
-    """Numbers, strings and names; the base of the rest."""
+    """Builds numbers, strings and names; the base class of the other builders."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -30,7 +30,7 @@ class Values:
         self.mistakes.append(found)
 
     def whole(self, token: Token) -> int:
-        """Return the number of an INT token."""
+        """Return the integer of an INT token."""
         digits = token.replace("_", "")
         if len(digits) > 19 or int(digits) >= LARGEST:
             at = token.span
@@ -39,7 +39,7 @@ class Values:
         return int(digits)
 
     def named(self, token: Token) -> str:
-        """Return a name that is declared, if it is none of the language's words."""
+        """Return a declared name; record a mistake if it is a reserved word."""
         if token in RESERVED:
             at = token.span
             self.wrong("name", f"'{token}' is a word of the language", at, "take another name")
@@ -91,7 +91,7 @@ class Values:
         return syntax.Arithmetic(first, pairs, at) if pairs else first
 
     def checked(self, found: ValueExpression) -> ValueExpression:
-        """Refuse signs and powers that nest too deeply to be evaluated."""
+        """Return a value expression; record a mistake if its signs and powers nest too deeply to be evaluated."""
         depth, inner = 0, found
         while depth <= MAX_DEPTH:
             if isinstance(inner, syntax.Negated):

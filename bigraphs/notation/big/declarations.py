@@ -13,7 +13,7 @@ from bigraphs.signature import Status
 class ControlDeclaration(Record):
     """`ctrl K = 1;`, after `atomic` or `passive`, `ordered` and `fun`; `parameters` are those of `fun ctrl`.
 
-    The arity is None, any number, only where a signature says so: the notation has no word for it.
+    The arity is None (any number) only in a control from a signature; the notation has no syntax for it.
     """
 
     name: str
@@ -36,7 +36,8 @@ class ConstantDeclaration(Record):
 class BigDeclaration(Record):
     """`big b = expression;`, or `fun big b(n) = expression;`.
 
-    `big b(1) = expression;` gives the bigraph for these arguments; systems with parameters are written so.
+    `big b(1) = expression;` defines the bigraph for particular arguments; the writer uses it for systems with
+    parameters.
     """
 
     name: str
@@ -58,7 +59,7 @@ class ConditionTerm(Record):
 class ReactDeclaration(Record):
     """`react r = redex --> reactum @ [sites] if conditions;`, or `fun react r(n) = ...;`.
 
-    The instantiation map is None if it is not written; `weight` is what stands in `-[w]->`.
+    `instantiation` is None if it is not written; `weight` is the expression in `-[w]->`.
     """
 
     name: str
@@ -90,7 +91,7 @@ class SortDeclaration(Record):
 
 
 class PlaceDeclaration(Record):
-    """`place K = {L, S};`: what a K holds; nothing, if the braces are empty."""
+    """`place K = {L, S};`: the permitted content of a K; empty braces permit none."""
 
     control: str
     content: tuple[str, ...]
@@ -98,7 +99,7 @@ class PlaceDeclaration(Record):
 
 
 class LinkDeclaration(Record):
-    """`link radio = {K, L.0};`: ports that only links of this sort join."""
+    """`link radio = {K, L.0};`: ports that only links of this sort may join."""
 
     name: str
     ports: tuple[tuple[str, int | None], ...]
@@ -106,7 +107,7 @@ class LinkDeclaration(Record):
 
 
 class Call(Record):
-    """A rule, a predicate or a first state: `r`, `r(n, 2)`; `reward` is a predicate's."""
+    """A call of a rule, a predicate or an initial state: `r`, `r(n, 2)`; only a predicate has a `reward`."""
 
     name: str
     arguments: Arguments = ()
@@ -115,9 +116,9 @@ class Call(Record):
 
 
 class ParameterDeclaration(Record):
-    """`int n, m = {1, 2};`: the values that parameters of a system range over.
+    """`int n, m = {1, 2};`: the values of parameters of a system.
 
-    `values` are those of the set, the single value, or, if `ranged`, first value, step and last value.
+    `values` lists the set, holds the single value, or, if `ranged`, first value, step and last value.
     """
 
     type: str
@@ -128,7 +129,7 @@ class ParameterDeclaration(Record):
 
 
 class ClassTerm(Record):
-    """Rules of one priority, `{r, s(n)}`, or instantaneous ones, `(r)`."""
+    """A priority class, `{r, s(n)}`, or an instantaneous one, `(r)`."""
 
     rules: tuple[Call, ...]
     instantaneous: bool = False
@@ -136,7 +137,7 @@ class ClassTerm(Record):
 
 
 class ActionTerm(Record):
-    """`a[reward] = {r, s}`, an action that lists its rules, within a system."""
+    """`a[reward] = {r, s}`: an action that lists its rules, within a system."""
 
     name: str
     rules: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""Write a bigraph as an expression that elaborates to an equal bigraph."""
+"""The expression of a bigraph; it elaborates to an equal bigraph."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ from bigraphs.notation.big.syntax import (
 from bigraphs.system import Value
 
 DEEPEST: Final = 90
-"""How deep places nest that are written: each may need a dot and a parenthesis, and sharing two of these."""
+"""The deepest nesting of places in a written text: each level may need a dot and a parenthesis, with sharing two."""
 
 
 def write_big(bigraph: Bigraph) -> str:
-    """Write a bigraph of anonymous nodes; raises BigraphError for a named node, and for places that nest too deeply.
+    """Return the text of a bigraph; raises BigraphError for a named node, and for places that nest too deeply.
 
     >>> from bigraphs.relations import from_relations
     >>> from dataclasses import replace
@@ -63,7 +63,7 @@ def expression_of(bigraph: Bigraph) -> Expression:
 
 
 def _depth(bigraph: Bigraph) -> int:
-    """Count how many nodes are in each other, layer by layer."""
+    """Return the nesting depth of nodes, at most DEEPEST plus 1."""
     inside = children(bigraph)
     layer: set[Place] = set(range(-bigraph.regions, 0))
     depth = 0
@@ -88,7 +88,7 @@ def _chain(operator: str, parts: Sequence[Expression]) -> Expression:
 
 
 def _wires(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
-    """Return substitutions for inner names, and what is idle."""
+    """Return substitutions for inner names, and the idle names."""
     grouped: dict[str, list[str]] = {}
     for name, link in bigraph.inner_links:
         grouped.setdefault(_named(link, edges), []).append(name)
@@ -104,7 +104,7 @@ def _ion(node: Node, edges: Sequence[str]) -> Ion:
 
 
 def values_of(parameters: str) -> Arguments:
-    """Return the values in `1,2.5,"a")`, what follows the parenthesis in the name of a parametrised control."""
+    """Return the values in `1,2.5,"a")`, the part after the opening parenthesis of a parametrised control's name."""
     return tuple(map(_literal, parameters.removesuffix(")").split(","))) if parameters else ()
 
 
@@ -116,14 +116,14 @@ def _literal(written: str) -> ValueExpression:
 
 
 def written_value(value: Value) -> ValueExpression:
-    """Return how a value is written: a negative number has a sign."""
+    """Return the expression of a value; a negative number gets a sign."""
     if isinstance(value, str) or value >= 0:
         return Literal(value)
     return Negated(Literal(-value))
 
 
 def _nested(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
-    """Return one expression per region; where sites are not in order, all of them composed with a permutation."""
+    """Return one expression per region; if sites are out of order, their composition with a permutation."""
     inside, sited = children(bigraph), sites_in(bigraph)
     written: list[int] = []
 
@@ -146,9 +146,9 @@ def _nested(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
 
 
 def _layers(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
-    """Return shared places layer by layer: each layer's nodes are put into slots that the layers before left open.
+    """Return one expression that builds shared places in layers: each layer fills the slots of the previous ones.
 
-    What is in a node and nowhere else, and has no site, is written where the node is.
+    The content of a node is written inside it if it has no other place and no site.
     """
     inside = children(bigraph)
     closed = {number: inside[number] for number in _closed(bigraph)}
@@ -172,7 +172,7 @@ def _layers(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
 
 
 def _closed(bigraph: Bigraph) -> set[int]:
-    """Return the nodes whose content is nowhere else and has no site, atomic ones among them."""
+    """Return the nodes whose descendants have single places and no sites, atomic nodes included."""
     inside, sited = children(bigraph), sites_in(bigraph)
     known: dict[int, bool] = {}
 
@@ -187,7 +187,7 @@ def _closed(bigraph: Bigraph) -> set[int]:
 
 
 def _needed(bigraph: Bigraph, waiting: Sequence[int]) -> set[Place]:
-    """Return the places that nodes which are not written yet, or sites, are in."""
+    """Return the parents of unwritten nodes and of sites."""
     later = (place for number in waiting for place in bigraph.nodes[number].parents)
     return {*later, *(place for parents in bigraph.sites for place in parents)}
 
@@ -195,7 +195,7 @@ def _needed(bigraph: Bigraph, waiting: Sequence[int]) -> set[Place]:
 def _content(
     bigraph: Bigraph, edges: Sequence[str], number: int, closed: Mapping[int, Sequence[int]]
 ) -> Expression:
-    """Return a node, with what is in it if that is nowhere else; `closed` has the nodes in those where it is."""
+    """Return a node, with its content if `closed` lists it; `closed` maps a node to its children."""
     ion = _ion(bigraph.nodes[number], edges)
     if number not in closed or bigraph.signature[bigraph.nodes[number].control].status == "atomic":
         return ion
@@ -206,7 +206,7 @@ def _content(
 def _links_within(
     bigraph: Bigraph, edges: Sequence[str], number: int, closed: Mapping[int, Sequence[int]]
 ) -> Iterator[str]:
-    """Yield the links of a node, and of what is in it if that is nowhere else."""
+    """Yield the links of a node and of its listed content."""
     yield from (_named(link, edges) for link in bigraph.nodes[number].ports)
     for child in closed.get(number, ()):
         yield from _links_within(bigraph, edges, child, closed)

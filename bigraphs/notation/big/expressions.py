@@ -1,4 +1,4 @@
-"""Evaluate expressions to bigraphs; errors of the algebra are reported where they are written."""
+"""Evaluation of expressions to bigraphs; errors of the algebra are reported at their position."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ from bigraphs.system import Value
 
 Declared: TypeAlias = BigDeclaration | ReactDeclaration
 MAX_WORK: Final = 1_000_000
-"""How many parts of bigraphs are made, all steps together, before a file is refused."""
+"""The total size of all bigraphs, over all steps, at which a file is refused."""
 MAX_DEPTH: Final = 220
-"""How deep expressions nest, those of the bigraphs that they name included."""
+"""The nesting limit of expressions, bigraphs that they name included."""
 
 
 class Evaluation:
-    """Bigraphs of one file; `value` returns None where a mistake has been noted, so that all are found."""
+    """The bigraphs of one file; `value` returns None after a recorded mistake, so that the evaluation finds all."""
 
     def __init__(self, scope: Scope, known: Mapping[str, Bigraph] | None = None) -> None:
         self.scope = scope
@@ -54,7 +54,7 @@ class Evaluation:
         self._depth = 0
 
     def named(self, name: str, given: tuple[Value, ...], span: Span, frame: Frame) -> Bigraph | None:
-        """Return a declared bigraph for some arguments."""
+        """Return a declared bigraph for these arguments."""
         declaration = self._declaration(name, given, span)
         if declaration is None:
             return None
@@ -79,7 +79,7 @@ class Evaluation:
         return self._known.get(key)
 
     def instance(self, declaration: Declared, frame: Frame, parts: Sequence[Part]) -> list[Bigraph] | None:
-        """Return what the parts of a declaration make, from a template; None if they are to be evaluated as written."""
+        """Return the bigraphs of a declaration's parts from a template; None if they must be evaluated as written."""
         key = _instances(declaration, frame)
         if self._templates.get(key, False) is None:
             self._templates[key] = self._template(tuple(frame.values), parts)
@@ -91,12 +91,12 @@ class Evaluation:
         return found[0]
 
     def is_well(self, declaration: Declared, frame: Frame) -> None:
-        """Note that an instance was evaluated as written without a mistake, so that a template may make others."""
+        """Record an evaluation without a mistake, so that a template may make other instances."""
         if declaration.parameters and not isinstance(self.scope, SymbolicScope):
             self._templates.setdefault(_instances(declaration, frame), None)
 
     def _template(self, parameters: Sequence[str], parts: Sequence[Part]) -> Template | Literal[False]:
-        """Return the template of some expressions, False if their form depends on the parameters."""
+        """Return the template of expressions, False if their form depends on the parameters."""
         symbolic = SymbolicScope(self.scope, parameters)
         evaluation = Evaluation(symbolic)
         found = [(evaluation.value(expression, symbolic.frame), finish) for expression, finish in parts]
@@ -192,7 +192,7 @@ class Evaluation:
         return not missing
 
     def _chain(self, chain: Chain, frame: Frame) -> Bigraph | None:
-        """Evaluate from the left; a run of one operator is halved, as all of them are associative."""
+        """Evaluate a chain from the left; a run of one operator is joined pairwise, as each is associative."""
         written = [chain.first, *(operand for _, operand in chain.rest)]
         operands = [self.value(operand, frame) for operand in written]
         known = [operand for operand in operands if operand is not None]
@@ -214,7 +214,7 @@ class Evaluation:
     def _joinable(
         self, operator: str, run: Sequence[Bigraph], written: Sequence[Expression], frame: Frame
     ) -> bool:
-        """Check the faces of operands, one after the other, and note the first that does not fit."""
+        """Check the interfaces of operands in order, and record the first that does not fit."""
         outer, inner = set(run[0].outer_names), {name for name, _ in run[0].inner_links}
         for place, operand in enumerate(run[1:], 1):
             face = Interface(0, operand.inner.names)
@@ -280,7 +280,7 @@ class Evaluation:
 
 
 def _instances(declaration: Declared, frame: Frame) -> tuple[object, ...]:
-    """Return what instances have in common that one template makes: the same names with values of the same types."""
+    """Return the key of instances that share a template: the same declaration, with values of the same types."""
     return (
         type(declaration),
         declaration.name,
@@ -304,7 +304,7 @@ def _named_twice(which: str, names: set[str]) -> str:
 
 
 def _joined(operator: str, operands: list[Bigraph]) -> Bigraph:
-    """Join operands by one operator: all of them are associative."""
+    """Join operands by one associative operator."""
     if operator == "*":
         return _halved(operands)
     found = algebra.parallel(*operands)
@@ -312,7 +312,7 @@ def _joined(operator: str, operands: list[Bigraph]) -> Bigraph:
 
 
 def _halved(operands: list[Bigraph]) -> Bigraph:
-    """Compose neighbours with each other, so that long runs are not built up step by step."""
+    """Compose neighbours pairwise, so that the work on long runs stays balanced."""
     while len(operands) > 1:
         pairs = zip(operands[::2], operands[1::2], strict=False)
         composed = [algebra.compose(left, right) for left, right in pairs]
@@ -348,7 +348,7 @@ def _element(expression: Expression) -> Bigraph:
 
 
 def _once(wires: Sequence[Wire]) -> list[Wire]:
-    """Return wires; of closures that stand together, those of one name are one, as in BigraphER."""
+    """Return wires; in a run of closures, those of one name count once, as in BigraphER."""
     found: list[Wire] = []
     closed: set[str] = set()
     for wire in reversed(wires):
@@ -371,6 +371,6 @@ def _wire(wire: Wire, body: Bigraph) -> Bigraph:
 
 
 def _share(what: Bigraph, by: Bigraph, where: Bigraph) -> Bigraph:
-    """Put each region of what into the sites of where that the placing says."""
+    """Put each region of `what` into the sites of `where` that the placing assigns."""
     placed = algebra.compose(algebra.tensor(by, algebra.names(what.outer_names)), what)
     return algebra.compose(where, placed)

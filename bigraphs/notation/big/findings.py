@@ -1,4 +1,4 @@
-"""Mistakes collected while a text is read, so that all are reported at once."""
+"""The collection of mistakes in a text, so that all are reported at once."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from bigraphs.notation.lalr import Span
 from bigraphs.notation.spelling import did_you_mean
 
 MOST: Final = 100
-"""How many mistakes are told of one text."""
+"""The largest number of reported mistakes."""
 
 
 class Findings:
-    """The mistakes found so far in one text; the same one in the same place counts once."""
+    """The mistakes found so far in one text; equal mistakes at one position count once."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -25,32 +25,32 @@ class Findings:
         return len(self._found)
 
     def add(self, code: str, message: str, span: Span, hint: str = "") -> None:
-        """Note a mistake."""
+        """Add a mistake."""
         key = (span.start, code, message)
         if key not in self._found and len(self._found) < MOST:
             length = span.end - span.start
             self._found[key] = NotationError(code, message, self.text, span.start, length=length, hint=hint)
 
     def take(self, other: Findings) -> None:
-        """Note the mistakes of another collection."""
+        """Add the mistakes of another collection."""
         self._found |= other._found
 
     def warn(self, other: Findings) -> None:
-        """Note the mistakes of another collection as warnings: they are in what nothing uses."""
+        """Add the mistakes of another collection as warnings: they are in unused declarations."""
         self._warned |= other._found
 
     @property
     def warnings(self) -> tuple[NotationError, ...]:
-        """Return what was found and does not matter, by position."""
+        """Return the warnings, by position."""
         return tuple(self._warned[key] for key in sorted(self._warned))[:MOST]
 
     def unknown(self, what: str, name: str, span: Span, known: Iterable[str], how: str = "") -> None:
-        """Note a name that is not declared, with the declared one that it resembles, or how it is declared."""
+        """Add a mistake for an undeclared name; the hint is a similar declared name or the form of a declaration."""
         hint = did_you_mean(name, known) or f"declare it with {(how or _KEYWORD[what]).format(name=name)}"
         self.add("name", f"unknown {what} '{name}'", span, hint)
 
     def raise_any(self) -> None:
-        """Raise what was found, if anything was."""
+        """Raise the mistakes, if there are any."""
         if self._found:
             raise NotationError.of(self._found.values())
 

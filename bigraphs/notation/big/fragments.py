@@ -1,4 +1,4 @@
-"""Elaborate declarations without a system, and single expressions."""
+"""Elaboration of declarations without a system, and of single expressions."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from bigraphs.sorting import base
 
 @dataclass(frozen=True, slots=True)
 class Theory:
-    """What a `.big` file declares without parameters: bigraphs and rules by name, in the order written."""
+    """The declarations of a `.big` file without parameters: bigraphs and rules by name, in source order."""
 
     signature: Signature
     bigraphs: tuple[tuple[str, Bigraph], ...]
@@ -31,7 +31,7 @@ class Theory:
 
 
 def read_theory(text: str) -> Theory:
-    """Read the declarations of a `.big` file, whose system is passed over; raises NotationError with all mistakes."""
+    """Read the declarations of a `.big` file and ignore its system; raises NotationError with all mistakes."""
     findings = Findings(text)
     model = Model(parse_model(text).declarations)
     names = index(model, findings)
@@ -65,7 +65,7 @@ def _widened(rule: ReactionRule, signature: Signature) -> ReactionRule:
 
 
 def read_big(text: str, signature: Signature, known: Mapping[str, Bigraph] | None = None) -> Bigraph:
-    """Read one expression over a signature; `known` gives the bigraphs that it may name."""
+    """Read one expression over a signature; it may use the bigraphs in `known` by name."""
     expression = parse_expression(text)
     findings = Findings(text)
     names = _names_of(signature, known or {})

@@ -1,7 +1,7 @@
-"""One declaration with parameters for several that are given for values: `fun big b(n) = K(n);` for `b(1)` and `b(2)`.
+"""Folding of declarations for particular arguments into one with parameters.
 
-BigraphER reads the first alone. What differs between the given ones has to follow from their arguments: it is one of
-them, or one of them and a number.
+`fun big b(n) = K(n);` replaces the declarations of `b(1)` and `b(2)`; BigraphER reads only that form. Each difference
+between the declarations must be an argument, or an argument plus or minus a constant.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ _Record = TypeVar("_Record", bound=Record)
 
 
 class _Different(Exception):
-    """Two declarations differ where no argument says why."""
+    """Two declarations have a difference that is no function of an argument."""
 
 
 def folded(given: Iterable[Given], taken: Iterable[str] = ()) -> list[Given]:
-    """Return declarations, those of one name as one with parameters if that is possible; `taken` are names in use."""
+    """Return the declarations; those of one name become one with parameters if possible. `taken` are names in use."""
     groups: dict[str, list[Given]] = {}
     for each in given:
         groups.setdefault(each.name, []).append(each)
@@ -72,13 +72,13 @@ def changed(record: _Record, **fields: Any) -> _Record:
 
 
 class _Folding:
-    """Several values on their way to one that has parameters in it."""
+    """The fold of several values into one with parameters."""
 
     def __init__(self, names: Sequence[str], columns: Sequence[Sequence[Any]]) -> None:
         self.names, self.columns = names, columns
 
     def of(self, several: Sequence[Any]) -> Any:
-        """Return what several values have in common, and parameters where they differ."""
+        """Return the common form of several values, with parameters where they differ."""
         first = several[0]
         if all(type(each) is type(first) and each == first for each in several):
             return first
@@ -98,7 +98,7 @@ class _Folding:
         raise _Different
 
     def parameter(self, values: Sequence[Value | None]) -> ValueExpression:
-        """Return the parameter that has these values, or that has them less a number."""
+        """Return the parameter with these values, or a parameter plus or minus a constant."""
         for name, column in zip(self.names, self.columns, strict=True):
             if list(column) == list(values) and type(column[0]) is type(values[0]):
                 return Variable(name)
@@ -110,7 +110,7 @@ class _Folding:
 
 
 def _shift(column: Sequence[Value], values: Sequence[Value | None]) -> int | None:
-    """Return by how much each of some whole numbers exceeds its own; None if that is not the same for all."""
+    """Return the common difference between integers and their counterparts; None if there is none."""
     found = {
         after - before if isinstance(before, int) and isinstance(after, int) else None
         for before, after in zip(column, values, strict=True)

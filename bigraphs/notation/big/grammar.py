@@ -1,8 +1,8 @@
 """The grammar of `.big` files, and its symbols in the user's words.
 
-Of the operators on bigraphs `|` and `||` bind least and alike, then `+`, then `*`, all to the left; closures and
-substitutions bind to the ion, name or parenthesis after them. Of those on numbers `+` and `-` bind least, then
-`*` and `/`, then the sign, then `^`, to the right.
+Operators on bigraphs associate to the left: `|` and `||` bind least and equally, then `+`, then `*`. Closures and
+substitutions bind to the following ion, name or parenthesis. Of the operators on numbers, `+` and `-` bind least, then
+`*` and `/`, then the sign, then `^`, which associates to the right.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ ctrl atomic big react init int float string fun action begin brs pbrs sbrs nbrs 
 merge split par ppar if ctx param
 """
 RESERVED: Final = frozenset(_LANGUAGE.split())
-"""What nothing else is called, as in BigraphER."""
+"""The reserved words, as in BigraphER."""
 
 WORDS: Final = {
     "NAME": "a name",

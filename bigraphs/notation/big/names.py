@@ -20,7 +20,10 @@ from bigraphs.notation.lalr import Span
 
 @dataclass(slots=True)
 class Names:
-    """Declarations by name. Those for given arguments, `big b(1) = ...`, are in `bigs` and `reacts` by their first."""
+    """Declarations by name.
+
+    Of the declarations for particular arguments, `big b(1) = ...`, `bigs` and `reacts` have the first.
+    """
 
     controls: dict[str, ControlDeclaration] = field(default_factory=dict)
     constants: dict[str, ConstantDeclaration] = field(default_factory=dict)
@@ -29,9 +32,9 @@ class Names:
     given_bigs: dict[str, list[BigDeclaration]] = field(default_factory=dict)
     given_reacts: dict[str, list[ReactDeclaration]] = field(default_factory=dict)
     actions: dict[str, ActionDeclaration] = field(default_factory=dict)
-    """Actions by the name of a rule in them."""
+    """Actions by the names of their rules."""
     free: dict[tuple[type, str], tuple[str, ...]] = field(default_factory=dict)
-    """Parameters of the system that a declaration uses without having them, itself or in what it calls."""
+    """For each declaration the system parameters that it uses but does not declare, directly or in its calls."""
 
     def all_reacts(self) -> Iterator[ReactDeclaration]:
         """Yield every rule as declared."""
@@ -66,14 +69,14 @@ def index(model: Model, findings: Findings) -> Names:
                     names.actions[rule.name] = declaration
                     _add_react(names, rule, first, findings)
             case _:
-                pass  # sorts are names of their own
+                pass  # sorts have their own names
     for action in model.system.actions if model.system is not None else ():
         _add_listed(names, action, findings)
     return names
 
 
 def _add_listed(names: Names, action: ActionTerm, findings: Findings) -> None:
-    """Note the rules that an action of the system lists."""
+    """Register the rules that an action of the system lists."""
     declaration = ActionDeclaration(action.name, (), action.reward, action.span)
     _check_action(names, declaration, findings)
     nowhere = Findings(findings.text)

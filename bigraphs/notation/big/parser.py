@@ -1,4 +1,4 @@
-"""Parse `.big` files and single expressions."""
+"""The parser of `.big` files and single expressions."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ OPTIONS: Final[dict[str, Any]] = {
 
 
 def parse_model(text: str) -> Model:
-    """Parse a `.big` file; raises NotationError at the first thing that does not fit."""
+    """Parse a `.big` file; raises NotationError at the first syntax error."""
     try:
         model: Model = _read(text, "model")
     except NotationError as error:
@@ -38,7 +38,7 @@ def parse_model(text: str) -> Model:
 
 
 def _guarded(error: NotationError, text: str) -> NotationError | None:
-    """Return what to say of a number with a guard, `K([n, $ >= 0])`, which BigraphER does not have either."""
+    """Return the error for a guarded number, `K([n, $ >= 0])`, which BigraphER does not support either."""
     found = _GUARD.match(text, error.offset)
     if found is None:
         return None
@@ -49,7 +49,7 @@ def _guarded(error: NotationError, text: str) -> NotationError | None:
 
 
 def parse_expression(text: str) -> Expression:
-    """Parse one expression; raises NotationError at the first thing that does not fit.
+    """Parse one expression; raises NotationError at the first syntax error.
 
     >>> parse_expression("K{x}.id(2)").inside
     Identity(width=2, names=(), span=Span(start=5, end=10))
@@ -74,7 +74,7 @@ def tables() -> Tables:
 
 @cache
 def make_parser() -> Lark:
-    """Return lark's parser, which is slow to make: it explains mistakes, and has the tables."""
+    """Return lark's parser, which explains mistakes and has the tables; its construction is slow."""
     from lark import Lark  # noqa: PLC0415 - lark takes time to load
 
     return Lark(GRAMMAR, **OPTIONS)

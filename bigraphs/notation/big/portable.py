@@ -1,8 +1,8 @@
-"""A `.big` file in the words that BigraphER reads, where it has words for it.
+"""Translation of a `.big` file to the language that BigraphER reads, as far as possible.
 
-What only the language here has is written otherwise: declarations in any order, several kinds of wires before an
-expression, `{x, y}`, `r(n + 1)` in a system, actions that a system lists, declarations for given arguments.
-`unportable` names what is left.
+Extensions of this language are rewritten: free order of declarations, several kinds of wires before an expression, `{x,
+y}`, `r(n + 1)` in a system, actions listed in a system, and declarations for particular arguments. `unportable` lists
+the rest.
 """
 
 from __future__ import annotations
@@ -56,9 +56,9 @@ _TYPES: Final[Mapping[type, str]] = {int: "int", float: "float", str: "string"}
 
 
 def portable(model: Model, system: System, constants: Mapping[str, Value]) -> Model:
-    """Return a file as BigraphER reads it, as far as it can be, with these values of constants.
+    """Return a file as BigraphER reads it, as far as possible, with these values of constants.
 
-    `system` is what the file means with them.
+    `system` is the meaning of the file with them.
     """
     declared = [*_constants(model, constants)]
     whole = model.system
@@ -72,7 +72,7 @@ def portable(model: Model, system: System, constants: Mapping[str, Value]) -> Mo
 
 
 def _constants(model: Model, given: Mapping[str, Value]) -> Iterator[Declaration]:
-    """Yield the declarations with the values that are given from outside."""
+    """Yield the declarations with the given values of constants."""
     declared = {each.name for each in model.declarations if isinstance(each, ConstantDeclaration)}
     for name, value in given.items():
         if name not in declared:
@@ -85,7 +85,7 @@ def _constants(model: Model, given: Mapping[str, Value]) -> Iterator[Declaration
 
 
 def _in_actions(declarations: Iterable[Declaration], system: SystemTerm) -> Iterator[Declaration]:
-    """Yield the declarations, rules that the system lists in an action within that action."""
+    """Yield the declarations; rules that the system lists in an action move into that action."""
     action_of = {rule: action for action in system.actions for rule in action.rules}
     rules: dict[str, list[ReactDeclaration]] = {action.name: [] for action in system.actions}
     for each in declarations:
@@ -99,7 +99,7 @@ def _in_actions(declarations: Iterable[Declaration], system: SystemTerm) -> Iter
 
 
 def _as_functions(declarations: Iterable[Declaration], model: Model) -> Iterator[Declaration]:
-    """Yield the declarations, those for given arguments as one with parameters where that is possible."""
+    """Yield the declarations; those for particular arguments become functions if possible."""
     taken = _names_of(model)
     bigs: list[BigDeclaration] = []
     reacts: list[ReactDeclaration] = []
@@ -117,7 +117,7 @@ def _as_functions(declarations: Iterable[Declaration], model: Model) -> Iterator
 
 
 def _names_of(model: Model) -> set[str]:
-    """Return every name that is declared or is a value's."""
+    """Return the names of all bigraphs and values."""
     names = {part.name for part in _parts(model) if isinstance(part, BigDeclaration | ConstantDeclaration)}
     parameters = model.system.parameters if model.system else ()
     return (
@@ -128,7 +128,7 @@ def _names_of(model: Model) -> set[str]:
 
 
 def _in_order(declarations: Iterable[Declaration]) -> Iterator[Declaration]:
-    """Yield declarations, each after those that it uses: controls, sorts, then the others as they were written."""
+    """Yield declarations in order of use: controls, sorts, then each of the others after the ones that it uses."""
     every = list(declarations)
     first = (ControlDeclaration, SortDeclaration, PlaceDeclaration, LinkDeclaration)
     yield from (each for kind in first for each in every if isinstance(each, kind))
@@ -158,12 +158,12 @@ def _declared(declaration: Declaration) -> Iterator[str]:
 
 
 def _used(declaration: Declaration) -> list[str]:
-    """Return the names of bigraphs and values in a declaration, in the order in which they stand there."""
+    """Return the names of bigraphs and values in a declaration, in source order."""
     return [each.name for each in _parts(declaration) if isinstance(each, Ref | Variable)]
 
 
 def _parts(value: object) -> Iterator[Record]:
-    """Yield every record in a record, itself included."""
+    """Yield a record and every record inside it."""
     waiting = [value]
     while waiting:
         each = waiting.pop()
@@ -178,13 +178,13 @@ def _parts(value: object) -> Iterator[Record]:
 
 
 class _Plain:
-    """Rewrites parts of declarations; `taken` are the names of links that there are."""
+    """Rewrites parts of declarations; `taken` are the link names in use."""
 
     def __init__(self, taken: frozenset[str]) -> None:
         self.taken = taken
 
     def of(self, value: Any) -> Any:
-        """Return a declaration, or a part of one, without what only the language here has."""
+        """Return a declaration, or a part of one, without extensions of this language."""
         match value:
             case tuple():
                 return tuple(map(self.of, value))
@@ -205,7 +205,7 @@ class _Plain:
                 return value
 
     def ion(self, node: Ion | Nest) -> Expression:
-        """Return a node, with what is in it; where one name is at two of its ports, these are joined outside."""
+        """Return a node with its content; a name on two of its ports becomes two names, joined outside."""
         ion = node.ion if isinstance(node, Nest) else node
         links: list[str] = []
         for name in ion.links:
@@ -230,7 +230,7 @@ def _fresh(name: str, taken: frozenset[str]) -> str:
 
 
 def _wired(wires: tuple[Wire, ...], body: Expression) -> Expression:
-    """Return an expression behind wires, of which one kind at a time stands before a parenthesis."""
+    """Return an expression with wires, grouped so that only one kind stands before each parenthesis."""
     groups: list[tuple[Wire, ...]] = []
     for single, together in groupby(wires, lambda wire: isinstance(wire, Close) and len(wire.names) == 1):
         found = tuple(together)
@@ -244,7 +244,7 @@ def _wired(wires: tuple[Wire, ...], body: Expression) -> Expression:
 
 
 def _system(term: SystemTerm, system: System) -> SystemTerm:
-    """Return a system whose calls give parameters alone, or values."""
+    """Return a system whose call arguments are parameters or values only."""
     ranging = {name for each in term.parameters for name in each.names}
     classes = [
         ClassTerm(_calls(each.rules, found.rules, ranging), each.instantaneous)
@@ -261,7 +261,7 @@ def _system(term: SystemTerm, system: System) -> SystemTerm:
 def _calls(
     calls: tuple[Call, ...], instances: Iterable[Rule | Predicate], ranging: set[str]
 ) -> tuple[Call, ...]:
-    """Return calls as they are, or for each instance one if an argument computes with a parameter."""
+    """Return the calls; if an argument computes with a parameter, one call per instance instead."""
     computing = any(
         not isinstance(value, Variable) and ranging & set(variables(value))
         for each in calls
@@ -278,11 +278,11 @@ def _call(instance: Rule | Predicate) -> Call:
     return Call(instance.name, arguments, None if reward is None else written_value(reward))
 
 
-# --- what is left
+# --- the rest
 
 
 def unportable(model: Model) -> list[str]:
-    """Return what a file has that BigraphER has no words for."""
+    """Return the parts of a file that BigraphER cannot express."""
     return list(dict.fromkeys(_unknown(model)))
 
 

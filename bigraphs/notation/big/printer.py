@@ -1,4 +1,4 @@
-"""Print BigraphER's notation; `parse_model` and `parse_expression` read it back."""
+"""The printer of BigraphER's notation; `parse_model` and `parse_expression` read its output."""
 
 from __future__ import annotations
 
@@ -47,13 +47,13 @@ from bigraphs.notation.big.syntax import (
 
 
 def format_model(model: Model) -> str:
-    """Write a whole file, one declaration a line."""
+    """Return the text of a file, one declaration per line."""
     lines = [format_declaration(declaration) for declaration in model.declarations]
     return "\n".join(lines + (_system(model.system) if model.system else [])) + "\n"
 
 
 def format_declaration(declaration: Declaration) -> str:
-    """Write one declaration with its semicolon, if it has one."""
+    """Return the text of one declaration, with its semicolon if it has one."""
     match declaration:
         case ControlDeclaration():
             return _control(declaration)
@@ -115,7 +115,7 @@ def _arguments(arguments: Arguments) -> str:
 
 
 def format_value(value: ValueExpression) -> str:
-    """Write a number, a string or an expression of them, with the parentheses that it needs."""
+    """Return the text of a number, a string or a value expression, with the necessary parentheses."""
     match value:
         case Literal(str() as text):
             return f'"{text}"'
@@ -129,7 +129,7 @@ def format_value(value: ValueExpression) -> str:
             return f"abs({format_value(operand)})"
         case Arithmetic(first, rest):
             level = _VALUE_LEVEL[rest[0][0]]
-            if level == 4:  # '^' binds to the right
+            if level == 4:  # '^' associates to the right
                 return f"{_value_operand(first, 5)} ^ {_value_operand(rest[0][1], 3)}"
             written = [f" {symbol} {_value_operand(operand, level + 1)}" for symbol, operand in rest]
             return _value_operand(first, level + 1) + "".join(written)
@@ -139,7 +139,7 @@ _VALUE_LEVEL = {"+": 1, "-": 1, "*": 2, "/": 2, "^": 4}
 
 
 def _value_operand(value: ValueExpression, least: int) -> str:
-    """Write an operand that binds at least so tightly, else in parentheses."""
+    """Return the text of an operand, in parentheses if it binds less tightly than `least`."""
     match value:
         case Arithmetic(_, rest):
             level = _VALUE_LEVEL[rest[0][0]]
@@ -152,7 +152,7 @@ def _value_operand(value: ValueExpression, least: int) -> str:
 
 
 def format_expression(expression: Expression) -> str:
-    """Write one expression, with the parentheses that it needs."""
+    """Return the text of an expression, with the necessary parentheses."""
     match expression:
         case Chain(first, rest):
             level = _LEVEL[rest[0][0]]
@@ -170,7 +170,7 @@ _LEVEL = {"|": 1, "||": 1, "+": 2, "*": 3}
 
 
 def _operand(expression: Expression, level: int) -> str:
-    """Write an operand: a chain that binds more tightly needs no parentheses."""
+    """Return the text of an operand, without parentheses if it binds more tightly than `level`."""
     text = format_expression(expression)
     inner = _LEVEL[expression.rest[0][0]] if isinstance(expression, Chain) else 4
     return text if inner > level else f"({text})"

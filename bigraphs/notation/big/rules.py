@@ -1,4 +1,4 @@
-"""Elaborate rules: evaluate both sides, compare their interfaces, check weights and conditions."""
+"""Elaboration of rules: it evaluates both sides, compares their interfaces, and checks weights and conditions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from bigraphs.system import Condition, Position, Rule, SystemKind, Value, Where
 
 
 class Rules:
-    """Rules of one file; a system's kind decides what weights they have."""
+    """The rules of one file; the kind of the system determines their weights."""
 
     def __init__(self, evaluation: Evaluation, kind: SystemKind | None) -> None:
         self.evaluation = evaluation
@@ -26,7 +26,7 @@ class Rules:
         self._positions: dict[int, Position] = {}
 
     def named(self, name: str, given: tuple[Value, ...], span: Span, frame: Frame) -> Rule | None:
-        """Return a declared rule for some arguments, or None where a mistake has been noted."""
+        """Return a declared rule for these arguments, or None after a recorded mistake."""
         declaration = self._declaration(name, given, span)
         if declaration is None:
             return None
@@ -48,7 +48,7 @@ class Rules:
         return found if found is not None and len(found.parameters) == len(given) else None
 
     def rule(self, react: ReactDeclaration, given: tuple[Value, ...], frame: Frame) -> Rule | None:
-        """Return the rule of a declaration for some arguments."""
+        """Return the rule of a declaration for these arguments."""
         patterns = [(condition.pattern, pattern_of) for condition in react.conditions]
         parts = [(react.redex, lean), (react.reactum, lean), *patterns]
         sides = self.evaluation.instance(react, frame, parts) or self._sides(react, frame)
@@ -82,14 +82,14 @@ class Rules:
         return [lean(redex), lean(reactum), *found] if len(found) == len(patterns) else None
 
     def reward(self, expression: ValueExpression | None) -> int | float:
-        """Return the reward of an action or a predicate, 0 if none is written."""
+        """Return the reward of an action or a predicate, 0 by default."""
         found = 0 if expression is None else self.scope.value(expression, Frame())
         if expression is not None and (isinstance(found, str) or not _finite(found)):
             self.scope.add("type", "a reward is a number", expression.span, Frame())
         return found if isinstance(found, int | float) else 0
 
     def position(self, span: Span) -> Position:
-        """Return lines and columns of a span."""
+        """Return the line and column of a span's start."""
         if span.start not in self._positions:
             text, start = self.scope.findings.text, span.start
             self._positions[start] = Position(
@@ -98,12 +98,12 @@ class Rules:
         return self._positions[span.start]
 
     def pattern(self, expression: Expression, frame: Frame) -> Bigraph | None:
-        """Return a pattern, of which only is asked whether it occurs."""
+        """Return the pattern of a condition or predicate."""
         found = self.evaluation.value(expression, frame)
         return None if found is None else self.as_pattern(found, expression.span, frame)
 
     def as_pattern(self, bigraph: Bigraph, span: Span, frame: Frame) -> Bigraph | None:
-        """Return what of a bigraph decides whether it occurs."""
+        """Return the part of a bigraph that determines its occurrence."""
         found = pattern_of(bigraph)
         if not found.nodes:
             self.scope.add("pattern", "this has no node, so it would always occur", span, frame)
@@ -114,7 +114,7 @@ class Rules:
         return None
 
     def _fitting(self, react: ReactDeclaration, redex: Bigraph, reactum: Bigraph, frame: Frame) -> bool:
-        """Note what keeps the sides of a rule from making one."""
+        """Check that the two sides form a rule; record every mistake."""
         before = len(self.scope.findings)
         for message, hint in faults(redex):
             self.scope.add("redex", message, react.redex.span, frame, hint)

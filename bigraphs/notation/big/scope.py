@@ -16,7 +16,7 @@ from bigraphs.signature import Control
 from bigraphs.system import Value, call
 
 NESTED: Final = 100
-"""How deep constants, and calls of bigraphs, may use each other."""
+"""The nesting limit of constants and of bigraph calls."""
 
 
 _Given = TypeVar("_Given", BigDeclaration, ReactDeclaration)
@@ -24,7 +24,7 @@ _Given = TypeVar("_Given", BigDeclaration, ReactDeclaration)
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """The declaration that is evaluated: `label` is its call, if it has parameters, `values` what they are."""
+    """The declaration under evaluation: `label` is its call, if it has parameters; `values` are their values."""
 
     label: str = ""
     values: Mapping[str, Value] = field(default_factory=dict)
@@ -33,18 +33,18 @@ class Frame:
     def inside(
         self, name: str, parameters: Sequence[str], arguments: Sequence[Value], free: Iterable[str] = ()
     ) -> Frame:
-        """Return the frame of a call from this one, whose meaning of the free names it takes over."""
+        """Return the frame of a call from this one; free names keep their values."""
         given = {each: self.values[each] for each in free if each in self.values}
         given.update(zip(parameters, arguments, strict=True))
         return Frame(call(name, tuple(arguments)) if parameters else "", given, self.depth + 1)
 
     def key(self, name: str, given: tuple[Value, ...]) -> str:
-        """Return what tells this call of a declaration from others: its arguments, and what is taken over."""
+        """Return the key of a call: its arguments and the values of its free names."""
         return " ".join((call(name, given), *(f"{each}={value!r}" for each, value in self.values.items())))
 
 
 class Scope:
-    """Constants and controls of one file, each evaluated once, and the types that parameters have had."""
+    """The constants and controls of one file, each evaluated once, and the types of parameters."""
 
     def __init__(self, names: Names, findings: Findings, given: Mapping[str, Value]) -> None:
         self.names = names
@@ -56,12 +56,12 @@ class Scope:
         self._depth = 0
 
     def add(self, code: str, message: str, span: Span, frame: Frame, hint: str = "") -> None:
-        """Note a mistake, and in which call it came up."""
+        """Add a mistake, with the call in which it occurred."""
         where = f", in {frame.label}" if frame.label else ""
         self.findings.add(code, message + where, span, hint)
 
     def value(self, expression: ValueExpression, frame: Frame) -> Value | None:
-        """Return the value of an expression, or None where a mistake has been noted."""
+        """Return the value of an expression, or None after a recorded mistake."""
         return values.evaluate(expression, lambda name: self._variable(name, frame), self.findings)
 
     def arguments(self, expressions: Sequence[ValueExpression], frame: Frame) -> tuple[Value, ...] | None:
@@ -76,10 +76,10 @@ class Scope:
         return self.constant(variable.name)
 
     def constant(self, name: str) -> Value | None:
-        """Return what a constant is; constants may use each other in any order."""
+        """Return the value of a constant; constants may use each other in any order."""
         if name not in self.constants and name in self.names.constants:
             declaration = self.names.constants[name]
-            self.constants[name] = None  # while it is under way
+            self.constants[name] = None  # during its own evaluation
             if self._depth >= NESTED:
                 message = f"constants use each other more than {NESTED} deep"
                 self.findings.add("too-deep", message, declaration.span)
@@ -111,7 +111,7 @@ class Scope:
         span: Span,
         frame: Frame,
     ) -> Frame | None:
-        """Return the frame of a call; None if it does not say what parameter of the system is meant."""
+        """Return the frame of a call; None after a recorded mistake if it leaves a system parameter undefined."""
         free = self.names.free.get((type(declaration), declaration.name), ())
         parameters = declaration.parameters
         inner = frame.inside(declaration.name, parameters, given if parameters else (), free)
@@ -126,7 +126,7 @@ class Scope:
         return None
 
     def control(self, ion: Ion, frame: Frame) -> Control | None:
-        """Return the control of an ion, its parameters filled in."""
+        """Return the control of an ion, with the values of its parameters."""
         declaration = self.names.controls.get(ion.control)
         given = self.arguments(ion.arguments, frame)
         if declaration is None or given is None or len(given) != len(declaration.parameters):
@@ -142,7 +142,7 @@ class Scope:
         return control_of(declaration, given)
 
     def instance(self, choices: Sequence[_Given], given: tuple[Value, ...], span: Span) -> _Given | None:
-        """Return what is declared for these very arguments, as `big b(1) = ...` is; note if nothing is."""
+        """Return the declaration for exactly these arguments, such as `big b(1) = ...`; record a missing one."""
         name = choices[0].name
         if (type(choices[0]), name) not in self._instances:
             self._instances[type(choices[0]), name] = self._by_call(choices)
@@ -164,7 +164,7 @@ class Scope:
     def fits(
         self, name: str, parameters: Sequence[str], given: Sequence[Value], span: Span, frame: Frame
     ) -> bool:
-        """Check that each parameter has one type, wherever it is given a value."""
+        """Check that each parameter has the same type in all calls."""
         fitting = True
         for parameter, value in zip(parameters, given, strict=True):
             type_ = values.type_name(value)
@@ -181,6 +181,6 @@ class Scope:
 
 
 def control_of(declaration: ControlDeclaration, given: tuple[Value, ...]) -> Control:
-    """Return a declared control for some arguments."""
+    """Return a declared control for these arguments."""
     name = call(declaration.name, given)
     return Control(name, declaration.arity, declaration.status, declaration.ordered)

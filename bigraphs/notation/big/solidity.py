@@ -1,4 +1,4 @@
-"""The conditions on redexes and patterns that make occurrences unambiguous and findable."""
+"""The conditions on redexes and patterns that make occurrences unambiguous and searchable."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from bigraphs.bigraph import Bigraph, assemble, points, sites_in
 
 
 def faults(redex: Bigraph) -> Iterator[tuple[str, str]]:
-    """Yield why a redex is not solid, as BigraphER asks of it, each with what to do."""
+    """Yield each violation of BigraphER's condition of solid redexes, with a remedy."""
     inhabited = {parent for node in redex.nodes for parent in node.parents}
     for region in range(redex.regions):
         if ~region not in inhabited:
@@ -44,7 +44,7 @@ def _faults_of_sharing(redex: Bigraph) -> Iterator[tuple[str, str]]:
 
 
 def pattern_of(bigraph: Bigraph) -> Bigraph:
-    """Return what of a pattern decides whether it occurs: no idle names, no sites in regions, no empty regions."""
+    """Return a pattern without parts that match anything: idle names, sites in regions, empty regions."""
     inhabited = {parent for node in bigraph.nodes for parent in node.parents}
     kept = [region for region in range(bigraph.regions) if ~region in inhabited]
     names = _used_names(bigraph)
@@ -70,7 +70,7 @@ def pattern_of(bigraph: Bigraph) -> Bigraph:
 
 
 def _sites_ask(bigraph: Bigraph) -> bool:
-    """Say whether each site says something: that there may be more in these nodes."""
+    """Return whether each site is meaningful: distinct, sorted and inside nodes, where it permits more content."""
     distinct = len(set(bigraph.sites)) == len(bigraph.sites) and list(bigraph.sites) == sorted(bigraph.sites)
     return distinct and all(parents and all(parent >= 0 for parent in parents) for parents in bigraph.sites)
 

@@ -1,4 +1,4 @@
-"""Elaborate sorts: resolve their names to controls, and check that every rule preserves them."""
+"""Elaboration of sorts: it resolves their names to controls and checks that every rule preserves them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def sorting_of(model: Model, names: Names, findings: Findings) -> Sorting:
 
 
 class _Sorts:
-    """What has been read of sorts so far."""
+    """The sorts read so far."""
 
     def __init__(self, names: Names, findings: Findings) -> None:
         self.names = names
@@ -46,7 +46,7 @@ class _Sorts:
         self.sorts[sort.name] = self.resolved(sort.controls, sort.span)
 
     def resolved(self, names: tuple[str, ...], span: Span) -> tuple[str, ...]:
-        """Return the controls that controls and sorts stand for, sorted."""
+        """Return the controls behind names of controls and sorts, sorted."""
         found = {control for name in names for control in self.sorts.get(name, (name,))}
         return tuple(sorted(control for control in found if self.known(control, span)))
 
@@ -88,7 +88,7 @@ class _Sorts:
 
 
 def check_sorted(system: System, initial: Span, spans: dict[str, Span], findings: Findings) -> None:
-    """Note what in the first state is against its sorts, and which rules may leave them."""
+    """Record sort violations of the initial state, and the rules that may violate sorts."""
     if system.sorting == UNSORTED:
         return
     for found in violations(system.initial, system.sorting):

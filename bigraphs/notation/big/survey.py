@@ -1,4 +1,4 @@
-"""Check every name in a file before evaluation: is it declared, and used as what it is?"""
+"""The check of every name in a file before evaluation: it must be declared, and its use must fit."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ from bigraphs.notation.big.syntax import (
 from bigraphs.notation.lalr import Span
 
 _Used: TypeAlias = tuple[type, str]
-"""What is called, a bigraph or a rule, and its name."""
+"""The kind of a call, bigraph or rule, and its name."""
 
 
 def survey(model: Model, names: Names, findings: Findings, given: Iterable[str] = ()) -> None:
-    """Note every name that is not declared, and every wrong number of links or arguments; `given` are constants."""
+    """Record every undeclared name and every wrong number of links or arguments; `given` are external constants."""
     constants = frozenset(given) | names.constants.keys()
     ranging = () if model.system is None else model.system.parameters
     look = Survey(names, findings, constants, frozenset(name for each in ranging for name in each.names))
@@ -54,7 +54,7 @@ def survey(model: Model, names: Names, findings: Findings, given: Iterable[str] 
 
 
 class Survey:
-    """A walk over syntax that knows which values can be named where it is."""
+    """A walk over syntax that knows the visible values at each point."""
 
     def __init__(
         self,
@@ -74,7 +74,10 @@ class Survey:
         self._apart: dict[_Used, Findings] = {}
 
     def apart(self, what: type, name: str, parameters: Sequence[str], walk: Callable[[], None]) -> None:
-        """Look at a declaration with its parameters known, and keep its mistakes apart if it has to be called."""
+        """Check a declaration with its parameters visible.
+
+        Mistakes in a parametrised declaration are collected separately: they count only if it is called.
+        """
         if not parameters:
             walk()
         else:
@@ -88,7 +91,7 @@ class Survey:
             self.variables = self.constants
 
     def free(self) -> dict[_Used, tuple[str, ...]]:
-        """Return the parameters of the system that each declaration uses, those that what it calls uses included."""
+        """Return the system parameters that each declaration uses, directly or through its calls."""
         grown = True
         while grown and any(self._free.values()):
             before = sum(map(len, self._free.values()))
@@ -107,15 +110,15 @@ class Survey:
         return known[name].parameters
 
     def settle(self, called: bool) -> None:
-        """Make mistakes in what nothing calls warnings, the others mistakes."""
+        """Turn the mistakes of uncalled declarations into warnings, and report the others."""
         reached: list[_Used | None] = [None, *(() if called else self._apart)]
-        for each in reached:  # grows while it is walked
+        for each in reached:  # the list grows during the loop
             reached.extend(self._uses.pop(each, ()))
         for each, found in self._apart.items():
             (self.findings.take if each in reached else self.findings.warn)(found)
 
     def declaration(self, declaration: Declaration) -> None:
-        """Look at one declaration, in which its parameters are known."""
+        """Check one declaration, with its parameters visible."""
         match declaration:
             case ConstantDeclaration(value=value):
                 self.value(value)
@@ -132,12 +135,12 @@ class Survey:
                 pass
 
     def react(self, react: ReactDeclaration) -> None:
-        """Look at a rule, in which its parameters are known."""
+        """Check a rule, with its parameters visible."""
         self.values(react.arguments)
         self.apart(ReactDeclaration, react.name, react.parameters, lambda: self.change(react))
 
     def change(self, react: ReactDeclaration) -> None:
-        """Look at what a rule does."""
+        """Check the parts of a rule."""
         self.expression(react.redex)
         self.expression(react.reactum)
         self.values(() if react.weight is None else (react.weight,))
@@ -145,7 +148,7 @@ class Survey:
             self.expression(condition.pattern)
 
     def system(self, system: SystemTerm) -> None:
-        """Look at a system, in which its parameters are known."""
+        """Check a system, with its parameters visible."""
         for parameter in system.parameters:
             self.values(parameter.values)
             self.variables |= frozenset(parameter.names)
@@ -159,13 +162,13 @@ class Survey:
             self.call(predicate, "bigraph")
 
     def call(self, call: Call, what: str) -> None:
-        """Look at what a system names."""
+        """Check a call in a system."""
         self.values(call.arguments)
         self.values(() if call.reward is None else (call.reward,))
         self.used(what, call.name, len(call.arguments), call.span)
 
     def used(self, what: str, name: str, arguments: int, span: Span) -> None:
-        """Check a name that is used as a bigraph or a rule, and how many arguments it gets."""
+        """Check a name that is used as a bigraph or a rule, and the number of its arguments."""
         kind = BigDeclaration if what == "bigraph" else ReactDeclaration
         self._uses.setdefault(self._within, set()).add((kind, name))
         known = self.names.bigs if what == "bigraph" else self.names.reacts
@@ -183,7 +186,7 @@ class Survey:
             self.findings.add("arguments", found, span)
 
     def expression(self, expression: Expression) -> None:
-        """Look at an expression and all that is in it; it nests no deeper than a text may."""
+        """Check an expression and all its parts; the parser has limited its nesting."""
         match expression:
             case Ref(name, arguments):
                 self.values(arguments)
@@ -207,7 +210,7 @@ class Survey:
                 pass
 
     def ion(self, ion: Ion) -> None:
-        """Look at an ion."""
+        """Check an ion."""
         self.values(ion.arguments)
         if ion.control not in self.names.controls:
             at = Span(ion.span.start, ion.span.start + len(ion.control))
@@ -221,7 +224,7 @@ class Survey:
             self.findings.add("arity", found, ion.span, hint)
 
     def nest(self, ion: Ion, inside: Expression) -> None:
-        """Look at an ion with something in it."""
+        """Check an ion with content."""
         self.expression(ion)
         self.expression(inside)
         control = self.names.controls.get(ion.control)
@@ -232,12 +235,12 @@ class Survey:
             )
 
     def values(self, values: Iterable[ValueExpression]) -> None:
-        """Look at several values."""
+        """Check several values."""
         for value in values:
             self.value(value)
 
     def value(self, value: ValueExpression) -> None:
-        """Look at a value."""
+        """Check a value."""
         match value:
             case Variable(name):
                 self.seen.add(name)

@@ -10,7 +10,7 @@ from bigraphs.system import Value
 
 NOWHERE = Span()
 MAX_SIZE: Final = 20_000
-"""Of a bigraph: nodes, places, sites, names and edges together."""
+"""The size limit of a bigraph: nodes, places, sites, names and edges together."""
 
 
 # --- values: numbers and strings
@@ -24,7 +24,7 @@ class Literal(Record):
 
 
 class Variable(Record):
-    """A constant, a parameter of the system, or one of the declaration that it stands in."""
+    """A constant, a parameter of the system, or a parameter of the enclosing declaration."""
 
     name: str
     span: Span = NOWHERE
@@ -45,7 +45,7 @@ class Absolute(Record):
 
 
 class Arithmetic(Record):
-    """Operands with `+ -` or `* /` between them, from the left, or `^`, from the right."""
+    """Operands with `+ -` or `* /` between them, left-associative, or with `^`, right-associative."""
 
     first: ValueExpression
     rest: tuple[tuple[str, ValueExpression], ...]
@@ -75,7 +75,7 @@ class Number(Record):
 
 
 class Ion(Record):
-    """A node with a site in it, or none if its control is atomic: `K`, `K{x, y}`, `K(1, "a"){x}`."""
+    """A node with a site, or without one if its control is atomic: `K`, `K{x, y}`, `K(1, "a"){x}`."""
 
     control: str
     links: tuple[str, ...] = ()
@@ -84,7 +84,7 @@ class Ion(Record):
 
 
 class Nest(Record):
-    """An ion with something in it."""
+    """An ion with content."""
 
     ion: Ion
     inside: Expression
@@ -100,9 +100,9 @@ class Identity(Record):
 
 
 class Placed(Record):
-    """`([{0, 1}, {0}], 2)`: for each site the regions it is in, and the number of regions.
+    """`([{0, 1}, {0}], 2)`: for each site its regions, and the number of regions.
 
-    `merge(n)` and `split(n)` are read as such.
+    The parser turns `merge(n)` and `split(n)` into this form.
     """
 
     parents: tuple[tuple[int, ...], ...]
@@ -133,7 +133,7 @@ class NewNames(Record):
 
 
 class Wired(Record):
-    """Closures and substitutions before what they apply to, the last one first."""
+    """Closures and substitutions before an expression; the last one applies first."""
 
     wires: tuple[Wire, ...]
     body: Expression
@@ -141,7 +141,7 @@ class Wired(Record):
 
 
 class Chain(Record):
-    """Operands with the operators between them, from the left; all bind alike."""
+    """Operands with operators of equal precedence between them, left-associative."""
 
     first: Expression
     rest: tuple[tuple[str, Expression], ...]
@@ -149,7 +149,7 @@ class Chain(Record):
 
 
 class Share(Record):
-    """`share what by placing in where`: each region of what is in several sites of where."""
+    """`share what by placing in where`: each region of `what` goes into several sites of `where`."""
 
     what: Expression
     by: Expression
@@ -158,7 +158,7 @@ class Share(Record):
 
 
 class Repeat(Record):
-    """`par(n, b)`, b n times in one region, or `ppar(n, b)`, side by side; `operator` is `|` or `||`."""
+    """`par(n, b)`, n copies of b in one region, or `ppar(n, b)`, side by side; `operator` is `|` or `||`."""
 
     operator: str
     times: ValueExpression

@@ -1,4 +1,4 @@
-"""Elaborate a `.big` file to a system."""
+"""Elaboration of a `.big` file to a system."""
 
 from __future__ import annotations
 
@@ -25,14 +25,15 @@ from bigraphs.signature import Signature
 from bigraphs.system import Action, Predicate, PriorityClass, Rule, System, SystemKind, Value
 
 MAX_INSTANCES: Final = 10_000
-"""How many rules and predicates a system has, those for each value of its parameters counted."""
+"""The largest number of rules or predicates of a system, with an instance for each parameter value."""
 _ONE: Final = Span(0, 1)
 
 
 def read_system(text: str, *, constants: Mapping[str, Value] | None = None) -> System:
-    """Read a `.big` file that ends in a system; `constants` go before those that it declares.
+    """Return the system of a `.big` file; `constants` override the constants that it declares.
 
-    Raises NotationError with all that does not make sense, or the first thing that does not parse.
+    Raises:
+        NotationError: With the first syntax error, or else with all other mistakes.
     """
     model = parse_model(text)
     findings = Findings(text)
@@ -44,7 +45,7 @@ def read_system(text: str, *, constants: Mapping[str, Value] | None = None) -> S
 
 
 class _Systems:
-    """One file on its way to a system."""
+    """The elaboration of one file."""
 
     def __init__(self, model: Model, findings: Findings, constants: Mapping[str, Value]) -> None:
         self.model = model
@@ -58,7 +59,7 @@ class _Systems:
         self.ranges: dict[str, tuple[Value, ...]] = {}
 
     def given(self, constants: Mapping[str, Value]) -> dict[str, Value]:
-        """Return constants as values of the types that they are declared with."""
+        """Return constants as values of their declared types."""
         found = dict(constants)
         for name, value in constants.items():
             declared = self.names.constants.get(name)
@@ -67,7 +68,7 @@ class _Systems:
         return found
 
     def system(self) -> System | None:
-        """Return the system, if all is well; what is declared and not used is looked at, too."""
+        """Return the system, or None after a recorded mistake; unused declarations are checked too."""
         check_declared(self.names, self.scope, self.evaluation, self.rules)
         sorting = sorting_of(self.model, self.names, self.findings)
         term = self.model.system
@@ -101,14 +102,14 @@ class _Systems:
         return replace(whole, warnings=self.findings.warnings)
 
     def signature(self, system: System) -> Signature:
-        """Return the declared controls, and of parametrised ones those that are in the system."""
+        """Return the signature: the declared controls, and the instances of parametrised ones that the system uses."""
         plain = [control_of(each, ()) for each in self.names.controls.values() if not each.parameters]
         used = {node.control for bigraph in bigraphs_of(system) for node in bigraph.nodes}
         given = [control for name, control in self.evaluation.controls.items() if name in used]
         return Signature(tuple({control.name: control for control in (*plain, *given)}.values()))
 
     def parameter(self, parameter: ParameterDeclaration) -> None:
-        """Evaluate what parameters of the system range over."""
+        """Evaluate the values of system parameters."""
         found = [self.scope.value(value, Frame()) for value in parameter.values]
         typed = [
             None if value is None else values.typed(parameter.type, value, written.span, self.findings)
@@ -126,7 +127,7 @@ class _Systems:
             self.ranges[name] = tuple(chosen)
 
     def ranged(self, bounds: list[Value], span: Span) -> list[Value]:
-        """Return `[first : step : last]`, the first value always, the last one first (see `instances`)."""
+        """Return the values of `[first : step : last]`, descending, with `first` in any case (see `instances`)."""
         first, step, last = (value if isinstance(value, int | float) else 0 for value in bounds)
         if step <= 0:
             self.findings.add("number", f"a step is more than 0, this is {step}", span)
@@ -150,10 +151,10 @@ class _Systems:
         return None if found is None else lean(found)
 
     def instances(self, call: Call) -> Iterator[tuple[tuple[Value, ...], Frame]]:
-        """Yield the arguments of a call for each value of the parameters in it, and the frame that gives these.
+        """Yield the arguments of a call for each combination of its parameters' values, with the frame of these values.
 
-        The order decides between instantaneous rules. It is BigraphER's: the values of a range come as they are
-        written, those of a set `{...}` from the greatest down.
+        The order is BigraphER's, as it determines which instantaneous rule acts first. Values of a range come in source
+        order, values of a set `{...}` in descending order.
         """
         names = sorted(
             {name for value in call.arguments for name in values.variables(value)} & set(self.ranges)
@@ -197,7 +198,7 @@ class _Systems:
                 self.check_kind(term, each, rule)
 
     def check_kind(self, term: SystemTerm, each: ClassTerm, rule: Rule) -> None:
-        """Check that a rule is of its system's kind."""
+        """Check that a rule fits the kind of its system."""
         endless = rule.weight == float("inf")
         if term.kind == "sbrs" and endless != each.instantaneous and rule.weight is not None:
             message = f"the rate of '{rule.label}' is {rule.weight}, its class is "
@@ -221,7 +222,7 @@ class _Systems:
 
 
 def check_declared(names: Names, scope: Scope, evaluation: Evaluation, rules: Rules) -> None:
-    """Evaluate every declaration without parameters, so that its mistakes are found even if nothing uses it."""
+    """Evaluate every declaration without parameters, so that mistakes in unused ones are found too."""
     for name in names.constants:
         scope.constant(name)
     for big in names.all_bigs():
@@ -245,7 +246,7 @@ def bigraphs_of(system: System) -> Iterator[Bigraph]:
 
 
 def with_signature(system: System, signature: Signature) -> System:
-    """Return a system all of whose bigraphs are over one signature."""
+    """Return a system with all its bigraphs over one signature."""
 
     def widened(bigraph: Bigraph) -> Bigraph:
         return relabelled(bigraph, {}, signature)

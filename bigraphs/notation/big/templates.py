@@ -1,8 +1,8 @@
-"""Templates: what a parametrised declaration makes, evaluated once for all values of its parameters.
+"""Templates: the result of a parametrised declaration, evaluated once for all values of its parameters.
 
-Parameters fill controls. So as long as none counts repetitions or chooses a declaration, all instances are one
-bigraph with other controls. It is evaluated with symbols for values; each instance computes what the symbols stand
-for and relabels the nodes. Whatever is not of this form, or has a mistake, is evaluated as it is written.
+Parameters usually fill controls. If none counts repetitions or selects a declaration, all instances are one bigraph
+with different controls. The template is evaluated with symbols as values; each instance computes the symbols' values
+and relabels the nodes. Any other expression, or one with a mistake, is evaluated as written.
 """
 
 from __future__ import annotations
@@ -21,28 +21,28 @@ from bigraphs.signature import Control, Signature
 from bigraphs.system import Value
 
 Part: TypeAlias = tuple[Expression, Callable[[Bigraph], Bigraph]]
-"""An expression, and what is done with its bigraph."""
+"""An expression, and the function applied to its bigraph."""
 
 
 class Symbol(str):
-    """A value that only an instance has: a parameter, or what is computed from those numbered before it.
+    """A placeholder for a value: a parameter, or a value computed from earlier ones.
 
-    As a string it is `#` and its number, which no string of the language is.
+    As a string it is `#` and its number; no string of the language has this form.
     """
 
     __slots__ = ()
 
     @property
     def number(self) -> int:
-        """Return which of the known values it is."""
+        """Return its index among the known values."""
         return int(self[1:])
 
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """Bigraphs with symbols in their controls; `steps` compute the symbols that are no parameters.
+    """Bigraphs with symbols in their controls; `steps` compute the symbols that are not parameters.
 
-    `controls` are those with symbols, `fixed` the others.
+    `controls` are the controls with symbols, `fixed` the others.
     """
 
     bigraphs: tuple[Bigraph, ...]
@@ -52,7 +52,7 @@ class Template:
     scope: Scope
 
     def instance(self, given: Sequence[Value]) -> tuple[list[Bigraph], list[Control]] | None:
-        """Return the bigraphs for some arguments and their controls; None where an argument has a mistake."""
+        """Return the bigraphs for these arguments, with their controls; None after a mistake in an argument."""
         known = list(given)
         for expression, frame in self.steps:
             found = self._computed(expression, frame, known)
@@ -77,7 +77,7 @@ class Template:
 
 
 class SymbolicScope(Scope):
-    """A scope whose values may be symbols. What needs a value notes a mistake: the expression makes no template."""
+    """A scope whose values may be symbols; an operation that needs a real value records a mistake."""
 
     def __init__(self, scope: Scope, parameters: Sequence[str]) -> None:
         super().__init__(scope.names, Findings(scope.findings.text), {})
@@ -88,7 +88,7 @@ class SymbolicScope(Scope):
         self.fixed: dict[str, Control] = {}
 
     def value(self, expression: ValueExpression, frame: Frame) -> Value | None:
-        """Return a symbol for what depends on symbols."""
+        """Return the value of an expression; a symbol if it depends on symbols."""
         symbols = [
             name for name in values.variables(expression) if isinstance(frame.values.get(name), Symbol)
         ]
@@ -100,11 +100,11 @@ class SymbolicScope(Scope):
         return Symbol(f"#{len(self.frame.values) + len(self.steps) - 1}")
 
     def fits(self, *_: object) -> bool:
-        """Say yes: in the instance that was evaluated as written, arguments of the same types fit."""
+        """Return True: the instance that was evaluated as written has arguments of the same types."""
         return True
 
     def filled(self, declaration: ControlDeclaration, given: tuple[Value, ...]) -> Control:
-        """Return a control, with symbols in its name where they are among the arguments."""
+        """Return a control, with symbols in its name if they are among the arguments."""
         mark = super().filled(declaration, given)
         if any(isinstance(value, Symbol) for value in given):
             self.controls[mark.name] = declaration, given

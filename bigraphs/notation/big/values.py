@@ -1,4 +1,4 @@
-"""Evaluate numbers and strings: integers stay integers and within bounds."""
+"""Evaluation of numbers and strings: integers stay integers and within bounds."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def type_name(value: Value) -> str:
 
 
 def evaluate(expression: ValueExpression, lookup: Lookup, findings: Findings) -> Value | None:
-    """Return the value, or None where a mistake has been noted."""
+    """Return the value, or None after a recorded mistake."""
     match expression:
         case Literal(value):
             return value
@@ -60,7 +60,7 @@ def variables(value: ValueExpression) -> Iterator[str]:
 
 
 def typed(type_: str, value: Value, span: Span, findings: Findings) -> Value | None:
-    """Return a value as one of a type: a whole number is a float, too."""
+    """Return a value converted to a type; an integer is also a float."""
     if type_ == "float" and isinstance(value, int):
         return float(value)
     if isinstance(value, TYPES[type_]):
@@ -128,7 +128,7 @@ def _bounded(value: int | float) -> int | float:
 
 
 def _divided(left: int | float, right: int | float) -> int | float:
-    """Divide; whole numbers are cut towards zero, as in BigraphER."""
+    """Divide; an integer quotient is truncated towards zero, as in BigraphER."""
     if isinstance(left, int) and isinstance(right, int):
         quotient = abs(left) // abs(right)
         return quotient if (left < 0) == (right < 0) else -quotient

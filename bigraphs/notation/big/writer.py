@@ -1,4 +1,4 @@
-"""Write a system as a `.big` file; `read_system` reads an equal system back."""
+"""The writer of systems as `.big` files; `read_system` reads an equal system."""
 
 from __future__ import annotations
 
@@ -37,16 +37,17 @@ _Labelled = TypeVar("_Labelled", Rule, Predicate)
 
 
 def write_system(system: System) -> str:
-    """Write a system; raises BigraphError for what the notation has no way to say.
+    """Return the text of a system.
 
-    That is: names of nodes, properties and declared names of BigMC, controls of any arity, idle edges, and names
-    with other characters. A system whose text would be longer than is read is refused, too.
+    Raises:
+        BigraphError: For parts without notation: names of nodes, properties and declared names of BigMC, controls of
+            any arity, idle edges, and names with other characters. Also if the text would exceed the reader's limits.
     """
     return checked_text(model_of(system))
 
 
 def checked_text(model: Model) -> str:
-    """Return the text of a model; raises BigraphError if it is longer than a text that is read."""
+    """Return the text of a model; raises BigraphError if it exceeds the reader's limits."""
     text = format_model(model)
     try:
         check_bounds(text)
@@ -59,7 +60,8 @@ def checked_text(model: Model) -> str:
 def model_of(system: System) -> Model:
     """Return a system as syntax: one declaration for each rule and predicate.
 
-    Those with parameters are one with theirs filled in where that is possible, else one for each list of arguments.
+    Instances of a parametrised rule are folded into one declaration with parameters if possible; otherwise each has its
+    own.
     """
     if system.properties:
         raise _unwritable("properties")
@@ -79,7 +81,7 @@ def _unwritable(what: str) -> BigraphError:
 
 
 def _distinct(labelled: Iterable[_Labelled]) -> list[_Labelled]:
-    """Return rules or predicates once each; two that differ need names that differ."""
+    """Return each rule or predicate once; raises BigraphError if two different ones share a label."""
     found: dict[str, _Labelled] = {}
     for each in labelled:
         if found.setdefault(each.label, each) != each:
