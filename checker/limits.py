@@ -63,7 +63,7 @@ class Bound:
 
     @property
     def effect(self) -> str:
-        """The consequence of the bound, in words."""
+        """What it has done, in words."""
         whole = self.stop is Stop.COMPACTION
         return str(self) if whole else f"stopped at {self}: what lies beyond was not explored"
 

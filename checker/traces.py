@@ -68,8 +68,8 @@ class Trace:
         loop: The number of the configuration from which the run repeats for ever; it equals the last one. If it is the
             number of the last itself, the run stays there for ever. None for a finite run.
         dates: The date of each step, in ticks from the start; empty without timing.
-        shortest: Whether the trace is certainly a shortest one. It isn't with partial order reduction
-            (`--reduce por`), nor where the proof would take too long.
+        shortest: Whether the trace is certainly a shortest one. It isn't where steps were put
+            off (`--reduce por`), nor where to find out would take too long.
     """
 
     initial: Configuration
@@ -212,7 +212,7 @@ def _unfolded(found: Exploration, number: int, by: Transition | None, *, shortes
 
 
 def print_trace(trace: Trace, *, changes: bool = True) -> Iterator[str]:
-    """Print a trace in the paper's notation, with the changes under each step."""
+    """Print a trace in the paper's notation, with what changed under each step."""
     for number, (step, source) in enumerate(zip(trace.steps, trace.configurations, strict=False)):
         date = trace.date(number)
         yield f"c{number} --{f'at {date} ' if date else ''}{step.label}--> c{number + 1}"

@@ -14,19 +14,19 @@ from checker.properties.temporal.truth import Truth
 from semantics.properties.temporal import Taken, Temporal
 
 MOST_CODES: Final = 1 << 26
-"""The most pairs of a configuration and a state."""
+"""Pairs of a configuration and a state that may be numbered."""
 
 
 @dataclass(frozen=True, eq=False)
 class Nearby:
-    """The product, and the distance of each of its nodes from the nearest initial one."""
+    """The product, and how far each of its nodes is from the nearest that begins."""
 
     product: Product
     depths: Numbers
 
 
 def nearby(graph: Graph, automaton: Tight, truth: Truth, most: int, effort: Effort) -> Nearby:
-    """Return the part of the product within so many steps from configuration 0.
+    """Return the product as far as so many steps lead from configuration 0.
 
     Raises:
         Exhausted: It would be too large.
@@ -52,7 +52,7 @@ class _Search:
         self.states = automaton.states
         if graph.size * self.states > MOST_CODES:
             raise Exhausted
-        self.numbers = np.zeros(graph.size * self.states, dtype=np.int32)  # for each code, plus one
+        self.numbers = np.zeros(graph.size * self.states, dtype=np.int32)  # of each code, plus one
         first = np.arange(self.states // 2, self.states, dtype=np.int64)
         nowhere = np.full(len(first), -1, dtype=np.int64)
         self.codes, self.before, self.by, self.count = [first], [nowhere], [nowhere], len(first)
@@ -69,7 +69,7 @@ class _Search:
         )
         inside = np.flatnonzero(self.numbers[codes])
         targets = self.numbers[codes[inside]].astype(np.int64) - 1
-        rows = rows_of(sources[inside], targets, self.count)  # layers have ascending numbers
+        rows = rows_of(sources[inside], targets, self.count)  # layers come in the order of their numbers
         configurations, before, by = map(np.concatenate, (self.codes, self.before, self.by))
         product = Product(
             rows.starts, targets, edges[inside], marks[inside], configurations // self.states, before, by
@@ -77,7 +77,7 @@ class _Search:
         return Nearby(product, np.repeat(np.arange(len(self.codes)), list(map(len, self.codes))))
 
     def discover(self, layer: _Layer) -> None:
-        """Number the nodes that a layer is the first to reach."""
+        """Number the nodes that a layer leads to for the first time."""
         fresh = np.flatnonzero(self.numbers[layer.codes] == 0)
         _, first = np.unique(layer.codes[fresh], return_index=True)
         new = fresh[np.sort(first)]
@@ -104,7 +104,7 @@ class _Search:
         return _Layer(sources, targets, edges, self.automaton.marks[letters * self.states + after])
 
     def letters(self, edges: Indices) -> Indices:
-        """Return the automaton's literals that are true of each edge, a bit each."""
+        """Return what of the automaton's literals is true of steps, a bit each."""
         return bits((self.literal(edges, *each) for each in self.automaton.literals), len(edges))
 
     def literal(self, edges: Indices, formula: Temporal, claimed: bool) -> Bools:

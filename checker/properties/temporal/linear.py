@@ -1,4 +1,4 @@
-"""Linear time: a fair run on which a formula is false, if there is one; a shortest one where possible."""
+"""Linear time: is a formula false on some fair run? If so, find a shortest such run where possible."""
 
 from collections.abc import Collection
 
@@ -15,7 +15,7 @@ from semantics.properties.temporal import Both, Globally, Temporal
 def shortest_counterexample(
     graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions
 ) -> Lasso | None:
-    """Return a counterexample with a loop as short as the search finds, marked if it is certainly shortest.
+    """Return what `counterexample` does, with as short a loop as can be found, and whether it is known to be shortest.
 
     Raises:
         TooLargeError: The automaton of some conjunct would be too large.
@@ -30,7 +30,8 @@ def shortest_counterexample(
 def counterexample(graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions) -> Lasso | None:
     """Return a fair run from configuration 0 on which a formula is false; None if there is none.
 
-    A run without a loop refutes the formula with any continuation; there is always a fair one.
+    Without a loop it is a run after which the formula is false whatever follows: a fair continuation there always
+    is.
 
     Args:
         graph: The explored graph, total. If it is partial, None is no proof.
@@ -47,13 +48,13 @@ def counterexample(graph: Graph, truth: Truth, formula: Temporal, fairness: Cond
 def counterexamples(
     graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions
 ) -> dict[Temporal, Lasso]:
-    """Return a run for each violated conjunct; conjuncts are decided separately, since their automata are smaller."""
+    """Return a run for each conjunct that is violated; they are decided one by one, as their automata are smaller."""
     found = {each: _counterexample(graph, truth, each, fairness) for each in conjuncts(formula)}
     return {each: lasso for each, lasso in found.items() if lasso is not None}
 
 
 def least(found: Collection[Lasso]) -> Lasso | None:
-    """Return the shortest of some runs; those without a loop come first, since they refute more."""
+    """Return the shortest of some runs; those that need no loop come first, as they say more."""
     return min(found, key=lambda lasso: (bool(lasso.loop), len(lasso)), default=None)
 
 

@@ -18,7 +18,7 @@ from semantics.properties.temporal import Temporal
 def shortest_false(
     graph: Graph, truth: Truth, formulas: Iterable[Temporal], fairness: Conditions, known: Lasso
 ) -> Lasso:
-    """Return a shortest lasso on which one of some formulas is false, given one; `shortest` is set if it is certain."""
+    """Return a shortest lasso on which one of some formulas is false, given one; it says whether it surely is."""
     if graph.partial is not None:
         return known
     effort, best = Effort(), known

@@ -1,10 +1,9 @@
 """Tight automata: they repeat as soon as a run does, so their product with a graph has a shortest lasso.
 
-A state is the set of formulas, among some, that are true from there on. Their values at one moment follow from the
-taken step and from the values at the next one; so equal rests of a run have equal states. An automaton that decides a
-formula has fewer states, but may have to repeat a loop several times, or enter it later.
-
-Source: Schuppan and Biere, Shortest counterexamples for symbolic model checking of LTL with past, TACAS 2005.
+A state says which of some formulas are true from there on. What is true at one moment follows from the step that is
+taken and from what is true at the next; so where the rest of a run is the same, the state is too. An automaton that
+decides a formula has fewer states, but may have to go round a loop several times, or come into it later (Schuppan and
+Biere, Shortest counterexamples for symbolic model checking of LTL with past, TACAS 2005).
 """
 
 from collections.abc import Iterable
@@ -22,7 +21,7 @@ from checker.properties.temporal.negation_normal_form import FALSE, TRUE, Formul
 from semantics.properties.temporal import Temporal
 
 MOST_BITS: Final = 14
-"""The most literals and formulas of an automaton; its table has a row for each set of them."""
+"""How many literals and formulas an automaton may be about: its table has a row for each set of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +29,11 @@ class Tight:
     """A tight automaton. Letters and states are sets of bits.
 
     Attributes:
-        literals: The claims about a step, bit by bit.
-        states: The number of states. Initial ones have the last bit.
-        steps: From each letter and state to its successor states.
-        marks: For each letter and successor state, the promises that are kept, a bit each.
-        promises: The number of promises.
+        literals: What is claimed of a step, bit by bit.
+        states: How many there are. Those that begin have the last bit.
+        steps: From each letter and state to the states that may follow.
+        marks: For each letter and state that may follow, the promises that are kept, a bit each.
+        promises: How many there are.
     """
 
     literals: tuple[Literal, ...]
@@ -55,7 +54,7 @@ def tight(formula: Temporal) -> Tight:
 
 
 class _Table:
-    """The truth of formulas, for each letter and each successor state."""
+    """Which formulas are true, for each letter and each state after it."""
 
     def __init__(self, formulas: Formulas, start: Number) -> None:
         self.formulas = formulas
@@ -106,7 +105,7 @@ class _Table:
         return _has(self.after, self.said.index(number))
 
     def kept(self, until: Number) -> Bools:
-        """Return where an until is fulfilled, or isn't promised."""
+        """Return where an until is fulfilled, or nobody has promised it."""
         return ~self.true(until) | self.true(self.formulas.nodes[until].operands[1])
 
 
@@ -126,7 +125,7 @@ def _reached(formulas: Formulas, start: Number) -> set[Number]:
 
 
 def _said_of_later(operations: dict[Number, Operation]) -> set[Number]:
-    """Return the formulas whose next value determines a present one."""
+    """Return the formulas of which the present asks whether they are true at the next moment."""
     nexts = {each.operands[0] for each in operations.values() if each.operator == "next"}
     return nexts | {number for number, each in operations.items() if each.operator in ("until", "release")}
 

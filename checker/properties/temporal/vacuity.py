@@ -151,7 +151,7 @@ def _is_never(truth: Truth, condition: Temporal) -> bool:
 
 
 def _witness(truth: Truth, failed: list[Temporal], fairness: Conditions) -> Lasso | None:
-    """Return a shortest run on which all of some formulas are false; else a shortest one for a single formula."""
+    """Return a shortest run on which all of some formulas are false; if there is none, a shortest of one of them."""
     try:
         wanted = reduce(Either, failed, cast("Temporal", Now(Always(False))))
         found = _run_against(truth, wanted, fairness)
