@@ -57,8 +57,6 @@ class Keeping:
         every: Seconds between two checkpoints.
         doubted: Of how many configurations it is asked once more what follows, and whether what reductions take for
             granted is so (`--paranoid`).
-        compact: How many bits of a hash stand for each configuration, where none is compared with another: some may be
-            taken for others then (`--hash-compact`).
     """
 
     folder: str | None = None
@@ -66,7 +64,6 @@ class Keeping:
     digest: str = ""
     every: float = 60.0
     doubted: int = 0
-    compact: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
