@@ -108,11 +108,14 @@ class Batch(NamedTuple):
 STATE = 17
 AT, SIZE, LIMIT, WORDS, KEPT, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED = range(14)
 SIFTED, PUT_OFF, SEEN = range(14, STATE)
-"""What stands where in the loops' state: the row that comes next, how many rows there are and may be, words a row and
-how many are kept of it, whether requests wait for their turn, the column that says which agents there are (-1: always
-the same), how many successors are gathered, what was not known, whether rows were left out or not followed, up to which
-row all successors are stored, how many successors were not found, how many rows were put
-off, and below which number rows may be looked up."""
+"""The entries of the loops' state.
+
+AT: the next row. SIZE, LIMIT: the number of rows, and its limit. WORDS, KEPT: the words of a row, and of its stored
+form. TURNS: whether requests wait for their turn. ALPHA: the column of the agents, -1 if constant. GATHERED: the number
+of gathered successors. TREE, NODE, CODE: the place where a tree ended. CUT: whether the limit left rows out. CROWDS:
+the number of crowded rows. EXPANDED: the number of rows with all successors stored. SIFTED: the number of successors
+that may be new. PUT_OFF: the number of deferred rows. SEEN: the number of rows that may be looked up.
+"""
 
 WIDE, UNSORTED, FULL = -2, -3, -4
 """Codes in NODE: the batch is too small for one row; a successor's representative is unknown; no room for a piece."""
@@ -500,8 +503,11 @@ def store(
 ) -> int:
     """Look up a range of gathered successors; store the new ones as rows, with their origins.
 
-    Return the first for which there is no room, the end where there is room for all. Others may look up rows that were
-    there before. Where rows are folded (`f`, by the model `m`), successors that were left open are made first.
+    Other threads may look up older rows meanwhile. With tree compression (`f`, and the model `m`),
+    incomplete successors are made first; that variant is compiled separately.
+
+    Returns:
+        The first successor for which there is no room, else `end`.
     """
     target, hashes, reached_from = batch.kept, batch.hashes, batch.origins
     width, limit = state[KEPT], state[LIMIT]

@@ -112,7 +112,7 @@ class Slices:
             part.state[SIFTED] = part.state[GATHERED]
 
     def _sift(self, part: Slice) -> None:
-        """Leave of a slice only what is none of the rows that are stored."""
+        """Drop the successors of a slice that are stored rows."""
         space = self.space
         part.state[SEEN] = space.stored
         kernel.sift(space.rows.words, space.table.room, part.batch, part.state)

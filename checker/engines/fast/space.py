@@ -71,8 +71,8 @@ class Space:
         rows: The packed configurations with their origins; the first is its own origin.
         counts, met: How often each transition was followed, and how often enabled; equal without partial-order
             reduction.
-        learned: What was not known on the way: the row, and in which tree, at which node and for which code.
-        actors: How many actors a configuration may have, as far as is known: agents' two each, and the environment's.
+        learned: The misses so far: row, tree, node and code.
+        actors: The greatest number of actors of a configuration so far: two for each agent, one for each clause.
         left: Returns the bytes of memory still available; the table grows less when they run out.
         slices: Rows expanded ahead of the stored ones.
         pipeline: The threads that expand them.
@@ -98,7 +98,7 @@ class Space:
         self.choosing = choosing
         self.exchanging = exchanging
         if exchanging is not None and choosing is None:
-            self.PLAIN = sys.maxsize  # representatives are found in whole batches
+            self.PLAIN = sys.maxsize  # representatives are computed for whole batches
         self.state = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
         self.slices = Slices(self, threads)

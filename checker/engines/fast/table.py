@@ -146,17 +146,17 @@ def alone(work: Callable[[range], Any], parts: int) -> list[Any]:
 
 
 def rebuild(words: Words, size: int, width: int, table: Any, share: Share) -> None:
-    """Fill an empty table with the rows, all of them different.
+    """Fill an empty table with rows, all of them different.
 
-    Each part of the table is filled by one thread, in the order of the rows. The few that have no room in their part
-    come last, so that what stands where does not depend on how many threads there are.
+    Each part of the table is filled by one thread, in the order of the rows. The few rows without room in their part
+    come last. So the contents do not depend on the number of threads.
 
     Args:
         words: The rows.
-        size: How many there are.
-        width: Words of each.
+        size: The number of rows.
+        width: The words of a row.
         table: The table.
-        share: Does some work with ranges of parts, in several threads, and returns what comes of each.
+        share: Runs some work on ranges of parts, in several threads, and returns the results.
     """
     bits = bits_for(len(table))
 
@@ -194,7 +194,7 @@ def choose(
 
 @njit(cache=True)
 def write_entries(hashes: Words, rows: Any, entries: Any, bits: int) -> None:
-    """Write what a table holds of rows whose numbers take so many bits."""
+    """Write the table entries of rows, with `bits` bits for each number."""
     for k in range(len(hashes)):
         entries[k] = entry_of(hashes[k], rows[k], np.uint32(bits))
 
