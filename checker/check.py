@@ -325,9 +325,6 @@ class _Check:
         return self.inspections[kind].collected
 
     def decide_temporal(self, asked: Property) -> Verdict:
-        if self.options.keeping.compact is not None:
-            note = "hash compaction keeps no transitions to go along"
-            return Verdict(asked, Outcome.INCOMPLETE, note=note)
         from checker.properties.temporal.decide import Decider  # noqa: PLC0415 - numpy and scipy take their time to load
 
         try:

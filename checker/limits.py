@@ -30,7 +30,6 @@ class Stop(Enum):
     NO_MEMORY = "the end of the memory that there is"
     NO_ROOM = "the end of the room in {}: {}"
     NO_CHECKPOINT = "a checkpoint that can't be written to {}: {}"
-    COMPACTION = "hash compaction to {} bits: some were left out with a probability of at most {:.1g}"
 
 
 class Part(Enum):
@@ -64,8 +63,7 @@ class Bound:
     @property
     def effect(self) -> str:
         """What it has done, in words."""
-        whole = self.stop is Stop.COMPACTION
-        return str(self) if whole else f"stopped at {self}: what lies beyond was not explored"
+        return f"stopped at {self}: what lies beyond was not explored"
 
 
 GRACE = 2.0

@@ -56,9 +56,7 @@ def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Op
         EngineError: The engine, or its checkpoints, don't support the mission's timing; or the engine writes no files.
     """
     if options.engine is Engine.REFERENCE and _is_kept(options):
-        raise EngineError(
-            "the engine 'reference' explores in memory, without checkpoints, spilling and hash compaction"
-        )
+        raise EngineError("the engine 'reference' explores in memory, without checkpoints and spilling")
     if initial.setting.timing is not None:
         return _explore_in_time(initial, inspect, options)
     match options.engine:
@@ -75,8 +73,7 @@ def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Op
 
 
 def _is_kept(options: Options) -> bool:
-    kept = options.keeping
-    return kept.folder is not None or kept.compact is not None or options.limits.spill is not None
+    return options.keeping.folder is not None or options.limits.spill is not None
 
 
 def _explore_in_time(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:

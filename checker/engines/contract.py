@@ -53,12 +53,10 @@ class Keeping:
     Attributes:
         folder: The folder for checkpoints; None for none.
         resumed: Whether the exploration continues from the checkpoint in the folder.
-        digest: The digest of the explored mission and its options.
+        digest: The digest of the mission, the build and the limits that a checkpoint belongs to.
         every: Seconds between two checkpoints.
         doubted: The number of sampled configurations on which successors, and the assumptions of reductions, are
             checked again (`--paranoid`).
-        compact: How many bits of a hash stand for each configuration, where none is compared with another: some may be
-            taken for others then (`--hash-compact`).
     """
 
     folder: str | None = None
@@ -66,7 +64,6 @@ class Keeping:
     digest: str = ""
     every: float = 60.0
     doubted: int = 0
-    compact: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

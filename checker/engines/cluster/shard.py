@@ -291,7 +291,7 @@ class Shard(Space):
         for peer, parcel in enumerate(parcels):
             for count in self.translated(peer, parcel):
                 arrays = (self.rows.words, self.rows.origins.loops, self.table.room)
-                loops.store(*arrays, None, None, None, self.batch, 0, count, self.state)
+                loops.store(*arrays, None, None, self.batch, 0, count, self.state)
 
     def hear(self, parcels: Sequence[Parcel]) -> None:
         """Add the values that the others have sent."""

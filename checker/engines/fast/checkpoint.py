@@ -124,7 +124,7 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
             raise ValueError("some row was reached from a later one")
         space.restore(where, rows, size, learned)
         _check_counts(space, arrays["counts"], arrays["state"])
-        if space.choosing is None and space.compact is None:
+        if space.choosing is None:
             _recount(space, arrays["counts"], arrays["state"])
         space.counts.used[: len(arrays["counts"])] = arrays["counts"]
         space.state[list(KEPT)] = arrays["state"]

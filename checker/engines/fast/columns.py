@@ -59,10 +59,6 @@ class Column:
         value = self.values[code]
         return None if value is ABSENT else value
 
-    def code_of(self, value: Any) -> int | None:
-        """Return the code of what a rule reads, None where it was never met."""
-        return self.codes.get(ABSENT if value is None else value)
-
     def code(self, value: Any) -> int:
         """Return the code of a value, adding it if it is new."""
         known = self.codes.get(value)

@@ -121,7 +121,6 @@ class _Explorer:
             limits.configurations,
             self.choosing(),
             self.exchanging(),
-            options.keeping.compact,
             options.threads or cores(),
         )
         self.space.left = self.left
@@ -240,17 +239,7 @@ class _Explorer:
             Stop.CONFIGURATIONS: space.was_cut and limits.configurations is not None,
             Stop.PENDING: space.is_crowded,
         }
-        return [limits.bound(stop) for stop, is_met in met.items() if is_met] + self.omitted()
-
-    def omitted(self) -> list[Bound]:
-        """Return how likely something was left out by hash compaction."""
-        bits = self.space.compact
-        if bits is None:
-            return []
-        from checker.engines.fast.compacting import omission  # noqa: PLC0415  # compiled where it is wanted
-
-        chance = omission(self.space.probed, self.space.size, bits)
-        return [Bound(Stop.COMPACTION, (bits, chance))]
+        return [limits.bound(stop) for stop, is_met in met.items() if is_met]
 
     def visit_all(self, started: float) -> None:
         reported = kept = time.monotonic()

@@ -32,7 +32,6 @@ from checker.engines.fast.table import (
     most_in,
     rebuild,
     slots_for,
-    write_numbers,
 )
 
 Numbers = NDArray[np.int64]
@@ -343,12 +342,10 @@ class Pool:
     def _rebuild(self, room: int) -> None:
         self._index = Pages(np.uint32, 1)
         self._index = Pages(np.uint32, slots_for(room))
-        bits = bits_for(len(self._index.room))
-        rebuild(self._words.room, len(self), self.width, self._index.room, write_numbers, bits, alone)
-        self.interned.counts[MOST], self.interned.counts[BITS] = (
-            min(room, most_in(len(self._index.room))),
-            bits,
-        )
+        rebuild(self._words.room, len(self), self.width, self._index.room, alone)
+        slots = len(self._index.room)
+        self.interned.counts[MOST] = min(room, most_in(slots))
+        self.interned.counts[BITS] = bits_for(slots)
         self.interned = self.interned._replace(words=self._words.room, index=self._index.room)
 
 

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.compacting import find_tag, places_behind, tag_of
 from checker.engines.fast.folding import (
     MEMORY,
     NO_ROOM,
@@ -48,7 +47,7 @@ from checker.engines.fast.leaves import (
 )
 from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.origins import most_origins, note_origin
-from checker.engines.fast.table import Words, bits_for, entry_of, fetch, fetch_slot, find, hashed, most_in
+from checker.engines.fast.table import Words, bits_for, entry_of, fetch, find, hashed, most_in
 from checker.engines.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
 
 Ints = NDArray[np.int32]
@@ -106,16 +105,17 @@ class Batch(NamedTuple):
     lately: Ints
 
 
-STATE = 18
-AT, SIZE, LIMIT, WORDS, KEPT, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED, PROBED = range(
-    15
-)
-SIFTED, PUT_OFF, SEEN = range(15, STATE)
-"""What stands where in the loops' state: the row that comes next, how many rows there are and may be, words a row and
-how many are kept of it, whether requests wait for their turn, the column that says which agents there are (-1: always
-the same), how many successors are gathered, what was not known, whether rows were left out or not followed, up to which
-row all successors are stored, how many tags were compared, how many successors were not found, how many rows were put
-off, and below which number rows may be looked up."""
+STATE = 17
+AT, SIZE, LIMIT, WORDS, KEPT, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED = range(14)
+SIFTED, PUT_OFF, SEEN = range(14, STATE)
+"""The entries of the loops' state.
+
+AT: the next row. SIZE, LIMIT: the number of rows, and its limit. WORDS, KEPT: the words of a row, and of its stored
+form. TURNS: whether requests wait for their turn. ALPHA: the column of the agents, -1 if constant. GATHERED: the number
+of gathered successors. TREE, NODE, CODE: the place where a tree ended. CUT: whether the limit left rows out. CROWDS:
+the number of crowded rows. EXPANDED: the number of rows with all successors stored. SIFTED: the number of successors
+that may be new. PUT_OFF: the number of deferred rows. SEEN: the number of rows that may be looked up.
+"""
 
 WIDE, UNSORTED, FULL = -2, -3, -4
 """Codes in NODE: the batch is too small for one row; a successor's representative is unknown; no room for a piece."""
@@ -494,7 +494,6 @@ def store(
     words: Words,
     origins: Any,
     table: Any,
-    compact: int | None,
     m: Model | None,
     f: Folded | None,
     batch: Batch,
@@ -504,9 +503,11 @@ def store(
 ) -> int:
     """Look up a range of gathered successors; store the new ones as rows, with their origins.
 
-    Return the first for which there is no room, the end where there is room for all. Others may look up rows that were
-    there before. Where the table has tags of so many bits (`compact`), they alone are compared; where rows are folded
-    (`f`, by the model `m`), successors that were left open are made first: both is compiled apart.
+    Other threads may look up older rows meanwhile. With tree compression (`f`, and the model `m`),
+    incomplete successors are made first; that variant is compiled separately.
+
+    Returns:
+        The first successor for which there is no room, else `end`.
     """
     target, hashes, reached_from = batch.kept, batch.hashes, batch.origins
     width, limit = state[KEPT], state[LIMIT]
@@ -522,24 +523,15 @@ def store(
                     end = k
                     break
                 hashes[k] = hashed(target, width * k, width)
-        if compact is None:
-            fetch(words, table, hashes, k, end, width, bits)
-            found = find(words, table, target, k, hashes[k], width, bits)
-        else:
-            fetch_slot(table, hashes, k, end)
-            found = find_tag(table, hashes[k], compact)
+        fetch(words, table, hashes, k, end, width, bits)
+        found = find(words, table, target, k, hashes[k], width, bits)
         if found >= 0:
             continue
         if room <= state[SIZE] < limit:
             end = k
             break
-        slot = -found - 1
-        if compact is None:
-            entry = entry_of(hashes[k], state[SIZE], bits)
-        else:
-            entry = table.dtype.type(tag_of(hashes[k], compact))
-            state[PROBED] += places_behind(table, hashes[k], slot) if state[SIZE] < limit else 0
-        add_row(words, origins, table, slot, entry, target, k, reached_from[k], state)
+        entry = entry_of(hashes[k], state[SIZE], bits)
+        add_row(words, origins, table, -found - 1, entry, target, k, reached_from[k], state)
     return end
 
 

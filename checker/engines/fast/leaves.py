@@ -101,27 +101,8 @@ class Leaves:
             step.turn, step.alike, begins[0], ends[0], parts, len(self.part), begins[1], ends[1]
         )
 
-    def columns_of(self, step: int) -> frozenset[int]:
-        """Return the columns that a transition writes, or copies, or copies from."""
-        record = self.steps.room[STEP * step : STEP * (step + 1)]
-        copied = self.copies.room[PAIR * record[COPIES] : PAIR * record[COPIES_END]]
-        written = self.writes.room[PAIR * record[WRITES] : PAIR * record[WRITES_END] : PAIR]
-        return frozenset((*copied.tolist(), *written.tolist()))
-
     def parts_of(self, step: int) -> list[int]:
         """Return the trees of a transition's parts."""
         record = self.steps.room[STEP * step : STEP * (step + 1)]
         parts: list[int] = self.part.room[record[PARTS] : record[PARTS_END]].tolist()
         return parts
-
-    def codes_of(self, step: int) -> dict[int, int]:
-        """Return the codes that a transition writes at once, by column."""
-        record = self.steps.room[STEP * step : STEP * (step + 1)]
-        room = self.writes.room[PAIR * record[WRITES] : PAIR * record[WRITES_END]].tolist()
-        return dict(zip(room[::2], room[1::2], strict=True))
-
-    def copies_of(self, step: int) -> dict[int, int]:
-        """Return the columns that a transition copies, by the column that gets them."""
-        record = self.steps.room[STEP * step : STEP * (step + 1)]
-        room = self.copies.room[PAIR * record[COPIES] : PAIR * record[COPIES_END]].tolist()
-        return dict(zip(room[::2], room[1::2], strict=True))

@@ -22,7 +22,6 @@ class Storing(Protocol):
     table: Pages
     batch: kernel.Batch
     state: kernel.State
-    compact: int | None
     actors: int
     stored: int
 
@@ -113,11 +112,10 @@ class Slices:
             part.state[SIFTED] = part.state[GATHERED]
 
     def _sift(self, part: Slice) -> None:
-        """Leave of a slice only what is none of the rows that are stored; tags are compared where they are stored."""
+        """Drop the successors of a slice that are stored rows."""
         space = self.space
-        if space.compact is None:
-            part.state[SEEN] = space.stored
-            kernel.sift(space.rows.words, space.table.room, part.batch, part.state)
+        part.state[SEEN] = space.stored
+        kernel.sift(space.rows.words, space.table.room, part.batch, part.state)
 
     def _commit(self, part: Slice) -> None:
         """Store the results of a slice; deferred rows are expanded at their turn."""

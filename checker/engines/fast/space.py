@@ -29,7 +29,6 @@ from checker.engines.fast.kernel import (
     KEPT,
     LIMIT,
     NODE,
-    PROBED,
     SIZE,
     TREE,
     TURNS,
@@ -40,7 +39,7 @@ from checker.engines.fast.origins import OriginPages, Rising
 from checker.engines.fast.pages import Pages
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.slices import Slices
-from checker.engines.fast.table import bits_for, most_in, rebuild, slots_for, slots_within, write_numbers
+from checker.engines.fast.table import most_in, rebuild, slots_for, slots_within
 from checker.engines.fast.trees import RECORD
 from checker.limits import look
 from semantics.state.cells import AGENTS, Row
@@ -72,9 +71,8 @@ class Space:
         rows: The packed configurations with their origins; the first is its own origin.
         counts, met: How often each transition was followed, and how often enabled; equal without partial-order
             reduction.
-        learned: What was not known on the way: the row, and in which tree, at which node and for which code.
-        compact: How many bits a tag has, where the table has tags instead of numbers (see `compacting`).
-        actors: How many actors a configuration may have, as far as is known: agents' two each, and the environment's.
+        learned: The misses so far: row, tree, node and code.
+        actors: The greatest number of actors of a configuration so far: two for each agent, one for each clause.
         left: Returns the bytes of memory still available; the table grows less when they run out.
         slices: Rows expanded ahead of the stored ones.
         pipeline: The threads that expand them.
@@ -93,7 +91,6 @@ class Space:
         limit: int | None,
         choosing: "Choosing | None" = None,
         exchanging: "Exchanging | None" = None,
-        compact: int | None = None,
         threads: int = 1,
     ) -> None:
         self.learner = learner
@@ -101,8 +98,7 @@ class Space:
         self.choosing = choosing
         self.exchanging = exchanging
         if exchanging is not None and choosing is None:
-            self.PLAIN = sys.maxsize  # representatives are found in whole batches
-        self.compact = compact
+            self.PLAIN = sys.maxsize  # representatives are computed for whole batches
         self.state = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
         self.slices = Slices(self, threads)
@@ -137,11 +133,6 @@ class Space:
     def expanded(self) -> int:
         """The number of expanded configurations."""
         return int(self.state[EXPANDED])
-
-    @property
-    def probed(self) -> int:
-        """How many tags were compared with those of rows that were new."""
-        return int(self.state[PROBED])
 
     @property
     def was_cut(self) -> bool:
@@ -269,7 +260,7 @@ class Space:
         arrays = (self.rows.words, self.rows.origins.loops, self.table.room)
         folded = self.rows.folded
         model = None if folded is None else self.model
-        return int(kernel.store(*arrays, self.compact, model, folded, batch, begin, end, self.state))
+        return int(kernel.store(*arrays, model, folded, batch, begin, end, self.state))
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the leaf of each row in a tree, learning on the way."""
@@ -553,14 +544,5 @@ class Space:
     def _rebuild(self, slots: int) -> None:
         self.pipeline.rest()
         self.table = Pages(np.uint32, 1)  # give the old one back before the next is taken
-        rows = (self.rows.words, self.size, self.rows.kept)
-        if self.compact is None:
-            self.table = Pages(np.uint32, slots)
-            rebuild(
-                *rows, self.table.room, write_numbers, bits_for(len(self.table.room)), self.pipeline.divide
-            )
-            return
-        from checker.engines.fast.compacting import write_tags  # noqa: PLC0415  # compiled where it is wanted
-
-        self.table = Pages(np.uint32 if self.compact <= 32 else np.uint64, slots)
-        rebuild(*rows, self.table.room, write_tags, self.compact, self.pipeline.divide)
+        self.table = Pages(np.uint32, slots)
+        rebuild(self.rows.words, self.size, self.rows.kept, self.table.room, self.pipeline.divide)

@@ -17,7 +17,6 @@ from checker.engines.fast.loops import njit
 from checker.engines.fast.prefetch import prefetch
 
 Words = NDArray[np.uint64]
-Write = Callable[[Words, Any, Any, int], None]
 Share = Callable[[Callable[[range], Any], int], list[Any]]
 
 PARTS = 16
@@ -126,13 +125,6 @@ def find(
 
 
 @njit(cache=True, inline="always")
-def fetch_slot(table: Any, hashes: Words, k: int, end: int) -> None:
-    """Ask for the slot in which the search for a successor some places behind one, up to an end, will begin."""
-    if k + AHEAD < end:
-        prefetch(table, slot_of(hashes[k + AHEAD], len(table)))
-
-
-@njit(cache=True, inline="always")
 def fetch(words: Words, table: Any, hashes: Words, k: int, end: int, width: int, bits: np.uint32) -> None:
     """Prefetch the slots and rows with which later successors will be compared."""
     far, near = k + 2 * AHEAD, k + AHEAD
@@ -153,21 +145,20 @@ def alone(work: Callable[[range], Any], parts: int) -> list[Any]:
     return [work(range(parts))]
 
 
-def rebuild(words: Words, size: int, width: int, table: Any, write: Write, bits: int, share: Share) -> None:
-    """Fill an empty table with the rows, all of them different.
+def rebuild(words: Words, size: int, width: int, table: Any, share: Share) -> None:
+    """Fill an empty table with rows, all of them different.
 
-    Each part of the table is filled by one thread, in the order of the rows. The few that have no room in their part
-    come last, so that what stands where does not depend on how many threads there are.
+    Each part of the table is filled by one thread, in the order of the rows. The few rows without room in their part
+    come last. So the contents do not depend on the number of threads.
 
     Args:
         words: The rows.
-        size: How many there are.
-        width: Words of each.
+        size: The number of rows.
+        width: The words of a row.
         table: The table.
-        write: Writes entries for the hashes and numbers of rows: `write_numbers`, or `compacting.write_tags`.
-        bits: What it is given besides.
-        share: Does some work with ranges of parts, in several threads, and returns what comes of each.
+        share: Runs some work on ranges of parts, in several threads, and returns the results.
     """
+    bits = bits_for(len(table))
 
     def fill(parts: range) -> list[tuple[Words, Any]]:
         hashes, rows = np.zeros(ENTERED, np.uint64), np.zeros(ENTERED, np.int64)
@@ -176,7 +167,7 @@ def rebuild(words: Words, size: int, width: int, table: Any, write: Write, bits:
         for begin in range(0, size, ENTERED):
             end = min(begin + ENTERED, size)
             count = choose(words, begin, end, width, parts.start, parts.stop, hashes, rows)
-            write(hashes[:count], rows[:count], entries[:count], bits)
+            write_entries(hashes[:count], rows[:count], entries[:count], bits)
             over = enter(table, hashes[:count], entries[:count], PARTS)
             left.append((hashes[:over].copy(), entries[:over].copy()))
         return left
@@ -202,8 +193,8 @@ def choose(
 
 
 @njit(cache=True)
-def write_numbers(hashes: Words, rows: Any, entries: Any, bits: int) -> None:
-    """Write what a table holds of rows whose numbers take so many bits."""
+def write_entries(hashes: Words, rows: Any, entries: Any, bits: int) -> None:
+    """Write the table entries of rows, with `bits` bits for each number."""
     for k in range(len(hashes)):
         entries[k] = entry_of(hashes[k], rows[k], np.uint32(bits))
 

@@ -106,10 +106,6 @@ class Trees:
         """Return a node's reference for a code of its column; `UNKNOWN` for None."""
         return UNKNOWN if code is None else self._follow_code(node, code)
 
-    def after_answer(self, node: int, answer: Any) -> int:
-        """Return the reference that a node leads to by the answer to its question."""
-        return self.answers[node].get(answer, UNKNOWN)
-
     def _new_node(self, ask: Ask, column: int) -> int:
         self.asks.append(ask)
         self.answers.append({})

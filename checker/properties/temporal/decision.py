@@ -9,7 +9,7 @@ from checker.properties.temporal.branching import Branching
 from checker.properties.temporal.components import Conditions
 from checker.properties.temporal.evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso
-from checker.properties.temporal.linear import counterexample, shortest_counterexample
+from checker.properties.temporal.linear import counterexample
 from checker.properties.temporal.truth import Truth
 from checker.properties.temporal.vacuity import Judged, judge_branching, judge_linear
 from checker.verdicts import Outcome
@@ -53,7 +53,7 @@ class Formulas:
     def linear(self, formula: Temporal, fairness: Conditions, ranges: Ranges = ()) -> Decision:
         """Decide a formula about every fair run."""
         try:
-            lasso = shortest_counterexample(self.truth.graph, self.truth, formula, fairness)
+            lasso = counterexample(self.truth.graph, self.truth, formula, fairness)
         except TooLargeError as error:
             return Decision(Outcome.INCOMPLETE, note=f"not decided: {error}; split the formula")
         if lasso is not None:

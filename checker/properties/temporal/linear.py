@@ -1,37 +1,19 @@
-"""Linear time: is a formula false on some fair run? If so, find a shortest such run where possible."""
-
-from collections.abc import Collection
+"""Linear time: is a formula false on some fair run? If so, find a short one."""
 
 from checker.engines.graph import Bools, Graph
 from checker.properties.temporal.automaton import automaton_of
 from checker.properties.temporal.components import Conditions, fair_components
 from checker.properties.temporal.lassos import Lasso, fair_cycles, tightened
 from checker.properties.temporal.product import Product, product_of
-from checker.properties.temporal.shortest import shortest_false
 from checker.properties.temporal.truth import Truth
 from semantics.properties.temporal import Both, Globally, Temporal
-
-
-def shortest_counterexample(
-    graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions
-) -> Lasso | None:
-    """Return what `counterexample` does, with as short a loop as can be found, and whether it is known to be shortest.
-
-    Raises:
-        TooLargeError: The automaton of some conjunct would be too large.
-    """
-    found = counterexamples(graph, truth, formula, fairness)
-    known = least(found.values())
-    if known is None or not known.loop:
-        return known
-    return shortest_false(graph, truth, found, fairness, known)
 
 
 def counterexample(graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions) -> Lasso | None:
     """Return a fair run from configuration 0 on which a formula is false; None if there is none.
 
-    Without a loop it is a run after which the formula is false whatever follows: a fair continuation there always
-    is.
+    Conjuncts are decided one by one, as their automata are smaller. A run without a loop comes first: after it the
+    formula is false whatever follows, and a fair continuation there always is.
 
     Args:
         graph: The explored graph, total. If it is partial, None is no proof.
@@ -42,19 +24,8 @@ def counterexample(graph: Graph, truth: Truth, formula: Temporal, fairness: Cond
     Raises:
         TooLargeError: The automaton of some conjunct would be too large.
     """
-    return least(counterexamples(graph, truth, formula, fairness).values())
-
-
-def counterexamples(
-    graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions
-) -> dict[Temporal, Lasso]:
-    """Return a run for each conjunct that is violated; they are decided one by one, as their automata are smaller."""
-    found = {each: _counterexample(graph, truth, each, fairness) for each in conjuncts(formula)}
-    return {each: lasso for each, lasso in found.items() if lasso is not None}
-
-
-def least(found: Collection[Lasso]) -> Lasso | None:
-    """Return the shortest of some runs; those that need no loop come first, as they say more."""
+    runs = (_counterexample(graph, truth, each, fairness) for each in conjuncts(formula))
+    found = (each for each in runs if each is not None)
     return min(found, key=lambda lasso: (bool(lasso.loop), len(lasso)), default=None)
 
 

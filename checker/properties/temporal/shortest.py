@@ -1,48 +1,13 @@
-"""Shortest lassos: whether a shorter run exists, if a bounded search can decide it."""
+"""Shortest runs into a fair component: whether a shorter one exists, if a bounded search can decide it."""
 
-from collections.abc import Iterable
 from dataclasses import replace
 
 from checker.engines.graph import Bools, Graph, Numbers
-from checker.properties.temporal.bounded_product import nearby
-from checker.properties.temporal.components import Conditions, fair_components
+from checker.properties.temporal.components import Conditions
 from checker.properties.temporal.cycles import shortest_cycle
 from checker.properties.temporal.digraph import distances, shortest
 from checker.properties.temporal.effort import Effort, Exhausted
 from checker.properties.temporal.lassos import Lasso, component_of, fair_cycle, tightened
-from checker.properties.temporal.tight_automaton import tight
-from checker.properties.temporal.truth import Truth
-from semantics.properties.temporal import Temporal
-
-
-def shortest_false(
-    graph: Graph, truth: Truth, formulas: Iterable[Temporal], fairness: Conditions, known: Lasso
-) -> Lasso:
-    """Return a shortest lasso on which one of some formulas is false, given one; it says whether it surely is."""
-    if graph.partial is not None:
-        return known
-    effort, best = Effort(), known
-    try:
-        for formula in formulas:
-            best = _shorter_false(graph, truth, formula, fairness, best, effort) or best
-    except Exhausted:
-        return best
-    return replace(best, shortest=True)
-
-
-def _shorter_false(
-    graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions, known: Lasso, effort: Effort
-) -> Lasso | None:
-    automaton = tight(formula)
-    near = nearby(graph, automaton, truth, len(known) - 2, effort)
-    product = near.product
-    conditions = product.conditions(automaton.promises, fairness)
-    components = fair_components(product, conditions)
-    found = shortest_cycle(product, near.depths, components, conditions, len(known), effort)
-    if found is None:
-        return None
-    node, cycle = found
-    return Lasso(product.way_to(node), tuple(int(product.edges[edge]) for edge in cycle))
 
 
 def run_into(

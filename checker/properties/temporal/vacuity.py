@@ -20,7 +20,6 @@ from checker.properties.temporal.effort import Exhausted
 from checker.properties.temporal.evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso, component_of, fair_cycle, tightened
 from checker.properties.temporal.linear import conjuncts, counterexample
-from checker.properties.temporal.shortest import shortest_false
 from checker.properties.temporal.truth import Truth
 from semantics.properties.property import Ranges
 from semantics.properties.propositions import Always, Not, Or
@@ -151,7 +150,7 @@ def _is_never(truth: Truth, condition: Temporal) -> bool:
 
 
 def _witness(truth: Truth, failed: list[Temporal], fairness: Conditions) -> Lasso | None:
-    """Return a shortest run on which all of some formulas are false; if there is none, a shortest of one of them."""
+    """Return a run on which all of some formulas are false; if there is none, the shortest found for one of them."""
     try:
         wanted = reduce(Either, failed, cast("Temporal", Now(Always(False))))
         found = _run_against(truth, wanted, fairness)
@@ -165,9 +164,7 @@ def _witness(truth: Truth, failed: list[Temporal], fairness: Conditions) -> Lass
 
 def _run_against(truth: Truth, formula: Temporal, fairness: Conditions) -> Lasso | None:
     found = counterexample(truth.graph, truth, formula, fairness)
-    if found is None:
-        return None
-    return shortest_false(truth.graph, truth, [formula], fairness, _continued(truth.graph, found, fairness))
+    return None if found is None else _continued(truth.graph, found, fairness)
 
 
 def _continued(graph: Graph, run: Lasso, fairness: Conditions) -> Lasso:
