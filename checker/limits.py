@@ -62,7 +62,7 @@ class Bound:
 
     @property
     def effect(self) -> str:
-        """What it has done, in words."""
+        """The consequence of the bound, in words."""
         return f"stopped at {self}: what lies beyond was not explored"
 
 

@@ -1,4 +1,4 @@
-"""Linear time: is a formula false on some fair run? If so, find a short one."""
+"""Linear time: a short fair run on which a formula is false, if there is one."""
 
 from checker.engines.graph import Bools, Graph
 from checker.properties.temporal.automaton import automaton_of
@@ -12,8 +12,8 @@ from semantics.properties.temporal import Both, Globally, Temporal
 def counterexample(graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions) -> Lasso | None:
     """Return a fair run from configuration 0 on which a formula is false; None if there is none.
 
-    Conjuncts are decided one by one, as their automata are smaller. A run without a loop comes first: after it the
-    formula is false whatever follows, and a fair continuation there always is.
+    Conjuncts are decided separately, since their automata are smaller. A run without a loop comes first: it refutes the
+    formula with any continuation, and there is always a fair one.
 
     Args:
         graph: The explored graph, total. If it is partial, None is no proof.

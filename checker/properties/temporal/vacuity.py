@@ -150,7 +150,7 @@ def _is_never(truth: Truth, condition: Temporal) -> bool:
 
 
 def _witness(truth: Truth, failed: list[Temporal], fairness: Conditions) -> Lasso | None:
-    """Return a run on which all of some formulas are false; if there is none, the shortest found for one of them."""
+    """Return a run on which all of some formulas are false; else the shortest one found for a single formula."""
     try:
         wanted = reduce(Either, failed, cast("Temporal", Now(Always(False))))
         found = _run_against(truth, wanted, fairness)
