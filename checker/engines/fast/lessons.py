@@ -5,6 +5,7 @@ distinguish. So what was recorded of one of fifty agents holds, renamed, for eac
 questions alike. A lesson is kept in the names of the first of them, and in values: each has columns of its own.
 """
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
@@ -19,6 +20,9 @@ from semantics.state.cells import Cell
 from semantics.state.configuration import Label
 from semantics.state.requests import REQUESTS
 from semantics.state.signature import Name
+
+_QUOTED = re.compile(r'("(?:[^"\\]|\\.)*")')
+"""A text as it is printed."""
 
 
 class NoImage(Exception):
@@ -119,8 +123,14 @@ class Exchange:
         """Return the image of a label: of a request, of what is received, or words of the mission's text."""
         about = self.constant(label.about) if isinstance(label.about, REQUESTS) else label.about
         if isinstance(about, str):
-            about = self.shown(about) if '"' in about else self.renaming.text(about)
+            about = self.printed(about)
         return Label(label.rule, None if label.agent is None else self.renaming.name(label.agent), about)
+
+    def printed(self, text: str) -> str:
+        """Return the image of words in the notation of the language: texts, in quotes, stay."""
+        pieces = _QUOTED.split(text)
+        pieces[::2] = map(self.renaming.text, pieces[::2])
+        return "".join(pieces)
 
     def shown(self, text: str) -> str:
         """Return a text that mentions nobody who is exchanged: whether a word of it is a name can't be told."""

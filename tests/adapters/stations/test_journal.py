@@ -192,7 +192,7 @@ def test_a_log_of_which_not_even_the_beginning_is_left_is_refused(opened, tmp_pa
 def test_a_log_of_an_earlier_version_is_read_and_written_anew_with_checksums(opened, tmp_path):
     last, path = full(opened), tmp_path / "x.log"
     lines = [line.partition(" ")[2] for line in path.read_text().splitlines()]
-    path.write_text("\n".join([lines[0].replace("station/2", "station/1"), *lines[1:]]) + '\n{"torn')
+    path.write_text("\n".join([lines[0].replace("station/3", "station/1"), *lines[1:]]) + '\n{"torn')
     again = opened()
     assert again.word(("said", "b")) == said("b", 1.0)
     assert "the last entry was dropped: it is torn" in again.dropped
@@ -219,7 +219,7 @@ def test_the_log_of_another_station_or_mission_is_refused(opened, other, says):
         opened(**other)
 
 
-@pytest.mark.parametrize("text", ["{}\n", "hello\n", '{"log": "bigactors.station/2"}\n'])
+@pytest.mark.parametrize("text", ["{}\n", "hello\n", '{"log": "bigactors.station/3"}\n'])
 def test_what_is_no_log_is_refused(opened, tmp_path, text):
     (tmp_path / "x.log").write_text(text)
     with pytest.raises(JournalError, match="log"):
