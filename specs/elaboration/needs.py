@@ -9,7 +9,7 @@ from typing import Final
 from semantics.behaviours.expressions import Expression, Literal, Variable
 from semantics.behaviours.patterns import Pattern
 from semantics.behaviours.statements import React, Send
-from semantics.behaviours.values import show
+from semantics.behaviours.values import Value, show
 from semantics.state.signature import NO_ENTITIES
 from specs import syntax as s
 from specs.codes import Code
@@ -248,7 +248,7 @@ class _Judge:
             if own.isdisjoint(there) and Sort.TEXT in own | there <= NAMES | {Sort.TEXT}:
                 what = f"{show(constant)} is {_listed(own)}, and {_listed(there)} stands there"
                 message = f"nothing is taken here: {what}"
-                hint = self.unquoted(where, "=") or "a text is written in quotes, a name without: =base0"
+                hint = self.unquoted(where, "=") or requoted(constant)
                 self.findings.warn(Code.ALWAYS_THE_SAME, where, message, hint)
                 return
 
@@ -310,6 +310,12 @@ def operands(
     for node, value, need in zip(nodes, values, OPERANDS.get(operator, ()), strict=False):
         if need is not None:
             yield Use(node, value, need, f"'{operator}'")
+
+
+def requoted(value: Value) -> str:
+    """Return the remedy where a name stands instead of a text, or a text that spells no name."""
+    is_name = isinstance(value, str)
+    return f'a text is written in quotes: "{value}"' if is_name else "a name is written without quotes"
 
 
 def unquoted(node: s.Node, names: Container[str], sign: str = "") -> str:
