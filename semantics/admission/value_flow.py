@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Final
+from typing import Final, TypeGuard
 
 from semantics.admission.abstract_values import (
     ANYTHING,
@@ -288,16 +288,21 @@ def _difference(flow: ValueFlow, left: Abstract, right: Abstract) -> Abstract:
     return _part(flow, left, right) | number
 
 
+def _is_name(word: Name | Text) -> TypeGuard[Name]:
+    return isinstance(word, str)
+
+
 def _of_kind(flow: ValueFlow, left: Abstract, kind: Abstract) -> Abstract:
     part = _part(flow, left)
-    wanted = flow.entities.kinds if kind.anything or kind.kinds or kind.agents else kind.words
+    is_known = not (kind.anything or kind.kinds or kind.agents)
+    wanted = frozenset(filter(_is_name, kind.words)) if is_known else flow.entities.kinds
     if part.anything:
         return join((Abstract(sets=Abstract(kinds=wanted)), Abstract(routes=Abstract(kinds=wanted))))
 
     def kept(inside: Abstract) -> Abstract:
         if inside.anything:
             return Abstract(kinds=wanted)
-        names = (each for each in inside.words if isinstance(each, str))
+        names = filter(_is_name, inside.words)
         words = frozenset(each for each in names if flow.setting.kinds.get(each) in wanted)
         return Abstract(words, inside.kinds & wanted)
 
