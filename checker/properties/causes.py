@@ -18,8 +18,6 @@ from semantics.state.eta import Pending
 from semantics.state.requests import CTR, FLY, MGR, OBS, READY, SND
 from semantics.state.signature import Name
 
-NO_NAMES: frozenset[str] = frozenset()
-
 
 def causes(c: Configuration, waiting: Iterable[Name]) -> Iterator[str]:
     """Yield the known reasons for each pending request, and the awaited input of agents at a react."""
@@ -94,7 +92,7 @@ def _awaited(c: Configuration, a: Name, react: React) -> str:
     if not react.cases:
         return "nothing that could come"
     wanted = " or ".join(dict.fromkeys(_shown(case.pattern) for case in react.cases))
-    there = ", ".join(show(value, NO_NAMES) for value in _got(c, a))
+    there = ", ".join(map(show, _got(c, a)))
     refused = f"; no case takes {there}" if there else ""
     patterns = [case.pattern for case in react.cases]
     return f"{wanted}{_from(c, a, patterns)}{refused}"
@@ -142,7 +140,7 @@ def _got(c: Configuration, a: Name) -> tuple[Value, ...]:
 def _shown(pattern: Pattern) -> str:
     match pattern:
         case Exactly(value):
-            return show(value, NO_NAMES)
+            return show(value)
         case Elements(items):
             return f"({', '.join(_shown(each) for each in items)})"
         case Anything(_, "observation"):

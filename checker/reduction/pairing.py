@@ -6,6 +6,7 @@ from typing import Any
 from semantics.behaviours.expressions import Literal, Variable
 from semantics.behaviours.patterns import Anything, Exactly
 from semantics.behaviours.statements import Assign, ChooseFrom, For, ForEach, Spawn
+from semantics.behaviours.values import show
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
 
@@ -95,7 +96,7 @@ class Pairing:
         elif isinstance(one, str) and isinstance(other, str) and {one, other} <= self.movable():
             self.pair(self.names, one, other)
         elif type(one) is not type(other) or one != other:
-            raise Unlike(f"the text of one says {one} where the other's says {other}")
+            raise Unlike(f"the text of one says {show(one)} where the other's says {show(other)}")
 
     def movable(self) -> frozenset[Name]:
         """Return the names that may be exchanged: of agents and of entities."""

@@ -21,7 +21,7 @@ from semantics.behaviours.reaction_rules import (
     PlaceVariable,
     Reaction,
 )
-from semantics.behaviours.values import Truth, order_key
+from semantics.behaviours.values import Text, Truth, order_key
 from semantics.properties.propositions import Instances, Range
 from semantics.state.cells import AGENTS, NAMES, Cell, Changes, Row
 from semantics.state.configuration import Configuration
@@ -33,7 +33,7 @@ Where = TypeVar("Where", int, Cell)
 
 WORD = re.compile(r"[^\W\d]\w*")
 
-FIXED = (int, Truth, Geometry, Placed, All, NodeVariable, PlaceVariable, LinkVariable, type(None))
+FIXED = (int, Truth, Text, Geometry, Placed, All, NodeVariable, PlaceVariable, LinkVariable, type(None))
 """Types without names."""
 
 

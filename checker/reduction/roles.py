@@ -37,10 +37,10 @@ from semantics.behaviours.statements import (
     Spawn,
     Statement,
 )
-from semantics.behaviours.values import Route, Truth, Value, within
+from semantics.behaviours.values import Route, Text, Truth, Value, within
 from semantics.environment import Says
 from semantics.state.requests import MGR, SND
-from semantics.state.signature import REGION, Name
+from semantics.state.signature import NO_ENTITIES, Name
 
 
 @dataclass(slots=True)
@@ -134,7 +134,7 @@ class Roles:
     def _places(self, nodes: Names | None) -> Names:
         """Return the places in which an observation may have shown some nodes."""
         among = self.bounds.names if nodes is None else nodes & self.bounds.names
-        return frozenset({REGION, "unknown"}).union(*map(self.bounds.holders, among))
+        return NO_ENTITIES.union(*map(self.bounds.holders, among))
 
     def entities(self, agent: Name, expression: Expression) -> tuple[Name, ...]:
         """Return the entities that an expression may name, sorted."""
@@ -264,4 +264,4 @@ def _spelled(value: object) -> Names | None:
         return frozenset({value})
     if isinstance(value, frozenset | Route):
         return _either(map(_spelled, within(value)))
-    return frozenset() if isinstance(value, int | Truth) else None
+    return frozenset() if isinstance(value, int | Truth | Text) else None

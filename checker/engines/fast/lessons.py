@@ -6,6 +6,7 @@ A lesson is stored in the names of the first of them, and in values instead of c
 columns.
 """
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
@@ -20,6 +21,9 @@ from semantics.state.cells import Cell
 from semantics.state.configuration import Label
 from semantics.state.requests import REQUESTS
 from semantics.state.signature import Name
+
+_QUOTED = re.compile(r'("(?:[^"\\]|\\.)*")')
+"""A text as it is printed."""
 
 
 class NoImage(Exception):
@@ -120,8 +124,14 @@ class Exchange:
         """Return the image of a label about a request, a received observation, or words of the mission."""
         about = self.constant(label.about) if isinstance(label.about, REQUESTS) else label.about
         if isinstance(about, str):
-            about = self.shown(about) if '"' in about else self.renaming.text(about)
+            about = self.printed(about)
         return Label(label.rule, None if label.agent is None else self.renaming.name(label.agent), about)
+
+    def printed(self, text: str) -> str:
+        """Return the image of words in the notation of the language: texts, in quotes, stay."""
+        pieces = _QUOTED.split(text)
+        pieces[::2] = map(self.renaming.text, pieces[::2])
+        return "".join(pieces)
 
     def shown(self, text: str) -> str:
         """Return a text that mentions no moved name; raise NoImage otherwise: its words may or may not be names."""
