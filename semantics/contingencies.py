@@ -7,7 +7,7 @@ from semantics.state.signature import Name
 
 
 class Fallback(Enum):
-    """A command to the vehicles; `continue` only notifies the operator."""
+    """The command that a response gives the vehicles; `continue` only notifies the operator."""
 
     HOLD = "hold"
     RETURN = "return"

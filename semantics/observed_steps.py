@@ -29,7 +29,7 @@ from semantics.state.signature import Name
 from semantics.successors import remembered
 
 WRITABLE = frozenset({"placement", "channels", "left", "down"})
-"""The cells that an observation may write: those of P, and those of the environment's clauses."""
+"""The first words of the cells that an observation may write: those of P, and of the environment's clauses."""
 
 
 @dataclass(frozen=True, slots=True)

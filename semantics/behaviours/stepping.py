@@ -61,7 +61,7 @@ def continuing(c: Configuration, process: Process) -> Changes:
 
 
 def _variables(process: Process) -> tuple[Store, tuple[Provenance, ...]]:
-    """Return the variables with their provenance, as merely deciding for variables that are never passed on."""
+    """Return the variables with their provenance; without `computed` for variables that are never passed on."""
     store, rests_on = process.variables()
     told = told_by(process.program, process.code)
     kept = zip(store, rests_on, strict=True)

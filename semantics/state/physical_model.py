@@ -84,12 +84,12 @@ def encloses(outer: Placed, inner: Placed) -> bool:
 
 
 def is_carried(placement: Placement | None) -> bool:
-    """Whether a placement is carried; a question about a cell."""
+    """Whether an entity is carried; a question about a cell."""
     return isinstance(placement, Carried)
 
 
 def is_aboard(placement: Placement | None, carriers: frozenset[Name]) -> bool:
-    """Whether a placement is carried by one of some carriers; a question about a cell."""
+    """Whether an entity is carried by one of some carriers; a question about a cell."""
     return isinstance(placement, Carried) and placement.by in carriers
 
 
@@ -99,12 +99,12 @@ def is_placed(placement: Placement | None) -> bool:
 
 
 def stands_within(placement: Placement | None, at: Placed) -> bool:
-    """Whether a placement is a placed one within a place; a question about a cell."""
+    """Whether an entity is placed within a place; a question about a cell."""
     return isinstance(placement, Placed) and encloses(at, placement)
 
 
 def stands_outside(placement: Placement | None, places: tuple[Placed, ...]) -> bool:
-    """Whether a placement is a placed one within none of some places; a question about a cell."""
+    """Whether an entity is placed within none of some places; a question about a cell."""
     return isinstance(placement, Placed) and not any(encloses(at, placement) for at in places)
 
 
@@ -240,7 +240,7 @@ class PhysicalModel(View):
         index: PlaceIndex,
         containers: Callable[[Name], frozenset[Name]],
     ) -> Name:
-        """Return the result of `abstract_parent`, given all placed places."""
+        """Return the result of `abstract_parent`, given the places with an area of their own."""
         if (by := self.carrier(entity)) is not None:
             return by
         inner = self.position(entity)

@@ -30,7 +30,7 @@ class Bound(NamedTuple):
 
 
 class Timed(NamedTuple):
-    """The clocks that a step has waited on, the first to be asked first, and its duration."""
+    """The clocks that time a step, in order of preference, and its duration."""
 
     clocks: tuple[Clock, ...]
     interval: Interval
