@@ -98,7 +98,7 @@ def reach(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carried 
     if origin is None or target is None or not setting.signature[setting.kind(node)].driven:
         return None
     if node in physical.carriers(place):
-        return None  # a carrier of the node's own cargo chain can't be its parent
+        return None  # a node can't enter its own cargo
     shape = _shape(physical, node, origin)
     if setting.carries(place, node):
         return Carried(place, shape)

@@ -117,7 +117,7 @@ def req_ctr(c: Configuration, a: Name) -> Iterator[Transition]:
     assert isinstance(reaction, Reaction)
     rests_on = resting_on(process, process.scope.placed, *(kept for _, kept in arguments))
     process.leave()
-    request = c.eta.adding(CTR(a, reaction), held(deciding(rests_on), a, ()))  # no heirs
+    request = c.eta.adding(CTR(a, reaction), held(deciding(rests_on), a, ()))  # no agent inherits it
     yield Transition(Label("req_ctr", a, f"control({reaction})"), c.with_(continuing(c, process), request))
 
 

@@ -69,7 +69,7 @@ def _blocks(program: Program, block: Block, at: int) -> Iterator[Block]:
 
 
 def once(program: Program, starts: Iterable[Block]) -> frozenset[int]:
-    """Return the statements that no run takes twice: outside every loop, and in no behaviour called more than once."""
+    """Return the statements that no run takes twice: outside every loop, and in no behaviour with two calls."""
     again: set[int] = set()
     seen: set[int] = set()
     waiting = [number for block in starts for number in block]

@@ -38,7 +38,7 @@ NONE: Calls = frozenset()
 
 @lru_cache(maxsize=1 << 12)
 def ends(program: Program, block: Block) -> bool:
-    """Whether a block certainly ends, whatever the results of its tests."""
+    """Whether a block certainly ends, for any results of its tests."""
     return _behind(program, block, 0, NONE) is not None
 
 

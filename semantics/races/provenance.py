@@ -16,7 +16,7 @@ SLOT = "slot "
 """The prefix of a key that names a slot of A(P) instead of a question."""
 
 EVERYTHING: Key = ("all",)
-"""The question whose answer is the whole observation."""
+"""The question for the whole observation."""
 
 MEMBERS: Key = ("members",)
 """The question for the names that the observation shows, regardless of their places and links."""

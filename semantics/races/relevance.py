@@ -113,7 +113,7 @@ def _told(program: Program, reach: frozenset[int]) -> Names:
 
 
 def uses_host(program: Program, code: Code) -> bool:
-    """Whether the code that is left to run may use the agent's host; every control uses it, whatever its arguments."""
+    """Whether the code that is left to run may use the agent's host; every control uses it, for any arguments."""
     return _host_used(program, reachable(program, code))
 
 

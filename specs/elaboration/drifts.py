@@ -226,7 +226,7 @@ def _arrangement(
 ) -> tuple[Polygons, dict[Geometry, Polygons]]:
     """Return all polygons that may ever contain an entity, or another one at its position.
 
-    Cargo, and whatever flies to the entity, is at the entity's position. Once it is put down, it stands there in its
+    Cargo, and an entity that flies to it, is at the entity's position. Once it is put down, it stands there in its
     own shape.
     """
     own, aboard = _around(entity, here, spots, clauses), dict[Geometry, Polygons]()
