@@ -1,10 +1,11 @@
 """Find the three steps of a stale-observation race in a run: who sensed, who changed the answer, who acted on it.
 
 Agents may ask the same of the world one after the other, and tell each other what they have seen. So the run is taken
-once more with an observation that knows its own step, and what the last control rests on says where it was sensed.
+once more, with dependencies that know which step sensed them and which steps changed them; those that the last control
+rests on tell.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -12,95 +13,108 @@ from typing import Any
 from checker.properties.race_steps import RaceSteps
 from checker.properties.races import is_stale, used_slots
 from checker.steps import Step, alike
-from semantics.behaviours.queries import resolve
-from semantics.races.monitor import CONTROLS, asked_again
-from semantics.races.provenance import Dependency, Key
+from semantics.races.provenance import OTHERS, Dependency, Key, Mark
 from semantics.state.agents import Watch
 from semantics.state.cells import MONITOR
 from semantics.state.configuration import Configuration
 from semantics.state.requests import CTR, FLY
+from semantics.state.signature import Name
 
 
 @dataclass(frozen=True, slots=True)
-class _Sensed(Dependency):
-    """What rests on an observation, with the number of the step that sensed it."""
+class _Dated(Dependency):
+    """A dependency with the steps that made it what it is.
 
-    step: int = 0
+    Attributes:
+        sensed: The number of the step that sensed its observation.
+        dates: For each mark the number of the step that changed it.
+    """
+
+    sensed: int = 0
+    dates: tuple[tuple[Mark, int], ...] = ()
 
 
 def stale_steps(initial: Configuration, steps: Sequence[Step]) -> RaceSteps | None:
     """Return the three steps of the race that a monitored run ends in; None where it ends in none."""
     if not steps or not initial.setting.monitored or not isinstance(steps[-1].label.about, CTR | FLY):
         return None
-    run = (initial, *(step.target for step in steps))
-    before, request = _traced(run[:-1], steps), steps[-1].label.about
-    for pending in () if before is None else before.eta.in_line(request.agent):
-        stale = is_stale(before, pending) if before is not None and pending.request == request else ()
+    run = (initial, *(step.target for step in steps[:-1]))
+    before, request = _dated_end(run, steps), steps[-1].label.about
+    if before is None:
+        return None
+    for pending in before.eta.in_line(request.agent):
+        stale = is_stale(before, pending) if pending.request == request else ()
         if stale:
-            keys = used_slots(before, pending) | {each for each in [stale[0].asked] if each is not None}
-            sensed = max(each.step for each in stale if isinstance(each, _Sensed) and _is_one(each, stale[0]))
-            changed = _changed(run, steps, sensed, keys)
-            return None if changed is None else RaceSteps(sensed, changed, len(steps))
+            used = used_slots(before, pending)
+            found = [(each.sensed, _changed(each, used)) for each in _the_same(stale)]
+            return RaceSteps(*max(found), len(steps))
     return None
 
 
-def _is_one(one: Dependency, other: Dependency) -> bool:
-    return _plain(one) == _plain(other)
+def _the_same(stale: Sequence[Dependency]) -> Iterator[_Dated]:
+    """Yield the first dependency, which a report names, as often as it was sensed."""
+    for each in stale:
+        if isinstance(each, _Dated) and _plain(each) == _plain(stale[0]):
+            yield each
 
 
-def _changed(
-    run: Sequence[Configuration], steps: Sequence[Step], sensed: int, keys: frozenset[Key]
-) -> int | None:
-    """Return the first step after the look by which another agent's control has changed its answer."""
-    about, before = steps[sensed - 1].label.about, run[sensed - 1]
-    looked = resolve(about.query, before.structure.physical, before.alpha)
-    for number in range(sensed + 1, len(steps)):
-        label = steps[number - 1].label
-        again = asked_again(run[number - 1], run[number], looked, keys)
-        if label.rule in CONTROLS and label.agent != steps[-1].label.agent:
-            if again.changed & keys:
-                return number
-            looked = again.steps
-    return None
+def _changed(stale: _Dated, used: frozenset[Key]) -> int:
+    """Return the first step that made a dependency stale."""
+    return min(
+        date
+        for (key, author), date in stale.dates
+        if key in used or (key == stale.asked and author == OTHERS)
+    )
 
 
 # --- the run, taken again -------------------------------------------------------------------------------------
 
 
-def _traced(run: Sequence[Configuration], steps: Sequence[Step]) -> Configuration | None:
-    """Return the end of a run in which everything that rests on an observation knows the step that sensed it."""
-    at = run[0]
+def _dated_end(run: Sequence[Configuration], steps: Sequence[Step]) -> Configuration | None:
+    """Return the end of a run in which each dependency has its dates."""
+    at, actor = run[0], steps[-1].label.agent
     for number, (step, (_, target)) in enumerate(zip(steps, pairwise(run), strict=False), 1):
         taken = alike(at, str(step.label), step.sight)
         after = next((each.target for each in taken if _is_plainly(each.target, target)), None)
         if after is None:
             return None
-        at = _sensing(at, after, number) if step.label.rule == "sense" else after
+        at = _dated(at, after, number, actor)
     return at
 
 
-def _is_plainly(traced: Configuration, plain: Configuration) -> bool:
-    """Tell whether a configuration is another one, apart from what observations know of their steps."""
-    cells = traced.state.changed(plain.state)
+def _is_plainly(dated: Configuration, plain: Configuration) -> bool:
+    """Tell whether a configuration is another one, apart from dates."""
+    cells = dated.state.changed(plain.state)
     return all(
-        cell[0] == MONITOR and _mapped(traced.state.read(cell), _plain) == plain.state.read(cell)
+        cell[0] == MONITOR and _mapped(dated.state.read(cell), _plain) == plain.state.read(cell)
         for cell in cells
     )
 
 
-def _sensing(before: Configuration, after: Configuration, number: int) -> Configuration:
-    """Return the configuration after a look, whose observation knows the number of its step."""
-
-    def numbered(each: Dependency) -> Dependency:
-        fresh = not isinstance(each, _Sensed)
-        return (
-            _Sensed(each.query, each.steps, each.changed, each.asked, each.computed, number)
-            if fresh
-            else each
-        )
-
+def _dated(before: Configuration, after: Configuration, number: int, actor: Name | None) -> Configuration:
+    """Return the configuration after a step, with the dates of what the step sensed and changed."""
     cells = [cell for cell in after.state.changed(before.state) if cell[0] == MONITOR]
-    return after.with_({cell: _mapped(after.state.read(cell), numbered) for cell in cells})
+    return after.with_(
+        {cell: _mapped(after.state.read(cell), lambda each: _dating(each, number, actor)) for cell in cells}
+    )
+
+
+def _dating(each: Dependency, number: int, actor: Name | None) -> Dependency:
+    if not isinstance(each, _Dated):
+        return _Dated(each.query, each.steps, each.changed, each.asked, each.computed, number)
+    known = dict(each.dates)
+    gone = {mark: date for mark, date in known.items() if mark not in each.changed and mark[1] != actor}
+    return replace(each, dates=tuple((mark, _date(mark, known, gone, number)) for mark in each.changed))
+
+
+def _date(mark: Mark, known: dict[Mark, int], gone: dict[Mark, int], number: int) -> int:
+    """Return when something was changed; a mark in the place of those of others is as old as they are.
+
+    What the actor itself has changed makes nothing stale that it does.
+    """
+    if mark in known:
+        return known[mark]
+    return min((date for (key, _), date in gone.items() if key == mark[0]), default=number)
 
 
 def _plain(each: Dependency) -> Dependency:
