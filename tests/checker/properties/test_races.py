@@ -9,7 +9,7 @@ from hypothesis import event, given, reject
 from hypothesis import strategies as st
 from mission_texts import missions
 from scale import examples
-from stale_by_definition import Judge, companies, text_of
+from stale_by_definition import Judge, chains, companies, text_of
 
 from checker import Engine, Limits, Trace, check, explore
 from checker.properties.findings import Collected
@@ -1007,7 +1007,7 @@ def test_control_races_of_the_same_two_places_of_the_text_are_one(engine):
 
 
 @examples(300)
-@given(companies(), st.sampled_from(["atomic", "timed"]), st.integers(0, 1 << 32))
+@given(st.one_of(companies(), chains()), st.sampled_from(["atomic", "timed"]), st.integers(0, 1 << 32))
 def test_in_a_run_each_control_is_stale_that_is_so_by_definition_and_no_other(company, control, seed):
     first = WORLD.count("\n") + 1
     try:
