@@ -1,4 +1,4 @@
-"""`bigactors big convert`: a model of bigraphs in the file of another tool."""
+"""`bigactors big convert`: a model of bigraphs in the file format of another tool."""
 
 from argparse import Namespace
 from collections.abc import Iterator
@@ -49,7 +49,7 @@ def convert(options: Namespace) -> Exit:
 
 
 def _format_of(file: str, known: tuple[str, ...], option: str) -> str:
-    """Return the format that a file's ending names."""
+    """Return the format of a file by its suffix."""
     ending = Path(file).suffix.removeprefix(".")
     if ending not in known:
         raise Mistake(
@@ -67,7 +67,7 @@ def _read(text: str, source: str, constants: dict[str, Value]) -> System:
 
 
 def _state(bigraph: Bigraph) -> System:
-    """Return a system without rules that a bigraph is the state of."""
+    """Return a system without rules whose only state is the bigraph."""
     for what in (*(f"site {site}" for site in range(len(bigraph.sites))), *bigraph.inner.names):
         hint = "fill its sites and close its inner names there, or read it in Python: read_xmi takes both"
         raise BigraphError("ground", f"a state has no sites and inner names, and this one has {what}", hint)
@@ -75,7 +75,7 @@ def _state(bigraph: Bigraph) -> System:
 
 
 def _as_big(text: str, source: str, system: System, constants: dict[str, Value]) -> str:
-    """Write a `.big` file: one that was read with its declarations, another's content with its own."""
+    """Return a `.big` file: a `.big` model keeps its declarations, other models get new ones."""
     model = portable(parse_model(text), system, constants) if source == "big" else model_of(system)
     if lost := unportable(model):
         tell(f"warning: BigraphER does not read {', '.join(lost)}")
@@ -83,7 +83,7 @@ def _as_big(text: str, source: str, system: System, constants: dict[str, Value])
 
 
 def _as_xmi(system: System, initial_only: bool) -> str:
-    """Write the first state; what else there is, is refused unless it is to be left out."""
+    """Return the first state as XMI. Refuse a system with more than a state, unless `initial_only`."""
     if not initial_only and (lost := [*_more_than_a_state(system)]):
         hint = "with --initial, the first state is written alone"
         raise BigraphError("notation", f"XMI holds one bigraph, and this file has {', '.join(lost)}", hint)
