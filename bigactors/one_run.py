@@ -89,7 +89,7 @@ class OneRun:
         self.shown.append(transition.shown)
 
     def take_by_chance(self, chance: random.Random) -> bool:
-        """Take a random step at a random date, both uniformly chosen; return whether there was a step."""
+        """Take one of the steps at random, at a random one of its dates; return whether there was a step."""
         choices = self.choices()
         if not choices:
             return False

@@ -143,7 +143,7 @@ class Terminal:
 
 
 def _breaks(finding: Finding) -> bool:
-    """Return whether a finding invalidates the verification. A late request without a fallback does not."""
+    """Return whether a finding voids the verification: a broken assumption, or a failure with a fallback."""
     return finding.kind == "broken assumption" or (finding.kind == "failed" and bool(finding.fallback))
 
 
