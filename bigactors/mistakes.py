@@ -8,7 +8,7 @@ class Mistake(Exception):
     """A mistake that the user has to correct: printed without a traceback, exit code 2.
 
     Attributes:
-        message: The cause: found and expected.
+        message: The cause: the text found, and the text expected.
         hint: The remedy; may be empty.
         place: The file; may be empty.
         rendered: The whole printed text, if another module has rendered it; else empty.

@@ -1,7 +1,7 @@
 """Asynchronous printing: while vehicles fly, a thread writes to the terminal, so that the flight never waits for it.
 
 A stopped terminal (Ctrl-S) or an unread pipe blocks its writer. So texts wait in a bounded queue. When the queue is
-full, a line with their number replaces the oldest lines.
+full, the oldest lines are dropped, and one line reports their number.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Probabilities, rewards and strategies of `bigactors big check --storm`, by the model checker Storm.
 
-A formula is Storm's, with the predicates of the file in its own notation. The explored system goes to Storm in the
-files that `big full --storm` writes. Storm runs in a separate process (`storm_worker`).
+Formulas are in Storm's language, with the file's predicates in their own notation. The explored system goes to Storm in
+the files of `big full --storm`. Storm runs in a separate process (`storm_worker`).
 """
 
 import json
