@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from adapters.live.sayings import typed
 from adapters.live.scheduling import in_turn
 from adapters.live.state import LiveState, Plan
 from adapters.live.timing import flying
 from adapters.plugin import Follow, GoTo, Status
 from physical import distance
 from physical.messages import counted
-from semantics.behaviours.values import show
 from semantics.environment import Says
 from semantics.state.requests import READY, Request
 from semantics.state.signature import REGION, Name
@@ -49,10 +49,12 @@ def situation(plan: Plan, state: LiveState, said: Mapping[Name, Status], now: fl
     vehicles = [vehicle_line(name, state, said.get(name), now) for name in sorted(plan.vehicles)]
     pending = (each.request for each in in_turn(c))
     requests = [_request(each, state, now) for each in pending if not isinstance(each, READY)]
-    clauses = (clause for clause in c.setting.environment if isinstance(clause, Says))
+    clauses = [clause for clause in c.setting.environment if isinstance(clause, Says)]
     left = [(clause, c.read(clause.counter)) for clause in clauses]
     may = [
-        f"{each.agent} {show(each.message)} ({counted(times, 'time')} more)" for each, times in left if times
+        f"{each.agent} {typed(each, clauses)} ({counted(times, 'time')} more)"
+        for each, times in left
+        if times
     ]
     served = ["no more controls are served: an assumption broke"] if state.suspended else []
     parts = {"vehicles": vehicles, "requests": requests, "may be said": may, "suspended": served}

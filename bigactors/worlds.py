@@ -20,7 +20,7 @@ from semantics.state.configuration import Configuration
 from semantics.state.initial import initial
 from semantics.state.physical_model import Carried, Placed, Placement
 from semantics.state.setting import Setting
-from semantics.state.signature import REGION, Kind, Signature
+from semantics.state.signature import NO_ENTITIES, Kind, Signature
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,8 +144,8 @@ def area_within(within: Sequence[float]) -> Geometry:
 def configuration_of(world: World) -> Configuration:
     """Return ⟨∅ | (A(P), P, β, γ) | ∅⟩ of a world. A kind with an area may contain every kind."""
     known = {each.entity: each for each in world.properties}
-    if REGION in known:
-        raise Mistake(f"an entity is called '{REGION}'", "that is the name of the outermost place: rename it")
+    for name in sorted(NO_ENTITIES & known.keys()):
+        raise Mistake(f"an entity is called '{name}'", "the language has that name for a place: rename it")
     kinds = {name: each.kind for name, each in known.items()}
     placements = {name: _placement(each, known) for name, each in known.items()}
     setting = Setting(_signature(world), kinds, Program((), {}, {}))

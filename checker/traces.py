@@ -1,4 +1,4 @@
-"""Traces: runs in the paper's notation, that replay step by step."""
+"""Traces: runs in the paper's notation that replay step by step."""
 
 from __future__ import annotations
 
@@ -29,8 +29,10 @@ if TYPE_CHECKING:
     from checker.engines.times import Times
 
 SCHEMA = "bigactors.trace/1"
-"""The version of the step schema: schema, mission, digest, monitored, steps of label, choice and changes, and loop;
-steps of live runs also say what was observed, when, and the digest of what they wrote."""
+"""The version of the step schema: schema, mission, digest, monitored, steps of label, choice and changes, and loop.
+
+Steps of live runs also have their observation, its time, and the digest of their writes.
+"""
 
 MOST_STEPS = 1_000_000
 MOST_SECONDS = 10_000_000_000
@@ -63,10 +65,10 @@ class Trace:
     Attributes:
         initial: The first configuration.
         steps: Its steps.
-        loop: The number of the configuration from which the run repeats for ever: the last is the same. If it is the
-            last itself, nothing has to happen there, and the run stays. None where the run is not for ever.
-        dates: When each step is taken, in ticks from the start; empty where nothing says how long things take.
-        shortest: Whether it is certain that no other run that shows the same is shorter: not where steps were put
+        loop: The number of the configuration from which the run repeats for ever; it equals the last one. If it is the
+            number of the last itself, the run stays there for ever. None for a finite run.
+        dates: The date of each step, in ticks from the start; empty without timing.
+        shortest: Whether the trace is certainly a shortest one. It isn't where steps were put
             off (`--reduce por`), nor where to find out would take too long.
     """
 
@@ -78,7 +80,7 @@ class Trace:
 
     @property
     def called(self) -> str:
-        """What it is called in a report."""
+        """The description of the trace in a report."""
         return "a shortest trace" if self.shortest else "a trace"
 
     def __len__(self) -> int:
@@ -106,12 +108,12 @@ class Trace:
 
     @property
     def moments(self) -> tuple[int, ...]:
-        """When each step is taken, in milliseconds from the start; empty without dates."""
+        """The date of each step, in milliseconds from the start; empty without dates."""
         timing = self.initial.setting.timing
         return () if timing is None else tuple(date * timing.tick for date in self.dates)
 
     def date(self, number: int) -> str:
-        """Return when a step is taken, as a report says it; nothing without dates."""
+        """Return the date of a step as text; empty without dates."""
         return clock_text(self.moments[number]) if self.moments else ""
 
 
@@ -171,9 +173,9 @@ def alike(source: Configuration, label: str, sight: Sight | Elsewhere | None = N
 
 
 def trace_to(found: Exploration, number: int, by: Transition | None = None) -> Trace:
-    """Return a trace to a configuration of an exploration: a shortest one, unless steps were put off.
+    """Return a trace to a configuration of an exploration: a shortest one, unless partial order reduction was applied.
 
-    A step by which the configuration counts is the last one, if it is its turn.
+    The transition that the finding is about comes last, if it is its turn.
     """
     if found.times is not None:
         return dated_trace(found.times, found.times.run_before(number, by))
@@ -201,7 +203,7 @@ def dated_trace(times: Times, run: Run) -> Trace:
 
 
 def _unfolded(found: Exploration, number: int, by: Transition | None, *, shortest: bool) -> Trace:
-    """Return the run of the mission itself to what a configuration of a reduced exploration stands for."""
+    """Return an unreduced run to the configuration that a representative stands for."""
     initial = found.configurations[0] if found.start is None else found.start
     trace = Trace(initial, (), shortest=shortest)
     for transition in run_to(found, number, by):
@@ -221,7 +223,7 @@ def print_trace(trace: Trace, *, changes: bool = True) -> Iterator[str]:
 
 
 def print_loop(trace: Trace) -> str:
-    """Print where a run that goes on for ever comes round."""
+    """Print the loop of an infinite run."""
     end = len(trace)
     if trace.loop == end:
         return f"c{end} stays for ever: nothing has to happen"
@@ -233,7 +235,7 @@ def _steps_of(count: int) -> str:
 
 
 def print_length(trace: Trace) -> str:
-    """Print what a trace is, and how long."""
+    """Print the kind and the length of a trace."""
     steps = counted(len(trace), "step")
     if trace.loop is None:
         return f"{trace.called}, {steps}"
@@ -251,11 +253,11 @@ def _last(count: int) -> str:
 
 
 class ReplayError(Exception):
-    """A trace that the rules do not allow.
+    """A trace that the rules don't allow.
 
     Attributes:
         step: The number of the step, from 1.
-        enabled: What was enabled instead.
+        enabled: The labels of the transitions enabled instead.
     """
 
     def __init__(self, step: int, label: str, enabled: Sequence[str], cause: str) -> None:
@@ -277,7 +279,7 @@ def to_json(trace: Trace, mission: str, digest: str) -> dict[str, Any]:
 
 
 def _dates_json(trace: Trace) -> Iterator[dict[str, float]]:
-    """Yield for each step when it is taken, in seconds from the start, where the run has dates."""
+    """Yield the date of each step in seconds from the start; nothing without dates."""
     timing = trace.initial.setting.timing
     if timing is None or not trace.dates:
         yield from ({} for _ in trace.steps)
@@ -292,10 +294,10 @@ def _step_json(source: Configuration, step: Step) -> dict[str, Any]:
 
 
 def replay(initial: Configuration, data: Any) -> Trace:
-    """Return the trace that plain data describes, run again through the rules, with the monitor's memory if it had it.
+    """Return the trace of plain data, re-run through the rules; with the monitor's memory if it was recorded with it.
 
     Raises:
-        ReplayError: A step is not allowed, or the run doesn't come round where it should.
+        ReplayError: A step is not allowed, or the loop doesn't close.
         ValueError: The data are no trace.
     """
     steps, loop = _steps(data), _loop(data)
@@ -310,7 +312,7 @@ def replay(initial: Configuration, data: Any) -> Trace:
 
 
 def _dates(initial: Configuration, trace: Sequence[Step], said: Sequence[Any]) -> tuple[int, ...]:
-    """Return the dates of a run in ticks, once its clocks allow each; nothing where it has none."""
+    """Return the dates of a run in ticks after a check against its clocks; empty without dates."""
     timing = initial.setting.timing
     if timing is None or not any("at" in each for each in said):
         return ()
@@ -343,10 +345,10 @@ def _date(number: int, said: Any, tick: int) -> int:
 
 
 def follow(before: Configuration, number: int, said: Any) -> Step:
-    """Return the step that plain data describes, taken again by the rules.
+    """Return the step of plain data, re-run by the rules.
 
     Raises:
-        ReplayError: It is not allowed there, or leads elsewhere.
+        ReplayError: The step is not allowed there, or has another target.
         ValueError: The data are no step.
     """
     return _followed(before, number, _step(number, said))
@@ -367,7 +369,7 @@ def _followed(before: Configuration, number: int, said: _Said) -> Step:
 
 
 def _closed(trace: Trace) -> Trace:
-    """Return a trace after a look at where it comes round."""
+    """Return a trace after a check that its loop closes."""
     if trace.loop is None:
         return trace
     last = trace.configurations[-1]
@@ -394,7 +396,7 @@ def _cause(alike: int) -> str:
 
 
 _Said = tuple[str, int, Sight | Elsewhere | None, str | None]
-"""What plain data say of a step: its label, which of those with that label, what was observed, what it wrote."""
+"""A step in plain data: its label, its index among the steps of that label, its observation and its digest."""
 
 
 def _steps(data: Any) -> list[_Said]:

@@ -250,7 +250,8 @@ class Code(Enum):
         "LS203",
         "name declared twice",
         """Entities, kinds, bigActors and channels all have different names; so do rules among each other, and
-        behaviours. `region` is reserved for the outermost place.""",
+        behaviours. `region` and `unknown` are reserved: an observation calls so the place of what
+        is in no place, and of what it did not see.""",
     )
     WRONG_SORT = (
         "LS204",
@@ -533,7 +534,8 @@ class Code(Enum):
     ALWAYS_THE_SAME = (
         "LS704",
         "comparison that is always the same",
-        """Values of different types are never equal, and a set or an observation has no members of that type.""",
+        """Values of different types are never equal, and a set or an observation has no members of that type. A text is
+        never equal to a name: `"base"` is a text, `base` the name of an entity.""",
     )
 
     NEVER_INSIDE = (

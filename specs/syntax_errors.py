@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from lark import UnexpectedInput
@@ -102,6 +103,10 @@ _SORTS: Final = {
 _MOST: Final = 8
 
 
+_SPELT: Final = re.compile(r'"[^\W\d]\w*"')
+"""A text that is spelled like a name."""
+
+
 def explain_syntax_error(found: UnexpectedInput, run: Run, prepared: Prepared) -> Diagnostic:
     """Return the diagnostic of a stopped parse: a bracket, the end, a common mistake, or the words expected."""
     at = situation(prepared, offset_of(found, prepared), run)
@@ -150,4 +155,10 @@ def _hint(at: Situation) -> str:
         return "write hosted_at host with_behavior { ... }"
     if at.found.text == "}" and at.at_expression:
         return f"something is missing behind {at.before.shown}" if at.before.text else ""
-    return next((form for words, form in _FORMS if words <= at.accepted), "")
+    form = next((form for words, form in _FORMS if words <= at.accepted), "")
+    return form or _unquoted(at)
+
+
+def _unquoted(at: Situation) -> str:
+    is_spelt = "NAME" in at.sorts and _SPELT.fullmatch(at.found.text)
+    return f"write the name without quotes: {at.found.text[1:-1]}" if is_spelt else ""

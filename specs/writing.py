@@ -7,9 +7,8 @@ from functools import singledispatch
 from typing import Final
 
 from semantics.behaviours.commands import COMMANDS
+from semantics.behaviours.values import ESCAPES
 from specs import syntax as s
-
-_ESCAPES: Final = str.maketrans({'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t"})
 
 # The precedence of an operator, and the least precedences of its two operands; 8 binds tightest.
 _BINARY: Final = {"or": (1, 1, 2), "and": (2, 2, 3), "+": (5, 5, 6), "-": (5, 5, 6)}
@@ -78,7 +77,7 @@ def _(node: s.Name) -> str:
 
 @write.register
 def _(node: s.TextLiteral) -> str:
-    return f'"{node.value.translate(_ESCAPES)}"'
+    return f'"{node.value.translate(ESCAPES)}"'
 
 
 @write.register

@@ -48,6 +48,14 @@ examples:
 
 bigactors COMMAND --help describes a command, with examples. FILE is a mission file or the name of one that ships."""
 
+GONE: Final = {
+    "bigactors check --hash-compact": "it is gone, since a configuration takes some 24 bytes: --max-memory SIZE "
+    "bounds memory, and --spill DIR moves configurations to files",
+    "bigactors big --to": "it is gone with XMI: BigraphER's language is written",
+    "bigactors big --initial": "it is gone with XMI: a whole model is written",
+}
+"""Options of earlier versions, each with what to do instead."""
+
 
 def command_of(name: str) -> Command:
     """Return a command; its module is loaded on request."""
@@ -113,8 +121,11 @@ def _parsed(parser: Parser, line: Sequence[str], options: argparse.Namespace) ->
 def _unknown(word: str, parser: Parser) -> Mistake:
     if not word.startswith("-"):
         return Mistake(f"'{word:.60}' is one argument too many", f"see {parser.prog} --help")
+    option = word.partition("=")[0]
     known = parser.format_usage().replace("[", " ").replace("]", " ").split()
-    hint = suggestion(word.partition("=")[0], (option for option in known if option.startswith("--")))
+    hint = GONE.get(f"{parser.prog} {option}") or suggestion(
+        option, (each for each in known if each.startswith("--"))
+    )
     return Mistake(f"unknown option '{word:.60}'", hint or f"see {parser.prog} --help")
 
 

@@ -60,19 +60,6 @@ def at_least_one(text: str) -> int:
     return int(plain)
 
 
-LEAST_TAG, MOST_TAG = 16, 64
-"""The bounds of `check --hash-compact`, in bits."""
-
-
-def tag_bits(text: str) -> int:
-    """Return the number of hash bits to keep."""
-    if not re.fullmatch(r"[0-9]{1,3}", text) or not LEAST_TAG <= int(text) <= MOST_TAG:
-        raise argparse.ArgumentTypeError(
-            f"'{text:.40}' is not a number of bits from {LEAST_TAG} to {MOST_TAG}"
-        )
-    return int(text)
-
-
 def seconds(text: str) -> float:
     """Return a number of seconds above 0."""
     value = _number(text)

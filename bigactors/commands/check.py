@@ -153,29 +153,13 @@ def keeping_of(options: Namespace) -> Keeping | None:
     """Return the options on checkpoints, re-checking and hash compaction; None without any."""
     if options.resume and options.checkpoint is None:
         raise Mistake("--resume goes on from a checkpoint", "say where it is: --checkpoint DIR")
-    if options.checkpoint is None and options.paranoid is None and options.hash_compact is None:
+    if options.checkpoint is None and options.paranoid is None:
         return None
-    kept = options.checkpoint is not None or options.hash_compact is not None
-    if kept and (options.engine == "reference" or options.reduce):
-        raise Mistake(
-            "--checkpoint and --hash-compact are of the fast explorer", "leave --engine and --reduce out"
-        )
+    if options.checkpoint is not None and (options.engine == "reference" or options.reduce):
+        raise Mistake("--checkpoint is of the fast explorer", "leave --engine and --reduce out")
     if options.paranoid is not None and options.engine not in (None, "fast") and not options.reduce:
         raise Mistake("--paranoid is of the fast explorer and of reductions", "leave --engine out")
-    if options.hash_compact is not None and (
-        options.checkpoint or options.paranoid or options.engine == "ray"
-    ):
-        raise Mistake(
-            "--hash-compact finds no configuration again",
-            "leave --checkpoint, --paranoid and --engine ray out",
-        )
-    return Keeping(
-        options.checkpoint,
-        options.resume,
-        every=options.every,
-        doubted=options.paranoid or 0,
-        compact=options.hash_compact,
-    )
+    return Keeping(options.checkpoint, options.resume, every=options.every, doubted=options.paranoid or 0)
 
 
 def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:

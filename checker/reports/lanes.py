@@ -21,13 +21,13 @@ SERVING: Final = frozenset({"sense", "actuate", "command", "commit", "snd", "mig
 """Rules that serve a request: they act between the requesting agent and the world."""
 
 LEAST_REPEATED: Final = 8
-"""How many steps in a row have to repeat others to be folded into one line."""
+"""The least number of consecutive repeated steps that are folded into one line."""
 
 WORLD: Final = frozenset({"L", "P", "E"})
-"""The parts that are not the agents' own."""
+"""The parts of a configuration outside the agents."""
 
 COUNTED: Final = re.compile(r"(?<= = )-?\d+$")
-"""The number that a variable has become: it may differ from one round of a loop to the next."""
+"""The new number of a variable; it may differ from one round of a loop to the next."""
 
 NARROWEST: Final = 24
 NUMBERS: Final = 6
@@ -53,7 +53,7 @@ class LaneStep:
 
     @property
     def date(self) -> str:
-        """When it is taken, as a clock says it; nothing where the run has no dates."""
+        """Its date as text; empty without dates."""
         return "" if self.at is None else clock_text(self.at)
 
     @property
@@ -73,13 +73,13 @@ class LaneStep:
 
     @property
     def deed(self) -> tuple[str, tuple[str, ...]]:
-        """What was done and what it changed, whatever a counter has come to."""
+        """The step and its changes, without the values of counters."""
         return str(self.label), tuple(COUNTED.sub("#", str(change)) for change in self.changes)
 
 
 @dataclass(frozen=True, slots=True)
 class Repetition:
-    """Steps in a row that only repeat others since the world last changed, such as an agent's observation loop.
+    """Consecutive steps that only repeat earlier ones since the world last changed, such as a loop of observations.
 
     Attributes:
         steps: Those steps.
@@ -104,33 +104,33 @@ class Repetition:
 
     @property
     def heading(self) -> str:
-        """How many they are."""
+        """The number of steps."""
         return f"↻ {len(self.steps):,} steps, to c{self.last}"
 
     @property
     def about(self) -> str:
-        """What is done again and again."""
+        """The repeated rules, with their counts."""
         counts = Counter(step.label.rule for step in self.steps)
         return "again " + ", ".join(f"{rule} ×{count:,}" for rule, count in counts.items())
 
 
 @dataclass(frozen=True, slots=True)
 class LeftOut(Repetition):
-    """Steps in a row for which a report has no room."""
+    """Consecutive steps for which a report has no room."""
 
     @property
     def heading(self) -> str:
-        """How many they are."""
+        """The number of steps."""
         return f"⋯ {len(self.steps):,} steps, to c{self.last}"
 
     @property
     def about(self) -> str:
-        """That they are not told."""
+        """The words for omitted steps."""
         return "left out here"
 
 
 Row = LaneStep | Repetition
-"""What stands in one line of a run."""
+"""One line of a run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +140,7 @@ class Lanes:
     Attributes:
         names: The names of the lanes: the agents, then the environment if it takes a step.
         steps: The steps, from the first.
-        loop: The number of the configuration from which the run repeats for ever, if it does: the last is the same.
+        loop: The number of the configuration from which the run repeats for ever, if it does; it equals the last.
     """
 
     names: tuple[Name, ...]
@@ -225,7 +225,7 @@ def steps_of(row: Row) -> tuple[LaneStep, ...]:
 
 
 def lapses(rows: Sequence[Row]) -> tuple[int, ...]:
-    """Return how much time passes before each row, in milliseconds; nothing where the run has no dates."""
+    """Return the time before each row, in milliseconds; zeros for a run without dates."""
     moments = [(steps_of(row)[0].at, steps_of(row)[-1].at) for row in rows]
     ends = [0, *(end or 0 for _, end in moments)]
     return tuple((begin or 0) - end for (begin, _), end in zip(moments, ends, strict=False))

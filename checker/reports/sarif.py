@@ -24,7 +24,7 @@ RULES = {
     "coverage": "Some run reaches each statement, takes each branch, and meets each clause of the environment.",
     "vacuity": "What holds does not hold for want of anything that could break it.",
 }
-"""What each kind of property says, and what else is found."""
+"""The description of each kind of property, and of other findings."""
 
 LEVELS = {Level.WRONG: "error", Level.WARNING: "warning"}
 """The levels of results; other issues are notifications."""

@@ -10,7 +10,7 @@ from specs.syntax.nodes import Name, Node, node
 
 @node
 class TextLiteral(Node):
-    """`"handover"`: a string."""
+    """`"handover"`: a text, never equal to a name. `"base"` and `base` are two values."""
 
     value: str
 
