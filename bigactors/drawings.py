@@ -33,7 +33,13 @@ def draw_run(trace: Trace, folder: Path, title: str, *, each_step: bool) -> None
     with _mistakes(str(folder)):
         if each_step and len(trace) <= MOST_PICTURES:
             draw_trace(
-                trace.configurations, labels, folder, title=title, loop=trace.loop, moments=trace.moments
+                trace.configurations,
+                labels,
+                folder,
+                title=title,
+                loop=trace.loop,
+                moments=trace.moments,
+                race=trace.race,
             )
         else:
             draw_overview(lanes_of_trace(trace), folder / "trace.svg", title=title)

@@ -46,8 +46,9 @@ def trace_html(trace: Trace) -> str:
     """Return a trace as a table, with a column for each agent and one for the changes."""
     lanes = lanes_of_trace(trace)
     heads = (element("th", text(name), style=CELL) for name in ("", *lanes.names, "changes"))
-    rows = (_row(step, len(lanes.names)) for step in lanes.steps[:MOST_STEPS])
-    left_out = len(lanes.steps) - MOST_STEPS
+    shown = [step for step in lanes.steps if step.number <= MOST_STEPS or step.role]
+    rows = (_row(step, len(lanes.names)) for step in shown)
+    left_out = len(lanes.steps) - len(shown)
     more = [f"{left_out:,} more steps are not shown"] if left_out > 0 else []
     return element(
         "div",
@@ -59,7 +60,10 @@ def trace_html(trace: Trace) -> str:
 
 def _row(step: LaneStep, lanes: int) -> str:
     colour = SERVES if step.serves else AROUND if step.label.agent is None else OWN
-    said = element("b", text(step.label.rule), style=f"color:{colour}") + f" {text(step.about)}"
+    role = (
+        element("b", text(f"[{step.role}] "), style=f"color:{COLOURS[Outcome.VIOLATED]}") if step.role else ""
+    )
+    said = role + element("b", text(step.label.rule), style=f"color:{colour}") + f" {text(step.about)}"
     cells = (element("td", said if lane == step.lane else "", style=CELL) for lane in range(lanes))
     changes = "<br>".join(text(change) for change in step.changes)
     number = element("td", f"c{step.number}", style=f"{CELL};{QUIET}")

@@ -18,6 +18,7 @@ from checker import Limits, ReplayError, Trace, print_loop
 from checker.reports.comparison import comparison_text
 from checker.reports.lanes import lanes_of_trace, lanes_text
 from checker.reports.times import times_text
+from checker.traces import print_step
 from physical.messages import counted
 from physical.place_files import GEOJSON
 from semantics.state.printing import print_configuration
@@ -117,7 +118,7 @@ def _show_lanes(trace: Trace, *, unfolded: bool) -> None:
 
 def _show_configuration(trace: Trace, step: int) -> None:
     if step:
-        say(f"c{step - 1} --{trace.steps[step - 1].label}--> c{step}")
+        say(print_step(trace, step))
     say(f"c{step} = {print_configuration(trace.configurations[step])}")
     if trace.loop is not None and step in (trace.loop, len(trace)):
         say(print_loop(trace))

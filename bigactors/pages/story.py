@@ -78,6 +78,11 @@ class Frame:
         """The label of the step to it."""
         return "the first configuration" if self.step is None else str(self.step.label)
 
+    @property
+    def role(self) -> str:
+        """What the step to it is in a stale-observation race; mostly nothing."""
+        return "" if self.step is None else self.step.role
+
 
 @dataclass(frozen=True, slots=True)
 class Telling:
@@ -134,8 +139,9 @@ def _looks(trace: Trace) -> tuple[int, ...]:
     """Return for each configuration the first identical one: it follows the same configuration by the same step."""
     configurations = trace.configurations
     labels = ("", *(str(step.label) for step in trace.steps))
+    roles = (trace.role(number) for number in range(len(configurations)))
     first: dict[object, int] = {}
-    looks = zip((None, *configurations), configurations, labels, strict=False)
+    looks = zip((None, *configurations), configurations, labels, roles, strict=False)
     return tuple(first.setdefault(look, number) for number, look in enumerate(looks))
 
 

@@ -12,6 +12,7 @@ from bigactors.pages.story import Frame, Story, Telling, telling
 from bigactors.pictures import Look, Picture, channels_of, look_of, shown_names
 from bigraphs import Bigraph, draw_text
 from bigraphs.drawing import HIGHLIGHT
+from checker.properties.race_steps import RaceSteps
 from checker.reports.lanes import Lanes, LaneStep, Repetition, Row, lapses, steps_of
 from physical.map_style import MARK
 from physical.messages import counted
@@ -85,9 +86,20 @@ def _header(told: Telling) -> str:
         element("h1", text(story.title)),
         element("p", text(story.about), class_="violated" if story.violated else None) if story.about else "",
         *(element("p", text(line)) for line in story.details),
+        _race(story.trace.race),
         element("p", text(f"{counted(len(story.trace), 'step')}. {story.note}"), class_="quiet"),
         *(element("p", text(line), class_="violated") for line in told.left_out),
     )
+
+
+def _race(race: RaceSteps | None) -> str:
+    """Return links to the three steps of a stale-observation race."""
+    if race is None:
+        return ""
+    links = (
+        f"{element('a', text(role), href=f'#c{number}')} c{number}" for number, role in race.roles.items()
+    )
+    return element("p", "the race: ", " → ".join(links), class_="race")
 
 
 # --- lanes ----------------------------------------------------------------------------------------------------
@@ -171,9 +183,10 @@ def _step(step: LaneStep) -> str:
     return element(
         "div",
         element("b", text(step.label.rule)),
+        element("strong", text(step.role), class_="role") if step.role else "",
         element("div", text(step.about), class_="about") if step.about else "",
         element("ul", *changes) if step.changes else "",
-        class_=f"step {sort}".strip(),
+        class_=" ".join(filter(None, ["step", sort, step.role and "raced"])),
     )
 
 
@@ -293,12 +306,13 @@ def _frame(place: int, frame: Frame, words: Mapping[Bigraph, int]) -> str:
         class_="lists",
     )
     again = f", and {frame.count - 1:,} times more" if frame.count > 1 else ""
+    said = f"{frame.label}{f' [{frame.role}]' if frame.role else ''}"
     return element(
         "div",
-        element("h2", text(f"c{frame.number}: {frame.label}{again}"), class_="unscripted"),
+        element("h2", text(f"c{frame.number}: {said}{again}"), class_="unscripted"),
         lists,
         data_frame=place,
-        data_label=frame.label,
+        data_label=said,
         data_l="" if frame.logical is None else frame.logical.key,
         data_p="" if frame.physical is None else frame.physical.key,
         data_in_words=words[frame.c.structure.logical.bigraph()],

@@ -12,6 +12,7 @@ from typing import Final
 
 from bigactors.pictures.configuration import draw_configuration
 from bigactors.pictures.page import Page, plain_style, wrapped
+from checker.properties.race_steps import RaceSteps
 from checker.reports.lanes import Lanes, LaneStep, Repetition, bounded, folded, lanes_of, lapses, steps_of
 from physical.map_style import INK, QUIET
 from semantics.state.configuration import Configuration, Label
@@ -38,6 +39,8 @@ AROUND: Final = ("#fdf1e3", "#d08a3c")
 AGENT: Final = ("#e8f1fd", "#4f86c6")
 TIME: Final = "#4f86c6"
 AGAIN: Final = ("#f4f6f8", "#9fadbb")
+RACE: Final = "#b3261e"
+"""The words *sensed*, *changed* and *acted*."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +58,7 @@ class Row:
         date: Its date; empty if unknown.
         lapse: The time before it, in milliseconds.
         gap: The height of the gap for that time.
+        role: Its role in a stale-observation race; mostly empty.
     """
 
     number: int
@@ -66,6 +70,7 @@ class Row:
     date: str = ""
     lapse: int = 0
     gap: float = 0.0
+    role: str = ""
 
     @property
     def box_height(self) -> float:
@@ -78,7 +83,7 @@ class Row:
         return self.gap + max(self.box_height, 10.5 * len(self.changes) + 6.0) + 9.0
 
 
-def draw_trace(
+def draw_trace(  # noqa: PLR0913 - each is optional, and named where it is used
     configurations: Sequence[Configuration],
     labels: Sequence[Label],
     directory: str | Path,
@@ -86,11 +91,13 @@ def draw_trace(
     title: str | None = None,
     loop: int | None = None,
     moments: Sequence[int] = (),
+    race: RaceSteps | None = None,
 ) -> tuple[Path, ...]:
     """Write `c00.svg`, `c01.svg`, ... and the overview `trace.svg` into a directory, and return their paths.
 
     Each label names the step between two configurations, so there is one label fewer. `loop` is the number of the
-    configuration to which the run returns for ever; `moments` are the dates of the steps in milliseconds.
+    configuration to which the run returns for ever; `moments` are the dates of the steps in milliseconds; the steps of
+    `race` are marked.
 
     Raises:
         OSError: A file cannot be written.
@@ -99,12 +106,16 @@ def draw_trace(
     digits = max(2, len(str(len(configurations) - 1)))
     names = [f"c{step:0{digits}d}.svg" for step in range(len(configurations))]
     befores = [None, *configurations[:-1]]
-    captions = ["", *map(str, labels)]
+    roles = {} if race is None else race.roles
+    words = (f"[{roles[number]}] " if number in roles else "" for number in range(1, len(configurations)))
+    captions = ["", *(f"{word}{label}" for word, label in zip(words, labels, strict=True))]
     for name, before, c, caption in zip(names, befores, configurations, captions, strict=True):
         heading = " ".join(part for part in (title, Path(name).stem, caption) if part)
         draw_configuration(c, folder / name, title=heading, changed=before)
     overview = folder / "trace.svg"
-    draw_overview(lanes_of(configurations, labels, loop, moments), overview, title=title, links=names[1:])
+    draw_overview(
+        lanes_of(configurations, labels, loop, moments, race), overview, title=title, links=names[1:]
+    )
     return (*(folder / name for name in names), overview)
 
 
@@ -147,7 +158,7 @@ def _row(step: LaneStep | Repetition) -> Row:
     if isinstance(step, Repetition):
         return Row(step.number, step.lane, AGAIN, step.heading, words, ())
     colours = SERVED if step.serves else AROUND if step.label.agent is None else AGENT
-    return Row(step.number, step.lane, colours, step.label.rule, words, _changes(step))
+    return Row(step.number, step.lane, colours, step.label.rule, words, _changes(step), role=step.role)
 
 
 def _changes(step: LaneStep) -> tuple[str, ...]:
@@ -217,13 +228,15 @@ def _draw_row(page: Page, row: Row, start: float, y: float, link: str | None) ->
         row.box_height,
         boxstyle="round,pad=0,rounding_size=5",
         facecolor=fill,
-        edgecolor=border,
-        linewidth=1.1,
+        edgecolor=RACE if row.role else border,
+        linewidth=2.2 if row.role else 1.1,
         zorder=4,
     )
     if link:
         box.set_url(link)
     page.axes.add_patch(box)
     page.write(start + 12, y + 12.5, row.rule, 8.0, bold=True, ink=INK, zorder=5)
+    if row.role:
+        page.write(start + LANE - 12, y + 12.5, row.role, 8.0, bold=True, ink=RACE, ha="right", zorder=5)
     for rank, line in enumerate(row.words):
         page.write(start + 12, y + 23.0 + rank * 10.0, line, 7.0, ink="#3b4252", zorder=5)

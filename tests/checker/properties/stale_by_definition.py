@@ -5,6 +5,7 @@ and sent. Nothing is forgotten and nothing is merged. Missions are of lines that
 control depends on is read off the lines; tests are of the form `name in o` or `size(o) < 3`.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 from hypothesis import strategies as st
@@ -229,16 +230,17 @@ class Judge:
             at += len(lines) + 2
         return rows[number]
 
-    def is_race(self, t: Transition) -> bool:
-        """Tell whether a served control rests on what others have changed."""
+    def races(self, t: Transition) -> set[tuple[int, int]]:
+        """Return what a served control rests on that others have changed: when it was sensed, and when changed."""
         assert t.served is not None
         request = t.served.request
         assert isinstance(request, CTR | FLY)
         tests = self.controls[request.agent][0]
         used = slots_of(str(request.reaction), HOSTS[request.agent])
-        return any(self.is_stale(test, used) for test in tests)
+        return {(test.at, change.time) for test in tests for change in self.changed(test, used)}
 
-    def is_stale(self, test: Test, used: frozenset[tuple[str, str]]) -> bool:
+    def changed(self, test: Test, used: frozenset[tuple[str, str]]) -> Iterator[Change]:
+        """Yield the changes that each make a test stale."""
         node = test.node
         for change in self.changes:
             if change.time <= test.at:
@@ -247,13 +249,11 @@ class Judge:
             if test.around is not None and differs(change, ("parent", test.around)):
                 led = change.after.parents[test.around]
             flips = test.answer(change.before, node) != test.answer(change.after, led)
-            if flips and test.concerns(change):
-                return True
-            if not test.is_own(change) and any(differs(change, slot) for slot in used):
-                return True
+            touches = any(differs(change, slot) for slot in used)
+            if (flips and test.concerns(change)) or (touches and not test.is_own(change)):
+                yield change
             if not test.is_holders(change):
                 node = led
-        return False
 
     def take(self, before: Configuration, t: Transition) -> None:
         """Watch one step of the run."""

@@ -11,9 +11,10 @@ from mission_texts import missions
 from scale import examples
 from stale_by_definition import Judge, companies, text_of
 
-from checker import Engine, Limits, check, explore
+from checker import Engine, Limits, Trace, check, explore
 from checker.properties.findings import Collected
 from checker.properties.races import ControlRaces, StaleObservationRaces, asked_in_words, is_stale
+from checker.properties.stale_steps import stale_steps
 from checker.verdicts import Outcome
 from semantics import extension
 from semantics.behaviours import stepping
@@ -1013,13 +1014,17 @@ def test_in_a_run_each_control_is_stale_that_is_so_by_definition_and_no_other(co
         c = monitored(start(text_of(company, first) + f"control {control}\n"))
     except MissionError:
         reject()
-    judge, choose = Judge(company, first), Random(seed).choice
+    judge, choose, trace = Judge(company, first), Random(seed).choice, Trace(c)
     while allowed := expand(c).by_agents:
         taken = choose(allowed)
+        trace = trace.extended(taken)
         if taken.label.rule in monitor.CONTROLS:
-            race = judge.is_race(taken)
-            event("race" if race else "no race")
-            assert bool(is_stale(c, taken.served)) == race
+            races = judge.races(taken)
+            event("race" if races else "no race")
+            assert bool(is_stale(c, taken.served)) == bool(races)
+            found = stale_steps(trace.initial, trace.steps)
+            assert (found is None) == (not races)
+            assert found is None or (found.sensed, found.changed) in races
         judge.take(c, taken)
         c = taken.target
 
