@@ -54,7 +54,7 @@ GONE: Final = {
     "bigactors big --to": "it is gone with XMI: BigraphER's language is written",
     "bigactors big --initial": "it is gone with XMI: a whole model is written",
 }
-"""Options of earlier versions, each with what to do instead."""
+"""Options of earlier versions, each with its replacement."""
 
 
 def command_of(name: str) -> Command:

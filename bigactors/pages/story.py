@@ -80,7 +80,7 @@ class Frame:
 
     @property
     def role(self) -> str:
-        """What the step to it is in a stale-observation race; mostly nothing."""
+        """The role of the step to it in a stale-observation race; mostly empty."""
         return "" if self.step is None else self.step.role
 
 

@@ -83,7 +83,7 @@ class Row:
         return self.gap + max(self.box_height, 10.5 * len(self.changes) + 6.0) + 9.0
 
 
-def draw_trace(  # noqa: PLR0913 - each is optional, and named where it is used
+def draw_trace(  # noqa: PLR0913 - all but three are optional, and passed by name
     configurations: Sequence[Configuration],
     labels: Sequence[Label],
     directory: str | Path,
