@@ -1,4 +1,4 @@
-"""One self-contained page that steps through a trace: its lanes, and beside them the bigraph and the map."""
+"""A self-contained page that steps through a trace: its lanes, beside the bigraph and the map."""
 
 import base64
 import hashlib
@@ -20,23 +20,23 @@ from semantics.state.printing import print_agent
 from semantics.timing.dates import lapse_text
 
 LARGEST: Final = 1.35
-"""Pixels for a point of a picture, at the most."""
+"""The most pixels for a point of a picture."""
 
 SMALLEST: Final = {"L": 0.65, "P": 0.9}
-"""Pixels for a point of a picture on a phone, where it can be moved sideways."""
+"""Pixels for a point of a picture on a phone, where it scrolls sideways."""
 
 LEAST_LAPSE, MOST_LAPSE = 18, 150
-"""How high a gap in which time passes is at least, and the longest of a trace, in pixels."""
+"""The height in pixels of the shortest and of the longest gap between steps in a trace."""
 
 NARROWEST: Final = 7
-"""How wide a lane is at the least, in ems; its boxes may reach over the next."""
+"""The least width of a lane in ems; its boxes may reach over the next lane."""
 
 
 UNSCRIPTED: Final = (
     "[hidden], .unscripted { display: revert !important; } "
     ".controls, .hint, .several button, #missing { display: none !important; }"
 )
-"""What a page without scripts looks like: everything is there at once."""
+"""The style of a page without scripts: it shows everything at once."""
 
 
 def trace_page(story: Story) -> str:
@@ -45,7 +45,7 @@ def trace_page(story: Story) -> str:
 
 
 def page_of(told: Telling) -> str:
-    """Return the page."""
+    """Return the page of its content."""
     script, style = _resource("trace.js"), _resource("trace.css")
     allowed = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     policy = (
@@ -68,7 +68,7 @@ def page_of(told: Telling) -> str:
 
 
 def _steps(told: Telling) -> dict[str, str | None]:
-    """Return what the script reads: the frame of each configuration, and the tenths of a second to it from the last."""
+    """Return the script's data: the frame of each configuration, and the tenths of a second since the last."""
     order = " ".join("" if frame is None else str(frame) for frame in told.order)
     tenths = [round(10 * second) for second in told.seconds]
     gaps = (str(max(0, after - before)) for before, after in pairwise([0, *tenths]))
@@ -121,7 +121,7 @@ def _run(told: Telling) -> str:
 
 
 def _rows(told: Telling) -> Iterator[str]:
-    """Yield the rows: of the first configuration, of steps, and of several steps that are folded."""
+    """Yield the rows: of the first configuration, of single steps, and of folded steps."""
     seconds = told.seconds
     passing = lapses(told.rows)
     longest = max(passing, default=0)
@@ -137,7 +137,7 @@ def _rows(told: Telling) -> Iterator[str]:
 
 
 def _others(told: Telling) -> Iterator[str]:
-    """Yield a row of each frame that has none in the table: the script takes them for what is folded."""
+    """Yield a row for each frame outside the table: the script inserts them when it unfolds steps."""
     shown = {told.order[row.number] for row in told.rows if isinstance(row, LaneStep)}
     for place, frame in enumerate(told.frames):
         if place not in shown and frame.step is not None:
@@ -168,7 +168,7 @@ def _cells(row: Row, lanes: Lanes) -> Iterator[str]:
 
 
 def _side(lane: int, count: int) -> str | None:
-    """Return where a box may reach over its lane: to the right from the first, to the left from the last, else both."""
+    """Return the side to which a box may overflow its lane: right in the first, left in the last, else both."""
     if lane == 0:
         return None
     return "last" if lane == count - 1 else "inner"
@@ -278,7 +278,7 @@ def _model(name: str, gloss: str, pictures: Sequence[Picture]) -> str:
 
 
 def _svg(picture: Picture, name: str, width: float, height: float) -> str:
-    """Return a picture in the middle of a sheet as large as the largest, so that nothing jumps between two steps."""
+    """Return a picture centred on a sheet of the largest size, so that nothing moves between two steps."""
     left, top = (picture.width - width) / 2, (picture.height - height) / 2
     return element(
         "svg",

@@ -1,7 +1,7 @@
-"""Draw a trace: a picture of each configuration, and an overview with a lane for each agent, time going down.
+"""Draw a trace: a picture of each configuration, and an overview with a lane for each agent; time goes down.
 
-The overview of a run with dates has a time axis. Steps at one moment stand below each other; where time passes between
-two steps there is a gap as high as it is long.
+The overview of a dated run has a time axis. Steps at one moment follow without a gap; where time passes between two
+steps there is a gap in proportion.
 """
 
 from collections.abc import Sequence
@@ -26,13 +26,13 @@ CHANGES: Final = 300.0
 GUTTER: Final = 14.0
 HEAD: Final = 30.0
 LEAST_LAPSE, MOST_LAPSE = 13.0, 110.0
-"""How high a gap in which time passes is at least, and the longest of a trace."""
+"""The height in points of the shortest and of the longest gap between steps in a trace."""
 
 MOST_ROWS: Final = 2_000
 """The most rows of an overview."""
 
 MOST_LINES: Final = 6
-"""Lines that are shown of what one step changed."""
+"""The most lines about the changes of one step."""
 
 SERVED: Final = ("#e9f7ee", "#4fa672")
 AROUND: Final = ("#fdf1e3", "#d08a3c")
@@ -45,20 +45,20 @@ RACE: Final = "#b3261e"
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One step of the overview, or several that repeat others.
+    """One step of the overview, or several repeated steps.
 
     Attributes:
         number: The number of the configuration after it, or after the first of several.
-        lane: Where its box stands: the rank of its lane.
-        colours: Its fill and its border: of an agent's own step, of one that serves a request, of the
-            environment's, or of several.
+        lane: The rank of its lane.
+        colours: The fill and the border, for an agent's own step, a step that serves a request, a step of the
+            environment, or several steps.
         rule: The rule, as the box's heading.
-        words: What else its label says, in lines.
-        changes: What changed, in lines.
-        date: When it is taken; empty where that is not known.
-        lapse: How much time passes before it, in milliseconds.
-        gap: How high the gap is that stands for that.
-        role: What it is in a stale-observation race; mostly nothing.
+        words: The rest of its label, in lines.
+        changes: The changes, in lines.
+        date: Its date; empty if unknown.
+        lapse: The time before it, in milliseconds.
+        gap: The height of the gap for that time.
+        role: Its role in a stale-observation race; mostly empty.
     """
 
     number: int
@@ -74,16 +74,16 @@ class Row:
 
     @property
     def box_height(self) -> float:
-        """How high its box is."""
+        """The height of its box."""
         return 19.0 + 10.0 * len(self.words)
 
     @property
     def height(self) -> float:
-        """How much of the page it takes, with the time before it."""
+        """Its height on the page, with the gap before it."""
         return self.gap + max(self.box_height, 10.5 * len(self.changes) + 6.0) + 9.0
 
 
-def draw_trace(  # noqa: PLR0913 - each is optional, and named where it is used
+def draw_trace(  # noqa: PLR0913 - all but three are optional, and passed by name
     configurations: Sequence[Configuration],
     labels: Sequence[Label],
     directory: str | Path,
@@ -95,8 +95,9 @@ def draw_trace(  # noqa: PLR0913 - each is optional, and named where it is used
 ) -> tuple[Path, ...]:
     """Write `c00.svg`, `c01.svg`, ... and the overview `trace.svg` into a directory, and return their paths.
 
-    There is one label fewer than configurations: the label of the step to each from the one before. `loop` is from
-    where the run repeats for ever; `moments` are when its steps are taken, in milliseconds; `race` is marked.
+    Each label names the step between two configurations, so there is one label fewer. `loop` is the number of the
+    configuration to which the run returns for ever; `moments` are the dates of the steps in milliseconds; the steps of
+    `race` are marked.
 
     Raises:
         OSError: A file cannot be written.
@@ -126,13 +127,13 @@ def draw_overview(
     links: Sequence[str] = (),
     unfolded: bool = False,
 ) -> None:
-    """Write one picture of a trace: the steps in their lanes, from top to bottom, with what each changed.
+    """Write one picture of a trace: the steps in their lanes from top to bottom, with their changes.
 
-    `links` are what the boxes lead to in an SVG, one for each step. Steps in a row that only repeat others are one
-    box, unless `unfolded`.
+    `links` are the link targets of the boxes in an SVG, one for each step. Consecutive steps that only repeat others
+    share a box, unless `unfolded`.
 
     Raises:
-        PictureError: The name of the file ends in neither `.svg` nor `.png`, or it is too high for a PNG.
+        PictureError: The file has another suffix than `.svg` or `.png`, or is too high for a PNG.
         OSError: The file cannot be written.
     """
     rows = rows_of(lanes, unfolded=unfolded)
@@ -141,7 +142,7 @@ def draw_overview(
 
 
 def rows_of(lanes: Lanes, *, unfolded: bool = False) -> tuple[Row, ...]:
-    """Return the steps of a trace as rows of its overview; of a trace that is too long for one its ends."""
+    """Return the steps of a trace as rows of its overview; of a trace that is too long, only the ends."""
     steps = tuple(bounded(lanes.steps if unfolded else tuple(folded(lanes.steps)), MOST_ROWS))
     passing = lapses(steps)
     longest = max(passing, default=0)
@@ -161,7 +162,7 @@ def _row(step: LaneStep | Repetition) -> Row:
 
 
 def _changes(step: LaneStep) -> tuple[str, ...]:
-    """Return what changed, in a few lines."""
+    """Return the changes in a few lines."""
     shown = [piece for change in step.changes for piece in wrapped(str(change), CHANGES, 7.0, 2)]
     return tuple(
         shown
@@ -203,7 +204,7 @@ def _draw_lane(page: Page, name: str, start: float, span: tuple[float, float]) -
 
 
 def _draw_axis(page: Page, rows: Sequence[Row], tops: Sequence[float], x: float) -> None:
-    """Draw when rows are, each moment once, and how much time passes between them."""
+    """Draw the dates of rows, each once, and the time between them."""
     page.write(x, tops[0] - HEAD + 15, "time", 9.0, bold=True, ha="right")
     page.axes.plot([x, x], [tops[0], tops[-1]], color="#d8dee4", linewidth=1.0, zorder=1)
     for number, (row, y) in enumerate(zip(rows, tops, strict=False)):
@@ -218,7 +219,7 @@ def _draw_axis(page: Page, rows: Sequence[Row], tops: Sequence[float], x: float)
 
 
 def _draw_row(page: Page, row: Row, start: float, y: float, link: str | None) -> None:
-    from matplotlib.patches import FancyBboxPatch  # noqa: PLC0415 - only who draws needs matplotlib
+    from matplotlib.patches import FancyBboxPatch  # noqa: PLC0415 - only drawing needs matplotlib
 
     fill, border = row.colours
     box = FancyBboxPatch(
