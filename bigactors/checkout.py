@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from importlib.abc import Loader
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from pathlib import Path
@@ -19,7 +20,7 @@ ROOMS: Final = ("adapters", "bigraphs", "checker", "physical", "semantics", "spe
 PREFIX: Final = "bigactors."
 
 
-class RoomFinder:
+class RoomFinder(Loader):
     """Meta path finder and loader that maps `bigactors.ROOM.x` to `ROOM.x`."""
 
     @classmethod
