@@ -14,7 +14,7 @@ from bigraphs import __name__ as bigraphs
 from physical import __name__ as physical
 
 FOLDER: Final = Path(__file__).parent.parent / "docs" / "reference" / "python"
-"""Where the examples are, a text for each page."""
+"""The folder of the examples, one text file a page."""
 
 PAGES: Final = {
     "bigactors": ("bigactors", "Load, check, explore, print and draw missions."),
@@ -29,7 +29,7 @@ PAGES: Final = {
         "Generated worlds, programs, configurations and missions, for Hypothesis.",
     ),
 }
-"""For each page the module, and what it is for."""
+"""The module and the purpose of each page."""
 
 SECTION: Final = re.compile(r"^(Args|Attributes|Raises|Returns):$\n", re.MULTILINE)
 ENTRY: Final = re.compile(r"^    (\S[^:\n]*): ", re.MULTILINE)
@@ -42,12 +42,12 @@ UNREADABLE: Final = (
 
 
 def api_pages() -> dict[str, str]:
-    """Return the pages by their names, without what says that they are generated."""
+    """Return the pages by name, without the header of generated pages."""
     return {name: "".join(_page(name, *each)) for name, each in PAGES.items()}
 
 
 def public_names(module: str) -> list[str]:
-    """Return the names that a module offers: what it lists, or what it defines without an underscore."""
+    """Return the public names of a module: its `__all__`, or the names it defines without a leading underscore."""
     loaded = import_module(module)
     listed = getattr(loaded, "__all__", None)
     if listed is None:
@@ -69,7 +69,7 @@ def _installed(module: str) -> str:
 
 
 def _examples(text: str) -> str:
-    """Return paragraphs of prose and of a Python session in Markdown."""
+    """Return paragraphs of prose and of a Python session as Markdown."""
     parts = (
         f"```pycon\n{each.strip()}\n```" if each.startswith(">>>") else each for each in text.split("\n\n")
     )
@@ -77,7 +77,7 @@ def _examples(text: str) -> str:
 
 
 def _signature(name: str, value: Any) -> str:
-    """Return how something is called, or what it stands for."""
+    """Return the signature of a callable, the members of an enum, or the alternatives of a union."""
     if isinstance(value, EnumType):
         return f"One of {', '.join(f'`{name}.{member.name}`' for member in value)}.\n"  # type: ignore[var-annotated]
     if isinstance(value, UnionType):
@@ -95,7 +95,7 @@ def _readable(signature: str) -> str:
 
 
 def _documentation(value: Any) -> str:
-    """Return a docstring in Markdown: its sections as lists, without its sessions."""
+    """Return a docstring as Markdown: its sections become lists, its doctests are left out."""
     if isinstance(value, UnionType) or not (text := inspect.getdoc(value)):
         return ""
     head, *sections = SECTION.split(text)

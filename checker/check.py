@@ -21,12 +21,11 @@ from checker.properties.inspections import (
     Reachability,
 )
 from checker.properties.ownership import owned
-from checker.properties.races import STALE, ControlRaces, StaleObservationRaces
-from checker.properties.stale_steps import stale_steps
+from checker.properties.races import ControlRaces, StaleObservationRaces
 from checker.properties.visited import Visited
+from checker.reduction.original_run import told
 from checker.reduction.refusals import Reduction, RefusedError
-from checker.reduction.unfolding import told
-from checker.traces import Trace, trace_to
+from checker.traces import Trace, trace_of, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property, watching
@@ -420,12 +419,12 @@ class _Check:
                 each.kind,
                 told(each.message),
                 trace,
-                (*map(told, each.details), *(stale_steps(trace) if each.kind == STALE else ())),
+                (*map(told, each.details), *trace.told_race),
                 told(each.subject),
                 collected.alike(each),
             )
             for each in collected.chosen()
-            for trace, told in [(trace_to(found, each.at, each.by), _teller(found, each.at))]
+            for trace, told in [(trace_of(found, each), _teller(found, each.at))]
         )
 
     def witness(self, collected: Collected, found: Exploration) -> Trace | None:

@@ -3,30 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from checker.engines.contract import Exploration
+from checker.properties.findings import Finding
 from checker.properties.inspections import is_unfair
-from checker.reduction.unfolding import run_to
+from checker.properties.race_steps import RaceSteps
+from checker.properties.races import STALE
+from checker.properties.stale_steps import stale_steps
+from checker.reduction.original_run import run_to
+from checker.steps import Step, alike, candidates, step_between, step_of
 from physical.messages import counted
-from semantics.observed_steps import Sight, steps_seen
+from semantics.observed_steps import Sight
 from semantics.races.monitor import monitored
-from semantics.state.brief import cut
 from semantics.state.canonical import digest_of_step
-from semantics.state.configuration import Configuration, Label, Transition
+from semantics.state.configuration import Configuration, Transition
 from semantics.state.observation_serialization import sight_json, sight_of
 from semantics.state.partition import Elsewhere
 from semantics.state.printing import print_changes
-from semantics.state.requests import Received
-from semantics.state.signature import Name
-from semantics.successors import expand, expand_by, served, turn_of
+from semantics.successors import expand, turn_of
 from semantics.timing.dates import clock_text
 
 if TYPE_CHECKING:
-    from checker.engines.runs import Run
-    from checker.engines.times import Times
+    from checker.engines.timed.answers import Times
+    from checker.engines.timed.first_runs import Run
 
 SCHEMA = "bigactors.trace/1"
 """The version of the step schema: schema, mission, digest, monitored, steps of label, choice and changes, and loop.
@@ -36,26 +38,6 @@ Steps of live runs also have their observation, its time, and the digest of thei
 
 MOST_STEPS = 1_000_000
 MOST_SECONDS = 10_000_000_000
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One transition of a trace.
-
-    Attributes:
-        label: Its label.
-        choice: The index of the chosen successor among those with that label.
-        target: The configuration after it.
-        sight: The observation, for a step that the world decided (live).
-    """
-
-    label: Label
-    choice: int
-    target: Configuration
-    sight: Sight | Elsewhere | None = None
-
-    def __repr__(self) -> str:
-        return f"<Step {cut(self.label)}>"
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +52,7 @@ class Trace:
         dates: The date of each step, in ticks from the start; empty without timing.
         shortest: Whether the trace is certainly a shortest one. It isn't where steps were put
             off (`--reduce por`), nor where to find out would take too long.
+        race: The three steps of the stale-observation race that it is a trace of.
     """
 
     initial: Configuration
@@ -77,6 +60,7 @@ class Trace:
     loop: int | None = None
     shortest: bool = field(default=True, compare=False)
     dates: tuple[int, ...] = ()
+    race: RaceSteps | None = None
 
     @property
     def called(self) -> str:
@@ -104,7 +88,7 @@ class Trace:
         source = self.configurations[-1]
         steps = (*self.steps, step_of(source, transition.label, transition.target))
         dates = self.dates if at is None else (*self.dates, at)
-        return Trace(self.initial, steps, shortest=self.shortest, dates=dates)
+        return Trace(self.initial, steps, shortest=self.shortest, dates=dates, race=self.race)
 
     @property
     def moments(self) -> tuple[int, ...]:
@@ -116,60 +100,14 @@ class Trace:
         """Return the date of a step as text; empty without dates."""
         return clock_text(self.moments[number]) if self.moments else ""
 
+    def role(self, number: int) -> str:
+        """Return the word of a step, from 1, in the race that this is a trace of; nothing for other steps."""
+        return "" if self.race is None else self.race.roles.get(number, "")
 
-def step_of(source: Configuration, label: Label, target: Configuration) -> Step:
-    """Return the step between two configurations; labels that print alike are alike, as `replay` knows no more.
-
-    What an observation is received without is looked up.
-    """
-    if isinstance(label.about, Received):
-        received = (t for t in candidates(source, label=str(label)) if isinstance(t.label.about, Received))
-        label = next(t.label for t in received if t.target == target and t.label.agent == label.agent)
-    targets = [transition.target for transition in alike(source, str(label))]
-    return Step(label, targets.index(target), target)
-
-
-def step_between(source: Configuration, target: Configuration) -> Step:
-    """Return the first step from one configuration to another."""
-    changed = target.state.changed(source.state)
-    agents = source.alpha.names()
-    if changed and all(
-        len(cell) > 1 for cell in changed
-    ):  # a step changes its agent, or what is nobody's: the queue
-        named = {name for cell in changed for name in cell[1:]}
-        agents = tuple(name for name in agents if name in named)
-    steps = _in_turn(source, agents)
-    return step_of(source, next(step.label for step in steps if step.target == target), target)
-
-
-def candidates(
-    source: Configuration, sight: Sight | Elsewhere | None = None, label: str | None = None
-) -> tuple[Transition, ...]:
-    """Return what may follow, or be meant by what was observed.
-
-    With a label, agents that it does not name are passed over: every label of an agent's steps names it.
-    """
-    agents = [name for name in source.alpha.names() if label is None or name in label]
-    if sight is not None:
-        return tuple(steps_seen(source, sight, agents))
-    return _in_turn(source, agents)
-
-
-def _in_turn(source: Configuration, agents: Sequence[Name]) -> tuple[Transition, ...]:
-    """Return what some agents and the environment may do, in the turn of all."""
-    found = expand_by(source, agents).transitions
-    turn = next((turn_of(each) for each in found if turn_of(each) is not None), None)
-    if turn is None:
-        return found
-    others = (name for name in source.alpha.names() if name not in agents)
-    turns = (turn_of(each) for other in others for each in served(source, other))
-    is_first = all(other is None or turn <= other for other in turns)
-    return found if is_first else tuple(each for each in found if turn_of(each) is None)
-
-
-def alike(source: Configuration, label: str, sight: Sight | Elsewhere | None = None) -> list[Transition]:
-    """Return the steps with a label."""
-    return [each for each in candidates(source, sight, label) if str(each.label) == label]
+    @property
+    def told_race(self) -> tuple[str, ...]:
+        """The three steps of the race that this is a trace of, line by line."""
+        return () if self.race is None else tuple(self.race.told([step.label for step in self.steps]))
 
 
 def trace_to(found: Exploration, number: int, by: Transition | None = None) -> Trace:
@@ -194,6 +132,14 @@ def _is_in_turn(c: Configuration, step: Transition) -> bool:
     return turn_of(step) is None or turn_of(step) in map(turn_of, expand(c).by_agents)
 
 
+def trace_of(found: Exploration, finding: Finding) -> Trace:
+    """Return a trace to a finding; that of a stale-observation race knows its three steps."""
+    trace = trace_to(found, finding.at, finding.by)
+    if finding.kind != STALE:
+        return trace
+    return replace(trace, race=stale_steps(trace.initial, trace.steps))
+
+
 def dated_trace(times: Times, run: Run) -> Trace:
     """Return a run as a trace with dates."""
     trace = Trace(times.initial)
@@ -213,13 +159,19 @@ def _unfolded(found: Exploration, number: int, by: Transition | None, *, shortes
 
 def print_trace(trace: Trace, *, changes: bool = True) -> Iterator[str]:
     """Print a trace in the paper's notation, with what changed under each step."""
-    for number, (step, source) in enumerate(zip(trace.steps, trace.configurations, strict=False)):
-        date = trace.date(number)
-        yield f"c{number} --{f'at {date} ' if date else ''}{step.label}--> c{number + 1}"
+    for number, (step, source) in enumerate(zip(trace.steps, trace.configurations, strict=False), 1):
+        yield print_step(trace, number)
         if changes:
             yield from (f"      {line}" for line in print_changes(source, step.target))
     if trace.loop is not None:
         yield print_loop(trace)
+
+
+def print_step(trace: Trace, number: int) -> str:
+    """Print one step, from 1: its date, its label, and what it is in a race."""
+    date, role = trace.date(number - 1), trace.role(number)
+    label = f"{f'at {date} ' if date else ''}{trace.steps[number - 1].label}"
+    return f"c{number - 1} --{label}--> c{number}{f'  [{role}]' if role else ''}"
 
 
 def print_loop(trace: Trace) -> str:
@@ -270,8 +222,10 @@ class ReplayError(Exception):
 def to_json(trace: Trace, mission: str, digest: str) -> dict[str, Any]:
     """Return a trace as plain data, in the step schema."""
     steps = [
-        _step_json(source, step) | dated
-        for step, source, dated in zip(trace.steps, trace.configurations, _dates_json(trace), strict=False)
+        _step_json(source, step) | dated | ({"role": role} if (role := trace.role(number)) else {})
+        for number, (step, source, dated) in enumerate(
+            zip(trace.steps, trace.configurations, _dates_json(trace), strict=False), 1
+        )
     ]
     remembering = trace.initial.setting.monitored
     data = {"schema": SCHEMA, "mission": mission, "digest": digest, "monitored": remembering, "steps": steps}
@@ -308,7 +262,24 @@ def replay(initial: Configuration, data: Any) -> Trace:
     for number, said in enumerate(steps, 1):
         trace.append(_followed(at, number, said))
         at = trace[-1].target
-    return _closed(Trace(initial, tuple(trace), loop, dates=_dates(initial, trace, data["steps"])))
+    dates, race = _dates(initial, trace, data["steps"]), _race(initial, trace, data["steps"])
+    return _closed(Trace(initial, tuple(trace), loop, dates=dates, race=race))
+
+
+def _race(initial: Configuration, trace: Sequence[Step], said: Sequence[Any]) -> RaceSteps | None:
+    """Return the race that plain data mark in a run, once the run itself shows the same steps."""
+    marked = {number: each["role"] for number, each in enumerate(said, 1) if "role" in each}
+    if not marked:
+        return None
+    race = stale_steps(initial, trace)
+    shown = {} if race is None else race.roles
+    for number in sorted(marked.keys() | shown.keys()):
+        if marked.get(number) != shown.get(number):
+            right = f"the 'role' '{shown[number]}'" if number in shown else "no 'role'"
+            raise ValueError(
+                f"step {number} should have {right}: the run itself shows what each step is in a race"
+            )
+    return race
 
 
 def _dates(initial: Configuration, trace: Sequence[Step], said: Sequence[Any]) -> tuple[int, ...]:

@@ -102,7 +102,7 @@ def remembered(c: Configuration, transition: Transition) -> Transition:
     """Return the transition with the memory of flights updated, where the mission has a `timing` section."""
     if c.setting.timing is None:
         return transition
-    from semantics.timing.voyages import remembering  # noqa: PLC0415 - geometry takes its time to load
+    from semantics.timing.flight_history import remembering  # noqa: PLC0415 - geometry takes its time to load
 
     return remembering(c, transition)
 

@@ -1,4 +1,4 @@
-"""Every mistake a mission can contain: its code, its title, and what `bigactors explain` says of it."""
+"""The kinds of mistakes in a mission: their codes, their titles, and their explanations by `bigactors explain`."""
 
 from __future__ import annotations
 
@@ -633,7 +633,7 @@ class Code(Enum):
 
     @property
     def range(self) -> str:
-        """What the first digit of the number says it is about."""
+        """The subject of the mistakes whose numbers begin with the same digit."""
         return RANGES[self.number[:3]]
 
 
@@ -647,7 +647,7 @@ def find_code(number: str) -> Code | None:
 
 
 def explain(code: Code) -> str:
-    """Return what `bigactors explain` prints of a code."""
+    """Return the text that `bigactors explain` prints for a code."""
     return f"{code.number}: {code.title} ({code.range})\n\n{code.explanation}\n"
 
 

@@ -10,7 +10,7 @@ from enum import StrEnum
 from adapters.live.timing import Timers
 from adapters.plugin import Command, Follow, GoTo, HandOver, Hold, Published, Report, Return
 from physical import Geometry, PhysicalProperty
-from semantics.contingencies import Fallback, Precautions
+from semantics.live_policy import Fallback, LivePolicy
 from semantics.observed_steps import Sight
 from semantics.state.cells import Cell
 from semantics.state.configuration import Configuration, Transition
@@ -34,7 +34,7 @@ class Plan:
 
     first: Configuration
     vehicles: Mapping[Name, str] = field(default_factory=dict)
-    precautions: Precautions = field(default_factory=Precautions)
+    precautions: LivePolicy = field(default_factory=LivePolicy)
     strict: bool = False
     peers: str = ""
 
@@ -114,6 +114,11 @@ class Bidden:
     def owed(self) -> bool:
         """Whether the vehicle has not confirmed it yet."""
         return self.fate is not Fate.CONFIRMED
+
+    @property
+    def told(self) -> Fate:
+        """Its fate, as people are told: what was refused stays refused while the vehicle is told again."""
+        return Fate.REFUSED if self.owed and self.refusal else self.fate
 
     @property
     def orderer(self) -> str:
@@ -234,7 +239,7 @@ class LiveState:
     @property
     def fates(self) -> Mapping[Name, tuple[str, str]]:
         """The fate of each operator's order, also in words."""
-        return {name: (each.fate.value, each.reason) for name, each in self.bidden.items()}
+        return {name: (each.told.value, each.reason) for name, each in self.bidden.items()}
 
     def later(self, seconds: float) -> LiveState:
         """Return the state with all ages and waiting times shifted by a time without listening."""

@@ -29,7 +29,7 @@ def fill(parser: Parser) -> None:
         dest="task",
         metavar="TASK",
         title="tasks",
-        prog=parser.prog,  # otherwise a formatter of help is made for it
+        prog=parser.prog,  # without it, argparse builds a help formatter
         parser_class=type(parser),
         required=True,
     )
@@ -202,7 +202,7 @@ def _convert(task: Parser) -> None:
 
 
 def constant(word: str) -> tuple[str, int | float | str]:
-    """Read NAME=VALUE, the value a number if it looks like one.
+    """Parse NAME=VALUE; a numeric value becomes a number.
 
     >>> constant("t=0.5"), constant("n=3"), constant("who=ann")
     (('t', 0.5), ('n', 3), ('who', 'ann'))

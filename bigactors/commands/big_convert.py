@@ -42,7 +42,7 @@ def convert(options: Namespace) -> Exit:
 
 
 def _language_of(file: str) -> str:
-    """Return the language that a file's ending names."""
+    """Return the language of a file by its suffix."""
     ending = Path(file).suffix.removeprefix(".")
     if ending not in READ:
         hint = f"give --from {' or '.join(READ)}"
@@ -59,7 +59,7 @@ def _read(text: str, source: str, constants: dict[str, Value]) -> System:
 
 
 def _written(text: str, source: str, system: System, constants: dict[str, Value]) -> str:
-    """Write a `.big` file: one that was read with its declarations, another's content with its own."""
+    """Return a `.big` file: a `.big` model keeps its declarations, other models get new ones."""
     model = portable(parse_model(text), system, constants) if source == "big" else model_of(system)
     if lost := unportable(model):
         tell(f"warning: BigraphER does not read {', '.join(lost)}")

@@ -10,8 +10,8 @@ from typing import assert_never
 
 from checker.reduction.bounds import Bounds, Names
 from checker.reduction.messages import Known, Message, wakes
-from checker.reduction.roles import Roles
-from checker.reduction.slots import NOTHING, Footprint, Slot, Slots
+from checker.reduction.possible_values import Roles
+from checker.reduction.variables import NOTHING, Footprint, Slot, Slots
 from semantics.behaviours.observations import All, Nodes, Query, QueryOperator
 from semantics.behaviours.reaction_rules import (
     LinkTerm,
@@ -148,8 +148,7 @@ class Footprints:
                 by = (placement.by for placement in placements if isinstance(placement, Carried))
                 return Footprint(self.there([entity, *by]), self._all_of([entity]))
             case Vanishes(entity):
-                gone = {entity, *self.bounds.aboard(entity)}
-                return Footprint(self.there([entity]) | self.where(gone), self._all_of(gone))
+                return Footprint(writes=self._all_of({entity, *self.bounds.aboard(entity)}))
             case Says(message, agent):
                 reads = [AGENTS] if self.roles.may_come(agent) else []
                 return self.slots.footprint(reads, merges=self.mail(agent, Known(message)))
@@ -328,7 +327,7 @@ class _Reacting:
         ) & self.bounds.names  # fmt: skip
         for node in moving:
             self.writes |= self.slots.of("parent", [node]) | self.slots.of("placement", [node])
-            self.reads |= self.of.where({node, *self.bounds.aboard(node)})
+            self.reads |= self.of.where({node})
         above = places.union(*map(self.bounds.above, places))
         if above & moving:
             self.reads |= self.slots.of("parent", above)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import Final
 
-from checker.traces import Step, Trace
+from checker.steps import Step
+from checker.traces import Trace, print_step
 from physical.messages import counted
 from semantics.state.differences import Difference, differences
 
@@ -90,7 +91,7 @@ def _pair(pair: Pair, one: Trace, other: Trace) -> str:
     number, trace = (pair.one, one) if pair.one else (pair.other, other)
     assert number is not None
     beside = f" (c{pair.other} there)" if pair.one and pair.other and pair.one != pair.other else ""
-    return f"  {sign} c{number - 1} --{trace.steps[number - 1].label}--> c{number}{beside}"
+    return f"  {sign} {print_step(trace, number)}{beside}"
 
 
 def _ends(found: Comparison) -> Iterator[str]:

@@ -13,7 +13,7 @@ from urllib.parse import quote
 
 from checker.reports.results import Issue, Level, Result, clean
 from checker.reports.source_lines import step_lines
-from checker.traces import Trace
+from checker.traces import Trace, print_step
 from semantics.properties.kinds import PropertyKind
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
@@ -95,15 +95,12 @@ def _notification(result: Result, issue: Issue, rules: list[str]) -> dict[str, A
 
 
 def _flow(file: str, trace: Trace) -> list[dict[str, Any]]:
-    steps = zip(trace.steps, step_lines(trace), strict=True)
     return [
         {
-            "location": {
-                **_location(file, line),
-                "message": _message(f"c{number} --{step.label}--> c{number + 1}"),
-            }
+            "location": {**_location(file, line), "message": _message(print_step(trace, number))},
+            **({"importance": "essential"} if trace.role(number) else {}),
         }
-        for number, (step, line) in enumerate(steps)
+        for number, line in enumerate(step_lines(trace), 1)
     ]
 
 

@@ -21,7 +21,8 @@ from checker.properties.temporal.lassos import Lasso
 from checker.properties.temporal.progress import Pending, Progress, Starved, owed, pending_requests
 from checker.properties.temporal.truth import Truth, Valuation, valuation
 from checker.properties.temporal.vacuity import is_judged
-from checker.traces import Trace, replay, step_of, to_json
+from checker.steps import step_of
+from checker.traces import Trace, replay, to_json
 from checker.verdicts import Outcome, Verdict, Violation
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property

@@ -4,7 +4,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from checked_missions import load, start
+from checked_missions import WORLD, load, start
 from everything_found import everything, stale_races
 from hypothesis import given
 from hypothesis import strategies as st
@@ -14,9 +14,9 @@ from shipped import UNTIMED
 
 from checker import Engine, Limits, Outcome, Reduction, RefusedError, check, explore
 from checker.reduction import Reduced
+from checker.reduction.cycle_proviso import NOWHERE, Lead, Paths
 from checker.reduction.footprints import Footprints
-from checker.reduction.paths import NOWHERE, Lead, Paths
-from checker.reduction.slots import NOTHING
+from checker.reduction.variables import NOTHING
 from checker.traces import replay, to_json
 from semantics import Control, Scheduler, strategies
 from semantics.properties.kinds import PropertyKind
@@ -267,6 +267,24 @@ def test_a_trace_of_a_reduced_search_replays_but_is_not_said_to_be_a_shortest_on
     assert replay(mission.initial, to_json(trace, "m", "d")) == trace
 
 
+CYCLIC = """
+believes { zone0 in gate0  gate0 in region }
+rule see(u: UAV) { HOST[c] || u[c] || gate0.(zone0.$1 | $0) -> HOST[c] || u || gate0.(zone0.$1 | $0) }
+BigActor a hosted_at gcs1 with_behavior { observe(PARENT(gate0)) react { case o => skip } }
+BigActor b hosted_at gcs0 with_behavior { control(see(uav0)) }
+check { local_consistency }
+"""
+"""What a sees takes zone0 out of gate0, where b believes it: they cannot both be in one another."""
+
+
+def test_who_believes_what_another_sees_to_be_the_other_way_round_is_followed_before_and_after():
+    world = WORLD.replace("  gate0:", "  zone0: Location = circle (37.00, -8.70) radius 600 m\n  gate0:")
+    mission = load(CYCLIC, world)
+    assert compared(mission.initial) == (8, 5)
+    (found,) = check(mission.initial, mission.properties[:1], reduce=POR).verdicts[:1]
+    assert {each.kind for each in found.violations} == {"inconsistent", "unmatched"}
+
+
 # --- what it is refused for -----------------------------------------------------------------------------------
 
 
@@ -370,7 +388,7 @@ def test_footprints_that_forget_marks_are_noticed(forgotten, monkeypatch):
     what, instead, text = FORGOTTEN[forgotten]
     initial = start(text)
     assert compared_races(initial) is not None
-    monkeypatch.setattr(f"checker.reduction.marks.{what}", instead)
+    monkeypatch.setattr(f"checker.reduction.race_footprints.{what}", instead)
     with pytest.raises(AssertionError):
         compared_races(initial)
 

@@ -1,0 +1,119 @@
+"""Facts in the making: what is folded into them is written here, and nothing that others hold changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, MutableMapping
+from dataclasses import fields
+from typing import Any, TypeVar
+
+from adapters.console.facts import Authority, Bid, Facts, Link, Order, Run, Seen, Shape, Standing, Trail
+from adapters.console.view import Json
+
+Value = TypeVar("Value")
+
+
+class Table(MutableMapping[str, Value]):
+    """A mapping that is copied when it is first written."""
+
+    __slots__ = ("_owned", "_values")
+
+    def __init__(self, values: Mapping[str, Value]) -> None:
+        self._values = values
+        self._owned: dict[str, Value] | None = None
+
+    def __getitem__(self, key: str) -> Value:
+        return self._values[key]
+
+    def get(self, key: str, default: Any = None) -> Any:
+        """Return a value: as a dict does, and as fast."""
+        return self._values.get(key, default)
+
+    def __setitem__(self, key: str, value: Value) -> None:
+        self._own()[key] = value
+
+    def __delitem__(self, key: str) -> None:
+        del self._own()[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def bounded(self, most: int) -> None:
+        """Drop the oldest values of too many."""
+        while len(self._values) > most:
+            del self[next(iter(self._values))]
+
+    def whole(self) -> Mapping[str, Value]:
+        """Return the values; nothing may be written any more."""
+        return self._values
+
+    def _own(self) -> dict[str, Value]:
+        if self._owned is None:
+            self._values = self._owned = dict(self._values)
+        return self._owned
+
+
+class Draft:
+    """Facts that are being changed, attribute by attribute as `Facts` has them.
+
+    `changed` tells whether a message was taken in.
+    """
+
+    changed: bool
+
+    run: Run | None
+    begin: float | None
+    time: float
+    ended: str | None
+    broken_off: bool
+    step: int
+    standing: Standing | None
+    seen: Table[Seen]
+    shapes: Table[Shape]
+    trails: Table[Trail]
+    links: Table[Link]
+    orders: Table[Order]
+    handing: Table[Order]
+    status: Table[Json]
+    words: Table[Json]
+    taken: Table[str]
+    bidden: Table[Bid]
+    rebinds: Table[tuple[str, str]]
+    stopped: Table[str]
+    authority: Table[Authority]
+    deadlines: Table[float]
+    flights: Table[Json]
+    failed: frozenset[str]
+    steps: Table[Json]
+    ticks: Table[Json]
+    ticked: int
+    alerts: Table[Json]
+    found: int
+    actions: Table[Json]
+    acted: int
+    stations: Table[Json]
+    preflight: Table[Json]
+
+    def __init__(self, facts: Facts) -> None:
+        self.changed = False
+        for name in _NAMES:
+            value = getattr(facts, name)
+            setattr(self, name, Table(value) if isinstance(value, dict) else value)
+
+    def end(self, reason: str, *, broken_off: bool = True) -> None:
+        """Note that the run has ended, unless that is known; only its recording's own end tells how."""
+        if self.ended is None:
+            self.ended, self.broken_off, self.changed = reason, broken_off, True
+
+    def facts(self) -> Facts:
+        """Return what has come of it; the draft is done with."""
+        return Facts(**{name: _whole(getattr(self, name)) for name in _NAMES})
+
+
+def _whole(value: Any) -> Any:
+    return value.whole() if isinstance(value, Table) else value
+
+
+_NAMES = tuple(each.name for each in fields(Facts))
