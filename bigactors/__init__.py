@@ -1,9 +1,9 @@
 """Logical-space programming: the public names of all packages, in one import.
 
-    import bigactors
-
-    report = bigactors.check(bigactors.load_mission("oil_spill"))
-    report.verdicts["race_freedom"]
+>>> import bigactors
+>>> report = bigactors.check(bigactors.load_mission("oil_spill"))
+>>> report.verdicts["race_freedom"].outcome
+<Outcome.HOLDS: 'holds'>
 
 The names and where each lives are listed in `__init__.pyi`, which type checkers read too. Importing this package loads
 nothing: a home is loaded when a name of it is first used.

@@ -1,7 +1,7 @@
 """Hypothesis strategies for tests of one's own rules and tools, over generated missions (extra `strategies`).
 
-    from hypothesis import given
-    from bigactors.strategies import configurations, missions
+>>> from hypothesis import given
+>>> from bigactors.strategies import configurations, missions
 
 `configurations()` yields configurations that a run reaches, `missions()` what `check` takes. `worlds`, `structures`,
 `programs`, `queries` and `reactions` yield their parts. What fails is shrunk to few entities, statements and steps.
