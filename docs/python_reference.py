@@ -14,13 +14,14 @@ from docutils.nodes import Element
 from sphinx.application import Sphinx
 from sphinx.domains.python import ObjectEntry, PythonDomain
 from sphinx.environment import BuildEnvironment
-from sphinx.ext.napoleon import Config, GoogleDocstring
+from sphinx.ext.napoleon import Config
+from sphinx.ext.napoleon.docstring import GoogleDocstring
 
 from bigactors.checkout import PREFIX, ROOMS
 
 SECTIONS: Final = Config(napoleon_custom_sections=[("Attributes", "params_style")])
-IMPORT: Final = re.compile(rf">>> from (?=(?:{'|'.join(ROOMS)})\b)")
-"""Where a session in a docstring imports from a room by the name that it has in a checkout."""
+NAME: Final = re.compile(rf"(>>> from |`)(?=(?:{'|'.join(ROOMS)})(?: import |\.[a-z]))")
+"""Where a docstring names a module, or imports from it, by the name that it has in a checkout."""
 
 MODULE: Final = re.compile(r"^\.\. automodule:: (\S+)$", re.MULTILINE)
 WORD: Final = re.compile(r"(?<!`)`(\w+)`(?!`)")
@@ -60,9 +61,9 @@ def list_unions(_app: Sphinx, _page: str, source: list[str]) -> None:
 def write_docstring(
     _app: Sphinx, _what: str, _name: str, value: Any, _options: Any, lines: list[str]
 ) -> None:
-    """Rewrite a docstring: sections of Google's style, imports as they are installed, the values of a type."""
+    """Rewrite a docstring: sections of Google's style, modules by their installed names, the values of a type."""
     own = getattr(value, "__annotations__", {})
-    text = [IMPORT.sub(f">>> from {PREFIX}", keep_own(line, own)) for line in lines]
+    text = [NAME.sub(rf"\1{PREFIX}", keep_own(line, own)) for line in lines]
     lines[:] = [*GoogleDocstring(text, SECTIONS).lines(), "", *alternatives(value)]
 
 
@@ -86,7 +87,7 @@ def is_skipped(_app: Sphinx, _what: str, _name: str, value: Any, _skip: bool, _o
 
 def find_source(_app: Sphinx, module: str, name: str) -> str | None:
     """Return the installed name of the module in which a public name is defined."""
-    value = import_module(module)
+    value: Any = import_module(module)
     for part in name.split("."):
         value = getattr(value, part, None)
     home = getattr(value, "__module__", None)
