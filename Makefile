@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
-COMPILED := $(addprefix tests/checker/engines/fast/test_,rows.py checkpoints.py long_runs.py spill.py hash_compaction.py)
+COMPILED := $(addprefix tests/checker/engines/fast/test_,rows.py checkpoints.py long_runs.py spill.py)
 STAMP  := $(VENV)/.installed
 WHEEL  := .wheel
 PAGE   := adapters/console/page
@@ -10,7 +10,7 @@ PARTS  := $(PAGE)/parts/LICENSES.txt
 SMOKE  := $(addprefix tests/,missions paper semantics/state/test_cells.py \
 	$(addprefix bigactors/test_,big.py cli.py engines.py missions.py public_names.py run.py))
 
-.PHONY: parts demo live-demo test test-long lint types test-wheel wheel constraints storm fuzz mutants bounds bench bench-bigraphs bench-cluster bench-time time-oracle docs pictures clean
+.PHONY: parts demo live-demo test test-long lint types test-wheel wheel constraints storm fuzz mutants bounds bench bench-bigraphs bench-time time-oracle docs pictures clean
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -82,10 +82,8 @@ bounds: $(STAMP)  ## the compiled loops with checks of bounds over all missions,
 	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q --timeout 0 -m bounds
 	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=.numba-bounds $(BIN)/python -m pytest -n 2 -q $(COMPILED)
 
-bench: $(STAMP)  ## the explorer beside SPIN, its growth, the largest and the widest missions; writes docs/explanation/performance.md (some 30 minutes)
+bench: $(STAMP)  ## the explorer beside SPIN, and wide missions; writes docs/explanation/performance.md (some 10 minutes)
 	$(BIN)/python benchmarks/run.py
-	$(BIN)/python benchmarks/growth.py
-	$(BIN)/python benchmarks/largest.py
 	$(BIN)/python benchmarks/wide.py
 	$(BIN)/python benchmarks/tables.py
 
@@ -98,9 +96,6 @@ bench-time: $(STAMP)  ## zones of the timed family; TCHECKER=tck-reach puts TChe
 
 time-oracle: $(STAMP)  ## TChecker's verdicts on shipped missions with times and 200 generated ones; TCHECKER=tck-reach
 	BIGACTORS_FUZZ=1 $(BIN)/python -m pytest tests/checker/engines/zones/test_tchecker.py
-
-bench-cluster: $(STAMP)  ## the patrol with Ray workers beside one process (some 5 minutes)
-	$(BIN)/python benchmarks/cluster.py 2x6 2x6+handover
 
 docs: $(STAMP)  ## write the generated pages of docs/, and all of them as a site, into site/
 	$(BIN)/python -m bigactors.docs

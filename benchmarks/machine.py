@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,9 +27,6 @@ if not child:
     except OSError as error:
         os.write(2, f"{command[0]}: {error.strerror}\\n".encode())
         os._exit(127)
-with open(told + ".new", "w") as file:
-    file.write(str(child))
-os.replace(told + ".new", told + ".pid")
 _, status, used = os.wait4(child, 0)
 with open(told, "w") as file:
     json.dump([os.waitstatus_to_exitcode(status), used.ru_utime + used.ru_stime, used.ru_maxrss], file)
@@ -54,37 +51,24 @@ class Ended:
     memory: float
 
 
-def run_peer(
-    command: Sequence[str],
-    *,
-    folder: Path | None = None,
-    seconds: int | None = None,
-    output: Path | None = None,
-    while_it_runs: Callable[[int], None] = lambda _: None,
-) -> Ended:
+def run_peer(command: Sequence[str], *, folder: Path | None = None, seconds: int | None = None) -> Ended:
     """Run another program as a process of its own, and measure that alone.
 
     Args:
         command: The program and its arguments.
         folder: Where it runs.
         seconds: How much processor time it gets; then a signal ends it.
-        output: Where all that it prints goes; read from there by `while_it_runs`.
-        while_it_runs: Is called once with the number of the process, and may wait for it or signal it.
     """
     with tempfile.TemporaryDirectory() as own:
-        told, printed = Path(own) / "told", output or Path(own) / "printed"
+        told = Path(own) / "told"
         limit = "-" if seconds is None else str(seconds)
         launcher = [sys.executable, "-I", "-S", "-c", LAUNCHER, str(told), limit, *command]
-        with printed.open("wb") as out:
-            process = subprocess.Popen(launcher, cwd=folder, stdout=out, stderr=subprocess.STDOUT)
-            number = told.with_suffix(".pid")
-            while not number.exists() and process.poll() is None:
-                time.sleep(0.001)
-            while_it_runs(int(number.read_text(encoding="utf-8")))
-            process.wait()
+        done = subprocess.run(
+            launcher, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=True
+        )
         status, used, peak = json.loads(told.read_text(encoding="utf-8"))
         unit = 1 << 20 if sys.platform == "darwin" else 1 << 10
-        return Ended(printed.read_text(encoding="utf-8", errors="replace"), status, used, peak / unit)
+        return Ended(done.stdout.decode("utf-8", "replace"), status, used, peak / unit)
 
 
 def describe() -> dict[str, object]:
@@ -118,11 +102,9 @@ def _field(path: str, name: str) -> str | None:
     return next(values, None)
 
 
-def resident(name: str = "VmHWM", process: str = "self") -> float:
-    """Return the memory of a process in MB: at its peak (`VmHWM`), or now (`VmRSS`); none where it has just ended."""
-    value = _field(f"/proc/{process}/status", name)
-    if value is None and process != "self":
-        return 0.0
+def resident() -> float:
+    """Return the memory of this process at its peak, in MB."""
+    value = _field("/proc/self/status", "VmHWM")
     if value is None:
         raise SystemExit("the benchmarks read memory from /proc: run them on Linux")
     return int(value.split()[0]) / 1024

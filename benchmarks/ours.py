@@ -12,7 +12,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,13 +20,9 @@ from machine import resident
 
 if TYPE_CHECKING:
     from checker import Exploration
-    from checker.engines.fast.space import Space
     from specs.elaboration import ElaboratedMission
 
 ROOT = Path(__file__).parents[1]
-
-CHUNK = 1 << 16
-"""Configurations that are expanded between two looks at the clock."""
 
 LONGEST = 3600
 """Seconds after which a process is given up."""
@@ -50,7 +46,6 @@ class Explored:
         bytes_per_configuration: What rows, parent links and the visited set take.
         rule_runs: How often rules were run in Python.
         allowed: How many transitions the visited configurations allow.
-        marks: What was so on the way, where that was asked for.
     """
 
     configurations: int
@@ -66,7 +61,6 @@ class Explored:
     bytes_per_configuration: float | None = None
     rule_runs: int | None = None
     allowed: int | None = None
-    marks: list[dict[str, float]] = field(default_factory=list)
 
     @property
     def searching(self) -> float:
@@ -122,10 +116,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--reduce", action="store_true", help="by partial order")
     parser.add_argument("--cores", type=int, help="on how many cores at most")
     parser.add_argument("--threads", type=int, help="on how many threads at most")
-    parser.add_argument("--minutes", type=float, help="how long at most")
-    parser.add_argument("--gigabytes", type=float, help="how much memory at most, in units of 2³⁰ bytes")
     parser.add_argument("--most", type=int, help="how many configurations at most")
-    parser.add_argument("--marks", help="numbers of configurations at which to look, and stop at the last")
     given = parser.parse_args(arguments)
     if given.cores is not None:
         os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: given.cores])
@@ -178,8 +169,6 @@ def _explore(given: argparse.Namespace, began: float) -> Explored:
     from specs.elaboration import load_mission  # noqa: PLC0415
 
     mission = load_mission(given.mission)
-    if given.marks:
-        return _marked(mission, [int(mark) for mark in given.marks.split(",")], began)
     started = time.monotonic()
     found = _search(mission, given)
     seconds = time.monotonic() - started
@@ -202,60 +191,9 @@ def _search(mission: "ElaboratedMission", given: argparse.Namespace) -> "Explora
     if given.reduce:
         formulas = [each.formula for each in mission.properties if each.kind.has_proposition]
         reducer = Reduced(mission.initial, [Reduction.POR], formulas)
-    seconds = None if given.minutes is None else 60 * given.minutes
-    memory = None if given.gigabytes is None else int(given.gigabytes * 2**30)
-    limits = Limits(configurations=given.most, seconds=seconds, memory=memory)
+    limits = Limits(configurations=given.most)
     engine = Engine(given.engine)
     return explore(mission.initial, limits=limits, engine=engine, reduce=reducer, threads=given.threads)
-
-
-def _marked(mission: "ElaboratedMission", marks: list[int], began: float) -> Explored:
-    """Search up to the last mark; what was learned before a mark is in the seconds of that mark only."""
-    from checker import Limits  # noqa: PLC0415
-    from checker.engines.fast.learner import Learner  # noqa: PLC0415
-    from checker.engines.fast.space import Space  # noqa: PLC0415
-
-    importing, started = time.monotonic() - began, time.monotonic()
-    learner = Learner(mission.initial.setting, mission.initial.state, Limits().pending)  # type: ignore[arg-type]
-    held: list[float] = []
-
-    class Watched(Space):
-        def _make_room(self, rows: int) -> None:
-            super()._make_room(rows)
-            held.append(self.bytes_used / self.size)  # it is most when the table has just grown
-
-    space, found = Watched(learner, None), []
-    for mark in marks:
-        while space.size < mark and space.expanded < space.size:
-            space.advance(min(space.expanded + CHUNK, space.size))
-        found.append(_mark(space, time.monotonic() - started))
-        found[-1]["most_bytes_per_configuration"] = max([*held, found[-1]["bytes_per_configuration"]])
-        held.clear()
-    ended = found[-1]
-    bounds = [] if space.expanded == space.size else [f"stopped at {space.size:,} configurations"]
-    return Explored(
-        space.size,
-        int(ended["transitions"]),
-        bounds,
-        ended["seconds"],
-        importing=importing,
-        memory=resident(),
-        bytes_per_configuration=ended["bytes_per_configuration"],
-        rule_runs=learner.runs,
-        marks=found,
-    )
-
-
-def _mark(space: "Space", seconds: float) -> dict[str, float]:
-    return {
-        "configurations": space.size,
-        "expanded": space.expanded,
-        "transitions": sum(space.rules().values()),
-        "seconds": seconds,
-        "bytes_per_configuration": space.bytes_used / space.size,
-        "memory": resident("VmRSS"),
-        "rule_runs": space.learner.runs,
-    }
 
 
 if __name__ == "__main__":

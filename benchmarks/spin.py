@@ -1,43 +1,26 @@
-"""Run SPIN as a peer: compile a Promela model, search it in full or within bounds, and read its report."""
+"""Run SPIN as a peer: compile a Promela model, search it in full, and read its report."""
 
-import math
-import os
 import re
 import shutil
-import signal
 import subprocess
-import sys
 import time
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from machine import resident, run_peer
+from machine import run_peer
 
 TRANSLATE = ("spin", "-a", "-o3", "model.pml")
 """Statements are not merged: each is a step of its own."""
 
 COMPILE = ("-O2", "-DSAFETY")
 UNREDUCED = "-DNOREDUCE"
-GROWING = "-DAUTO_RESIZE"
-"""The hash table grows with what it holds; else it keeps its size."""
-
 FIRST_DEPTH, MOST_DEPTH = 1_000_000, 256_000_000
 """How deep SPIN's stack is tried. All of it counts into SPIN's memory, so what is measured has the depth it needs."""
 
 CLAIM_DEPTH = 100_000
 """How deep claims are searched: what is cut without an error is refused."""
-
-BOUNDED_DEPTH = 100_000
-"""How deep searches within bounds are: their models are shallow, or searched breadth-first."""
-
-EVERY = 0.02
-"""Seconds between two looks at what a search within bounds takes."""
-
-GRACE = 1.0
-"""Seconds that a search within bounds has at least: by then the verifier knows what to do when it is interrupted."""
 
 EXACT = 99_999_999
 """Above it SPIN prints counts with eight digits."""
@@ -50,7 +33,6 @@ _TRANSITIONS = re.compile(r"^\s*(\S+) transitions \(= stored\+matched\)", re.MUL
 _MEMORY = re.compile(r"^\s*(\S+)\s+total actual memory usage", re.MULTILINE)
 _ERRORS = re.compile(r"errors: (\d+)")
 _REACHED = re.compile(r"depth reached (\d+)")
-_PROGRESS = re.compile(r"States=\s*(\S+) Transitions=\s*(\S+) Memory=\s*(\S+)(?:\s+t=\s*(\S+))?")
 
 
 class SpinError(Exception):
@@ -67,8 +49,6 @@ class Searched:
         seconds: By the clock, apart from what had to be prepared.
         memory: Of the process at its peak, in MB.
         preparing: Seconds for what comes before: translating, compiling, loading.
-        bounds: What cut it; nothing where it is complete.
-        marks: What it said on its way, rounded to three digits.
     """
 
     configurations: int
@@ -76,46 +56,11 @@ class Searched:
     seconds: float
     memory: float
     preparing: float
-    bounds: tuple[str, ...] = ()
-    marks: tuple[Mapping[str, float], ...] = ()
-
-    @property
-    def rate(self) -> float:
-        """Configurations a second."""
-        return self.configurations / max(self.seconds, 1e-9)
-
-
-@dataclass(frozen=True, slots=True)
-class Bounds:
-    """Where a search ends at the latest."""
-
-    minutes: float = math.inf
-    gigabytes: float = math.inf
-    configurations: float = math.inf
-
-    def met(self, seconds: float, memory: float, configurations: float) -> str:
-        """Say which is met, by so many seconds, megabytes and configurations; nothing where none is."""
-        if seconds > 60 * self.minutes:
-            return f"the time limit of {60 * self.minutes:g} s"
-        if memory > 1024 * self.gigabytes:
-            return f"the memory limit of {self.gigabytes:g} GiB"
-        if configurations >= self.configurations:
-            return f"stopped at {self.configurations:,.0f} configurations"
-        return ""
 
 
 def missing() -> tuple[str, ...]:
     """Return what SPIN needs and is not installed."""
     return tuple(tool for tool in ("spin", "gcc") if shutil.which(tool) is None)
-
-
-def has_peer(*, wanted: bool) -> bool:
-    """Tell whether SPIN takes part where it need not; say why where it was wanted and cannot."""
-    if wanted and missing():
-        sys.stderr.write(
-            f"without SPIN, not installed: {', '.join(missing())} (Debian: apt-get install spin gcc)\n"
-        )
-    return wanted and not missing()
 
 
 def agree(counts: Sequence[int], printed: Sequence[int]) -> bool:
@@ -173,27 +118,6 @@ def searched(model: Prepared) -> Searched:
     return found if model.cores == 1 else replace(found, memory=float(_found(_MEMORY, report.text)))
 
 
-def bounded(
-    promela: str, folder: Path, bounds: Bounds, *, reduced: bool = False, breadth_first: bool = False
-) -> Searched:
-    """Search a model as far as bounds allow, and say what cut it.
-
-    Args:
-        promela: The model.
-        folder: For SPIN's files.
-        bounds: Where to stop.
-        reduced: By SPIN's partial order, which keeps deadlocks.
-        breadth_first: Instead of depth-first.
-
-    Raises:
-        SpinError: The model is refused or violated.
-    """
-    options = [GROWING, *([] if reduced else [UNREDUCED]), *(["-DBFS"] if breadth_first else [])]
-    preparing = _compile(promela, folder, *COMPILE, *options)
-    report = _verify(folder, BOUNDED_DEPTH, bounds)
-    return replace(report.searched(preparing), marks=tuple(_marks(report.text)))
-
-
 def verdicts(promela: str, claims: Mapping[str, str], folder: Path) -> dict[bool, dict[str, bool]]:
     """Return of each claim in linear time, in SPIN's syntax and by name, whether it holds of a small model.
 
@@ -243,70 +167,26 @@ def _run(*command: str, folder: Path) -> None:
 
 
 class _Report(NamedTuple):
-    """What the verifier printed, seconds by the clock, megabytes at its peak, and the bound that it met."""
+    """What the verifier printed, seconds by the clock, and megabytes at its peak."""
 
     text: str
     seconds: float
     memory: float
-    met: str
 
     def searched(self, preparing: float) -> Searched:
         """Return the figures; SPIN counts storing the initial state as a transition, and here it is not one."""
-        depth = f"the depth of {BOUNDED_DEPTH:,} steps" if CUT in self.text else ""
-        return Searched(
-            _count(_STORED, self.text),
-            _count(_TRANSITIONS, self.text) - 1,
-            self.seconds,
-            self.memory,
-            preparing,
-            tuple(filter(None, (self.met, depth))),
-        )
+        stored, followed = _count(_STORED, self.text), _count(_TRANSITIONS, self.text) - 1
+        return Searched(stored, followed, self.seconds, self.memory, preparing)
 
 
-def _verify(folder: Path, depth: int, bounds: Bounds | None = None) -> _Report:
+def _verify(folder: Path, depth: int) -> _Report:
     """Run the verifier once."""
-    report = folder / "report.txt"
     began = time.monotonic()
-    met = ""
-
-    def watch(verifier: int) -> None:
-        nonlocal met
-        met = "" if bounds is None else _watch(verifier, report, bounds)
-
-    ran = run_peer(["./pan", "-E", f"-m{depth}"], folder=folder, output=report, while_it_runs=watch)
+    ran = run_peer(["./pan", "-E", f"-m{depth}"], folder=folder)
     seconds = time.monotonic() - began
-    text = ran.printed
-    if ran.status or "errors: 0" not in text:  # the verifier exits 0 on a violation too
-        raise SpinError(f"the search failed: {text}")
-    return _Report(text, seconds, ran.memory, met if "not completed" in text else "")
-
-
-def _watch(verifier: int, report: Path, bounds: Bounds) -> str:
-    """Wait for a verifier to end, and interrupt it at a bound, upon which it reports; return what was met."""
-    began = time.monotonic()
-    while Path(f"/proc/{verifier}/stat").exists():
-        time.sleep(EVERY)
-        seconds = time.monotonic() - began
-        stored = _last_stored(report) if bounds.configurations < math.inf else 0
-        met = bounds.met(seconds, resident("VmRSS", str(verifier)), stored)
-        if met and seconds > GRACE:
-            with suppress(ProcessLookupError):  # it has just ended
-                os.kill(verifier, signal.SIGINT)
-            return met
-    return ""
-
-
-def _last_stored(report: Path) -> float:
-    found = _PROGRESS.findall(report.read_text(encoding="utf-8"))
-    return float(found[-1][0]) if found else 0.0
-
-
-def _marks(text: str) -> list[dict[str, float]]:
-    names = ("configurations", "transitions", "memory", "seconds")
-    return [
-        dict(zip(names, (float(value or 0) for value in found), strict=True))
-        for found in _PROGRESS.findall(text)
-    ]
+    if ran.status or "errors: 0" not in ran.printed:  # the verifier exits 0 on a violation too
+        raise SpinError(f"the search failed: {ran.printed}")
+    return _Report(ran.printed, seconds, ran.memory)
 
 
 def _count(pattern: re.Pattern[str], output: str) -> int:

@@ -72,93 +72,6 @@ def _run(run: Kept) -> tuple[str, ...]:
     )
 
 
-def growth_tables(kept: Kept) -> str:
-    """Lay out how rate and memory change as a search grows."""
-    head = (
-        "configurations|expanded|expanded/s|transitions/s|bytes each|at most|rules run in Python|transitions"
-    )
-    rows = [
-        (
-            f"{mark['configurations']:,}",
-            f"{mark['expanded']:,}",
-            f"{mark['expanded_per_second']:,.0f}",
-            f"{mark['transitions_per_second']:,.0f}",
-            f"{mark['bytes_per_configuration']:.1f}",
-            f"{mark['most_bytes_per_configuration']:.1f}",
-            f"{mark['rule_runs']:,}",
-            f"{mark['transitions']:,}",
-        )
-        for mark in kept["marks"]
-    ]
-    share = kept["rate_kept"]
-    ended = f"{', '.join(kept['bounds']) or 'complete'}; peak of the process {kept['peak_memory']:,.0f} MB."
-    said = (
-        f"Patrol {kept['size']}, {ended} Rates are those since the row before. Of the first row's rate the last"
-        f" keeps {share['configurations']:.0%} in configurations and {share['transitions']:.0%} in transitions.\n"
-    )
-    return "\n".join([_table(head, rows), said, *_growth_beside_spin(kept), machine(kept)])
-
-
-def _growth_beside_spin(kept: Kept) -> list[str]:
-    """Lay out the same model in SPIN, breadth-first too, at the sizes at which ours was looked at."""
-    beside = [(mark, mark["peer"]) for mark in kept["marks"] if mark.get("peer")]
-    if not beside:
-        return []
-    head = "configurations|SPIN's transitions/s|SPIN's bytes each|rate, SPIN's = 1|bytes each, SPIN's = 1"
-    rows = [
-        (
-            f"{peer['configurations']:,.0f}",
-            f"{peer['transitions_per_second']:,.0f}",
-            f"{peer['bytes_per_configuration']:.1f}",
-            f"{mark['transitions_per_second'] / peer['transitions_per_second']:.2f}",
-            f"{mark['bytes_per_configuration'] / peer['bytes_per_configuration']:.2f}",
-        )
-        for mark, peer in beside
-    ]
-    whole, ratio = kept["peer"], kept["ratio_to_spin"]
-    said = (
-        f"{whole['tool']}, {', '.join(whole['bounds']) or 'complete'}: {whole['transitions']:,} transitions in"
-        f" {whole['seconds']:.1f} s and {whole['memory']:,.0f} MB. At the last size in the table ours had found"
-        f" {ratio['transitions_per_second']:.2f} times as many transitions a second since the start, in"
-        f" {ratio['memory']:.2f} of the memory, Python included.\n"
-    )
-    return [_table(head, rows), said]
-
-
-def largest_tables(kept: Kept) -> str:
-    """Lay out every search of the two families, name the largest complete ones, and what SPIN did beside them."""
-    head = "mission|search|configurations|transitions|seconds|peak MB|rules run in Python|ended"
-    rows = [
-        (
-            row["name"],
-            "reduced by por" if row["reduced"] else "in full",
-            f"{row['configurations']:,}",
-            f"{row['transitions']:,}",
-            f"{row['seconds']:.1f}",
-            f"{row['memory']:,.0f}",
-            "" if row["rule_runs"] is None else f"{row['rule_runs']:,}",
-            row["ended"],
-        )
-        for row in kept["searches"]
-    ]
-    limits = f"{kept['limits']['minutes']:g} minutes and {kept['limits']['gigabytes']:g} GiB"
-    named = "; ".join(f"{family}: *{name}*" for family, name in kept["largest"].items())
-    said = f"The largest that were complete within {limits} a search: {named}.\n"
-    return "\n".join([_table(head, rows), said, *_beside_spin(kept["searches"]), machine(kept)])
-
-
-def _beside_spin(searches: Iterable[Kept]) -> list[str]:
-    """Lay out what SPIN did within the same limits; rates and bytes are compared where all of the same is searched."""
-    head = (
-        "mission|SPIN's search|configurations|transitions|seconds|peak MB|ended"
-        "|rate, SPIN's = 1|memory each, SPIN's = 1|configurations, SPIN's = 1"
-    )
-    rows = [
-        (row["name"], *_peer(row, row["peer"], row["ratio_to_spin"])) for row in searches if "peer" in row
-    ]
-    return [_table(head, rows)] if rows else []
-
-
 def wide_table(kept: Kept) -> str:
     """Lay out the fleets, in full and by partial order."""
     rows = [
@@ -237,21 +150,6 @@ def _counts(run: Kept) -> str:
     return f"{counts}, not all" if run["why"] else counts
 
 
-def _peer(row: Kept, peer: Kept, ratio: Kept) -> tuple[str, ...]:
-    reduced, below = row["reduced"], "< " if peer["bounds"] else ""
-    return (
-        "reduced by its own" if reduced else "in full",
-        f"{peer['configurations']:,}",
-        f"{peer['transitions']:,}",
-        f"{peer['seconds']:.1f}",
-        f"{peer['memory']:,.0f}",
-        peer["ended"],
-        "" if reduced else f"{ratio['configurations_per_second']:.2f}",
-        "" if reduced else f"{ratio['memory_each']:.2f}",
-        f"{below}{ratio['configurations']:.2g}" if reduced and row["complete"] else "",
-    )
-
-
 def _table(head: str, rows: Iterable[Sequence[str]]) -> str:
     names = head.split("|")
     lines = [names, ["---", *("---:" for _ in names[1:])], *rows]
@@ -268,15 +166,8 @@ def machine(kept: Kept) -> str:
     )
 
 
-def growth_section(kept: Kept) -> str:
-    """Return the table of the growth and the picture that was plotted beside it."""
-    return f"{growth_tables(kept)}\n![Rate and bytes a configuration](../pictures/growth.svg)\n"
-
-
 TABLES: dict[str, Callable[[Kept], str]] = {
     "patrol": patrol_tables,
-    "growth": growth_section,
-    "largest": largest_tables,
     "wide": wide_table,
     "bigraphs": bigraph_table,
     "real_bigraphs": real_bigraph_tables,

@@ -26,7 +26,7 @@ from pyais.encode import encode_dict
 
 from adapters.ais import AisFeed
 from adapters.live.core import started
-from adapters.live.loop import settle
+from adapters.live.loop import LiveRun, settle
 from adapters.live.state import Heard, Plan, Turn
 from adapters.mavlink import Autopilot, Craft
 from adapters.mavlink.message import Message
@@ -35,7 +35,6 @@ from adapters.plugin import Aged, Command, GoTo, Report
 from adapters.recording.writing import Recorder
 from adapters.simulated import Kind, Simulator, Vehicle
 from adapters.transport import Remote
-from benchmarks.live import LANES, TimedRun
 from benchmarks.parts import Parts
 from bigactors import __version__
 from bigactors.missions import digest_of
@@ -51,6 +50,7 @@ WARM_UP = 45.0
 """Seconds for booting, arming and taking off."""
 
 RATE = 10.0
+LANES = 10
 GROUPS = 10
 """Vehicles send in as many groups, one after the other in each tenth of a second."""
 
@@ -222,6 +222,20 @@ class Stopwatch:
                 sent, arrived = self.arrived_at.pop(entity)
                 self.delays.append(time.monotonic() - arrived)
                 self.since_sent.append(time.monotonic() - sent)
+
+
+class TimedRun(LiveRun):
+    """Takes the processor time of each turn."""
+
+    def __init__(self, *settings: Any) -> None:
+        super().__init__(*settings)
+        self.busy: list[float] = []
+
+    def _turn(self) -> Turn:
+        before = time.process_time()
+        turn = super()._turn()
+        self.busy.append(time.process_time() - before)
+        return turn
 
 
 @asynccontextmanager

@@ -5,8 +5,8 @@
 >>> report.verdicts["race_freedom"].outcome
 <Outcome.HOLDS: 'holds'>
 
-The names and where each lives are listed in `__init__.pyi`, which type checkers read too. Importing this package loads
-nothing: a home is loaded when a name of it is first used.
+`__init__.pyi` lists the names and their modules, also for type checkers. Importing this package loads none of these
+modules: the first use of a name loads its module.
 """
 
 import ast
@@ -26,13 +26,13 @@ HOMES: Final = {
     if isinstance(line, ast.ImportFrom)
     for alias in line.names
 }
-"""Where each public name lives."""
+"""The module of each public name."""
 
 __all__ = sorted(HOMES)  # noqa: PLE0605 - a sorted list of the names above
 
 
 def __getattr__(name: str) -> Any:
-    """Return a public name from its home."""
+    """Return a public name from its module."""
     if name not in HOMES:
         raise AttributeError(f"module 'bigactors' has no attribute '{name}'")
     return getattr(import_module(HOMES[name]), name)

@@ -1,4 +1,4 @@
-"""`python -m bigactors`: the command, where it isn't on the path."""
+"""`python -m bigactors`: the command where it isn't on the path."""
 
 import sys
 

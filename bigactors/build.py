@@ -8,12 +8,12 @@ from typing import Final
 
 ROOMS: Final = ("bigraphs", "physical", "semantics", "specs", "checker")
 CODE: Final = frozenset({".py", ".lark"})
-"""Tables that are made of the grammars are no code."""
+"""File suffixes of code. The parser tables generated from the grammars don't count."""
 
 
 @cache
 def build_digest() -> str:
-    """Return a digest of the names and contents of the files of code, the same wherever they are installed."""
+    """Return a digest of the names and contents of the code files, independent of the place of installation."""
     found = hashlib.sha256()
     for room in ROOMS:
         folder = Path(str(import_module(room).__file__)).parent

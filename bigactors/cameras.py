@@ -1,4 +1,4 @@
-"""Make the plugins of cameras from the command line's options."""
+"""Camera plugins from the command line's options."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from specs.elaboration import ElaboratedMission
 
 
 def poses_for(cameras: Iterable[Namespace], vehicles: Iterable[str]) -> dict[str, PoseLog]:
-    """Return where the pose of each vehicle that carries a camera is kept; raises Mistake for one that is not given."""
+    """Return a pose log for each vehicle that carries a camera; raises Mistake if a carrier is not given."""
     given = set(vehicles)
     carriers = [camera.vehicle for camera in cameras]
     for name in carriers:
@@ -39,7 +39,7 @@ def cameras_of(
 ) -> tuple[Plugin, ...]:
     """Return the plugins of cameras; raises Mistake, PhysicalError."""
     if options.camera:
-        opencv()  # told before anything flies
+        opencv()  # refuse a missing OpenCV before anything flies
     return tuple(
         CameraFeed(
             f"camera{number} on {each.vehicle}",

@@ -1,4 +1,4 @@
-"""Check one mission: its report, or the reason why there is none."""
+"""Check one mission: its report, or the failure."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -50,7 +50,7 @@ REFUSALS: dict[type[Exception], tuple[Exit, str]] = {
     MachineError: (Exit.INCOMPLETE, "try again when less else runs here, or leave --engine out"),
     MemoryError: (Exit.INCOMPLETE, "explore less: --max-memory SIZE, --max-configurations N"),
 }
-"""Reasons why a mission is not explored as requested: the exit code, and the remedy."""
+"""The exit code and the hint for each refusal or failure of an exploration."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class Checked:
     """A mission and its report.
 
     Attributes:
-        name: The mission as the user gave it.
+        name: The mission's path or name, as the user gave it.
         mission: The elaborated mission.
         digest: The digest of its content.
         report: Its report.
@@ -73,7 +73,7 @@ class Checked:
 
     @property
     def exit(self) -> Exit:
-        """0, 1 or 3."""
+        """The exit code: 0, 1 or 3."""
         return Exit(self.report.exit_code)
 
     def as_json(self) -> dict[str, Any]:
@@ -85,7 +85,7 @@ class Checked:
 
 @dataclass(frozen=True, slots=True)
 class Failed:
-    """A mission that could not be checked: a mistake in it (2), our bug (4), or it was not begun (3)."""
+    """A mission without a report: it has a mistake (2), was interrupted or not begun (3), or we have a bug (4)."""
 
     name: str
     exit: Exit
@@ -94,7 +94,7 @@ class Failed:
     interrupted: bool = False
 
     def as_json(self) -> dict[str, Any]:
-        """Return why there is no report as plain data."""
+        """Return the failure as plain data."""
         return {
             "schema": FAILURE_SCHEMA,
             "mission": self.name,
@@ -107,7 +107,7 @@ class Failed:
 
 @dataclass(frozen=True, slots=True)
 class How:
-    """How missions are checked: the keyword arguments of `check`."""
+    """The keyword arguments of `check`, the same for all missions."""
 
     engine: Engine | None = None
     violations: int = MOST_VIOLATIONS
@@ -124,7 +124,7 @@ def check_mission(
     variation: Variation,
     how: How | None = None,
 ) -> Checked | Failed:
-    """Check one mission; a failure is printed on the standard error and returned."""
+    """Check one mission. Print a failure on the standard error, and return it."""
     how = how or How()
     try:
         mission = checkable(open_mission(name, variation))
@@ -158,13 +158,13 @@ def check_mission(
         message = "interrupted: nothing is decided of it"
         tell(f"{name}: {message}")
         return Failed(name, Exit.INCOMPLETE, message, interrupted=True)
-    except Exception as error:  # whatever it is, it is our bug, and other missions are to be checked
+    except Exception as error:  # any other exception is our bug; the remaining missions are still checked
         tell(f"{name}:\n{describe_bug(error)}")
         return Failed(name, Exit.BUG, f"internal error: {type(error).__name__}: {error}")
 
 
 def _check_times(name: str, mission: ElaboratedMission, report: Report) -> None:
-    """Say why a report has no times that were asked for."""
+    """Explain a report without the times that the user asked for."""
     if mission.setting.timing is None:
         tell(
             f"{name}: it has no times: nothing says how long anything takes; write a section timing {{ ... }}"
@@ -174,7 +174,7 @@ def _check_times(name: str, mission: ElaboratedMission, report: Report) -> None:
 
 
 def _of_this(keeping: Keeping, mission: ElaboratedMission, limits: Limits) -> Keeping:
-    """Bind checkpoints to the mission with its variations, to the build, and to the limit of pending requests."""
+    """Bind checkpoints to the mission with its variation, to the build, and to the limit of pending requests."""
     bound = digest((digest_of(mission), build_digest(), limits.pending))
     folder = keeping.folder and str(Path(keeping.folder) / file_stem(mission.name))
     return replace(keeping, folder=folder, digest=bound)
@@ -183,7 +183,7 @@ def _of_this(keeping: Keeping, mission: ElaboratedMission, limits: Limits) -> Ke
 def check_missions(
     names: list[str], limits: Limits, variation: Variation, how: How | None = None
 ) -> Iterator[Checked | Failed]:
-    """Check missions in turn; after an interruption the others are not begun."""
+    """Check missions in turn; after an interruption, the rest fail as not begun."""
     interrupted = False
     for name in names:
         if interrupted:
@@ -195,7 +195,7 @@ def check_missions(
 
 
 def results_json(results: list[Checked | Failed], code: Exit) -> dict[str, Any]:
-    """Return the results as plain data: of one mission its report, of several a list of them."""
+    """Return the results as plain data: the one report, or a list of several."""
     if len(results) == 1:
         return results[0].as_json()
     reports = [result.as_json() for result in results]

@@ -1,7 +1,7 @@
-"""The rooms under their installed names in a checkout: `bigactors.semantics` is the module `semantics`.
+"""A checkout's packages under their installed names: `bigactors.semantics` is the module `semantics`.
 
-An installation has the rooms inside of this package (`hatch_build.py`); a checkout has them beside it, at the top.
-Modules are shared and not imported twice, so a class has one identity under both names.
+An installation has the packages inside this one (`hatch_build.py`); a checkout has them beside it, at the top.
+Each module is imported once, so a class has one identity under both names.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from importlib.abc import Loader
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from pathlib import Path
@@ -19,15 +20,15 @@ ROOMS: Final = ("adapters", "bigraphs", "checker", "physical", "semantics", "spe
 PREFIX: Final = "bigactors."
 
 
-class RoomFinder:
-    """Finds `bigactors.ROOM.x` as `ROOM.x`: a meta path finder, and the loader of what it finds."""
+class RoomFinder(Loader):
+    """Meta path finder and loader that maps `bigactors.ROOM.x` to `ROOM.x`."""
 
     @classmethod
     def find_spec(cls, name: str, path: Sequence[str] | None = None, target: Any = None) -> ModuleSpec | None:  # noqa: ARG003 - the protocol
-        """Return the specification of a room's module under its installed name; None for other modules."""
+        """Return the specification of a package's module under its installed name; None for other modules."""
         own = name.removeprefix(PREFIX)
         if own == name or own.split(".")[0] not in ROOMS or own.endswith(".__main__"):
-            return None  # a `__main__` is run by its file
+            return None  # Python runs a `__main__` by its file
         found = find_spec(own)
         if found is None:
             return None
@@ -38,23 +39,23 @@ class RoomFinder:
         return spec
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
-        """Return the room's own module."""
+        """Import and return the module under its checkout name."""
         self.module = import_module(spec.name.removeprefix(PREFIX))
         self.spec = self.module.__spec__
         return self.module
 
     def exec_module(self, module: ModuleType) -> None:
-        """Give the module back its own specification, which the import system has replaced: it has been run."""
+        """Restore the module's own specification, which the import system has replaced. The module has already run."""
         module.__spec__ = self.spec
 
     def get_code(self, name: str) -> CodeType | None:
-        """Return the code of a module that `python -m` runs."""
+        """Return the code of a module, for `python -m`."""
         spec = find_spec(name.removeprefix(PREFIX))
         loader: Any = None if spec is None else spec.loader
         return loader.get_code(name.removeprefix(PREFIX)) if loader else None
 
 
 def share_rooms() -> None:
-    """Install the finder once, where the rooms are not inside of the package."""
+    """Install the finder once, in a checkout only."""
     if not (Path(__file__).parent / ROOMS[0]).is_dir() and RoomFinder not in sys.meta_path:
         sys.meta_path.insert(0, RoomFinder)

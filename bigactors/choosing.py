@@ -1,4 +1,4 @@
-"""A run whose every step the user chooses: what `simulate --choose` asks, and what it makes of the answers."""
+"""`simulate --choose`: a run in which the user chooses every step."""
 
 import random
 from collections.abc import Callable, Iterable, Iterator
@@ -23,12 +23,12 @@ HELP = (
 
 @dataclass
 class Walk:
-    """A run whose steps the user chooses.
+    """A run in which the user chooses the steps.
 
     Attributes:
         run: The run so far.
-        properties: What the mission asks to check.
-        chance: Chooses where the user does not.
+        properties: The mission's properties.
+        chance: Chooses a step when the user answers `r`.
     """
 
     run: OneRun
@@ -36,7 +36,7 @@ class Walk:
     chance: random.Random
 
     def lines(self, answers: Iterable[str]) -> Iterator[str]:
-        """Yield what is printed between the answers, up to the one that ends the run, or to their end."""
+        """Yield the output up to the answer `q`, or to the last answer."""
         yield from self.state()
         yield from self.choices()
         for answer in answers:
@@ -47,7 +47,7 @@ class Walk:
         yield f"ended after {counted(len(self.run.taken), 'step')}"
 
     def answer(self, word: str) -> Iterator[str]:
-        """Do what an answer says, and yield what is printed of it."""
+        """Execute an answer, and yield its output."""
         choices = self.run.choices()
         number, _, moment = word.partition(" ")
         known = not moment or self.run.initial.setting.timing is not None
@@ -62,12 +62,12 @@ class Walk:
             yield f"{word[:40]!r} is no choice here: {self.possible(len(choices))}"
 
     def possible(self, enabled: int) -> str:
-        """Return what may be answered."""
+        """Return the possible answers."""
         numbers = f"a number from 1 to {enabled}, r, " if enabled > 1 else "1, r, " if enabled else ""
         return f"answer {numbers}u, s, f, q, or ? for what they do"
 
     def take(self, choice: Choice, moment: str) -> Iterator[str]:
-        """Take a step, at a moment where one is given."""
+        """Take a step, at the given moment if there is one."""
         try:
             self.run.take(choice, self._date(moment) if moment else None)
         except ValueError as problem:
@@ -84,7 +84,7 @@ class Walk:
         return ticks
 
     def told(self) -> Iterator[str]:
-        """Tell of the step that was taken, and what follows."""
+        """Yield the step just taken, and the next choices."""
         yield from print_step(self.run, len(self.run.taken) - 1)
         yield from self.choices()
 
@@ -102,7 +102,7 @@ class Walk:
         yield f"c{len(self.run.taken)} = {print_configuration(self.run.at)}"
 
     def formulas(self) -> Iterator[str]:
-        """Show which formulas about one configuration are true."""
+        """Show the truth of each formula about a single configuration."""
         asked = [each for each in self.properties if each.kind.has_proposition]
         for each in asked:
             yield f"  {'true ' if holds(each.formula, self.run.at) else 'false'}  {each.name}: {each.shown}"
@@ -110,7 +110,7 @@ class Walk:
             yield "the mission has no invariant and no reachable: nothing is asked of one configuration"
 
     def choices(self) -> Iterator[str]:
-        """Show what may be done, numbered; steps that are called alike with what they change."""
+        """Show the numbered choices. Choices with equal labels also show their changes."""
         choices = self.run.choices()
         labels = [each.transition.label for each in choices]
         for number, each in enumerate(choices, 1):
@@ -129,7 +129,7 @@ class Walk:
         return f"{clock_text(choice.earliest * timing.tick)} to {clock_text(choice.latest * timing.tick)}  "
 
     def help(self) -> Iterator[str]:
-        """Say what may be answered."""
+        """Explain the answers."""
         yield from (f"  {line}" for line in HELP)
 
 

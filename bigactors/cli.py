@@ -14,13 +14,13 @@ from bigactors.signals import ending_as_ctrl_c
 from bigactors.terminal import COLOUR, safe_output, tell
 
 OBJECTS_BETWEEN_COLLECTIONS: Final = 200_000
-"""Python's 700 make it look again and again through what was imported, for a tenth of the time of a small check."""
+"""Python's default of 700 rescans the imported objects again and again: a tenth of the time of a small check."""
 
 
 def main(line: Sequence[str] | None = None) -> int:
     """Run one command line (default: this process's) and return its exit code."""
-    if "_ARGCOMPLETE" in os.environ:  # a shell asks what could come next
-        from bigactors.completion import complete  # noqa: PLC0415 - it makes the parsers of all commands
+    if "_ARGCOMPLETE" in os.environ:  # a shell asks for completions
+        from bigactors.completion import complete  # noqa: PLC0415 - it builds the parsers of all commands
 
         complete()
     gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
@@ -31,11 +31,11 @@ def main(line: Sequence[str] | None = None) -> int:
         return Exit.MISTAKE
     finally:
         if line is None:
-            gc.freeze()  # the process ends: looking through all that was loaded takes a quarter of a small check
+            gc.freeze()  # the process ends: a last scan of all objects takes a quarter of a small check
 
 
 def run(line: Sequence[str]) -> int:
-    """Run one command line, and report what goes wrong."""
+    """Run one command line and report its errors."""
     return reported(lambda: _run(line))
 
 
@@ -46,7 +46,7 @@ def _run(line: Sequence[str]) -> int:
 
 
 def reported(command: Callable[[], int]) -> int:
-    """Run something, and report what goes wrong; return the exit code."""
+    """Run a command, report its errors, and return the exit code."""
     try:
         return command()
     except SystemExit as end:  # after --help and --version
@@ -57,6 +57,6 @@ def reported(command: Callable[[], int]) -> int:
     except KeyboardInterrupt:
         tell("bigactors: interrupted, nothing is decided")
         return Exit.INCOMPLETE
-    except Exception as error:  # whatever it is, it is our bug
+    except Exception as error:  # any other exception is our bug
         tell(describe_bug(error))
         return Exit.BUG

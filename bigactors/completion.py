@@ -11,13 +11,13 @@ from bigactors.arguments import make_parser
 from bigactors.arguments.values import FORMATS, REDUCTIONS
 
 MOST_BYTES: Final = 1_000_000
-"""How much of a mission is looked through for names."""
+"""Bytes of a mission that are searched for names."""
 
 Completer = Callable[..., Iterable[str]]
 
 
 def complete() -> None:
-    """Answer a shell that asks what could come next, and end the process."""
+    """Answer a shell's request for completions, and end the process."""
     import argcomplete  # noqa: PLC0415 - only a shell asks
 
     whole, commands = make_parser()
@@ -30,7 +30,7 @@ def complete() -> None:
 
 
 def actions_of(parser: argparse.ArgumentParser) -> Iterator[argparse.Action]:
-    """Yield the arguments of a parser, and of the parsers of its tasks."""
+    """Yield the arguments of a parser and of its subparsers."""
     for action in parser._actions:  # noqa: SLF001 - argparse has no other list of them
         yield action
         if isinstance(action.choices, dict):
@@ -39,24 +39,24 @@ def actions_of(parser: argparse.ArgumentParser) -> Iterator[argparse.Action]:
 
 
 def completer_of(command: str, action: argparse.Action) -> Completer | None:
-    """Return what completes an argument's values; files are completed where nothing does."""
+    """Return the completer of an argument's values; None leaves it to the completion of files."""
     if action.metavar == "FILE" and not action.option_strings:
         return POSITIONAL.get(command)
     return BY_METAVAR.get(str(action.metavar))
 
 
 def script(shell: str) -> str:
-    """Return what a shell reads at its start to complete command lines of bigactors."""
+    """Return the script that a shell reads at its start to complete command lines of bigactors."""
     from argcomplete.shell_integration import shellcode  # noqa: PLC0415
 
     return shellcode(["bigactors"], shell=shell)
 
 
-# --- what could come next -------------------------------------------------------------------------------------
+# --- completers -----------------------------------------------------------------------------------------------
 
 
 def files(prefix: str, *suffixes: str) -> Iterator[str]:
-    """Yield the files with one of the suffixes, and the folders, that begin so."""
+    """Yield the folders, and the files with one of the suffixes, whose path starts with the prefix."""
     folder, _, begin = prefix.rpartition("/")
     try:
         entries = sorted(os.scandir(f"{folder}/" if "/" in prefix else "."), key=lambda entry: entry.name)
@@ -77,7 +77,7 @@ def mission_files(prefix: str, **_: Any) -> Iterator[str]:
 
 
 def missions(prefix: str, **_: Any) -> Iterator[str]:
-    """Yield mission files, and the missions that ship."""
+    """Yield mission files and the names of shipped missions."""
     from specs.missions import shipped_missions  # noqa: PLC0415
 
     yield from mission_files(prefix)
@@ -86,7 +86,7 @@ def missions(prefix: str, **_: Any) -> Iterator[str]:
 
 
 def systems(prefix: str, **_: Any) -> Iterator[str]:
-    """Yield files of bigraphs, and the examples that ship."""
+    """Yield files of bigraphs and the names of shipped examples."""
     from bigraphs.examples import example_names  # noqa: PLC0415
 
     yield from files(prefix, ".big", ".bgm")
@@ -101,7 +101,7 @@ def codes(**_: Any) -> list[str]:
 
 
 def named_by(pattern: str) -> Completer:
-    """Return a completer of what a pattern finds in the mission on the line, or in those here."""
+    """Return a completer of a pattern's matches in the mission on the line, or else in the missions of this folder."""
 
     def complete_names(parsed_args: argparse.Namespace, **_: Any) -> list[str]:
         texts = (text_of(path) for path in missions_on(parsed_args))
@@ -111,7 +111,7 @@ def named_by(pattern: str) -> Completer:
 
 
 def missions_on(line: argparse.Namespace) -> list[Path]:
-    """Return the mission that a line names, or without one the missions in this folder."""
+    """Return the mission on the line; without one, the missions in this folder."""
     from specs.missions import shipped_missions  # noqa: PLC0415
 
     word = getattr(line, "file", None) or getattr(line, "mission", None)
@@ -121,7 +121,7 @@ def missions_on(line: argparse.Namespace) -> list[Path]:
 
 
 def text_of(path: Path) -> str:
-    """Return the beginning of a mission's text, empty where it cannot be read."""
+    """Return the beginning of a mission's text; empty for an unreadable file."""
     try:
         with path.open(encoding="utf-8", errors="replace") as file:
             return file.read(MOST_BYTES)

@@ -1,4 +1,4 @@
-"""What a console shows of a recording: its steps taken again by the mission's rules, and L drawn."""
+"""The console's view of a recording: its steps replayed by the mission's rules, and drawings of L."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ from semantics.state.configuration import Configuration, Label
 from semantics.state.partition import parted
 
 EVERY: Final = 1.0
-"""Seconds from the beginning of one drawing to that of the next."""
+"""Seconds between the beginnings of two drawings."""
 
 MOST_PICTURES: Final = 64
 
 MOST_STEPS: Final = 1 << 12
-"""Steps that are remembered: a run that observes in a loop takes the same ones over and over."""
+"""The size of the step cache: a run that observes in a loop repeats the same steps."""
 
 
 @contextmanager
 def history_of(path: Path, *, live: bool = False) -> Iterator[History]:
-    """Yield the history of a recording of which nothing is read yet; `live`: it is still being written."""
+    """Yield the unread history of a recording; `live` for a recording that is still being written."""
     drawer = Drawer()
     try:
         yield History(path, rules_of, drawer, live=live)
@@ -49,7 +49,7 @@ def history_of(path: Path, *, live: bool = False) -> Iterator[History]:
 
 
 def rules_of(run: Mapping[str, Any]) -> Rules:
-    """Return the rules of what a recording's run says was flown; raises Unreplayable."""
+    """Return the rules of a recorded run; raises Unreplayable."""
     recording = Recording(dict(run), (), torn=True)
     try:
         mission, parting = mission_of(recording), parting_of(recording)
@@ -61,7 +61,7 @@ def rules_of(run: Mapping[str, Any]) -> Rules:
 
 
 def remembering() -> Callable[[Configuration, Any], tuple[Label, Configuration]]:
-    """Return what takes recorded steps again, those that it remembers without asking the rules."""
+    """Return the function that replays recorded steps, with a cache."""
     known: dict[tuple[Configuration, str, int, str], tuple[Label, Configuration]] = {}
 
     def taken(before: Configuration, said: Any) -> tuple[Label, Configuration]:
@@ -89,14 +89,14 @@ def _taken(before: Configuration, said: Any) -> tuple[Label, Configuration]:
 # --- pictures -----------------------------------------------------------------------------------------
 
 Scene = tuple[Bigraph, Look]
-"""What a picture of L shows."""
+"""The contents of a picture of L."""
 
 
 class Drawer:
-    """Draws L in a process of its own, one picture after the other, and at most one a second."""
+    """Draws L in a separate process, one picture at a time, at most one a second."""
 
     def __init__(self) -> None:
-        """Begin no process yet."""
+        """Make a drawer; the process starts with the first drawing."""
         self._pictures: dict[object, str] = {}
         self._process: SpawnProcess | None = None
         self._line: Connection | None = None
@@ -104,12 +104,12 @@ class Drawer:
         self._began = -EVERY
 
     def drawn(self, change: Change) -> str | None:
-        """Return the picture of L after a change, empty where it cannot be drawn; None if it is not drawn yet."""
+        """Return the picture of L after a change: empty if it cannot be drawn, None if it is not drawn yet."""
         self._look()
         return self._pictures.get(_key(change))
 
     def begin(self, change: Change) -> bool:
-        """Begin to draw L after a change, unless another drawing has begun less than a second ago."""
+        """Begin to draw L after a change, unless a drawing is under way or began less than a second ago."""
         self._look()
         if self._drawing is not None or time.monotonic() < self._began + EVERY:
             return False
@@ -140,7 +140,7 @@ class Drawer:
         there.close()
 
     def _look(self) -> None:
-        """Take the picture that is ready, if one is; what ends the process is not drawn again."""
+        """Store the finished picture, if any. If the process fails, store an empty one, which is never retried."""
         try:
             if self._line is not None and self._drawing is not None and self._line.poll():
                 self._keep(self._line.recv())
@@ -165,13 +165,13 @@ def _key(change: Change) -> object:
 
 @lru_cache(maxsize=MOST_PICTURES)
 def _scene(change: Change) -> Scene:
-    """Return what a picture shows: L, what the change has changed, and what L and P say different things of."""
+    """Return the contents of a picture: L, the parts that the change touched, and the parts where L and P disagree."""
     before = None if change.before == change.after else change.before
     return change.after.structure.logical.bigraph(), look_of(change.after, before)
 
 
 def _draw(line: Connection) -> None:
-    """Draw what comes over the line, until it is closed: what this process is for."""
+    """Draw each scene received on the line until it closes: the main function of the drawing process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.nice(5)
     while True:

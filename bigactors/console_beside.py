@@ -1,4 +1,4 @@
-"""The console of a run: a process of its own beside it, which reads what the run records."""
+"""The console of a run: a separate process that reads the run's recording."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
 
 PATIENCE: Final = 5.0
-"""Seconds that a console has to end."""
+"""Seconds that a console has to end before it is killed."""
 
 STARTING: Final = 120.0
-"""Seconds that it has to say its links: nothing is commanded before."""
+"""Seconds that a console has to print its links. Nothing is commanded before."""
 
 
 @contextmanager
 def recorded(options: Namespace) -> Iterator[Path | None]:
-    """Yield where the run is recorded: where it is said, else for a console in a folder that is removed afterwards."""
+    """Yield the recording's path: the given one; for a console alone, one in a temporary folder; else None."""
     if options.record is not None:
         yield Path(options.record)
     elif options.console is None:
@@ -40,7 +40,7 @@ def recorded(options: Namespace) -> Iterator[Path | None]:
 
 @contextmanager
 def console_beside(options: Namespace, recording: Path | None, socket: Path) -> Iterator[None]:
-    """Let a console look on, if one is asked for; the run goes on without it if it ends."""
+    """Run a console beside the run, if one is requested. If the console ends, the run goes on."""
     if options.console is None or recording is None:
         yield
         return
@@ -64,7 +64,7 @@ def console_beside(options: Namespace, recording: Path | None, socket: Path) -> 
 
 
 def _end(process: subprocess.Popen[bytes], patience: float) -> None:
-    """Close a console's input, which ends it; kill it where it has not ended in time."""
+    """Close a console's input, which ends it; kill it after the timeout."""
     assert process.stdin is not None
     with suppress(OSError):
         process.stdin.close()
@@ -95,7 +95,7 @@ def _has_started(links: SimpleQueue[bool]) -> bool:
 
 
 def _relay(process: subprocess.Popen[bytes], links: SimpleQueue[bool]) -> None:
-    """Print the lines of a console; report True at its last link, and False at the end of its output."""
+    """Print the lines of a console. Report True at its last link, and False at the end of its output."""
     assert process.stdout is not None
     with process.stdout:
         for line in process.stdout:
@@ -103,11 +103,11 @@ def _relay(process: subprocess.Popen[bytes], links: SimpleQueue[bool]) -> None:
             sys.stdout.flush()
             if line.startswith(LAST.encode()):
                 links.put(True)
-    links.put(False)  # a console without links closes its output before its process has ended
+    links.put(False)  # a console that prints no links closes its output before its process ends
 
 
 def _watch(process: subprocess.Popen[bytes], leaving: threading.Event) -> None:
-    """Say it if a console ends before its run."""
+    """Report a console that ends before its run."""
     code = process.wait()
     if not leaving.is_set():
         tell(f"the console has ended with code {code}; the run goes on without it")

@@ -1,4 +1,4 @@
-"""`bigactors check --watch`: missions are checked again at each save of a file that they are made of."""
+"""`bigactors check --watch`: check missions again at each save of one of their files."""
 
 import os
 import sys
@@ -24,7 +24,7 @@ CLEAR: Final = "\033[H\033[2J"
 
 Results: TypeAlias = Sequence[Checked | Failed]
 Verdicts: TypeAlias = Mapping[str, Mapping[str, str]]
-"""For each mission that was checked, what was said last of each property."""
+"""The last outcome of each property, by mission."""
 
 
 def check_at_each_save(
@@ -33,13 +33,13 @@ def check_at_each_save(
     check: Callable[[Interruption], Iterable[Checked | Failed]],
     report: Callable[[Results], Exit],
 ) -> Exit:
-    """Check missions now and at each save until Ctrl-C; return what the last check that came to its end returned.
+    """Check missions now and at each save until Ctrl-C; return the exit code of the last completed check.
 
     Raises:
-        Mistake: There is no such mission to begin with.
+        Mistake: A mission does not exist at the start.
     """
     for name in names:
-        locate(name)  # who misspells a name does not wait for its file
+        locate(name)  # a misspelt name is a mistake, not a file to wait for
     code, verdicts, files = Exit.INCOMPLETE, dict[str, Mapping[str, str]](), dict[str, tuple[Path, ...]]()
     why = "checking " + ", ".join(names)
     with suppress(KeyboardInterrupt):
@@ -64,7 +64,7 @@ def check_at_each_save(
 
 
 def files_of(name: str, variation: Variation, before: tuple[Path, ...] = ()) -> tuple[Path, ...]:
-    """Return the files that a mission is made of: its own and those of its world; as before while it does not parse."""
+    """Return the files of a mission: its own and those of its world; while it does not parse, the previous ones."""
     try:
         path = locate(name)
         _, tree = parse_bytes(name, read_bytes(str(path), MAX_BYTES))
@@ -74,7 +74,7 @@ def files_of(name: str, variation: Variation, before: tuple[Path, ...] = ()) -> 
 
 
 def verdicts_of(results: Results) -> dict[str, Mapping[str, str]]:
-    """Return what is said of each property of the missions that could be checked."""
+    """Return the outcome of each property, for each mission that could be checked."""
     return {
         result.name: {each.property.name: each.outcome.value for each in result.report.verdicts}
         for result in results
@@ -83,7 +83,7 @@ def verdicts_of(results: Results) -> dict[str, Mapping[str, str]]:
 
 
 def changes_text(before: Verdicts, results: Results) -> Iterator[str]:
-    """Yield what is said otherwise of a property than the last time that its mission could be checked."""
+    """Yield the outcomes that changed since the last successful check of a mission."""
     for name, after in verdicts_of(results).items():
         if name not in before:
             continue
@@ -98,7 +98,7 @@ def changes_text(before: Verdicts, results: Results) -> Iterator[str]:
 
 
 def _begin(why: str) -> None:
-    """Begin on an empty screen, or after an empty line where there is none."""
+    """Clear the screen, or print an empty line where the output is no terminal; then print the reason for the check."""
     clears = is_terminal(sys.stdout) and os.environ.get("TERM") != "dumb"
     say_text(f"{CLEAR if clears else ''}{_now()} {why}\n", flush=True)
 

@@ -1,4 +1,4 @@
-"""The diagnostics of a mission as the command line has them: a mistake, and plain data."""
+"""The diagnostics of a mission for the command line: as a mistake, and as plain data."""
 
 from bigactors.mistakes import Mistake
 from specs import Diagnostic, MissionError, Source

@@ -1,4 +1,4 @@
-"""Picture files: which formats are allowed, and the errors where they cannot be written."""
+"""Picture files: the allowed formats, and the errors of writing."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -18,35 +18,41 @@ from checker.reports.lanes import lanes_of_trace
 from semantics.state.configuration import Configuration
 
 MOST_PICTURES = 100
-"""The longest trace of which every configuration is drawn; of longer ones there is the overview."""
+"""The longest trace with a drawing of every configuration. Longer traces get only the overview."""
 
 
 def draw(configuration: Configuration, path: str, title: str, before: Configuration | None = None) -> None:
-    """Draw a configuration into a file, with what has changed since the one before."""
+    """Draw a configuration into a file, with the changes since the one before."""
     with _mistakes(path):
         draw_configuration(configuration, path, title=title, changed=before)
 
 
 def draw_run(trace: Trace, folder: Path, title: str, *, each_step: bool) -> None:
-    """Draw a trace into a folder: the overview `trace.svg`, and if asked each configuration (0.2 s each)."""
+    """Draw a trace into a folder: the overview `trace.svg`, and with `each_step` every configuration (0.2 s each)."""
     labels = [step.label for step in trace.steps]
     with _mistakes(str(folder)):
         if each_step and len(trace) <= MOST_PICTURES:
             draw_trace(
-                trace.configurations, labels, folder, title=title, loop=trace.loop, moments=trace.moments
+                trace.configurations,
+                labels,
+                folder,
+                title=title,
+                loop=trace.loop,
+                moments=trace.moments,
+                race=trace.race,
             )
         else:
             draw_overview(lanes_of_trace(trace), folder / "trace.svg", title=title)
 
 
 def draw_lanes(trace: Trace, path: str, title: str, *, unfolded: bool = False) -> None:
-    """Draw a trace into a file, its steps in lanes."""
+    """Draw a trace into a file, with its steps in lanes."""
     with _mistakes(path):
         draw_overview(lanes_of_trace(trace), path, title=title, unfolded=unfolded)
 
 
 def draw_schedule(schedule: Schedule, path: str, title: str) -> None:
-    """Draw who flies when into a file."""
+    """Draw the timeline of all flights into a file."""
     with _mistakes(path):
         if Path(path).suffix.lower() in (".html", ".htm"):
             write_text(path, timeline_page(schedule, title))
@@ -55,13 +61,13 @@ def draw_schedule(schedule: Schedule, path: str, title: str) -> None:
 
 
 def draw_first_times(curves: Sequence[Curve], path: str, title: str, **words: Any) -> None:
-    """Draw when predicates first become true into a file; see `draw_curves`."""
+    """Draw the first times at which predicates hold into a file; see `draw_curves`."""
     with _mistakes(path):
         draw_curves(curves, path, title=title, **words)
 
 
 def write_page(story: Story, path: str) -> tuple[str, ...]:
-    """Write a trace as a page that steps through it; return what is left out of the page."""
+    """Write a trace as a page that steps through it; return the parts that the page leaves out."""
     told = telling(story)
     write_text(path, page_of(told))
     return told.left_out

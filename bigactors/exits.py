@@ -5,7 +5,7 @@ from enum import IntEnum
 
 
 class Exit(IntEnum):
-    """The exit codes; anything but 0 is no success."""
+    """The exit codes; only 0 is a success."""
 
     HOLDS = 0
     VIOLATED = 1
@@ -18,7 +18,7 @@ _WORST_FIRST = (Exit.BUG, Exit.MISTAKE, Exit.VIOLATED, Exit.INCOMPLETE)
 
 
 def worst(codes: Iterable[int]) -> Exit:
-    """Return the exit code of several missions: a bug, then a mistake, a violation, a bound that was reached.
+    """Return the worst exit code of several missions: bug, then mistake, then violation, then incomplete.
 
     >>> worst([0, 3, 1])
     <Exit.VIOLATED: 1>

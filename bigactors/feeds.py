@@ -1,4 +1,4 @@
-"""Make the plugins of feeds from the command line's options."""
+"""Feed plugins from the command line's options."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ class Hearing:
 
     Attributes:
         naming: The naming service.
-        kinds: The kinds that a feed may report; all if there are none.
-        area: AIS positions outside are ignored.
-        token: The token of posts.
-        living: The seconds for which a position of each feed counts.
+        kinds: The kinds that each feed may report; an absent feed may report all.
+        area: The area outside of which AIS positions are ignored.
+        token: The token that posts of detections must carry.
+        living: The time to live of each feed's positions, in seconds.
     """
 
     naming: NamingService
@@ -49,7 +49,7 @@ class Hearing:
 
 
 def feeds_of(options: Namespace, mission: ElaboratedMission, naming: NamingService) -> tuple[Plugin, ...]:
-    """Return the plugins of the feeds that are given; raises Mistake, PhysicalError."""
+    """Return the plugins of the given feeds; raises Mistake, PhysicalError."""
     hearing = Hearing(
         naming,
         {"detections": _expected(mission)} | _told(options, mission),
@@ -61,7 +61,7 @@ def feeds_of(options: Namespace, mission: ElaboratedMission, naming: NamingServi
 
 
 def _told(options: Namespace, mission: ElaboratedMission) -> dict[str, frozenset[str]]:
-    """Return the given kinds; those of detections must be the mission's."""
+    """Return the kinds given by option; those of detections must be kinds of the mission."""
     told = dict(options.kinds)
     known = mission.setting.signature.kinds
     for kind in sorted(told.get("detections", frozenset()) - known.keys()):
@@ -71,7 +71,7 @@ def _told(options: Namespace, mission: ElaboratedMission) -> dict[str, frozenset
 
 
 def _expected(mission: ElaboratedMission) -> frozenset[str]:
-    """Return the kinds that may be detected: the mission's that are not driven."""
+    """Return the detectable kinds: the mission's kinds that are not driven."""
     kinds = mission.setting.signature.kinds.values()
     return frozenset(kind.name for kind in kinds if not kind.driven)
 

@@ -15,7 +15,7 @@ from semantics.state.signature import Name
 from specs.elaboration import ElaboratedMission
 
 MARGIN = 500.0
-"""Metres around everything: a plane flies past a place before it circles in it."""
+"""Metres around the box: a plane flies past a place before it circles in it."""
 
 NONE, WORLD = "none", "world"
 
@@ -37,7 +37,7 @@ def fence_of(word: str, mission: ElaboratedMission) -> Geometry | None:
 
 
 def _around(mission: ElaboratedMission) -> Geometry | None:
-    """Return the smallest immobile place that contains all that vehicles may reach, else a box around that."""
+    """Return the smallest immobile place that contains the reach of all vehicles, else a box around that reach."""
     grounds = tuple(dict.fromkeys(_grounds(mission)))
     physical = mission.initial.structure.physical
     standing = (physical.placement(name) for name in sorted(mission.fixed))
@@ -51,7 +51,7 @@ def _around(mission: ElaboratedMission) -> Geometry | None:
 
 
 def _grounds(mission: ElaboratedMission) -> Iterator[Geometry]:
-    """Yield the vehicles' first placements, and all possible placements of what may contain them."""
+    """Yield the vehicles' first placements, and all possible placements of their containers."""
     setting, physical = mission.setting, mission.initial.structure.physical
     driven = [name for name, kind in setting.kinds.items() if setting.signature[kind].driven]
     for vehicle in driven:

@@ -1,4 +1,4 @@
-"""Which files were saved: their content is compared, whether an editor writes them in place or renames another."""
+"""Detect saved files by their content, whether an editor rewrites a file in place or replaces it by a rename."""
 
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping
@@ -13,22 +13,22 @@ from checker import Interruption
 from physical import open_file
 
 INTERVAL: Final = 0.2
-"""Seconds between two looks at the files."""
+"""Seconds between two polls of the files."""
 
 SETTLED: Final = 0.1
-"""For how many seconds files stay the same after they were saved: until then an editor may be at work."""
+"""Seconds without a change after which a save is complete: until then, an editor may still write."""
 
 RECENT: Final = 2_000_000_000
-"""Nanoseconds in which a file may be written twice with one time stamp."""
+"""Nanoseconds within which two writes may carry the same time stamp."""
 
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """What a file was when it was looked at.
+    """The state of a file at a poll.
 
     Attributes:
-        digest: The digest of its content; None of a file that cannot be read.
-        stamp: Its inode, size and time of change, if they tell whether it has changed since.
+        digest: The digest of its content; None for an unreadable file.
+        stamp: Its inode, size and time of change; None where a recent change makes them unreliable.
     """
 
     digest: bytes | None
@@ -39,7 +39,7 @@ Looks: TypeAlias = Mapping[Path, Seen]
 
 
 def look(paths: Iterable[Path], before: Looks | None = None) -> dict[Path, Seen]:
-    """Return what files are now; only those are read that may have changed since a look before."""
+    """Return the state of each file now; only read those that may have changed since the poll before."""
     return {path: _look(path, (before or {}).get(path)) for path in paths}
 
 
@@ -57,14 +57,14 @@ def _look(path: Path, before: Seen | None) -> Seen:
 
 
 def changed(before: Looks, now: Looks) -> tuple[Path, ...]:
-    """Return the files whose content is another now."""
+    """Return the files whose content has changed."""
     return tuple(
         path for path in sorted(now) if path not in before or before[path].digest != now[path].digest
     )
 
 
 def wait_for_save(seen: Looks) -> tuple[Path, ...]:
-    """Wait until some files are others than they were seen, and nothing writes them any more; return those."""
+    """Wait until files have changed and nothing writes them any more; return them."""
     while True:
         now = look(seen, seen)
         if changed(seen, now):
@@ -78,7 +78,7 @@ def wait_for_save(seen: Looks) -> tuple[Path, ...]:
 
 @contextmanager
 def interrupted_by_save(seen: Looks) -> Iterator[tuple[Interruption, Event]]:
-    """Interrupt what runs within as soon as a file is saved; the event tells whether one was."""
+    """Interrupt the body as soon as a file is saved; the event is set then."""
     interruption, saved, done = Interruption(), Event(), Event()
 
     def poll() -> None:

@@ -1,4 +1,4 @@
-"""Reading and writing files: bounded in size, and never half written."""
+"""Read and write files: bounded in size, and replaced atomically."""
 
 import json
 import os
@@ -11,11 +11,11 @@ from physical import PhysicalError, open_file
 from physical import read_json as parse_json
 
 MOST_JSON = 64 * 2**20
-"""The most bytes of a trace that are read."""
+"""The most bytes of a JSON file that are read."""
 
 
 def read_bytes(path: str, most: int) -> bytes:
-    """Return a file's bytes, one more than `most` if there are more."""
+    """Return at most `most` + 1 bytes of a file: one too many reveals a file that is too long."""
     try:
         with open_file(path) as file:
             return file.read(most + 1)
@@ -37,18 +37,18 @@ def write_json(path: str, value: Any) -> None:
 
 
 def json_text(value: Any) -> str:
-    """Return a value as JSON is written here."""
+    """Return a value as JSON text in the format of this project."""
     return json.dumps(value, ensure_ascii=False, indent=1) + "\n"
 
 
 def write_text(path: str, text: str) -> None:
-    """Put a text in the place of a file at once: there is the old one or the new one, never a part."""
-    import tempfile  # noqa: PLC0415 - it loads much, and many commands write no file
+    """Replace a file's text atomically: a reader sees the old text or the new one, never a part."""
+    import tempfile  # noqa: PLC0415 - its import is slow, and many commands write no file
 
     target = Path(os.path.realpath(path))
     try:
         if target.exists() and not target.is_file():
-            target.write_text(text, encoding="utf-8")  # a pipe or /dev/stdout: nothing to replace
+            target.write_text(text, encoding="utf-8")  # a pipe or /dev/stdout cannot be replaced
             return
         with tempfile.NamedTemporaryFile(
             "w", encoding="utf-8", newline="", dir=target.parent, prefix=f".{target.name}.", delete=False
@@ -59,7 +59,7 @@ def write_text(path: str, text: str) -> None:
 
 
 def check_writable(path: str) -> None:
-    """Refuse a path that cannot be written, before there is anything to write; raises Mistake."""
+    """Raise Mistake for an unwritable path, before the output is computed."""
     target = Path(os.path.realpath(path))
     if target.is_dir():
         raise Mistake("this is a folder, not a file", place=path)
@@ -88,7 +88,7 @@ def _umask() -> int:
 
 
 def make_folder(path: str) -> Path:
-    """Make a folder, and those above it."""
+    """Make a folder and its parents."""
     try:
         Path(path).mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError) as error:
@@ -99,7 +99,7 @@ def make_folder(path: str) -> Path:
 
 
 def file_stem(name: str) -> str:
-    """Return a name as a part of a file's name.
+    """Return a name made fit for a file name.
 
     >>> file_stem("never in the basin"), file_stem("../x")
     ('never_in_the_basin', 'x')

@@ -1,4 +1,4 @@
-"""Time limits of the section `live` that are below what the section `timing` lets a flight take."""
+"""Time limits of the section `live` below the flight times that the section `timing` allows."""
 
 from collections.abc import Iterator, Mapping
 
@@ -8,9 +8,9 @@ from specs.elaboration import ElaboratedMission
 
 
 def short_limits(mission: ElaboratedMission, flights: Mapping[Name, float]) -> Iterator[str]:
-    """Yield each limit, in words, that a flight may reach although it takes no longer than it can.
+    """Yield a sentence for each live limit that a flight may reach within its allowed time.
 
-    `flights` are the seconds that a flight of each bigActor takes at most.
+    `flights` is the longest flight of each bigActor in seconds.
     """
     for limit in mission.precautions.limits:
         for agent, seconds in sorted(flights.items()):

@@ -1,4 +1,4 @@
-"""Foreign recordings as feeds: telemetry logs and AIS recordings, and the bigraph of the world that they show."""
+"""Foreign recordings as feeds: telemetry logs and AIS recordings, and the trace of the world that they show."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ TELEMETRY = ".tlog"
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """What a recording shows of a mission's world.
+    """A recording's view of a mission's world.
 
     Attributes:
-        trace: Its steps, all of `env`.
+        trace: The steps, all of them `env`.
         times: The time of each step.
         findings: Events that the mission's environment section does not allow.
         positions: The number of positions.
-        tallies: The accounts of what was in the recording.
+        tallies: The counts of the recording's contents.
     """
 
     trace: Trace
@@ -45,7 +45,7 @@ class Shown:
 
 
 def watched(path: str, mission: ElaboratedMission, names: dict[str, str]) -> Shown:
-    """Return what a recording shows of a mission's world; raises Mistake if it can't be read or shows no position."""
+    """Return a recording's view of a mission's world; raises Mistake if it can't be read or has no position."""
     plan = Plan(mission.initial, precautions=Precautions(Fallback.CONTINUE))
     state, steps, times, findings, count = started(plan), list[Step](), list[float](), list[Finding](), 0
     accounts: list[Tally] = []
@@ -67,7 +67,7 @@ def watched(path: str, mission: ElaboratedMission, names: dict[str, str]) -> Sho
 
 
 def _nothing_shown(path: str, accounts: Iterable[Tally]) -> Mistake:
-    """Return the mistake of a recording without a position that counts: what was in it instead."""
+    """Return the mistake for a recording without a usable position, with the recording's contents."""
     rows = [row for tally in accounts for row in tally.summary()]
     message = "; ".join(["it shows no position", *rows])
     return Mistake(message, "give a recording with positions, and name its vehicles with --name", path)
@@ -76,7 +76,7 @@ def _nothing_shown(path: str, accounts: Iterable[Tally]) -> Mistake:
 def feed(
     path: str, mission: ElaboratedMission, names: dict[str, str], accounts: list[Tally] | None = None
 ) -> Iterator[tuple[float, Heard]]:
-    """Yield the positions of a recording with their times; at its end, its accounts are added to those given."""
+    """Yield the dated positions of a recording; at its end, append its tallies to `accounts`."""
     told = [] if accounts is None else accounts
     found = _telemetry(path, mission, names, told) if path.endswith(TELEMETRY) else _ais(path, names, told)
     for time, said in found:
@@ -86,7 +86,7 @@ def feed(
 def _telemetry(
     path: str, mission: ElaboratedMission, names: dict[str, str], accounts: list[Tally]
 ) -> Iterator[tuple[float, PhysicalProperty]]:
-    """Yield the positions of the vehicles that the table names by system id; of all as UAVs if it names none."""
+    """Yield the positions of the vehicles that `names` maps by system id; without any, of all systems as UAVs."""
     kinds = mission.setting.kinds
     systems = ((identity.partition(":"), name) for identity, name in names.items())
     table = {

@@ -1,6 +1,6 @@
-"""Plugins of other packages: they are found by their entry points, and loaded when a command line names them.
+"""Plugins of other packages, found by their entry points and loaded when a command line names them.
 
-`importlib.metadata` reads what packages declare, and imports none of them.
+`importlib.metadata` reads the declarations of packages and imports none of them.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from bigactors.mistakes import Mistake, suggestion
 from physical import PhysicalError
 
 VEHICLES: Final = "bigactors.plugins.vehicles"
-"""Entry points of this group name a scheme, and a function of a name, an address and the vehicles assigned."""
+"""The group of vehicle plugins. An entry point names a scheme, and a function of a name, an address and vehicles."""
 
 FEEDS: Final = "bigactors.plugins.feeds"
-"""Entry points of this group name a kind of feed, and a function of a name and an address."""
+"""The group of feed plugins. An entry point names a kind of feed, and a function of a name and an address."""
 
 
 DETECTORS: Final = "bigactors.plugins.detectors"
-"""Entry points of this group name a function from a `Frame` to `Patch`es."""
+"""The group of detectors. An entry point names a function from a `Frame` to `Patch`es."""
 
 
 def installed(group: str) -> tuple[EntryPoint, ...]:
-    """Return what the installed packages declare in a group, each once, in the order of its names."""
+    """Return the entry points of a group in the order of their names, without duplicates."""
     return tuple(sorted(set(entry_points(group=group)), key=lambda each: (each.name, each.value)))
 
 
@@ -38,7 +38,7 @@ def package_of(entry: EntryPoint) -> str:
 
 
 def make_vehicles(scheme: str, name: str, address: str, vehicles: tuple[Assigned, ...]) -> Plugin:
-    """Let an installed plugin make what drives some vehicles; raises Mistake."""
+    """Return the plugin that an installed package makes to drive the vehicles; raises Mistake."""
     plugin, blame = _made(VEHICLES, scheme, (name, address, vehicles))
     missing = [each.entity for each in vehicles if not plugin.owns(each.entity)]
     if missing:
@@ -47,12 +47,12 @@ def make_vehicles(scheme: str, name: str, address: str, vehicles: tuple[Assigned
 
 
 def make_feed(kind: str, name: str, address: str) -> Plugin:
-    """Let an installed plugin make a feed; raises Mistake."""
+    """Return the feed that an installed package makes; raises Mistake."""
     return _made(FEEDS, kind, (name, address))[0]
 
 
 def find_detector(word: str) -> Detector:
-    """Return an installed detector by its name, or MODULE:NAME; raises Mistake, PhysicalError."""
+    """Return a detector: an installed one by its name, or MODULE:NAME; raises Mistake, PhysicalError."""
     if ":" in word:
         return load_detector(word)
     require_known(word, DETECTORS, (), f"there is no detector '{word:.40}'")
@@ -60,7 +60,7 @@ def find_detector(word: str) -> Detector:
 
 
 def require_known(word: str, group: str, ours: Collection[str], message: str) -> None:
-    """Raise Mistake where no installed package declares a name, with what there is."""
+    """Raise Mistake for an undeclared name; the hint lists the declared ones."""
     known = [*ours, *dict.fromkeys(entry.name for entry in installed(group))]
     if word not in known:
         hint = suggestion(word, known) or f"there are {', '.join(known) or 'none'}"
@@ -68,7 +68,7 @@ def require_known(word: str, group: str, ours: Collection[str], message: str) ->
 
 
 def _only(group: str, called: str) -> EntryPoint:
-    """Return the one entry point of a name that is declared; raises Mistake if two packages declare it."""
+    """Return the only entry point with a declared name; raises Mistake if two packages declare it."""
     found = [entry for entry in installed(group) if entry.name == called]
     if len(found) > 1:
         packages = " and ".join(map(package_of, found))
@@ -77,7 +77,7 @@ def _only(group: str, called: str) -> EntryPoint:
 
 
 def _made(group: str, called: str, arguments: tuple[Any, ...]) -> tuple[Plugin, Callable[[str], Mistake]]:
-    """Return what an entry point's function makes, and how to blame its package for a fault."""
+    """Return the plugin that an entry point's function makes, and a function that blames its package for a fault."""
     entry = _only(group, called)
 
     def blame(fault: str) -> Mistake:
@@ -94,7 +94,7 @@ def _made(group: str, called: str, arguments: tuple[Any, ...]) -> tuple[Plugin, 
 
 
 def _guarded(call: Callable[..., Any], arguments: tuple[Any, ...], blame: Callable[[str], Mistake]) -> Any:
-    """Call what another package has written; a PhysicalError of it is the user's mistake, all else its own."""
+    """Call another package's code. A PhysicalError is the user's mistake; other errors are the package's fault."""
     try:
         return call(*arguments)
     except PhysicalError:

@@ -1,11 +1,11 @@
 """The live demonstration: the verified oil-spill mission, flown by a simulated plane beside a replayed AIS feed.
 
-`python -m bigactors.live_demo` (or `make live-demo`) checks `spill_watch`, writes its verdict, flies it with everything
-real but the plane and the water: MAVLink and AIS over sockets and files, the camera's pictures, in which the spill is
-found, the rules, the monitor, the recording. Time is the simulation's, so that an hour takes a minute. Then the
-recording is replayed, compared, and shown as a page, `flight.html`.
+`python -m bigactors.live_demo` (or `make live-demo`) checks `spill_watch`, writes its verdict, and flies it. Only the
+plane and the water are simulated. MAVLink and AIS over sockets and files, the camera's pictures with the detection of
+the spill, the rules, the monitor and the recording are real. Simulated time passes an hour in a minute. Then the
+recording is replayed, compared, and shown as the page `flight.html`.
 
-With `--console` (`make live-demo CONSOLE=1`) the operator's console looks on, and time passes so that one can follow.
+`--console` (`make live-demo CONSOLE=1`) opens the operator's console, at a pace that a person can follow.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ MISSION: Final = "spill_watch"
 SOCKET: Final = "run.sock"
 AIRFIELD: Final = (37.147, -8.582, 20.0)
 SPILL: Final = circle((36.9915, -8.6925), 200.0)
-"""What the camera films, some 300 m from the middle of the search area, around which the plane circles."""
+"""The filmed spill, some 300 m from the middle of the search area, around which the plane circles."""
 
 LENS: Final = Lens(fov=90.0, pitch=-30.0)
 PIXELS: Final = (240, 180)
@@ -56,14 +56,14 @@ EVERY: Final = 6.0
 """Seconds between two pictures."""
 
 KEPT: Final = 20
-"""How many pictures are kept."""
+"""The number of pictures kept."""
 
 COAST: Final = 37.05
-"""The latitude north of which the camera is off: over land it would find fields."""
+"""The latitude north of which the camera is off: over land, the detector would find fields."""
 
 LONGEST: Final = 5_400.0
 FOLLOWED: Final = 10.0
-"""How much faster than the clock on the wall time passes for who looks on."""
+"""Simulated seconds in a real second when an operator watches."""
 
 
 def arguments() -> ArgumentParser:
@@ -106,7 +106,7 @@ def _demonstrated(asked: Namespace) -> int:
 
 
 def _prepare(folder: Path) -> None:
-    """Make the folder, and take out the flight before, unless one flies there now."""
+    """Make the folder and delete the previous flight, unless one flies there now."""
     if is_taken(folder / SOCKET):
         raise Mistake(
             "a demonstration flies into this folder", "wait for its end, or name another", str(folder)
@@ -154,7 +154,7 @@ async def _flying(flight: Flight, terminal: Terminal, tape: object, folder: Path
     watchers = [terminal, *([tape] if tape is not None else [])]
     for plugin in flight.plugins:
         if isinstance(plugin, CameraFeed):
-            plugin.in_thread = False  # no thread would keep up with simulated time
+            plugin.in_thread = False  # a thread cannot keep up with simulated time
     flown = asyncio.ensure_future(fly(flight, watchers))  # type: ignore[arg-type]  # a tape is a watcher
     plane = Vehicle(Kind.PLANE, AIRFIELD)
     beside = [asyncio.ensure_future(_simulate(flight, plane)), asyncio.ensure_future(_film(plane, folder))]
@@ -168,7 +168,7 @@ async def _flying(flight: Flight, terminal: Terminal, tape: object, folder: Path
 
 
 async def _simulate(flight: Flight, plane: Vehicle) -> None:
-    """Put the simulated plane on the link on which the run listens."""
+    """Connect the simulated plane to the link of the run."""
     autopilot = next(plugin for plugin in flight.plugins if isinstance(plugin, Autopilot))
     while autopilot.local is None:
         await asyncio.sleep(0.05)
@@ -176,7 +176,7 @@ async def _simulate(flight: Flight, plane: Vehicle) -> None:
 
 
 async def _film(plane: Vehicle, folder: Path) -> None:
-    """Take pictures of the sea below the plane, each called after the time at which it was taken."""
+    """Take pictures of the sea below the plane; each file is named after its time."""
     clock = asyncio.get_running_loop()
     began, seed = time.time() - clock.time(), 0
     while True:
@@ -193,7 +193,7 @@ async def _film(plane: Vehicle, folder: Path) -> None:
 
 
 def _put(target: Path, image: Any) -> None:
-    """Write a picture, and rename it when it is whole; those of before are not needed any more."""
+    """Write a picture under its name once it is complete, and delete old ones."""
     _, data = opencv().imencode(".png", image)
     part = target.with_suffix(".part")
     part.write_bytes(data.tobytes())

@@ -1,4 +1,4 @@
-"""`bigactors.check`: of a mission by its file, too."""
+"""`bigactors.check`: `checker.check`, which also takes a mission's file or name."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -18,22 +18,22 @@ def check(
     limits: Limits | None = None,
     **options: Any,
 ) -> Report:
-    """Explore everything that is reachable and decide the properties.
+    """Explore all reachable configurations and decide the properties.
 
     Args:
         start: A mission; the path of its file, or the name of one that ships; or a configuration to start from.
-        properties: What is to be decided; what the mission asks where it is left out.
-        limits: Where to stop.
+        properties: The properties to decide; by default the mission's.
+        limits: The bounds of the exploration.
         options: Those of `checker.check`: `report`, `notes`, `engine`, `violations`, `reduce`, `keeping`, `cluster`,
             `threads` and `times`.
 
     Raises:
-        MissionError: The file cannot be read, or has mistakes; all of them.
+        MissionError: The file cannot be read or has mistakes; the error has all of them.
         RefusedError: A reduction is unsound for the mission, or nothing in it allows one.
         TypeError: A configuration is given without properties.
     """
     if isinstance(start, str | Path):
-        from specs.elaboration import load_mission  # noqa: PLC0415 - who has a mission has read it
+        from specs.elaboration import load_mission  # noqa: PLC0415 - a caller with a mission has loaded it already
 
         start = load_mission(start)
     return check_properties(start, properties, limits, **options)

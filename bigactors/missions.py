@@ -18,7 +18,7 @@ from specs.elaboration import ElaboratedMission, Variation, find_mission, load_m
 
 
 def locate(word: str) -> Path:
-    """Return the path of a mission: a file, or one that ships, given by its name; raises Mistake."""
+    """Return the path of a mission, given as a file or as a shipped mission's name; raises Mistake."""
     try:
         return find_mission(word)
     except MissionError as error:
@@ -27,7 +27,7 @@ def locate(word: str) -> Path:
 
 
 def variation_of(options: Namespace) -> Variation:
-    """Return the options' variation of a mission; raises Mistake for a missing file."""
+    """Return the variation of a mission that the options describe; raises Mistake for a missing file."""
     sources = {name: Path(file) for name, file in options.source}
     for name, path in sources.items():
         if not path.exists():
@@ -40,7 +40,7 @@ def variation_of(options: Namespace) -> Variation:
 
 
 def open_mission(word: str, variation: Variation) -> ElaboratedMission:
-    """Return a mission, ready to be explored; raises Mistake with all its diagnostics."""
+    """Return an elaborated mission; raises Mistake with all its diagnostics."""
     try:
         return load_mission(locate(word), variation)
     except MissionError as error:
@@ -48,7 +48,7 @@ def open_mission(word: str, variation: Variation) -> ElaboratedMission:
 
 
 def checkable(mission: ElaboratedMission) -> ElaboratedMission:
-    """Return a mission that can be checked; raises Mistake if it has no agents."""
+    """Return the mission if it can be checked; raises Mistake if it has no bigActor."""
     try:
         require_bigactor(mission)
     except MissionError as error:
@@ -62,7 +62,7 @@ def opening(variation: Variation) -> Callable[[str], ElaboratedMission]:
 
 
 def fixed_places(mission: ElaboratedMission) -> tuple[PhysicalProperty, ...]:
-    """Return where what never moves is."""
+    """Return the positions of all entities that never move."""
     physical, kinds = mission.initial.structure.physical, mission.setting.kinds
     placed = ((name, physical.placement(name)) for name in sorted(mission.fixed))
     return tuple(
@@ -75,7 +75,7 @@ def fixed_places(mission: ElaboratedMission) -> tuple[PhysicalProperty, ...]:
 def digest_of(mission: ElaboratedMission) -> str:
     """Return a digest of the mission's text, its scheduler, control and first world, and the version of bigactors.
 
-    Two missions with one digest have the same configurations: the content of files that they name is in their world.
+    Missions with equal digests have equal configurations: the contents of their files are in their worlds.
     """
     initial = mission.initial
     world = dict(initial.state.items())  # type: ignore[attr-defined]  # a stored configuration

@@ -5,13 +5,13 @@ from collections.abc import Iterable
 
 
 class Mistake(Exception):
-    """Something the user has to put right: printed without a traceback, exit code 2.
+    """A mistake that the user has to correct: printed without a traceback, exit code 2.
 
     Attributes:
-        message: What was found and what was expected.
-        hint: What to do; may be empty.
+        message: The cause: the text found, and the text expected.
+        hint: The remedy; may be empty.
         place: The file; may be empty.
-        rendered: How it is printed, where something else has rendered it.
+        rendered: The whole printed text, if another module has rendered it; else empty.
         details: The same as plain data, one for each mistake, for `--json`.
     """
 
@@ -38,19 +38,19 @@ class Mistake(Exception):
 
 
 def suggestion(word: str, among: Iterable[str]) -> str:
-    """Return `did you mean ...?`, or nothing; what finds it is loaded when there is a mistake."""
-    from bigraphs.notation.spelling import did_you_mean  # noqa: PLC0415 - no command needs it
+    """Return `did you mean ...?`, or an empty string. The search is loaded at the first mistake."""
+    from bigraphs.notation.spelling import did_you_mean  # noqa: PLC0415 - no correct command needs it
 
     return did_you_mean(word, among)
 
 
 def unreadable(path: str, error: OSError) -> Mistake:
-    """Return what to say of a file or folder that the system refuses."""
+    """Return the mistake for a file or folder that the system refuses."""
     return Mistake(error.strerror or str(error), place=path)
 
 
 def describe_bug(error: BaseException) -> str:
-    """Return what is printed of an exception that should not have been."""
+    """Return the printed report of an unexpected exception."""
     lines = "".join(traceback.format_exception(error))
     return (
         f"{lines}bigactors: internal error: this is a bug of bigactors, not of your mission; "

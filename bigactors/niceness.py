@@ -1,4 +1,4 @@
-"""How much a process gives way to the others that want the processor."""
+"""How far a process yields the processor to others."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ from pathlib import Path
 from typing import Final
 
 AUTOGROUP: Final = Path("/proc/self/autogroup")
-"""Linux shares the processor among sessions first: this is a session's niceness, that of a process counts within it
-alone (sched(7))."""
+"""The niceness of a Linux session, among which Linux shares the processor first (sched(7)).
+
+The niceness of a process counts only within its session.
+"""
 
 
 def give_way(niceness: int) -> None:
-    """Give way to other processes, and as the first of a session to those of all other sessions."""
+    """Yield to other processes; as the leader of a session, also to all other sessions."""
     told = os.nice(niceness)
     if os.getsid(0) == os.getpid():
-        with suppress(OSError):  # not every system shares so
+        with suppress(OSError):  # only Linux has autogroups
             AUTOGROUP.write_text(str(told), encoding="ascii")

@@ -1,7 +1,7 @@
-"""What notebooks show of values: pictures and tables that stand by themselves, readable on light and on dark pages.
+"""Pictures and tables of values in notebooks: self-contained, and readable on light and on dark pages.
 
-Values offer what they look like by `_repr_svg_` and `_repr_html_`, which delegate to here. Colours are in the elements,
-without style sheets and scripts, since notebooks are shown where both are removed.
+The methods `_repr_svg_` and `_repr_html_` of values call this module. Each element has its own colours: notebooks are
+also shown on sites that remove style sheets and scripts.
 """
 
 from collections.abc import Iterator
@@ -19,10 +19,10 @@ from checker.traces import print_length
 from semantics.state.configuration import Configuration
 
 MOST_ENTITIES: Final = 200
-"""The most entities of a configuration that is drawn by itself."""
+"""The most entities of a configuration with a picture."""
 
 MOST_STEPS: Final = 200
-"""The most steps of a trace that are shown."""
+"""The most steps shown of a trace."""
 
 COLOURS: Final = {Outcome.HOLDS: "#2e9e5b", Outcome.VIOLATED: "#e0453a", Outcome.INCOMPLETE: "#c58a00"}
 CELL: Final = "text-align:left;vertical-align:top;padding:2px 10px 2px 0"
@@ -33,7 +33,7 @@ OWN: Final = "#4f86c6"
 
 
 def configuration_svg(c: Configuration) -> str | None:
-    """Return the picture of a configuration: the bigraph beside the map; None where it is too large for one."""
+    """Return the picture of a configuration, the bigraph beside the map; None for a configuration that is too large."""
     if len(shown_names(c)) > MOST_ENTITIES:
         return None
     with TemporaryDirectory() as folder:
@@ -43,11 +43,12 @@ def configuration_svg(c: Configuration) -> str | None:
 
 
 def trace_html(trace: Trace) -> str:
-    """Return a trace as a table: a column for each agent, and what changed."""
+    """Return a trace as a table, with a column for each agent and one for the changes."""
     lanes = lanes_of_trace(trace)
     heads = (element("th", text(name), style=CELL) for name in ("", *lanes.names, "changes"))
-    rows = (_row(step, len(lanes.names)) for step in lanes.steps[:MOST_STEPS])
-    left_out = len(lanes.steps) - MOST_STEPS
+    shown = [step for step in lanes.steps if step.number <= MOST_STEPS or step.role]
+    rows = (_row(step, len(lanes.names)) for step in shown)
+    left_out = len(lanes.steps) - len(shown)
     more = [f"{left_out:,} more steps are not shown"] if left_out > 0 else []
     return element(
         "div",
@@ -59,7 +60,10 @@ def trace_html(trace: Trace) -> str:
 
 def _row(step: LaneStep, lanes: int) -> str:
     colour = SERVES if step.serves else AROUND if step.label.agent is None else OWN
-    said = element("b", text(step.label.rule), style=f"color:{colour}") + f" {text(step.about)}"
+    role = (
+        element("b", text(f"[{step.role}] "), style=f"color:{COLOURS[Outcome.VIOLATED]}") if step.role else ""
+    )
+    said = role + element("b", text(step.label.rule), style=f"color:{colour}") + f" {text(step.about)}"
     cells = (element("td", said if lane == step.lane else "", style=CELL) for lane in range(lanes))
     changes = "<br>".join(text(change) for change in step.changes)
     number = element("td", f"c{step.number}", style=f"{CELL};{QUIET}")
@@ -67,7 +71,7 @@ def _row(step: LaneStep, lanes: int) -> str:
 
 
 def report_html(report: Report) -> str:
-    """Return a report as a table of verdicts; the trace of a violation unfolds."""
+    """Return a report as a table of verdicts, with a fold-out trace for each violation."""
     notes = (*(bound.effect for bound in report.bounds), *report.notes)
     return element(
         "div",
@@ -78,7 +82,7 @@ def report_html(report: Report) -> str:
 
 
 def verdict_html(verdict: Verdict) -> str:
-    """Return a verdict as a report shows it."""
+    """Return a verdict as one table, in the form that reports use."""
     return element("table", *_rows(verdict))
 
 

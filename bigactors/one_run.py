@@ -1,4 +1,4 @@
-"""One run of a mission, step by step: what may be done next, and when, where the mission says how long things take."""
+"""One run of a mission, step by step: the possible next steps, with their dates where the mission has times."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MINUTE = 60_000
 
 
 class Choice(NamedTuple):
-    """A step that may be taken next; with times at the earliest and at the latest (None: whenever), in ticks."""
+    """A possible next step. With times, its earliest and latest date in ticks; `latest` is None without a bound."""
 
     transition: Transition
     earliest: int | None = None
@@ -33,9 +33,9 @@ class OneRun:
 
     Attributes:
         initial: Its first configuration.
-        taken: Its steps.
-        dates: When each was taken, in ticks; empty where nothing says how long things take.
-        shown: What `display` showed in each.
+        taken: The steps so far.
+        dates: The date of each step in ticks; empty for a mission without times.
+        shown: The texts that `display` showed in each step.
     """
 
     initial: Configuration
@@ -46,13 +46,13 @@ class OneRun:
 
     def __post_init__(self) -> None:
         if self.initial.setting.timing is not None:
-            from semantics.timing.dated_runs import DatedRun  # noqa: PLC0415 - geometry takes its time to load
+            from semantics.timing.dated_runs import DatedRun  # noqa: PLC0415 - geometry is slow to load
 
             self._dated.append(DatedRun(self.initial))
 
     @property
     def at(self) -> Configuration:
-        """Where the run is."""
+        """The current configuration."""
         return self.taken[-1].target if self.taken else self.initial
 
     @property
@@ -61,20 +61,20 @@ class OneRun:
         return Trace(self.initial, tuple(self.taken), dates=tuple(self.dates))
 
     def expansion(self) -> Expansion:
-        """Return what follows, whenever that is."""
+        """Return the possible transitions at any date."""
         return expand(self.at)
 
     def choices(self) -> tuple[Choice, ...]:
-        """Return what may be done next."""
+        """Return the possible next steps."""
         if self._dated:
             return tuple(Choice(*offer) for offer in self._dated[-1].offers())
         return tuple(map(Choice, self.expansion().transitions))
 
     def take(self, choice: Choice, date: int | None = None) -> None:
-        """Take a step, where there are times at a date, or as early as may be.
+        """Take a step; with times, at `date` or at the earliest date.
 
         Raises:
-            UntimelyError: The clocks do not allow it then.
+            UntimelyError: The clocks do not allow the step at that date.
         """
         transition = choice.transition
         if self._dated:
@@ -89,7 +89,7 @@ class OneRun:
         self.shown.append(transition.shown)
 
     def take_by_chance(self, chance: random.Random) -> bool:
-        """Take one of the steps, at one of its dates, each as likely as any other; tell whether there was one."""
+        """Take one of the steps at random, at a random one of its dates; return whether there was a step."""
         choices = self.choices()
         if not choices:
             return False
@@ -97,16 +97,16 @@ class OneRun:
         if choice.earliest is None:
             self.take(choice)
             return True
-        from semantics.timing.dated_runs import UntimelyError  # noqa: PLC0415 - geometry takes its time to load
+        from semantics.timing.dated_runs import UntimelyError  # noqa: PLC0415 - geometry is slow to load
 
         try:
             self.take(choice, chance.randint(choice.earliest, self._last(choice)))
-        except UntimelyError:  # not all moments between the two need be allowed
+        except UntimelyError:  # the allowed dates may have gaps
             self.take(choice)
         return True
 
     def _last(self, choice: Choice) -> int:
-        """Return the latest date that chance takes: within a minute where there is no end."""
+        """Return the latest date for a random choice: a minute after the earliest where there is no bound."""
         assert choice.earliest is not None
         assert self.initial.setting.timing is not None
         a_minute_on = choice.earliest + max(1, MINUTE // self.initial.setting.timing.tick)
@@ -120,7 +120,7 @@ class OneRun:
 
 
 def print_step(run: OneRun, number: int) -> Iterator[str]:
-    """Print a step of a run, what it changed and what was displayed."""
+    """Print a step of a run, its changes and the displayed texts."""
     step, date = run.taken[number], run.trace.date(number)
     source = run.taken[number - 1].target if number else run.initial
     yield f"c{number} --{f'at {date} ' if date else ''}{step.label}--> c{number + 1}"
@@ -129,6 +129,6 @@ def print_step(run: OneRun, number: int) -> Iterator[str]:
 
 
 def nothing_more(run: OneRun) -> str:
-    """Say why a run has ended."""
+    """Return the reason why a run has ended."""
     reasons = "".join(f"; {fault.agent}: {fault}" for fault in run.expansion().faults)
     return f"nothing more is enabled{reasons}"

@@ -1,4 +1,4 @@
-"""The files that `check` writes for other programs: their formats, and the writing."""
+"""The documents that `check` writes for other programs: their formats, and the writing."""
 
 import os
 from argparse import Namespace
@@ -26,19 +26,19 @@ STANDARD_OUTPUT: Final = "-"
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """A document that is asked for: its format, and its file or `-`."""
+    """A requested document: its format, and its file or `-`."""
 
     format: str
     file: str
 
     @property
     def to_standard_output(self) -> bool:
-        """Whether it goes where the text report would."""
+        """Whether it replaces the text report on the standard output."""
         return self.file == STANDARD_OUTPUT
 
 
 def outputs_of(options: Namespace) -> tuple[Output, ...]:
-    """Return what `--json` and `--output` ask for; raises Mistake for what cannot be written."""
+    """Return the documents that `--json` and `--output` request; raises Mistake for an unwritable one."""
     asked = [("json", options.json)] if options.json is not None else []
     outputs = tuple(Output(*each) for each in (*asked, *options.output))
     taken: dict[str, Output] = {}
@@ -54,7 +54,7 @@ def outputs_of(options: Namespace) -> tuple[Output, ...]:
 def _checked(file: str) -> str:
     try:
         check_writable(file)
-    except ValueError as error:  # a zero byte
+    except ValueError as error:  # the path has a zero byte
         raise Mistake("this is no path of a file", place=repr(file)) from error
     return file
 
@@ -65,7 +65,7 @@ def write_outputs(outputs: Iterable[Output], results: Sequence[Checked | Failed]
         text = FORMATS[output.format](results, code)
         if not output.to_standard_output:
             write_text(output.file, text)
-        elif output.format == "junit":  # whatever the terminal's encoding: what it lacks would become markup
+        elif output.format == "junit":  # ASCII: a substituted character could be markup
             say_text(
                 text.encode("ascii", "xmlcharrefreplace").decode("ascii").replace("UTF-8", "US-ASCII", 1)
             )
@@ -78,11 +78,11 @@ def write_outputs(outputs: Iterable[Output], results: Sequence[Checked | Failed]
 
 def _json(results: Sequence[Checked | Failed], code: Exit) -> str:
     text = json_text(results_json(list(results), code))
-    return text.encode("utf-8", "backslashreplace").decode()  # what names hold that is not UTF-8 is escaped
+    return text.encode("utf-8", "backslashreplace").decode()  # escape parts of names that are not UTF-8
 
 
 def _junit(results: Sequence[Checked | Failed], _: Exit) -> str:
-    from checker.reports.junit import junit_text  # noqa: PLC0415 - each format is loaded where it is asked for
+    from checker.reports.junit import junit_text  # noqa: PLC0415 - each format is loaded on request
 
     return junit_text(map(result_of, results))
 
@@ -105,21 +105,21 @@ FORMATS: Final[dict[str, Callable[[Sequence[Checked | Failed], Exit], str]]] = {
     "sarif": _sarif,
     "github": _github,
 }
-"""What makes a document of each format; their names are those of `arguments.FORMATS`."""
+"""The writer of each format. The names are those of `arguments.FORMATS`."""
 
 
 # --- results --------------------------------------------------------------------------------------------------
 
 
 def result_of(checked: Checked | Failed) -> Result:
-    """Return a mission's result in the shape that the formats share."""
+    """Return a mission's result in the common shape of the formats."""
     if isinstance(checked, Checked):
         return result_on(checked.mission, checked.name, checked.report)
     return Result(checked.name, file_of(checked.name), failures=tuple(_failures(checked)))
 
 
 def result_on(mission: ElaboratedMission, name: str, report: Report) -> Result:
-    """Return the report on a mission with the places in its text."""
+    """Return the report on a mission together with line numbers in its text."""
     return Result(
         name,
         file_of(name),
@@ -131,7 +131,7 @@ def result_on(mission: ElaboratedMission, name: str, report: Report) -> Result:
 
 
 def file_of(name: str) -> str:
-    """Return the file of a mission, from the working directory where it lies inside."""
+    """Return the file of a mission, relative to the working directory if it lies inside."""
     try:
         path = Path(os.path.abspath(locate(name)))
     except Mistake:
@@ -141,7 +141,7 @@ def file_of(name: str) -> str:
 
 
 def check_line(mission: ElaboratedMission) -> int:
-    """Return the line of a mission's first `check` section, 1 without one."""
+    """Return the line of a mission's first `check` section; 1 without one."""
     source, tree = parse_bytes(mission.source.name, mission.source.text.encode())
     return next((source.line(section.span.start) for section in tree.each(Check)), 1)
 

@@ -1,4 +1,4 @@
-"""Make the plugins of vehicles and feeds from the command line's options."""
+"""Vehicle and feed plugins from the command line's options."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ ROS = "ros"
 def plugins_of(
     options: Namespace, mission: ElaboratedMission, tap: Tap | None = None
 ) -> tuple[tuple[Plugin, ...], dict[str, str]]:
-    """Return the plugins of a run, and the owner of each vehicle; `tap` receives every frame; raises Mistake."""
+    """Return the plugins of a run, and the plugin that owns each vehicle; `tap` receives all frames; raises Mistake."""
     try:
         crafts = _crafts(options, mission)
         poses = poses_for(options.camera, crafts)
@@ -87,7 +87,7 @@ def _vehicles(
 
 
 def _assigned(craft: Craft, mission: ElaboratedMission) -> Assigned:
-    """Return what a plugin other than MAVLink's is told of a vehicle; raises Mistake where it has a MAVLink id."""
+    """Return the assignment of a vehicle to a plugin other than MAVLink's; raises Mistake if it has a MAVLink id."""
     if craft.system is not None or craft.serial is not None:
         hint = "leave the id out: only vehicles that speak MAVLink have one"
         raise Mistake(
@@ -136,7 +136,7 @@ def _craft(name: str, system: int | None, mission: ElaboratedMission) -> Craft:
 
 
 def _told(options: Namespace, scheme: str, name: str) -> str | None:
-    """Return the number of a kind that the mission's table gives a name."""
+    """Return the number in the mission's name table for a name and a scheme."""
     found = (identity.partition(":") for identity, called in options.name if called == name)
     return next((number for of, _, number in found if of == scheme), None)
 
@@ -153,11 +153,11 @@ def _system(name: str, given: int | None, told: str | None) -> int | None:
 
 
 def _own_names(options: Namespace, mission: ElaboratedMission, crafts: dict[str, Craft]) -> dict[str, str]:
-    """Return the reserved names: of the vehicles, the stations, and places that never move.
+    """Return the reserved names: of the vehicles, the stations, and the places that never move.
 
-    The names of bigActors, kinds and channels, and `region`, are reserved as well.
+    The names of bigActors, kinds and channels, and `region`, are reserved too.
 
-    A place whose kind is given for detections can be detected: if it is elsewhere, an assumption breaks.
+    A place of a detectable kind isn't reserved: its detection elsewhere breaks an assumption.
     """
     detected = dict(options.kinds).get("detections", frozenset())
     own = {
@@ -179,7 +179,7 @@ def _own_names(options: Namespace, mission: ElaboratedMission, crafts: dict[str,
 
 
 def _stations_of(mission: ElaboratedMission) -> set[str]:
-    """Return our ground stations: the entities that have control authority, and those that host bigActors."""
+    """Return our ground stations: the entities with control authority, and the hosts of bigActors."""
     alpha, kinds = mission.initial.alpha, mission.setting.kinds
     hosts = {alpha.host(agent) for agent in alpha.names()}
     channels = {each for name in kinds for each in mission.initial.structure.physical.channels(name)}
@@ -193,7 +193,7 @@ def _has_border(name: str, mission: ElaboratedMission) -> bool:
 
 
 def _check_all_driven(options: Namespace, mission: ElaboratedMission) -> None:
-    """Refuse to fly a mission without one of its vehicles, whose flights would never be seen to end.
+    """Refuse to fly a mission while one of its vehicles is missing: its flights would never be observed to end.
 
     With several stations, each has its own vehicles.
     """
@@ -204,7 +204,7 @@ def _check_all_driven(options: Namespace, mission: ElaboratedMission) -> None:
 
 
 def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:
-    """Return the stations that the mission's channels of authority name, with their MAVLink ids."""
+    """Return the stations named by the mission's channels of control authority, with their MAVLink ids."""
     physical = mission.initial.structure.physical
     channels = {
         each for name in mission.setting.kinds for each in physical.channels(name) if _is_authority(each)

@@ -1,7 +1,7 @@
-"""Checks before take-off: parts of a mission that no vehicle here can carry out.
+"""Checks before take-off for parts of a mission that no vehicle here can carry out.
 
-A control commits when a report has shown that it is done. Vehicles report where they are, and whom they obey. No report
-shows that one is aboard another, that a load was put down, or that a channel was joined.
+A control commits when a report confirms it. Vehicles report their positions and their controlling stations. No report
+confirms that a vehicle is aboard another, that a load was put down, or that a channel was joined.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ from semantics.state.signature import Name
 from specs.elaboration import ElaboratedMission
 
 PATIENCE = 15.0
-"""Seconds in which a vehicle should have reported its parameters."""
+"""Seconds that a vehicle has to report its parameters."""
 
 MOST_INSTANCES = 5_000
-"""How many cases of a control are checked."""
+"""The most instances of a control that are checked."""
 
 Objection = Callable[[Reaction], str]
-"""Returns the objection to a control, or an empty text."""
+"""Returns the objection to a control; empty if there is none."""
 
 
 def check_idle(live: LiveRun, *, takes_over: bool) -> None:
-    """Refuse to command vehicles that are under way on a mission of somebody else; raises Mistake."""
+    """Refuse to command vehicles that fly a mission of another operator; raises Mistake."""
     if takes_over:
         return
     said = live.inbox.said
@@ -51,12 +51,12 @@ def check_idle(live: LiveRun, *, takes_over: bool) -> None:
 
 
 def check_flyable(mission: ElaboratedMission) -> None:
-    """Refuse controls that no report would ever confirm, warn of possible ones; raises Mistake."""
+    """Refuse controls that no report can confirm, and warn of controls that may be such; raises Mistake."""
     _judge(mission, lambda reaction: next(_unshown(reaction, mission), ""))
 
 
 def check_places(mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> None:
-    """Refuse places that are too small for a vehicle whose kind is now known, or outside one of its fences.
+    """Refuse places too small for a vehicle, now that its kind is known, or outside one of its fences.
 
     Raises Mistake.
     """
@@ -83,7 +83,7 @@ def check_places(mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> Non
 def _bars(
     plugin: Preflight, vehicle: Name, reaction: Reaction, mission: ElaboratedMission
 ) -> Iterator[str | None]:
-    """Yield why a vehicle can't pass the places of its way, if it can't."""
+    """Yield the reasons why a vehicle can't pass the places on its way."""
     for via in (each for each in reaction.via if isinstance(each, str)):
         yield from (plugin.bar(vehicle, geometry, via) for geometry in placements_of(via, mission))
 
@@ -91,7 +91,7 @@ def _bars(
 def _objections(
     plugin: Preflight, vehicle: Name, place: PlaceTerm, mission: ElaboratedMission
 ) -> Iterator[str | None]:
-    """Yield why a vehicle can't stay in its destination, wherever this is and whatever else is there, if it can't."""
+    """Yield the reasons why a vehicle can't stay at some position of its destination, beside the entities there."""
     if not isinstance(place, str):
         return
     for geometry, around in spots(mission.initial, vehicle, place):
@@ -99,7 +99,7 @@ def _objections(
 
 
 async def get_to_know(plugins: tuple[Plugin, ...], vehicles: Iterable[Name]) -> None:
-    """Wait until vehicles have reported their circles and fences, or have not answered in time."""
+    """Wait until vehicles have reported their circles and fences, or until the timeout."""
     asked = [plugin for plugin in preflights(plugins) if any(map(plugin.owns, vehicles))]
     with suppress(TimeoutError):
         async with asyncio.timeout(PATIENCE):
@@ -108,7 +108,7 @@ async def get_to_know(plugins: tuple[Plugin, ...], vehicles: Iterable[Name]) -> 
 
 
 def _judge(mission: ElaboratedMission, objection: Objection) -> None:
-    """Raise Mistake for a control that can never be done, and warn of one that may be impossible."""
+    """Raise Mistake for a control that is always impossible, and warn of one that may be impossible."""
     for agent, line, reactions in _controls(mission):
         reasons = {str(reaction): objection(reaction) for reaction in reactions}
         bad = [f"{control}: {reason}" for control, reason in reasons.items() if reason]
@@ -126,7 +126,7 @@ def _place(mission: ElaboratedMission, line: int) -> str:
 
 
 def _controls(mission: ElaboratedMission) -> Iterator[tuple[Name, int, tuple[Reaction, ...]]]:
-    """Yield the controls of each agent, with their lines, for all possible arguments."""
+    """Yield the controls of each agent, with their lines and all possible arguments."""
     program, roles = mission.setting.program, Roles(Bounds(mission.initial))
     for agent in roles.agents:
         for number in sorted(roles[agent].statements):
@@ -142,21 +142,21 @@ def _instances(
     mission: ElaboratedMission, make: Callable[..., Reaction], several: Iterable[Sequence[Name]]
 ) -> Iterator[Reaction]:
     for chosen in islice(product(*several), MOST_INSTANCES):
-        with suppress(Fault):  # the command does not take every name
+        with suppress(Fault):  # the command refuses some names
             reaction = make(*chosen)
             if _may_take(mission, reaction):
                 yield reaction
 
 
 def _may_take(mission: ElaboratedMission, reaction: Reaction) -> bool:
-    """Tell whether a reaction's movers may be at its destinations and ways, all different places."""
+    """Return whether a reaction's movers may be at its destinations and waypoints, and those all differ."""
     ways = ((node, place) for node, to in reaction.moves for place in (*reaction.via, to))
     each_once = all(len({*reaction.via, to}) == len(reaction.via) + 1 for _, to in reaction.moves)
     return each_once and all(_may_be(mission, *way) for way in ways)
 
 
 def _may_be(mission: ElaboratedMission, node: NodeTerm, place: PlaceTerm) -> bool:
-    """Tell whether a place may hold a node at all."""
+    """Return whether a place may hold a node at all."""
     of, holder = _kind(mission, node), _kind(mission, place)
     unknown = of is None or holder is None
     return node != place and (unknown or mission.setting.signature[str(holder)].may_contain(str(of)))
@@ -182,7 +182,7 @@ def _unshown(reaction: Reaction, mission: ElaboratedMission) -> Iterator[str]:
 
 
 def _links(reaction: Reaction) -> Iterator[tuple[NodeTerm, frozenset[LinkTerm]]]:
-    """Yield the nodes whose links a reaction changes, with those links."""
+    """Yield the nodes whose links a reaction changes, with the changed links."""
     changed = set(reaction.redex.links) ^ set(reaction.reactum.links)
     for node in dict.fromkeys(node for _, node in (*reaction.redex.links, *reaction.reactum.links)):
         links = frozenset(link for link, point in changed if point == node)
@@ -191,7 +191,7 @@ def _links(reaction: Reaction) -> Iterator[tuple[NodeTerm, frozenset[LinkTerm]]]
 
 
 def _is_other(link: LinkTerm) -> bool:
-    """Tell whether a link is certainly no control authority."""
+    """Return whether a link is certainly no control authority."""
     if isinstance(link, str):
         return not is_authority(link)
     return link.but == CONTROL_AUTHORITY or link.kind not in (None, CONTROL_AUTHORITY)

@@ -1,7 +1,7 @@
-"""Printing aside: while vehicles fly, a thread writes to the terminal, and nobody waits for it.
+"""Asynchronous printing: while vehicles fly, a thread writes to the terminal, so that the flight never waits for it.
 
-A terminal that is stopped (Ctrl-S) or a pipe that nobody reads blocks whoever writes there. So what is printed waits in
-a bounded queue; where it is full the oldest lines are left out, and how many is said in their place.
+A stopped terminal (Ctrl-S) or an unread pipe blocks its writer. So texts wait in a bounded queue. When the queue is
+full, the oldest lines are dropped, and one line reports their number.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from contextlib import contextmanager
 from typing import Final, TextIO
 
 MOST_WAITING: Final = 2_000
-"""How many texts wait; each is a line or a few."""
+"""The most texts in the queue; each is a line or a few."""
 
 PATIENCE: Final = 2.0
-"""Seconds for which the end of a run waits for what is still to be printed."""
+"""Seconds that the end of a run waits for the rest of the queue."""
 
 Failed = Callable[[TextIO, OSError], None]
-"""Takes a stream that can't be written to, and why."""
+"""Takes a stream that can't be written to, and the error."""
 
 
 class Printer:
@@ -39,7 +39,7 @@ class Printer:
         self._thread.start()
 
     def put(self, stream: TextIO, text: str) -> None:
-        """Print a text as soon as the stream takes it; never wait."""
+        """Queue a text for the stream; never wait."""
         with self._changed:
             if len(self._waiting) >= MOST_WAITING:
                 self._left_out += self._waiting.popleft()[1].count("\n")
@@ -47,7 +47,7 @@ class Printer:
             self._changed.notify_all()
 
     def is_done(self, patience: float) -> bool:
-        """Wait until all is printed, but not for ever; tell whether it was."""
+        """Wait until the queue is empty or `patience` seconds have passed; return whether it is empty."""
         with self._changed:
             return self._changed.wait_for(lambda: not self._waiting and not self._writing, patience)
 
@@ -73,17 +73,17 @@ class Printer:
 
 
 def _write(stream: TextIO, text: str) -> None:
-    """Write to the file itself: a thread that is blocked there holds no lock of the stream."""
+    """Write to the file descriptor: a thread blocked there holds no lock of the stream."""
     data = text.encode(stream.encoding or "utf-8", stream.errors or "strict")
     while data:
         data = data[os.write(stream.fileno(), data) :]
 
 
 class _Records(logging.Handler):
-    """What libraries log goes the same way."""
+    """Sends the log records of libraries to the queue."""
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Print a record."""
+        """Queue a record."""
         put(sys.stderr, f"{self.format(record)}\n")
 
 
@@ -91,7 +91,7 @@ _PRINTERS: Final[list[Printer]] = []
 
 
 def put(stream: TextIO, text: str) -> bool:
-    """Print aside, where that is asked for and the stream is a file; tell whether it is."""
+    """Queue a text for the printer, if there is one and the stream is a file; return whether it was queued."""
     if not _PRINTERS or not _is_file(stream):
         return False
     if text:
@@ -108,11 +108,11 @@ def _is_file(stream: TextIO) -> bool:
 
 @contextmanager
 def printing_aside(failed: Failed, give_up: Callable[[TextIO], None]) -> Iterator[None]:
-    """Let a thread print what is printed meanwhile.
+    """Let a thread print all output of the body.
 
     Args:
         failed: Called in that thread with a stream that can't be written to.
-        give_up: Called at the end for each stream, if the thread is still blocked: discards what is printed later.
+        give_up: Called at the end for each stream if the thread is still blocked; it discards all later output.
     """
     for stream in (sys.stdout, sys.stderr):
         stream.flush()

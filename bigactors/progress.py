@@ -1,4 +1,4 @@
-"""The progress of an exploration, on one line of a terminal; and its end by Ctrl-C."""
+"""The progress of an exploration on one line of a terminal, and its end by Ctrl-C."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ COMPILING = "compiling loops, some seconds once after an installation"
 
 
 class Watch:
-    """What is told about an exploration now and then, and shows it on a line; it knows whether to end.
+    """The observer of an exploration: shows its progress on one line, and holds the wish to end it.
 
     Attributes:
-        interruption: Whether the end is wanted, by Ctrl-C or by who has given it.
+        interruption: The wish to end, set by Ctrl-C or by the caller.
     """
 
     def __init__(self, name: str, stream: TextIO, interruption: Interruption | None = None) -> None:
@@ -36,11 +36,11 @@ class Watch:
 
     @property
     def interrupted(self) -> bool:
-        """Whether the end was wanted."""
+        """Whether the exploration is to end."""
         return self.interruption.is_due()
 
     def __call__(self, progress: Progress) -> None:
-        """Show the progress; elsewhere than on a terminal say once that loops are compiled, which takes its time."""
+        """Show the progress on a terminal; elsewhere, only report once that loops are being compiled."""
         if is_terminal(self.stream):
             self.rewrite(describe(self.name, progress))
         elif progress.compiling and not self.is_told:
@@ -49,7 +49,7 @@ class Watch:
 
     def rewrite(self, text: str) -> None:
         """Replace the last text."""
-        import shutil  # noqa: PLC0415 - it loads compressors, for who looks at a terminal
+        import shutil  # noqa: PLC0415 - it loads compressors, and only terminals need it
 
         width = shutil.get_terminal_size().columns - 1
         text = broken(text, width).split("\n")[0][:width]
@@ -62,14 +62,14 @@ class Watch:
             write(self.stream, "\r" + " " * self.shown + "\r", flush=True)
             self.shown = 0
 
-    def interrupt(self, signum: int, frame: FrameType | None) -> None:  # noqa: ARG002 - as signal handlers are called
-        """Note a Ctrl-C; the next one ends the program at once."""
+    def interrupt(self, signum: int, frame: FrameType | None) -> None:  # noqa: ARG002 - the signature of signal handlers
+        """Record a Ctrl-C; the next one ends the program at once."""
         self.interruption.wish()
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def describe(name: str, progress: Progress) -> str:
-    """Say in one line how far an exploration has come.
+    """Return the progress of an exploration in one line.
 
     >>> from checker import Progress
     >>> describe("m", Progress(configurations=12000, transitions=30000, depth=7, frontier=450, rate=5300.2))
@@ -87,7 +87,7 @@ def describe(name: str, progress: Progress) -> str:
 
 
 def describe_rest(progress: Progress) -> str:
-    """Describe the estimated rest of an exploration as a range, if there is an estimate.
+    """Return the estimated rest of an exploration as a range, if there is an estimate.
 
     >>> from checker import Progress
     >>> from checker.engines.estimate import Estimate
@@ -112,7 +112,7 @@ def rounded(number: int, least: int) -> int:
 
 
 def rounded_time(seconds: float) -> str:
-    """Say roughly how long it is.
+    """Return a rounded duration with its unit.
 
     >>> [rounded_time(t) for t in (0.2, 45.0, 170.0, 20_000.0)]
     ['1 s', '45 s', '3 min', '6 h']
@@ -125,7 +125,7 @@ def rounded_time(seconds: float) -> str:
 
 @contextmanager
 def watching(name: str, interruption: Interruption | None = None) -> Iterator[Watch]:
-    """Watch a check: progress on a terminal, a word on compiling elsewhere; Ctrl-C makes the check incomplete."""
+    """Watch a check: report progress on a terminal, or compilation elsewhere; Ctrl-C ends the check as incomplete."""
     watch = Watch(name, sys.stderr, interruption)
     main = threading.current_thread() is threading.main_thread()
     before = signal.signal(signal.SIGINT, watch.interrupt) if main else None

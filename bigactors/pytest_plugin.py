@@ -1,10 +1,10 @@
-"""A pytest plugin: mission files are collected, each property is a test, and its shortest trace is in the failure.
+"""A pytest plugin: it collects mission files, makes each property a test, and shows its shortest trace on failure.
 
-Missions are tests only where that is asked for: those that `mission_files` names in the configuration, and those that
-are arguments of pytest (docs/how-to/python.md). A mission is explored once in a process, when the first of its tests
+Missions are tests only on request: those matched by `mission_files` in the configuration, and those given as
+arguments of pytest (docs/how-to/python.md). A mission is explored once in a process, when the first of its tests
 runs.
 
-pytest loads this module in every run, so it imports nothing that takes time. PYTEST_DONT_REWRITE: it asserts nothing.
+pytest loads this module in every run, so it imports nothing slow. PYTEST_DONT_REWRITE: it has no assertions.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ if TYPE_CHECKING:
 
 
 class MissionWarning(UserWarning):
-    """A warning on a mission: on its text, on a verdict that says little, or on a part that no run reaches."""
+    """A warning on a mission: on its text, on a vacuous verdict, or on an unreachable part."""
 
 
 class PropertyViolatedError(Exception):
-    """A property that is violated; a mission listed in `mission_violated` expects it."""
+    """A violated property. A test listed in `mission_violated` expects it."""
 
 
 class PropertyUndecidedError(Exception):
-    """A property that a search did not decide before it met a limit."""
+    """A property that the search did not decide within its limits."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the options and the settings of missions."""
+    """Add the command-line options and the configuration settings of missions."""
     group = parser.getgroup("missions", "missions of bigactors")
     group.addoption(
         "--mission-engine", choices=("reference", "fast"), help="the engine that explores missions"
@@ -73,10 +73,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def _value(name: str) -> Callable[[str], Any]:
-    """Return what reads an option's value as the command line does, loaded when there is one to read."""
+    """Return the command line's parser of an option's value; it is loaded at the first use."""
 
     def read(text: str) -> Any:
-        from bigactors.arguments import values  # noqa: PLC0415 - only for who gives the option
+        from bigactors.arguments import values  # noqa: PLC0415 - only runs with the option need it
 
         return getattr(values, name)(text)
 
@@ -84,12 +84,12 @@ def _value(name: str) -> Callable[[str], Any]:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Declare the marker of these tests."""
+    """Declare the marker `mission`."""
     config.addinivalue_line("markers", "mission: a property of a mission (bigactors); every one has it")
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> MissionFile | None:
-    """Collect a mission file, where it was asked for."""
+    """Collect a mission file, if it is requested."""
     if file_path.suffix != ".mission":
         return None
     asked = any(map(file_path.match, parent.config.getini("mission_files")))
@@ -99,10 +99,10 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> MissionFil
 
 
 class MissionFile(pytest.File):
-    """A mission: a collector of its properties."""
+    """A mission, as the collector of its properties."""
 
     def collect(self) -> Iterator[PropertyItem]:
-        """Yield a test for each property; the mistakes of the mission are an error of collection."""
+        """Yield a test for each property; a mistake in the mission is a collection error."""
         from specs import MissionError  # noqa: PLC0415 - pytest loads this module in every run
 
         try:
@@ -114,7 +114,7 @@ class MissionFile(pytest.File):
 
     @cached_property
     def mission(self) -> ElaboratedMission:
-        """The mission, under the scheduler and control that options say."""
+        """The mission, under the scheduler and the control of the options."""
         from specs.elaboration import load_mission, require_bigactor  # noqa: PLC0415 - the same
 
         mission = load_mission(Path(os.path.relpath(self.path)), _variation(self.config))
@@ -123,7 +123,7 @@ class MissionFile(pytest.File):
 
     @cached_property
     def report(self) -> Report:
-        """What an exploration finds of the properties that are selected."""
+        """The report of an exploration on the selected properties."""
         from checker import Engine, check  # noqa: PLC0415 - the same
 
         engine = self.config.getoption("mission_engine")
@@ -136,18 +136,18 @@ class MissionFile(pytest.File):
 
     @cached_property
     def result(self) -> Result:
-        """The report with the places in the mission's text."""
+        """The report with line numbers in the mission's text."""
         from bigactors.outputs import result_on  # noqa: PLC0415 - the same
 
         return result_on(self.mission, self.mission.source.name, self.report)
 
     @cached_property
     def unsaid(self) -> list[Issue]:
-        """Warnings on the whole mission that were not given yet."""
+        """The warnings on the whole mission that are still to be given."""
         return [*self.result.cautions, *self.result.gaps()]
 
     def warn_of(self, verdict: Verdict) -> None:
-        """Warn of what a verdict does not say, and with the first one of the whole mission."""
+        """Warn of the limits of a verdict; with the first verdict, also give the warnings on the whole mission."""
         while self.unsaid:
             self.warn_at(self.unsaid.pop(0))
         for issue in self.result.remarks_of(verdict):
@@ -168,7 +168,7 @@ class PropertyItem(pytest.Item):
         self.asked = asked
         self.funcargs: dict[
             str, object
-        ] = {}  # no fixtures: plugins such as pytest-lsp ask every test for its own
+        ] = {}  # no fixtures, but plugins such as pytest-lsp read this of every test
         self.add_marker("mission")
         if any(fnmatchcase(self.nodeid, pattern) for pattern in self.config.getini("mission_violated")):
             reason = "mission_violated"
@@ -189,13 +189,13 @@ class PropertyItem(pytest.Item):
             raise PropertyUndecidedError(said)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """Return what is said of a property or a mission, and a traceback of anything else."""
+        """Return the text of a property's or a mission's failure, and a traceback of anything else."""
         if isinstance(excinfo.value, PropertyViolatedError | PropertyUndecidedError | MissionWarning):
             return str(excinfo.value)
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
-        """Return where the property stands."""
+        """Return the file and the line of the property."""
         return self.path, self.asked.line - 1 if self.asked.line else None, self.name
 
 

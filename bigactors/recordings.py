@@ -1,4 +1,4 @@
-"""Recordings of live runs as missions with traces: to be replayed or resumed."""
+"""Recordings of live runs as missions with traces, for replay and resumption."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def open_recording(path: str) -> Recording:
 
 
 def mission_of(recording: Recording) -> ElaboratedMission:
-    """Return the mission that was flown; its text is in the recording, files that it names are read again."""
+    """Return the mission of a recorded run. Its text is in the recording; the files that it names are read again."""
     run = recording.run
     sources = run.get("sources")
     found = {name: Path(str(file)) for name, file in sources.items()} if isinstance(sources, dict) else {}
@@ -49,7 +49,7 @@ def mission_of(recording: Recording) -> ElaboratedMission:
 
 
 def trace_of(recording: Recording, mission: ElaboratedMission) -> Trace:
-    """Return the steps of a recording, run again through the rules; raises ReplayError, Mistake."""
+    """Return the steps of a recording, replayed through the rules; raises ReplayError, Mistake."""
     parting = parting_of(recording)
     first = mission.initial if parting is None else parted(mission.initial, parting)
     try:
@@ -59,7 +59,7 @@ def trace_of(recording: Recording, mission: ElaboratedMission) -> Trace:
 
 
 def parting_of(recording: Recording) -> Parting | None:
-    """Return the part of its mission that a recording covers, None for the whole; raises Mistake."""
+    """Return the part of the mission that a recording covers, None for the whole; raises Mistake."""
     match recording.run.get("station"):
         case None:
             return None
@@ -77,16 +77,16 @@ class Resumed:
 
     Attributes:
         configuration: Its last configuration.
-        steps: How many steps it took.
-        orders: How many orders it gave.
-        messages: Its steps, who was taken over and given back, and what broke, to be recorded again.
-        broken: What broke in it, and what it fell back on.
-        taken: Which vehicles were taken over and not given back, and how.
-        station: Which part of the mission it flew, None for the whole.
-        left: What left for other stations, in its order.
-        bidden: The operator's order that stands for each vehicle that was taken over by one.
-        timers: Since when everything runs that the mission times; None where the recording does not say when it began.
-        until: When it was last heard of.
+        steps: The number of its steps.
+        orders: The number of its commands to vehicles.
+        messages: The messages to record again: steps, take-overs, returns of control, operators' orders, and breaches.
+        broken: Its breaches of assumptions, with their fallbacks.
+        taken: The reason for each vehicle that is still taken over.
+        station: The part of the mission that it flew, None for the whole.
+        left: The parcels sent to other stations, in order.
+        bidden: The operator's standing order for each vehicle that one took over.
+        timers: The start times of all timed activities; None if the recording has no start time.
+        until: The time of its last message.
     """
 
     configuration: Configuration
@@ -132,7 +132,7 @@ def resume(path: str, mission: ElaboratedMission) -> Resumed:
 
 
 def _timers(trace: Trace, messages: Iterable[Message]) -> Timers | None:
-    """Return since when everything runs after a recorded run, by its dates."""
+    """Return the start times of all timed activities at the end of a recorded run."""
     timers, c, steps = None, trace.initial, iter(trace.steps)
     for message in messages:
         match message.topic, message.data:
@@ -148,7 +148,7 @@ def _timers(trace: Trace, messages: Iterable[Message]) -> Timers | None:
 
 
 def _goes_on(message: Message) -> bool:
-    """Tell whether a message that is no step says something that is still so when another run goes on."""
+    """Return whether a message other than a step still matters in a resumed run."""
     said = message.data
     match message.topic:
         case "clocks":
@@ -165,7 +165,7 @@ def _goes_on(message: Message) -> bool:
 
 
 def _finding(message: Message) -> Finding:
-    """Return what an operator was told."""
+    """Return the finding that a message records."""
     kind, about, told, fallback = (
         str(message.data.get(key) or "") for key in ("kind", "about", "message", "fallback")
     )
@@ -173,7 +173,7 @@ def _finding(message: Message) -> Finding:
 
 
 def _still_taken(messages: Iterable[Message]) -> dict[str, str | Bidden]:
-    """Return who was taken over and not given back: how, or by which order of an operator."""
+    """Return the vehicles that are still taken over, each with the reason or the operator's order."""
     taken: dict[str, str | Bidden] = {}
     for message in messages:
         if message.topic == "reports":
@@ -186,7 +186,7 @@ def _still_taken(messages: Iterable[Message]) -> dict[str, str | Bidden]:
 
 
 def _bidden(message: Message) -> dict[str, Bidden]:
-    """Return what an operator's order told each vehicle."""
+    """Return the standing order for each vehicle that an operator's order addressed."""
     match message.data:
         case {"order": "hold" | "return" as order, "requests": dict(requests), **more}:
             by, fallback = str(more.get("by") or ""), Fallback(order)
@@ -196,7 +196,7 @@ def _bidden(message: Message) -> dict[str, Bidden]:
 
 
 def _left(trace: Trace) -> Iterator[Outgoing]:
-    """Yield the parcels that left for other stations, from the agent's state in the configuration before."""
+    """Yield the parcels that left for other stations, with the agent's state before the step."""
     for step, before in zip(trace.steps, trace.configurations, strict=False):
         if isinstance(step.sight, Passage) and step.sight.parcel is None:
             parcel = parcel_of(before, step.sight.agent)

@@ -16,7 +16,7 @@ ENDING: Final = tuple(
 
 @contextmanager
 def ending_as_ctrl_c() -> Iterator[None]:
-    """Let them act like Ctrl-C at that moment; an ignored one, as by `nohup`, stays ignored."""
+    """Treat ending signals like Ctrl-C; an ignored signal, as under `nohup`, stays ignored."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -29,8 +29,8 @@ def ending_as_ctrl_c() -> Iterator[None]:
             signal.signal(each, handler)
 
 
-def _interrupt(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 - as signal handlers are called
+def _interrupt(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 - the signature of signal handlers
     handler = signal.getsignal(signal.SIGINT)
-    if not callable(handler):  # Ctrl-C is ignored, as in a script's background job: this signal is not
+    if not callable(handler):  # Ctrl-C is ignored, as in a script's background job, but this signal is not
         raise KeyboardInterrupt
     handler(signal.SIGINT, frame)

@@ -1,6 +1,6 @@
 """Signatures of verdicts (Ed25519), which show the author and detect changes; key pairs as PEM files.
 
-The only place that knows the library `cryptography`.
+Only this module uses the library `cryptography`.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     TrustedKey = ed25519.Ed25519PublicKey
 
 DOMAIN: Final = b"bigactors.verdict/1\0"
-"""What stands before each text that is signed, so that no signature of anything else is one of a verdict."""
+"""The prefix of each signed text: no signature of another text is one of a verdict."""
 
 _ED25519: Final = re.compile(r"[A-Za-z0-9+/]{86}==")
 
 MOST_BYTES: Final = 10_000
-"""The most bytes of a key that are read."""
+"""The most bytes read of a key file."""
 
 PUBLIC: Final = ".pub"
 _PUBLIC_PEM, _SECRET_PEM = b"PUBLIC KEY-----", b"PRIVATE KEY-----"
@@ -38,7 +38,7 @@ _GIVE_PUBLIC: Final = f"give the FILE{PUBLIC} of the one who signs, which bigact
 
 
 def new_pair(path: Path) -> Path:
-    """Write a new key and beside it, as `.pub`, what others trust; return that. Raises Mistake where one is there."""
+    """Write a new key, and beside it its public key as `.pub`; return that path. Raises Mistake if either exists."""
     public = path.with_name(path.name + PUBLIC)
     key = _crypto().ed25519.Ed25519PrivateKey.generate()
     for target in (path, public):
@@ -54,7 +54,7 @@ def new_pair(path: Path) -> Path:
 
 
 def load_key(path: str) -> SigningKey:
-    """Return the key to sign with; raises Mistake for one that is none, or that others may read."""
+    """Return the signing key of a file; raises Mistake for an invalid key, or one that others may read."""
     crypto, data = _crypto(), read_bytes(path, MOST_BYTES)
     if _PUBLIC_PEM in data:
         raise Mistake("this is a public key, and the secret one signs", _GIVE_SECRET, path)
@@ -72,7 +72,7 @@ def load_key(path: str) -> SigningKey:
 
 
 def load_trusted(path: str) -> TrustedKey:
-    """Return the public key that is trusted; raises Mistake for one that is none."""
+    """Return the trusted public key of a file; raises Mistake for an invalid key."""
     crypto, data = _crypto(), read_bytes(path, MOST_BYTES)
     if _SECRET_PEM in data:
         raise Mistake("this is a secret key, and the public one is trusted", _GIVE_PUBLIC, path)
@@ -87,13 +87,13 @@ def load_trusted(path: str) -> TrustedKey:
 
 
 def signature_json(key: SigningKey, text: bytes) -> dict[str, str]:
-    """Return the signature of a text as plain data: whose it is, and what it is."""
+    """Return the signature of a text as plain data: the key's fingerprint and the value."""
     value = base64.b64encode(key.sign(DOMAIN + text)).decode("ascii")
     return {"key": fingerprint(key.public_key()), "ed25519": value}
 
 
 def check_signature(signature: Any, text: bytes, trusted: TrustedKey, path: str) -> None:
-    """Refuse a verdict whose signature is not the trusted key's; raises Mistake with what is wrong."""
+    """Raise Mistake unless the signature is the trusted key's, with the reason."""
     hint = "the one who is trusted signs it: bigactors check --verdict FILE --sign KEY"
     match signature:
         case {"key": str(whose), "ed25519": str(value)} if _ED25519.fullmatch(value):
@@ -113,7 +113,7 @@ def check_signature(signature: Any, text: bytes, trusted: TrustedKey, path: str)
 
 
 def fingerprint(key: TrustedKey) -> str:
-    """Return a digest by which a key can be told from others."""
+    """Return a digest that identifies a key."""
     return "sha256:" + hashlib.sha256(key.public_bytes_raw()).hexdigest()
 
 
@@ -132,7 +132,7 @@ def _reason(error: Exception) -> str:
 
 
 def _crypto() -> Any:
-    """Return what is used of the library, which is an extra and slow to load."""
+    """Return the used parts of the library, which is an extra and slow to load."""
     try:
         from cryptography import exceptions  # noqa: PLC0415
         from cryptography.hazmat.primitives import serialization  # noqa: PLC0415

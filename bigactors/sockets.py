@@ -38,7 +38,7 @@ def socket_of(mission: str, given: str | None) -> Path:
 
 
 def only_socket(given: str | None) -> Path:
-    """Return the socket given, else that of the only mission that runs; raises Mistake."""
+    """Return the given socket, else that of the only running mission; raises Mistake."""
     if given is not None:
         return Path(given)
     found = sorted(path for path in folder().iterdir() if path.suffix == ".sock")

@@ -1,4 +1,4 @@
-"""The start of a run: beside a console it waits until an operator has seen what was checked, and presses Start."""
+"""The start of a run. With a console, it waits until an operator has seen the checks and presses Start."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from bigactors.preflight import check_idle, check_places, get_to_know
 from specs.elaboration import ElaboratedMission
 
 EVERY: Final = 0.25
-"""Seconds after which the list is made anew."""
+"""Seconds between two updates of the list of checks."""
 
 Item = dict[str, Any]
-"""What is checked before the start: `what`, whether it is `done`, and its `detail`."""
+"""A check before the start: its name `what`, its state `done`, and its `detail`."""
 
 Telling = Callable[[dict[str, Any], float], None]
-"""Takes the list, and the time."""
+"""Takes the list of checks, and the time."""
 
 
 @dataclass(slots=True)
 class Start:
-    """Whether a run has begun, and whose press it waits for.
+    """The start of a run by an operator's press.
 
     Attributes:
         waits: Whether an operator has to press Start.
-        missing: What is not done yet; empty where the run may start.
+        missing: The first unfinished check; empty if the run may start.
         begun: Whether it has begun.
-        by: Who has pressed Start.
-        pressed: Set by that press.
+        by: The operator who pressed Start.
+        pressed: The event of that press.
     """
 
     waits: bool = False
@@ -42,7 +42,7 @@ class Start:
     pressed: asyncio.Event = field(default_factory=asyncio.Event)
 
     def press(self, by: str) -> str:
-        """Start the run for somebody; return why not, or an empty text."""
+        """Start the run for an operator; return the refusal, or an empty text."""
         if self.begun or self.pressed.is_set() or not self.waits:
             return "the run has started already"
         if self.missing:
@@ -54,14 +54,14 @@ class Start:
 
 @dataclass(frozen=True, slots=True)
 class Preflight:
-    """What is checked before the start of a run.
+    """The subject of the checks before the start of a run.
 
     Attributes:
-        mission: What is to be flown.
+        mission: The mission to fly.
         plugins: Its vehicles and feeds.
-        verdict: How many properties hold; None for a run without a verdict.
-        patience: Seconds in which each vehicle has to be heard.
-        takes_over: Whether vehicles that fly missions of somebody else are taken over.
+        verdict: The number of properties that hold; None for a run without a verdict.
+        patience: Seconds within which each vehicle must report.
+        takes_over: Whether the run takes over vehicles that fly missions of other operators.
     """
 
     mission: ElaboratedMission
@@ -72,7 +72,7 @@ class Preflight:
 
 
 async def stand_by(live: LiveRun, start: Start, before: Preflight, tell: Telling | None) -> None:
-    """Check what can be checked, tell it, and begin when Start is pressed; raises what the checks raise."""
+    """Run the checks, report them to `tell`, and begin when Start is pressed; raises the errors of the checks."""
     checks = asyncio.create_task(_check(live, before))
     forced = before.verdict is None
     begins = asyncio.create_task(live.begin(before.patience, forced=forced, start=start.pressed))
@@ -110,7 +110,7 @@ async def _check(live: LiveRun, before: Preflight) -> None:
 
 
 def _items(live: LiveRun, before: Preflight, *, checked: bool) -> Iterator[Item]:
-    """Yield what is checked, in the order in which it is done."""
+    """Yield the checks in their order."""
     count = before.verdict
     what = "no verdict: nothing was verified of this run" if count is None else "the mission is verified"
     yield _item(what, detail="--unverified" if count is None else f"{count} properties hold")
@@ -126,7 +126,7 @@ def _item(what: str, *, done: bool = True, detail: str = "") -> Item:
 
 
 def _told(said: Status) -> str:
-    """Return what a vehicle says of itself."""
+    """Return a vehicle's mode, arming and battery in words."""
     percent = None if said.battery is None else said.battery.percent
     parts = [
         said.mode,

@@ -29,10 +29,10 @@ from specs.elaboration import ElaboratedMission
 
 @dataclass(frozen=True, slots=True)
 class Company:
-    """One station among the others.
+    """One station of several.
 
     Attributes:
-        sharing: The plugin by which it shares.
+        sharing: The plugin that exchanges data with the other stations.
         parting: Its part of the mission.
     """
 
@@ -40,13 +40,13 @@ class Company:
     parting: Parting
 
     def plan(self, plan: Plan, mission: ElaboratedMission) -> Plan:
-        """Return the run's constants at this station: its part of the mission; other stations report their vehicles."""
+        """Return the run's constants at this station: its part of the mission. Other stations report their vehicles."""
         elsewhere = dict.fromkeys(driven(mission) - plan.vehicles.keys(), NAME)
         first = parted(mission.initial, self.parting)
         return replace(plan, first=first, vehicles={**plan.vehicles, **elsewhere}, peers=NAME)
 
     def plugins(self, plugins: Sequence[Plugin]) -> tuple[Plugin, ...]:
-        """Return the plugin of the other stations, to be started first, and our own plugins, which share with them."""
+        """Return the plugin of the other stations, to be started first, then our plugins, wrapped to share data."""
         return (self.sharing, *map(self.sharing.sharing, plugins))
 
 
@@ -63,7 +63,7 @@ def own_station(options: Namespace) -> str | None:
 
 
 def company_of(options: Namespace, mission: ElaboratedMission, before: Resumed | None) -> Company | None:
-    """Return this run's station among the others, None if it is the only one; raises Mistake."""
+    """Return this run's station and its part of the mission, None if it is the only one; raises Mistake."""
     station = own_station(options)
     if station is None:
         return None
@@ -87,7 +87,7 @@ def company_of(options: Namespace, mission: ElaboratedMission, before: Resumed |
 
 
 def driven(mission: ElaboratedMission) -> set[str]:
-    """Return the vehicles of a mission: what is there, and of a kind that is driven."""
+    """Return the vehicles of a mission: the entities that exist and are of a driven kind."""
     setting, physical = mission.setting, mission.initial.structure.physical
     return {
         name for name, kind in setting.kinds.items() if setting.signature[kind].driven and name in physical
@@ -95,7 +95,7 @@ def driven(mission: ElaboratedMission) -> set[str]:
 
 
 def _obeying(mission: ElaboratedMission) -> dict[str, bool]:
-    """Return the vehicles of a mission, and whether each obeys a station in it."""
+    """Return the vehicles of a mission, each with whether a station has control authority over it."""
     physical = mission.initial.structure.physical
     return {name: any(map(is_authority, physical.channels(name))) for name in sorted(driven(mission))}
 
@@ -129,7 +129,7 @@ def _is_same(flown: Parting | None, peers: Peers) -> bool:
 
 
 def _parting(peers: Peers, journal: Journal, before: Resumed | None) -> Parting:
-    """Return a station's part of a mission; a resumed run writes missing entries to its log."""
+    """Return a station's part of a mission; a resumed run first adds missing entries to its log."""
     here = peers.own.name
     journal.add([*_amended(journal, before)])
     if before is None:
@@ -147,7 +147,7 @@ def _parting(peers: Peers, journal: Journal, before: Resumed | None) -> Parting:
 
 
 def _amended(journal: Journal, before: Resumed | None) -> Iterator[Content]:
-    """Yield the entries by which the log differs from the run, after a crash or a new start."""
+    """Yield the entries that bring the log up to date with the run, after a crash or a new start."""
     now, kinds = time.time(), {} if before is None else before.configuration.setting.kinds
     physical = None if before is None else before.configuration.structure.physical
     for entry in list(journal.entries()):
@@ -168,6 +168,6 @@ def _amended(journal: Journal, before: Resumed | None) -> Iterator[Content]:
 
 
 def parting_json(parting: Parting) -> dict[str, Any]:
-    """Return the flown part of a mission as plain data."""
+    """Return the station's part of a mission as plain data."""
     counts = {"sent": dict(parting.sent), "took": dict(parting.took)}
     return {"here": parting.here, "hosts": dict(parting.hosts), **counts}

@@ -1,10 +1,10 @@
-"""Hypothesis strategies for tests of one's own rules and tools, over generated missions (extra `strategies`).
+"""Hypothesis strategies that generate missions, for tests of your own rules and tools (extra `strategies`).
 
 >>> from hypothesis import given
 >>> from bigactors.strategies import configurations, missions
 
-`configurations()` yields configurations that a run reaches, `missions()` what `check` takes. `worlds`, `structures`,
-`programs`, `queries` and `reactions` yield their parts. What fails is shrunk to few entities, statements and steps.
+`configurations()` generates reachable configurations, `missions()` missions for `check`. `worlds`, `structures`,
+`programs`, `queries` and `reactions` generate their parts. Failures shrink to few entities, statements and steps.
 """
 
 from physical.messages import install_extra

@@ -1,4 +1,4 @@
-"""Printing to the terminal: safe in any encoding, quiet after a closed pipe; coloured, and broken between words."""
+"""Terminal output: safe in any encoding, quiet after a closed pipe, coloured, and wrapped between words."""
 
 import codecs
 import errno
@@ -15,10 +15,10 @@ from bigactors.mistakes import Mistake
 from bigactors.printing import printing_aside, put
 
 COLOUR: ContextVar[str] = ContextVar("COLOUR", default="auto")
-"""When there are colours: what `--color` says."""
+"""The value of `--color`: auto, always or never."""
 
 DRAWN: Final = re.compile(r"\s*\d* \| |.*[│├└─]")
-"""A line that stands under another one: of an excerpt of a file, or of a drawing."""
+"""A line that is aligned with another one, in an excerpt of a file or a drawing: it is never wrapped."""
 
 COLOURS = {"red": "31", "green": "32", "yellow": "33", "faint": "2"}
 
@@ -28,7 +28,7 @@ _PLAIN = {
     "─": "-", "−": "-", "×": "x", "₀": "0", "�": "?",
     "├": "|", "│": "|", "└": "`",
 }  # fmt: skip
-"""How the paper's notation is written where the output cannot show it."""
+"""ASCII substitutes of the paper's notation, for output that cannot show it."""
 
 
 def _plain(error: UnicodeError) -> tuple[str | bytes, int]:
@@ -53,12 +53,12 @@ def safe_output() -> Iterator[None]:
 
 
 def _open_closed() -> None:
-    """Open what the shell has closed (`>&-`) on nothing: else a file that is written would get its descriptor."""
+    """Open standard streams closed by the shell (`>&-`) on nothing: else a written file would get their descriptor."""
     for descriptor in (0, 1, 2):
         try:
             os.fstat(descriptor)
         except OSError:
-            os.open(os.devnull, os.O_RDWR)  # the least that is free: this one
+            os.open(os.devnull, os.O_RDWR)  # the lowest free descriptor is this one
     if sys.stdin is None:
         sys.stdin = os.fdopen(0, encoding="utf-8", closefd=False)
     if sys.stdout is None:
@@ -78,9 +78,9 @@ def say_text(text: str, *, flush: bool = False) -> None:
 
 
 def tell(text: str, mark: str = "") -> None:
-    """Print a side message: a mistake, a warning, the path of a written file; `mark` stands before it in red.
+    """Print a message on the standard error: a mistake, a warning, a written path; `mark` precedes it in red.
 
-    It may quote files, so terminal control characters are removed.
+    A message may quote files, so terminal control characters are replaced.
     """
     write(sys.stdout, "", flush=True)
     shown = "".join(
@@ -91,17 +91,17 @@ def tell(text: str, mark: str = "") -> None:
 
 
 def fitted(text: str, stream: TextIO) -> str:
-    """Return a text whose lines are broken between words, if it goes to a terminal that is narrower."""
+    """Return a text, wrapped to the width of the stream if that is a terminal."""
     if not is_terminal(stream):
         return text
-    import shutil  # noqa: PLC0415 - it loads compressors, and output mostly goes elsewhere
+    import shutil  # noqa: PLC0415 - it loads compressors, and only terminals need it
 
     columns = shutil.get_terminal_size().columns
     return "\n".join(broken(line, columns) for line in text.split("\n"))
 
 
 def broken(line: str, columns: int) -> str:
-    """Return a line broken between words, in lines of so many columns; what follows is indented further.
+    """Return a line wrapped between words to a number of columns; continuation lines are indented further.
 
     >>> print(broken("  hint: say what --max-memory is to be", 20))
       hint: say what
@@ -125,7 +125,7 @@ def paint(text: str, colour: str, stream: TextIO) -> str:
 
 
 def shows_colours(stream: TextIO) -> bool:
-    """Tell whether a stream is coloured: as `--color` says, as NO_COLOR or FORCE_COLOR says, or if it is a terminal."""
+    """Return whether a stream has colours, by `--color`, else by NO_COLOR or FORCE_COLOR, else if it is a terminal."""
     if COLOUR.get() != "auto":
         return COLOUR.get() == "always"
     if os.environ.get("NO_COLOR"):
@@ -134,14 +134,14 @@ def shows_colours(stream: TextIO) -> bool:
 
 
 def is_terminal(stream: TextIO) -> bool:
-    """Tell whether a stream is a terminal."""
+    """Return whether a stream is a terminal."""
     return not stream.closed and stream.isatty()
 
 
 def write(stream: TextIO, text: str, *, flush: bool = False) -> None:
-    """Write a text, and discard it after a closed pipe; raises Mistake for any other error.
+    """Write a text, or discard it after a closed pipe; raises Mistake for any other error.
 
-    During a flight a thread writes it (`flying_output`).
+    During a flight, a thread writes it (`flying_output`).
     """
     if put(stream, text):
         return
@@ -156,7 +156,7 @@ def write(stream: TextIO, text: str, *, flush: bool = False) -> None:
 
 @contextmanager
 def flying_output() -> Iterator[None]:
-    """Let nobody wait for the terminal: a stopped one stops no flight, and one that fails is reported."""
+    """Print in a thread: a stopped terminal does not stop the flight, and a failing one is reported."""
 
     def failed(stream: TextIO, error: OSError) -> None:
         if not _discarded(stream, error):
@@ -167,19 +167,19 @@ def flying_output() -> Iterator[None]:
 
 
 def _discarded(stream: TextIO, error: OSError) -> bool:
-    """Discard what is printed from now on; tell whether that is because nobody is there to read it."""
+    """Discard all further output; return whether the cause is a reader that has gone."""
     gone = isinstance(error, BrokenPipeError) or _was_terminal(stream, error)
     _discard(stream)
     return gone
 
 
 def _was_terminal(stream: TextIO, error: OSError) -> bool:
-    """Tell whether a terminal was written to that has been closed."""
+    """Return whether the error is a write to a closed terminal."""
     return error.errno == errno.EIO and stat.S_ISCHR(os.fstat(stream.fileno()).st_mode)
 
 
 def _discard(stream: TextIO) -> None:
-    """Discard further output: the reader has gone, but the verdict stays the same."""
+    """Discard further output: its reader has gone, but the verdict stays the same."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, stream.fileno())
     os.close(nowhere)

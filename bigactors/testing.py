@@ -1,13 +1,13 @@
-"""The contract that every plugin keeps to, as tests of pytest: for plugins of this project and of others.
+"""The contract of every plugin as pytest tests, for plugins of this project and of others.
 
     class TestMine(PluginContract):
         @asynccontextmanager
         async def connect(self, folder):
             yield Connection(Mine("mine", ...), told, spoil)
 
-Its tests run in an event loop whose clock jumps (`adapters.simulated.clock`), so that a minute takes no time. What is
-at the other end of the plugin must run in the same loop, or be there at once. A failure, a `ContractBrokenError`,
-says which clause is broken; the clauses are in docs/reference/plugins.md, "The contract". Needs the extra `testing`.
+Its tests run in an event loop whose clock jumps (`adapters.simulated.clock`), so that a minute takes no time. The
+plugin's peer must run in the same loop, or answer at once. A failure, a `ContractBrokenError`, names the broken
+clause; docs/reference/plugins.md lists the clauses under "The contract". Needs the extra `testing`.
 """
 
 from __future__ import annotations
@@ -45,14 +45,14 @@ from adapters.simulated.clock import run
 from physical import Geometry, PhysicalProperty, contains, point
 
 EPOCH: Final = 1_600_000_000.0
-"""When the clock of a test begins, in seconds since 1970 UTC."""
+"""The first reading of a test's clock, in seconds since 1970 UTC."""
 
 PAGE: Final = "docs/reference/plugins.md#the-contract"
 Found = TypeVar("Found")
 
 
 class Clause(Enum):
-    """A clause of the contract, in the words of its page."""
+    """A clause of the contract, in the words of its documentation page."""
 
     INTERFACE = "it has all of the interface, and a printable name"
     STAMPED = "each publication is stamped, never in the future, and says its source"
@@ -81,13 +81,13 @@ def require(clause: Clause, kept: object, seen: str) -> None:
 
 @dataclass(frozen=True)
 class Connection:
-    """A plugin that does not run yet, and what is at its other end.
+    """A plugin that does not run yet, and its peer.
 
     Attributes:
         plugin: The plugin.
-        fed: What lets it hear something to publish, while the context lasts.
-        spoil: What sends it unusable input; None where it is there from the beginning.
-        drives: A vehicle that it owns, and a place elsewhere to which it can go; None for a feed.
+        fed: Returns a context within which the peer feeds it data to publish.
+        spoil: Sends it unusable input; None if the peer sends such input from the beginning.
+        drives: A vehicle that it owns, and a distant place to which the vehicle can go; None for a feed.
     """
 
     plugin: Plugin
@@ -98,17 +98,17 @@ class Connection:
 
 @dataclass
 class World:
-    """A world that remembers what plugins have told, in the event loop's time."""
+    """A world that stores the publications and reports of plugins, in the event loop's time."""
 
     published: list[Published] = field(default_factory=list)
     reports: list[Report] = field(default_factory=list)
 
     def publish(self, published: Published) -> None:
-        """Remember a publication."""
+        """Store a publication."""
         self.published.append(published)
 
     def report(self, report: Report) -> None:
-        """Remember a report."""
+        """Store a report."""
         self.reports.append(report)
 
     def now(self) -> float:
@@ -116,7 +116,7 @@ class World:
         return EPOCH + asyncio.get_running_loop().time()
 
     def of(self, kind: type[Found], **wanted: object) -> list[Found]:
-        """Return the reports of a kind that have some values."""
+        """Return the reports of a type whose attributes have the wanted values."""
         return [
             report
             for report in self.reports
@@ -125,18 +125,18 @@ class World:
         ]
 
     def troubles(self) -> set[str]:
-        """Return what troubles were reported."""
+        """Return the descriptions of the reported troubles."""
         return {report.what for report in self.of(Trouble)}
 
     def property(self, entity: str) -> PhysicalProperty | None:
-        """Return what was published last of an entity, None if nothing or that it is gone."""
+        """Return the last property published of an entity; None if there is none or it is gone."""
         newest = next((each for each in reversed(self.published) if entity_of(each) == entity), None)
         said = newest.property if isinstance(newest, Aged) else newest
         return None if isinstance(said, Gone) else said
 
 
 async def until(what: Callable[[], Found], seconds: float = 600.0, every: float = 0.2) -> Found:
-    """Wait until something holds, and return it; raises AssertionError if it doesn't in time."""
+    """Wait until a condition holds, and return its value; raises AssertionError at the timeout."""
     loop = asyncio.get_running_loop()
     end = loop.time() + seconds
     while not (found := what()):
@@ -148,7 +148,7 @@ async def until(what: Callable[[], Found], seconds: float = 600.0, every: float 
 
 @asynccontextmanager
 async def running(*coroutines: Coroutine[Any, Any, Any]) -> AsyncIterator[None]:
-    """Run something beside a test; what fails there fails the test."""
+    """Run coroutines beside a test; their failure fails the test."""
     tasks = [asyncio.ensure_future(coroutine) for coroutine in coroutines]
     try:
         yield
@@ -163,13 +163,13 @@ async def running(*coroutines: Coroutine[Any, Any, Any]) -> AsyncIterator[None]:
 
 
 async def opened(plugin: Plugin) -> None:
-    """Wait until a plugin has opened what it opens: one that listens tells where by `local` or `port`."""
+    """Wait until a plugin has opened its links: a listening plugin shows its address in `local` or `port`."""
     await asyncio.sleep(0.5)
     await until(lambda: getattr(plugin, "local", True) and getattr(plugin, "port", True))
 
 
 async def _troubles(connection: Connection, world: World) -> list[Trouble]:
-    """Send unusable input, over and over, until some is reported: the first may come before anybody listens."""
+    """Send unusable input repeatedly until some is reported: the first may arrive before the plugin listens."""
     for _ in range(20):
         if connection.spoil is not None:
             connection.spoil()
@@ -190,19 +190,19 @@ class PluginContract:
     """The tests of one plugin: derive a class `Test...` from it, and define `connect`.
 
     Attributes:
-        speed: How much faster than the clock on the wall time passes. None lets it jump when nothing is to be done: for
-            a plugin whose other end is in the same event loop, or is reached by local sockets. One that is told by a
-            thread of its own needs a number: 20 lets a minute take three seconds.
+        speed: Simulated seconds in a real second. None lets time jump whenever the loop is idle. That suits a plugin
+            whose peer is in the same event loop or behind local sockets. A plugin that hears from a thread of its own
+            needs a number: with 20, a minute takes three seconds.
     """
 
     speed: float | None = None
 
     def connect(self, folder: Path) -> AbstractAsyncContextManager[Connection]:
-        """Make a new plugin and its other end; `folder` is empty."""
+        """Return a new plugin and its peer; `folder` is empty."""
         raise NotImplementedError(f"{type(self).__name__} must define connect(self, folder)")
 
     def test_it_is_a_plugin_with_a_name(self, tmp_path: Path) -> None:
-        """Hold it to `Clause.INTERFACE`."""
+        """Check `Clause.INTERFACE`."""
 
         async def main() -> None:
             async with self.connect(tmp_path) as connection:
@@ -215,7 +215,7 @@ class PluginContract:
         run(main(), self.speed)
 
     def test_it_publishes_properties_that_are_stamped_and_never_in_the_future(self, tmp_path: Path) -> None:
-        """Hold it to `Clause.STAMPED`."""
+        """Check `Clause.STAMPED`."""
 
         async def main() -> None:
             async with self.connect(tmp_path) as connection:
@@ -231,7 +231,7 @@ class PluginContract:
         run(main(), self.speed)
 
     def test_it_refuses_commands_for_what_it_does_not_own(self, tmp_path: Path) -> None:
-        """Hold it to `Clause.REFUSES`."""
+        """Check `Clause.REFUSES`."""
 
         async def main() -> None:
             async with self.connect(tmp_path) as connection:
@@ -251,7 +251,7 @@ class PluginContract:
         run(main(), self.speed)
 
     def test_junk_does_not_end_it_and_is_reported_with_its_name(self, tmp_path: Path) -> None:
-        """Hold it to `Clause.JUNK`."""
+        """Check `Clause.JUNK`."""
 
         async def main() -> None:
             async with self.connect(tmp_path) as connection:
@@ -271,7 +271,7 @@ class PluginContract:
         run(main(), self.speed)
 
     def test_all_that_it_reports_is_recorded_as_the_schemas_say(self, tmp_path: Path) -> None:
-        """Hold it to `Clause.REPORTS`."""
+        """Check `Clause.REPORTS`."""
         world = World()
 
         async def main() -> tuple[Plugin, tuple[str, Geometry] | None]:
@@ -297,7 +297,7 @@ class PluginContract:
         require(Clause.REPORTS, not silent, "it has no Status of the vehicle that it drives")
 
     def test_it_ends_when_cancelled_and_can_run_again(self, tmp_path: Path) -> None:
-        """Hold it to `Clause.ENDS`."""
+        """Check `Clause.ENDS`."""
 
         async def main() -> None:
             async with self.connect(tmp_path) as connection:
@@ -318,7 +318,7 @@ class PluginContract:
         run(main(), self.speed)
 
     def test_it_drives_its_vehicle_into_a_place(self, tmp_path: Path) -> None:
-        """Hold it to `Clause.DRIVES`, if it drives one."""
+        """Check `Clause.DRIVES`, if the plugin drives a vehicle."""
 
         async def main() -> None:
             async with self.connect(tmp_path) as connection:
@@ -329,7 +329,7 @@ class PluginContract:
 
 
 async def _drive(connection: Connection, entity: str, place: Geometry) -> None:
-    """Send a vehicle into a place."""
+    """Send a vehicle into a place, and check the reports."""
     plugin, world = connection.plugin, World()
     require(Clause.DRIVES, plugin.owns(entity), f"it does not own {entity}")
     async with running(plugin.run(world)):
@@ -349,7 +349,7 @@ async def _drive(connection: Connection, entity: str, place: Geometry) -> None:
 
 
 def _flaw(published: object, now: float) -> str:
-    """Return what a publication lacks, or nothing."""
+    """Return the flaw of a publication; empty if there is none."""
     match published:
         case Aged(PhysicalProperty(time=time, source=source), time_to_live):
             if time is None or not EPOCH <= time <= now or time_to_live <= 0 or not source:
@@ -372,7 +372,7 @@ async def _refused(plugin: Plugin, command: Command) -> None:
 
 
 async def _blamed(task: asyncio.Task[None]) -> None:
-    """Wait for a plugin's task, and blame junk for its end."""
+    """Wait for a plugin's task, and report its end as the effect of junk."""
     try:
         await task
     except Exception as error:
@@ -392,13 +392,13 @@ async def _cancel(task: asyncio.Task[None]) -> None:
 
 
 def _is_a_servers(task: asyncio.Task[Any]) -> bool:
-    """Whether a task is one of a web server or client at the other end."""
+    """Return whether a task belongs to a web server or client of the peer."""
     return "aiohttp" in repr(task) or "web" in repr(task)
 
 
 def _validate(reports: list[Report], path: Path) -> None:
-    """Record some reports, and compare what is read again with the schemas of recordings."""
-    import jsonschema  # noqa: PLC0415 - of the extra `testing`; nothing else here needs it
+    """Record reports, and validate the recorded messages against the schemas of recordings."""
+    import jsonschema  # noqa: PLC0415 - from the extra `testing`; only this needs it
 
     recorder = Recorder(path, {"mission": "", "text": "", "digest": ""}, EPOCH)
     for report in reports:

@@ -1,4 +1,4 @@
-"""The traces of a report as files: as text, as JSON and as pictures."""
+"""The traces of a report as files: text, JSON, pictures and pages."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,16 +15,16 @@ from semantics.state.printing import print_configuration
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """A trace.
+    """A trace, as evidence of a verdict.
 
     Attributes:
-        property: The name of the property that it is evidence on.
-        stem: What its folder is called.
-        about: What it is evidence of.
+        property: The name of the property.
+        stem: The name of its folder.
+        about: A description of the evidence.
         trace: Its steps.
         violated: Whether it ends in a violation.
-        telling: Whether each configuration is worth a picture: it ends in a violation, or in what was looked for.
-        details: More of what it is evidence of.
+        telling: Whether each configuration is drawn: the trace ends in a violation, or in a wanted configuration.
+        details: More lines of the description.
     """
 
     property: str
@@ -37,7 +37,7 @@ class Evidence:
 
 
 def evidence_of(checked: Checked) -> Iterator[Evidence]:
-    """Yield the trace of each violation and of each witness of a report."""
+    """Yield the trace of each violation and of each witness in a report."""
     for verdict in checked.report.verdicts:
         name = verdict.property.name
         for violation in verdict.violations:
@@ -60,8 +60,8 @@ def evidence_of(checked: Checked) -> Iterator[Evidence]:
 def write_evidence(checked: Checked, folder: Path) -> tuple[Path, ...]:
     """Write every trace of a report into a folder of its own: `trace.txt`, `trace.json`, `trace.svg`, `trace.html`.
 
-    Of those that end in a violation, or in what was to be reachable, each configuration is drawn, of others in the page
-    the last one only. Returns the folders.
+    Each configuration of a violation, or of a witness of reachability, is drawn; of other traces only the last one, in
+    the page. Returns the folders.
     """
     written: list[Path] = []
     for each in evidence_of(checked):
@@ -75,7 +75,7 @@ def write_evidence(checked: Checked, folder: Path) -> tuple[Path, ...]:
 
 
 def story_of(checked: Checked, evidence: Evidence) -> Story:
-    """Return what the page of a trace tells."""
+    """Return the contents of a trace's page."""
     drawn = MOST_PICTURES if evidence.telling else 1
     note = f"{checked.name}, {checked.digest}"
     name = checked.mission.name
@@ -91,7 +91,7 @@ def story_of(checked: Checked, evidence: Evidence) -> Story:
 
 
 def _free(path: Path, taken: list[Path]) -> Path:
-    """Return a path that is not taken: two properties may differ in signs that file names lack."""
+    """Return a free path: two properties may differ in characters that file names cannot have."""
     number, free = 2, path
     while free in taken:
         free, number = path.with_name(f"{path.name}-{number}"), number + 1

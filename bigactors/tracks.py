@@ -1,4 +1,4 @@
-"""The tracks of a recording or a trace, as GeoJSON: where each thing was, and when."""
+"""The tracks of a recording or a trace as GeoJSON: the dated positions of each entity."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from semantics.state.physical_model import Placed
 
 
 def write_recorded(path: str, output: str) -> int:
-    """Write the tracks of all that a recording has positions of; return how many there are; raises Mistake."""
+    """Write the tracks of all recorded entities with point positions; return their number; raises Mistake."""
     kinds: dict[str, str] = {}
     found: defaultdict[str, list[Fix]] = defaultdict(list)
     try:
@@ -37,7 +37,7 @@ def write_recorded(path: str, output: str) -> int:
 
 
 def _fix(north: int, east: int, time: float, more: Mapping[Any, Any]) -> Fix:
-    """Return a position when it was observed, or else when it came."""
+    """Return a position, dated by its observation, or else by its arrival."""
     height = None
     match more.get("altitude"):
         case [int() | float() as low, int() | float() as high]:
@@ -47,14 +47,14 @@ def _fix(north: int, east: int, time: float, more: Mapping[Any, Any]) -> Fix:
 
 
 def write_traced(trace: Trace, times: Sequence[float], output: str) -> int:
-    """Write the tracks of the points that a trace moves; return how many there are; raises Mistake."""
+    """Write the tracks of the points that a trace moves; return their number; raises Mistake."""
     kinds = trace.initial.setting.kinds
     found = ((name, tuple(_stands(trace.configurations, times, name))) for name in sorted(kinds))
     return _write([Track(name, kinds[name], fixes) for name, fixes in found if len(fixes) > 1], output)
 
 
 def _stands(configurations: Iterable[Configuration], times: Sequence[float], name: str) -> Iterator[Fix]:
-    """Yield where a point stands, whenever that changes; where it starts is where it is first known to be."""
+    """Yield each new position of a point. The first is dated by the first step."""
     before: Geometry | None = None
     for number, each in enumerate(configurations):
         at = each.structure.physical.placement(name)

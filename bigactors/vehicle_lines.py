@@ -1,30 +1,30 @@
-"""What each vehicle does, in a line of words; and how a run stands, on a screen."""
+"""Vehicles in words: a line for each vehicle, and the situation of a run."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from adapters.live.sayings import typed
 from adapters.live.scheduling import in_turn
 from adapters.live.state import LiveState, Plan
 from adapters.live.timing import flying
 from adapters.plugin import Follow, GoTo, Status
 from physical import distance
 from physical.messages import counted
-from semantics.behaviours.values import show
 from semantics.environment import Says
 from semantics.state.requests import READY, Request
 from semantics.state.signature import REGION, Name
 from semantics.timing.dates import lapse_text
 
 OLD = 5.0
-"""Seconds of silence that are told."""
+"""Seconds of silence after which a line reports the silence."""
 
 MOST = 4
-"""How many vehicles one line tells of."""
+"""The most vehicles in one line."""
 
 
 def vehicles_line(vehicles: Iterable[Name], state: LiveState, said: Mapping[Name, Status], now: float) -> str:
-    """Return one line about all vehicles, the first of them in words; those that need attention come first."""
+    """Return one line about all vehicles: the first few in words, those that need attention first."""
     names = sorted(vehicles, key=lambda name: (name not in state.lost, name not in state.taken, name))
     lines = [vehicle_line(name, state, said.get(name), now) for name in names[:MOST]]
     more = [f"and {len(names) - MOST} more"] if len(names) > MOST else []
@@ -32,27 +32,29 @@ def vehicles_line(vehicles: Iterable[Name], state: LiveState, said: Mapping[Name
 
 
 def vehicle_line(name: Name, state: LiveState, said: Status | None, now: float) -> str:
-    """Return where a vehicle is, what it is on its way to, and what it says of itself."""
+    """Return a vehicle's position or destination, its own status, and its silence, in one line."""
     return f"{name} {', '.join((*_does(name, state, said, now), *_tells(said), *_heard(name, state, said, now)))}"
 
 
 def standing(state: LiveState) -> str:
-    """Return whom the mission does not command, and who owes a stop, to be put behind how a run ended."""
+    """Return the vehicles outside the mission's command, or still to be stopped, as a suffix to the end of a run."""
     words = {name: f"was taken over: {how}" for name, how in state.taken.items() if name not in state.bidden}
     words |= {name: each.reason for name, each in (*state.owing.items(), *state.bidden.items())}
     return "".join(f"; {name} {each}" for name, each in sorted(words.items()))
 
 
 def situation(plan: Plan, state: LiveState, said: Mapping[Name, Status], now: float) -> str:
-    """Return how a run stands: its vehicles, what is asked and not done yet, and what may be said."""
+    """Return the situation of a run: its vehicles, its pending requests, and the messages that may still come."""
     c = state.configuration
     vehicles = [vehicle_line(name, state, said.get(name), now) for name in sorted(plan.vehicles)]
     pending = (each.request for each in in_turn(c))
     requests = [_request(each, state, now) for each in pending if not isinstance(each, READY)]
-    clauses = (clause for clause in c.setting.environment if isinstance(clause, Says))
+    clauses = [clause for clause in c.setting.environment if isinstance(clause, Says)]
     left = [(clause, c.read(clause.counter)) for clause in clauses]
     may = [
-        f"{each.agent} {show(each.message)} ({counted(times, 'time')} more)" for each, times in left if times
+        f"{each.agent} {typed(each, clauses)} ({counted(times, 'time')} more)"
+        for each, times in left
+        if times
     ]
     served = ["no more controls are served: an assumption broke"] if state.suspended else []
     parts = {"vehicles": vehicles, "requests": requests, "may be said": may, "suspended": served}
@@ -62,7 +64,7 @@ def situation(plan: Plan, state: LiveState, said: Mapping[Name, Status], now: fl
 
 
 def _request(request: Request, state: LiveState, now: float) -> str:
-    """Return a request that is not done, and how long it has waited, if there is a limit on that."""
+    """Return a pending request, and its waiting time if there is a limit on it."""
     waiting = state.heads.get(request.agent)
     known = waiting is not None and waiting.request == request
     return f"{request}, for {now - waiting.since:.0f} s" if waiting is not None and known else str(request)
@@ -91,14 +93,14 @@ def _does(name: Name, state: LiveState, said: Status | None, now: float) -> Iter
 
 
 def _place(name: Name, state: LiveState) -> str:
-    """Return where a vehicle is that is not under way: where it was seen, whatever is believed."""
+    """Return the observed place of a vehicle that is not under way, whatever agents believe."""
     physical = state.configuration.structure.physical
     parent = physical.abstract_parent(name) if name in physical else REGION
     return "none of the places" if parent == REGION else parent
 
 
 def _lasts(name: Name, state: LiveState, now: float) -> Iterator[str]:
-    """Yield how long a flight has gone on, and how long it still takes, where the mission has times."""
+    """Yield the elapsed and the remaining time of a flight, if the mission has times."""
     flights = () if state.timers is None else flying(state.timers)
     for flight in (each for each in flights if each.vehicle == name):
         elapsed = now - flight.since
@@ -133,7 +135,7 @@ def _heard(name: Name, state: LiveState, said: Status | None, now: float) -> Ite
 
 
 def _metres(metres: float) -> str:
-    """Say how far something is.
+    """Return a distance with its unit.
 
     >>> _metres(12.4), _metres(3249.0)
     ('12 m', '3.2 km')

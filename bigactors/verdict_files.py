@@ -1,4 +1,4 @@
-"""Verdict files: what `check` decided for exactly one mission, and what `run` requires before take-off."""
+"""Verdict files: the decision of `check` on exactly one mission, which `run` requires before take-off."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ PARTS = {
     "entities": "the entities that are declared",
     "environment": "the environment section",
 }
-"""The parts of a mission to which a verdict is bound, with their names."""
+"""The parts of a mission to which a verdict is bound, with their descriptions."""
 
 
 def verdict_json(checked: Checked, engine: str, key: SigningKey | None = None) -> dict[str, Any]:
-    """Return the verdict on a mission as plain data, sealed, and signed if there is a key."""
+    """Return the verdict on a mission as plain data, sealed, and signed if a key is given."""
     report, mission = checked.report, checked.mission
     data = {
         "schema": SCHEMA,
@@ -73,7 +73,7 @@ def verdict_json(checked: Checked, engine: str, key: SigningKey | None = None) -
 
 
 def said_by(data: dict[str, Any]) -> bytes:
-    """Return a verdict's content as one text, from which its seal and signature are computed."""
+    """Return a verdict's content as one text, the input of its seal and signature."""
     said = {name: value for name, value in data.items() if name not in ("seal", "signature")}
     return json.dumps(said, sort_keys=True, ensure_ascii=True).encode("ascii")
 
@@ -84,7 +84,7 @@ def _seal(data: dict[str, Any]) -> str:
 
 
 def parts_of(mission: ElaboratedMission) -> dict[str, str]:
-    """Return a digest of each part that a verdict is bound to."""
+    """Return a digest of each part of a mission to which a verdict is bound."""
     setting, first = mission.setting, mission.initial
     places = {name: first.read(placement_cell(name)) for name in mission.fixed}
     entities = {name: (kind, first.read(("channels", name))) for name, kind in setting.kinds.items()}
@@ -99,13 +99,13 @@ def parts_of(mission: ElaboratedMission) -> dict[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class Licence:
-    """The verdict of a run.
+    """The verdict that permits a run.
 
     Attributes:
         path: The file.
         data: Its content.
         resting: The properties whose verdicts depend on the environment section.
-        scheduler: The scheduler under which it was decided.
+        scheduler: The scheduler under which it was reached.
     """
 
     path: str
@@ -115,7 +115,7 @@ class Licence:
 
 
 def find_verdict(mission: str, given: str | None) -> str | None:
-    """Return the path of a mission's verdict file: the one given, else the one beside it, else the one here."""
+    """Return the path of a mission's verdict file: the given one, else one beside the mission, else one here."""
     if given is not None:
         return given
     path = Path(mission)
@@ -128,10 +128,10 @@ def find_verdict(mission: str, given: str | None) -> str | None:
 def licence_for(
     name: str, path: str, mission: ElaboratedMission, trusted: TrustedKey | None = None
 ) -> Licence:
-    """Return the verdict of a file if it allows to run a mission; raises Mistake with the reason if not.
+    """Return a file's verdict if it permits to run the mission; raises Mistake with the reason if not.
 
-    The mission is the one that flies, as it was read: replacing its file changes nothing. If a key is trusted, the
-    verdict must be signed with it.
+    The mission is the one that flies, as it was read: replacing its file changes nothing. With a trusted key, the
+    verdict must bear its signature.
     """
     data = read_json(path)
     if trusted is not None and isinstance(data, dict):
@@ -173,7 +173,7 @@ def _flights_of(data: dict[str, Any]) -> dict[Name, float]:
 
 
 def _differing(data: dict[str, Any], mission: ElaboratedMission) -> str:
-    """Return the parts of a mission that have changed since the verdict."""
+    """Return the differences between a mission and that of the verdict, in words."""
     if data.get("version") != __version__:
         return f"it was reached by version {data.get('version')!s:.40}, this is {__version__}"
     if data.get("build") != build_digest():

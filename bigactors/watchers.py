@@ -25,16 +25,16 @@ from bigactors.terminal import is_terminal, paint, say_text, tell
 from bigactors.vehicle_lines import vehicles_line
 
 DONE = {"hold": "vehicles hold", "return": "vehicles return"}
-"""What is done when the mission falls back."""
+"""The effect of each fallback in words."""
 
 EVERY = 1.0
-"""Seconds between two looks at the vehicles on a terminal."""
+"""Seconds between two updates of the vehicles' line on a terminal."""
 
 SELDOM = 60.0
-"""Seconds of flight without a word after which a line tells of the vehicles where there is no terminal."""
+"""Seconds of silence after which other output gets a line about the vehicles."""
 
 MOST_BREACHES = 10
-"""How much of what broke in a run is said when another goes on from it."""
+"""The most breaches of the earlier run that a resumed run prints."""
 
 Resting = Callable[[Finding], tuple[str, ...]]
 """Returns the properties whose verdicts depend on a finding's assumption."""
@@ -42,10 +42,10 @@ Resting = Callable[[Finding], tuple[str, ...]]
 
 @dataclass(slots=True)
 class Terminal:
-    """Prints steps that change the world, the displays of agents, and findings; on a long flight what vehicles do.
+    """Prints world-changing steps, the displays of agents, findings, and a line about the vehicles.
 
     Attributes:
-        resting: The verdicts that depend on a finding's assumption.
+        resting: Returns the verdicts that depend on a finding's assumption.
         vehicles: The vehicles of the run.
         broken: Whether an assumption broke, or the recording or a plugin failed.
         state: The state after the last turn.
@@ -62,7 +62,7 @@ class Terminal:
     _drawn: float = -math.inf
 
     def goes_on(self, broken: Sequence[Finding], taken: Mapping[str, str]) -> None:
-        """Say what broke in the run that this one goes on from, and who is taken over."""
+        """Print the breaches of the resumed run, and the vehicles that are taken over."""
         self.broken = any(map(_breaks, broken))
         told = tuple(dict.fromkeys((finding.kind, finding.message, finding.fallback) for finding in broken))
         for kind, message, fallback in told[:MOST_BREACHES]:
@@ -81,8 +81,8 @@ class Terminal:
     def arrived(self, heard: Heard, now: float) -> None:
         """Print nothing: positions are too frequent."""
 
-    def reported(self, report: Report, now: float) -> None:  # noqa: ARG002 - as watchers are called
-        """Print nothing: important reports become findings; what a vehicle says of itself is told with where it is."""
+    def reported(self, report: Report, now: float) -> None:  # noqa: ARG002 - the protocol
+        """Store a vehicle's status for its line. Print nothing: important reports become findings."""
         if isinstance(report, Status):
             self._said[report.entity] = report
 
@@ -106,7 +106,7 @@ class Terminal:
                 self._tell_of_vehicles(turn.state, now)
 
     def ends(self) -> None:
-        """Clear the line about the vehicles, before something else is printed."""
+        """Clear the vehicles' line before other output."""
         with _flying_on():
             self._line.clear()
 
@@ -121,7 +121,7 @@ class Terminal:
         return f"{time - (time if self.began is None else self.began):8.1f} s "
 
     def _tell_of_vehicles(self, state: LiveState, now: float) -> None:
-        """Tell what vehicles do: on a terminal always, in one place, else if nothing was told for a while."""
+        """Print a line about the vehicles: on a terminal always, in one place; elsewhere after a long silence."""
         if is_terminal(sys.stderr):
             wall = time.monotonic()
             if wall - self._drawn >= EVERY:
@@ -143,7 +143,7 @@ class Terminal:
 
 
 def _breaks(finding: Finding) -> bool:
-    """Tell whether the run is not as it was verified: a late request alone is foreseen."""
+    """Return whether a finding voids the verification: a broken assumption, or a failure with a fallback."""
     return finding.kind == "broken assumption" or (finding.kind == "failed" and bool(finding.fallback))
 
 
@@ -159,7 +159,7 @@ def _flying_on() -> Iterator[None]:
 
 @dataclass(frozen=True, slots=True)
 class Tape:
-    """Writes everything into a recording."""
+    """Writes arrivals, reports and turns into a recording."""
 
     recorder: Recorder
     resting: Resting
@@ -177,7 +177,7 @@ class Tape:
         self.recorder.turn(turn, now, self.resting)
 
     def preflight(self, said: dict[str, Any], now: float) -> None:
-        """Record what is checked before the start, and whether it has come."""
+        """Record the checks before the start, and their state."""
         self.recorder.preflight(said, now)
 
 
@@ -198,6 +198,6 @@ class Log:
                 raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     def close(self) -> None:
-        """End the log."""
+        """Close the log."""
         if self._file is not None:
             self._file.close()

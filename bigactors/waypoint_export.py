@@ -1,4 +1,4 @@
-"""The waypoints that a trace sends a vehicle to, as a file that ground stations read (paper, Example 1)."""
+"""The waypoints to which a trace sends a vehicle, as a file for ground stations (paper, Example 1)."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from semantics.state.requests import CTR
 from semantics.state.signature import Name
 
 HEIGHT = 100.0
-"""Metres above home at which a vehicle travels of which the mission says no altitude, to a place without a band."""
+"""Metres above home: the travel height of a vehicle without a given altitude to a place without an altitude band."""
 
 WRITERS = {PLAN: write_plan, WAYPOINTS: write_waypoints}
 
 
 def write_route(trace: Trace, vehicle: Name, path: str) -> int:
-    """Write the points that a trace sends a vehicle to; return how many there are; raises Mistake."""
+    """Write the points to which a trace sends a vehicle; return their number; raises Mistake."""
     write = WRITERS.get(Path(path).suffix)
     if write is None:
         raise Mistake("a route is written as one of " + ", ".join(WRITERS), "name the file so", path)
@@ -43,14 +43,14 @@ def write_route(trace: Trace, vehicle: Name, path: str) -> int:
 
 
 def _home(c: Configuration, vehicle: Name) -> tuple[Geometry | None, float]:
-    """Return where a vehicle starts, if that is a point, and how high; at 0 m where the mission doesn't say."""
+    """Return a vehicle's start, if it is a point, and its altitude, by default 0 m."""
     at = c.structure.physical.position(vehicle)
     altitude = 0.0 if at is None or at.altitude is None else at.altitude.low
     return at.geometry if at is not None and at.geometry.is_point else None, altitude
 
 
 def _told(trace: Trace) -> Iterator[MobilityCommand]:
-    """Yield what vehicles are told in a trace: when a control is commanded, or actuated at once."""
+    """Yield the commands to vehicles in a trace: when a control is commanded, or actuated at once."""
     for (before, after), step in zip(pairwise(trace.configurations), trace.steps, strict=True):
         request = step.label.about
         if step.label.rule in ("command", "actuate") and isinstance(request, CTR):
@@ -60,7 +60,7 @@ def _told(trace: Trace) -> Iterator[MobilityCommand]:
 
 
 def _led_to(way: Realisation, after: Configuration) -> bool:
-    """Tell whether a way of making a control true is the one that was taken."""
+    """Return whether a realisation of a control is the one that the trace took."""
     if all(after.read(cell) == value for cell, value in way.physical.items()):
         return True
     physical = after.structure.physical

@@ -20,18 +20,18 @@ from semantics.state.configuration import Configuration
 from semantics.state.initial import initial
 from semantics.state.physical_model import Carried, Placed, Placement
 from semantics.state.setting import Setting
-from semantics.state.signature import REGION, Kind, Signature
+from semantics.state.signature import NO_ENTITIES, Kind, Signature
 
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """What files say is where.
+    """The entities in files, with their positions.
 
     Attributes:
-        properties: Of each entity, sorted by name.
-        accounts: For each file, what it had and what of it was not taken.
-        left_out: How many entities were read and not kept.
-        doubts: What is probably not as it was meant.
+        properties: The property of each entity, sorted by name.
+        accounts: For each file, a tally of its contents, taken and left out.
+        left_out: The number of entities read and not kept.
+        doubts: Probable mistakes of the user, in words.
     """
 
     properties: tuple[PhysicalProperty, ...]
@@ -41,7 +41,7 @@ class World:
 
     @property
     def conflicts(self) -> tuple[str, ...]:
-        """Places that do not nest: A(P) then puts what is in both into the smaller one."""
+        """Places that overlap without nesting: A(P) puts entities in both into the smaller one."""
         areas = {each.entity: each.geometry for each in self.properties if not each.geometry.is_point}
         return tuple(map(str, check_places(areas)))
 
@@ -56,9 +56,9 @@ def read_world(
 
     Args:
         paths: The files.
-        time: As of when, in seconds since 1970; the end of a recording if None.
-        within: South, west, north and east of what is kept.
-        kinds: Which kinds are kept; all if there are none.
+        time: The moment of interest, in seconds since 1970; the end of a recording if None.
+        within: The south, west, north and east of the kept area.
+        kinds: The kinds to keep; all if there are none.
     """
     origins: dict[str, str] = {}
     found: dict[str, PhysicalProperty] = {}
@@ -142,10 +142,10 @@ def area_within(within: Sequence[float]) -> Geometry:
 
 
 def configuration_of(world: World) -> Configuration:
-    """Return ⟨∅ | (A(P), P, β, γ) | ∅⟩ of a world; every kind of which something has an area may contain all."""
+    """Return ⟨∅ | (A(P), P, β, γ) | ∅⟩ of a world. A kind with an area may contain every kind."""
     known = {each.entity: each for each in world.properties}
-    if REGION in known:
-        raise Mistake(f"an entity is called '{REGION}'", "that is the name of the outermost place: rename it")
+    for name in sorted(NO_ENTITIES & known.keys()):
+        raise Mistake(f"an entity is called '{name}'", "the language has that name for a place: rename it")
     kinds = {name: each.kind for name, each in known.items()}
     placements = {name: _placement(each, known) for name, each in known.items()}
     setting = Setting(_signature(world), kinds, Program((), {}, {}))
@@ -184,7 +184,7 @@ def _signature(world: World) -> Signature:
 
 
 def census(world: World) -> str:
-    """Say how many entities there are of each kind."""
+    """Return the number of entities of each kind, in words."""
     counts = Counter(each.kind for each in world.properties)
     listed = ", ".join(f"{count} {kind}" for kind, count in sorted(counts.items()))
     left_out = f" ({world.left_out} more are not of these kinds or not within)" if world.left_out else ""

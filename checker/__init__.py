@@ -1,6 +1,6 @@
 """The model checker: explores every interleaving of a mission and decides its properties, with shortest traces.
 
-It knows the calculus by `semantics.successors` alone: nothing of files, vehicles or the mission language.
+It uses the calculus only through `semantics.successors`, and knows nothing of files, vehicles or the mission language.
 """
 
 import lazy_loader

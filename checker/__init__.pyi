@@ -19,8 +19,8 @@ from .reduction import Reduction as Reduction
 from .reduction import RefusedError as RefusedError
 from .reports.report import report_json as report_json
 from .reports.report import report_text as report_text
+from .steps import Step as Step
 from .traces import ReplayError as ReplayError
-from .traces import Step as Step
 from .traces import Trace as Trace
 from .traces import print_loop as print_loop
 from .traces import print_trace as print_trace

@@ -21,12 +21,11 @@ from checker.properties.inspections import (
     Reachability,
 )
 from checker.properties.ownership import owned
-from checker.properties.races import STALE, ControlRaces, StaleObservationRaces
-from checker.properties.stale_steps import stale_steps
+from checker.properties.races import ControlRaces, StaleObservationRaces
 from checker.properties.visited import Visited
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.reduction.unfolding import told
-from checker.traces import Trace, trace_to
+from checker.traces import Trace, trace_of, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property, watching
@@ -46,16 +45,16 @@ BY_LOOKING: dict[PropertyKind, Callable[[int], Inspection]] = {
     PropertyKind.ARRIVAL: Arrival,
     PropertyKind.COMPUTATION: Computation,
 }
-"""What looks at configurations for the properties that have nothing of the mission's own to them."""
+"""The inspection for each property that has no proposition of the mission's own."""
 
 PATIENCE = 1.0
-"""Seconds after which a mission that the reference explorer has not got through is given to the fast one."""
+"""Seconds after which the fast explorer takes over a mission from the reference explorer."""
 
 UNTIMED = "not decided: nothing says how long anything takes; give the mission a section `timing`"
 
 
 class Checkable(Protocol):
-    """A mission: where it starts, what it asks, and what is to be known of the verdicts."""
+    """A mission: its initial configuration, its properties, and notes for the report."""
 
     @property
     def initial(self) -> Configuration:
@@ -63,14 +62,14 @@ class Checkable(Protocol):
 
     @property
     def properties(self) -> tuple[Property, ...]:
-        """What is to be decided."""
+        """The properties to decide."""
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What a report says besides."""
+        """Additional notes of the report."""
 
 
-def check(  # noqa: PLR0913 - each says one thing of a check
+def check(  # noqa: PLR0913 - independent options
     start: Configuration | Checkable,
     properties: Iterable[Property] | None = None,
     limits: Limits | None = None,
@@ -85,28 +84,28 @@ def check(  # noqa: PLR0913 - each says one thing of a check
     threads: int | None = None,
     times: bool = False,
 ) -> Report:
-    """Explore everything that is reachable and decide the properties.
+    """Explore the reachable configurations and decide the properties.
 
-    Race-freedom is first looked for in the text (by ownership); where that doesn't settle it, the mission is explored
-    once more with what observations rest on remembered. Configurations are counted without that memory.
+    An ownership analysis of the text comes first for race-freedom. Where it is inconclusive, a second exploration
+    searches with the provenance of observations in each configuration. The report counts configurations without it.
 
     Args:
-        start: A mission, or a configuration to start from.
-        properties: What is to be decided; what the mission asks where it is left out.
-        limits: Where to stop.
-        report: Told of the progress.
-        notes: What the report is to say besides.
-        engine: How to explore; by default whichever is quicker for the mission's size.
-        violations: Of each property so many different ones are shown at the most, each with a shortest trace.
-        reduce: What may let it visit less.
-        keeping: What the fast explorer keeps on the way, and what it doubts; where it is said, that one explores.
-        cluster: With whom, where Ray is the engine.
-        threads: On how many threads at most the fast explorer explores; by default on as many as there are cores.
-        times: Whether the report is to say when flights may begin and end, of a mission with `timing`.
+        start: A mission, or an initial configuration.
+        properties: The properties to decide; by default those of the mission.
+        limits: The bounds of the exploration.
+        report: Receives the progress.
+        notes: Additional notes of the report.
+        engine: The engine; by default the quicker one for the mission's size.
+        violations: The most violations to show of a property, each different and with a shortest trace.
+        reduce: The reductions to apply.
+        keeping: Checkpoints and self-checks of the fast explorer; giving them selects that engine.
+        cluster: The workers of the engine Ray.
+        threads: The most threads of the fast explorer; by default one for each core.
+        times: Whether the report says when flights may begin and end, for a mission with `timing`.
 
     Raises:
-        RefusedError: A reduction is unsound for the mission, or nothing in it allows one. Properties that it is
-            unsound for are not decided, unless something was found against them.
+        RefusedError: A reduction is unsound for the mission, or the mission has nothing to reduce. If a reduction is
+            unsound for a single property, that property stays undecided unless a violation was found.
         TypeError: A configuration is given without properties.
     """
     initial, asked, notes = _asked(start, properties, notes)
@@ -139,7 +138,7 @@ def check(  # noqa: PLR0913 - each says one thing of a check
 def _asked(
     start: Configuration | Checkable, properties: Iterable[Property] | None, notes: tuple[str, ...]
 ) -> tuple[Configuration, tuple[Property, ...], tuple[str, ...]]:
-    """Return where to start, what is asked, and what the report says besides."""
+    """Return the initial configuration, the properties and the notes of a check."""
     if not isinstance(start, Configuration):
         asked = start.properties if properties is None else tuple(properties)
         return start.initial, asked, notes or start.notes
@@ -157,7 +156,7 @@ def _reduced(
 
 
 def reductions_of(start: Checkable) -> tuple[Reduction, ...]:
-    """Return the reductions that a mission allows; none refuses another."""
+    """Return the reductions that are sound for a mission; they can be combined."""
     if start.initial.setting.timing is not None:
         return ()
     formulas = [each.formula for each in start.properties if each.kind.has_proposition]
@@ -209,7 +208,7 @@ class _Check:
         self.unscheduled: tuple[str, ...] = ()
 
     def run(self, notes: tuple[str, ...], whole: Limits) -> Report:
-        """Explore, and decide within the limits of the whole check."""
+        """Explore, and decide the properties within the limits of the whole check."""
         races = (self.races,) if self.searching else ()
         everything = (self.visited, *self.inspections.values(), *races, *self.formulas.values())
         options = self.options
@@ -244,11 +243,11 @@ class _Check:
         )
 
     def compiling(self) -> float:
-        """Return how many seconds of both explorations loops were compiled."""
+        """Return the seconds that both explorations spent on compiling loops."""
         return self.found.compiling + (self.remembered.compiling if self.remembered else 0.0)
 
     def schedule(self) -> Schedule | None:
-        """Return when flights may begin and end, if that is asked for, and time does not stop."""
+        """Return the earliest and latest dates of flights, if they were requested and time doesn't stop."""
         if not self.times or self.deadlines is None:
             return None
         try:
@@ -258,40 +257,43 @@ class _Check:
             return None
 
     def search(self) -> Exploration | None:
-        """Explore once more, with memory and in the time that is left; None where the user has asked for the end."""
+        """Search for stale observations with the monitor's memory, in the remaining time.
+
+        Return None after an interruption.
+        """
         if any(bound.stop is Stop.INTERRUPTION for bound in self.found.bounds):
             return None
         options, start, reduce = self.options, monitored(self.initial), None
         limits = replace(
             options.limits, spent=options.limits.spent + self.found.seconds - self.found.compiling
         )
-        if options.reduce is not None and options.reduce.putting_off:  # symmetry would lose whose a memory is
+        if options.reduce is not None and options.reduce.putting_off:  # symmetry loses the owner of a memory
             reduce = _reduced(start, [Reduction.POR])
         remembered = explore_by(start, (self.stale,), replace(options, limits=limits, reduce=reduce))
         remembered.bounds = [bound.met_in(Part.SEARCHING) for bound in remembered.bounds]
         return remembered
 
     def refused(self, asked: Property) -> str | None:
-        """Return why a reduction leaves a property undecided, None where it does not."""
+        """Return why a reduction leaves a property undecided, None where it decides it."""
         if asked.kind is PropertyKind.RACE_FREEDOM and self.owned:
             return None  # decided without a search
         return self.options.reduce.refuses(asked) if self.options.reduce else None
 
     def decide(self, asked: Property) -> Verdict:
-        """Return the verdict on one property: what a reduction may have lost is not said to hold."""
+        """Return the verdict on one property; *holds* is undecided where the reduction is unsound for the property."""
         if self.deadlines is not None:
             return self.deadlines.judge(asked, self.decided)
         reason = self.refused(asked)
         if reason is None:
             return self.decided(asked)
         undecided = Verdict(asked, Outcome.INCOMPLETE, note=f"not decided under this reduction: {reason}")
-        if asked.is_of_runs:  # which runs there are, and which are fair, only all steps tell
+        if asked.is_of_runs:  # runs and their fairness need every transition
             return undecided
         found = self.decided(asked)
         return found if found.outcome is Outcome.VIOLATED else undecided
 
     def decided(self, asked: Property) -> Verdict:
-        """Return what the exploration says of a property."""
+        """Return the verdict of the exploration on a property."""
         match asked.kind:
             case PropertyKind.RACE_FREEDOM:
                 return self.decide_races(asked)
@@ -318,13 +320,10 @@ class _Check:
                 assert_never(asked.kind)
 
     def collected(self, kind: PropertyKind) -> Collected:
-        """Return what was found by looking at configurations."""
+        """Return the findings of the inspection for a kind of property."""
         return self.inspections[kind].collected
 
     def decide_temporal(self, asked: Property) -> Verdict:
-        if self.options.keeping.compact is not None:
-            note = "hash compaction keeps no transitions to go along"
-            return Verdict(asked, Outcome.INCOMPLETE, note=note)
         from checker.properties.temporal.decide import Decider  # noqa: PLC0415 - numpy and scipy take their time to load
 
         try:
@@ -337,7 +336,7 @@ class _Check:
             return Verdict(asked, Outcome.INCOMPLETE, note="not decided: there is not enough memory")
 
     def verdict(self, asked: Property, collected: Collected, note: str = "") -> Verdict:
-        """Return the verdict of a property that no finding may speak against."""
+        """Return the verdict on a property that any finding violates."""
         violations = self.violations(collected, self.found)
         outcome = self.outcome(bool(violations), self.found)
         witness = None if violations else self.witness(collected, self.found)
@@ -405,7 +404,7 @@ class _Check:
         return Verdict(asked, outcome, shown, count, examined, witness, note, different, remarks)
 
     def vacuous(self, asked: Property, outcome: Outcome, examined: int) -> tuple[str, ...]:
-        """Return what it means that nothing was examined, where that makes a verdict say nothing."""
+        """Return the remark on a vacuous verdict: the property holds and nothing was examined."""
         meaning = asked.kind.about.vacuous
         return (f"vacuous: {meaning}",) if meaning and outcome is Outcome.HOLDS and not examined else ()
 
@@ -420,12 +419,12 @@ class _Check:
                 each.kind,
                 told(each.message),
                 trace,
-                (*map(told, each.details), *(stale_steps(trace) if each.kind == STALE else ())),
+                (*map(told, each.details), *trace.told_race),
                 told(each.subject),
                 collected.alike(each),
             )
             for each in collected.chosen()
-            for trace, told in [(trace_to(found, each.at, each.by), _teller(found, each.at))]
+            for trace, told in [(trace_of(found, each), _teller(found, each.at))]
         )
 
     def witness(self, collected: Collected, found: Exploration) -> Trace | None:
@@ -435,7 +434,7 @@ class _Check:
 
 
 def _shown(violations: tuple[Violation, ...], most: int) -> tuple[Violation, ...]:
-    """Return the shortest violations of two explorations: one of each kind before a second of any."""
+    """Return the shortest violations of two explorations, one of each kind before a second of any kind."""
     shortest = sorted(violations, key=lambda violation: len(violation.trace))
     firsts = list({each.kind: each for each in reversed(shortest)}.values())
     kept = sorted(firsts, key=shortest.index) + [each for each in shortest if each not in firsts]
@@ -443,5 +442,5 @@ def _shown(violations: tuple[Violation, ...], most: int) -> tuple[Violation, ...
 
 
 def _teller(found: Exploration, number: int) -> Callable[[str], str]:
-    """Return what puts the names of the run in the place of those of the configuration that stands for its end."""
+    """Return a function that replaces the names of a representative by those of the unreduced run to it."""
     return lambda text: told(found, number, text)

@@ -1,8 +1,8 @@
-"""Limits of an exploration, the bounds that were met, and long computations that look out for them.
+"""Limits of an exploration, the bounds that were met, and bound checks within long computations.
 
-An exploration that meets a bound keeps what it has. What comes after (surveys of all that was explored, temporal logic)
-has no half result: it is given up, and what it would have decided stays undecided. An interruption is such a bound: it
-ends an exploration between two configurations, and what comes after a little later.
+An exploration that meets a bound keeps its results. Later phases (surveys, temporal logic) have no partial result: they
+are abandoned, and their properties stay undecided. An interruption is such a bound. It ends an exploration between two
+configurations, and a later phase after a short grace.
 """
 
 import math
@@ -16,11 +16,11 @@ from enum import Enum
 from time import monotonic
 
 MOST_PENDING = 64
-"""Requests of one agent, or messages in one mailbox, beyond which a configuration is not explored further."""
+"""The most pending requests of one agent, or messages in one mailbox, in a configuration that is expanded."""
 
 
 class Stop(Enum):
-    """What may stop a search or leave something out of it, in words: `{}` is in the place of each figure."""
+    """The reason why a search stopped or left something out, in words with a placeholder `{}` for each figure."""
 
     CONFIGURATIONS = "the limit of {:,} configurations"
     TIME = "the time limit of {:g} s"
@@ -30,11 +30,10 @@ class Stop(Enum):
     NO_MEMORY = "the end of the memory that there is"
     NO_ROOM = "the end of the room in {}: {}"
     NO_CHECKPOINT = "a checkpoint that can't be written to {}: {}"
-    COMPACTION = "hash compaction to {} bits: some were left out with a probability of at most {:.1g}"
 
 
 class Part(Enum):
-    """Parts of a check that bounds may be met in, beside the exploration itself."""
+    """The parts of a check in which bounds may be met, beside the exploration itself."""
 
     LOOKING = "looking at what was explored"
     SEARCHING = "the search for stale observations"
@@ -45,9 +44,9 @@ class Bound:
     """A bound that was met.
 
     Attributes:
-        stop: What it is.
-        figures: How much that was, or where.
-        within: What it was met in, the innermost part first; nothing for the exploration itself.
+        stop: The kind of bound.
+        figures: Its amounts or its place.
+        within: The parts of the check in which it was met, innermost first; empty for the exploration itself.
     """
 
     stop: Stop
@@ -58,37 +57,36 @@ class Bound:
         return ", in ".join((self.stop.value.format(*self.figures), *(part.value for part in self.within)))
 
     def met_in(self, part: Part) -> "Bound":
-        """Return the bound as it was met in a part of the check."""
+        """Return the bound as met in a part of the check."""
         return replace(self, within=(*self.within, part))
 
     @property
     def effect(self) -> str:
-        """What it has done, in words."""
-        whole = self.stop is Stop.COMPACTION
-        return str(self) if whole else f"stopped at {self}: what lies beyond was not explored"
+        """The consequence of the bound, in words."""
+        return f"stopped at {self}: what lies beyond was not explored"
 
 
 GRACE = 2.0
-"""For how many seconds what was explored is looked at after that."""
+"""Seconds after an interruption during which later phases may still finish."""
 
 
 class Interruption:
-    """The wish of the user for the end, made by a signal's handler at any moment and asked for where time is."""
+    """The user's request to end, set by a signal handler at any moment and polled by the computations."""
 
     def __init__(self) -> None:
         self.wished: float | None = None
 
     def wish(self) -> None:
-        """Ask for the end."""
+        """Request the end."""
         self.wished = monotonic() if self.wished is None else self.wished
 
     def is_due(self, grace: float = 0.0) -> bool:
-        """Tell whether the end was asked for, so many seconds ago."""
+        """Return whether the end was requested at least so many seconds ago."""
         return self.wished is not None and monotonic() - self.wished >= grace
 
 
 class Uncounted:
-    """How many seconds of an exploration count to no limit: loops are compiled once after an installation."""
+    """The seconds of an exploration that count towards no limit: loops are compiled once after an installation."""
 
     def __init__(self) -> None:
         self.seconds = 0.0
@@ -96,17 +94,17 @@ class Uncounted:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Where an exploration stops: then it is *incomplete*, and says so.
+    """The limits of an exploration; an exploration that meets one is *incomplete*.
 
     Attributes:
-        configurations: How many are visited at most.
-        seconds: For how long.
-        pending: How many requests an agent may have pending, or messages in its mailbox.
-        spent: How many of the seconds are gone already.
-        memory: How many bytes the process may take; looked at now and then, so that it may be a little more.
-        spill: The folder in which the fast explorer has files for its rows when memory ends; None for nowhere.
-        interruption: Whether the user has asked for the end.
-        uncounted: The seconds of the exploration that are not counted.
+        configurations: The most configurations to visit.
+        seconds: The most seconds.
+        pending: The most pending requests of an agent, or messages in its mailbox.
+        spent: Seconds already used.
+        memory: The most bytes of the process, approximately, since it is checked at intervals.
+        spill: The folder to which the fast explorer moves its rows when memory ends; None for none.
+        interruption: The user's request to end.
+        uncounted: The seconds that count towards no limit.
     """
 
     configurations: int | None = 2_000_000
@@ -119,7 +117,7 @@ class Limits:
     uncounted: Uncounted = field(default_factory=Uncounted, compare=False, repr=False)
 
     def bound(self, stop: Stop) -> Bound:
-        """Return the bound that is met at one of these limits."""
+        """Return the bound for one of these limits."""
         figures = {
             Stop.CONFIGURATIONS: self.configurations,
             Stop.TIME: self.seconds,
@@ -129,9 +127,9 @@ class Limits:
         return Bound(stop, (figures[stop],))
 
     def end(self, seconds: float, share: float = 1.0, grace: float = 0.0) -> Bound | None:
-        """Return why it ends after so many seconds: the user wants that, or a share of the time is over.
+        """Return the bound met after so many seconds: an interruption, or a share of the time used up.
 
-        The end is wanted for `grace` seconds by then.
+        An interruption counts `grace` seconds after the request.
         """
         if self.interruption.is_due(grace):
             return Bound(Stop.INTERRUPTION)
@@ -141,19 +139,19 @@ class Limits:
 
 
 def is_full(limits: Limits) -> bool:
-    """Tell whether the process takes more memory than it may."""
+    """Return whether the process exceeds the memory limit."""
     return memory_left(limits) < 0
 
 
 def memory_left(limits: Limits) -> float:
-    """Return how many bytes of memory the process may take besides what it takes now."""
+    """Return how many more bytes of memory the process may take."""
     return math.inf if limits.memory is None else limits.memory - memory_taken()
 
 
 def memory_taken() -> int:
-    """Return how many bytes of memory the process takes now; its peak where the system doesn't tell.
+    """Return the bytes of memory of the process; its peak on a system without `/proc`.
 
-    What is a file's is not counted: the system takes that back when it needs memory.
+    Pages of files don't count: the system reclaims them under pressure.
     """
     try:
         with open("/proc/self/statm", encoding="ascii") as file:
@@ -164,8 +162,8 @@ def memory_taken() -> int:
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
 
 
-class BoundMet(Exception):  # what it is
-    """Time, memory or the user's patience has come to its end."""
+class BoundMet(Exception):  # named for the event, not the error
+    """A bound on time or memory, or an interruption, was met."""
 
     def __init__(self, bound: Bound) -> None:
         super().__init__(str(bound))
@@ -196,10 +194,10 @@ def bounded(limits: Limits, started: float | None = None) -> Iterator[None]:
 
 
 def look() -> None:
-    """Check whether a bound is met; without bounds none is.
+    """Check the bounds of the surrounding `bounded` context, if any.
 
     Raises:
-        BoundMet: It is.
+        BoundMet: A bound is met.
     """
     bounds = _BOUNDS.get()
     met = None if bounds is None else bounds.met()

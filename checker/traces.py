@@ -1,27 +1,29 @@
-"""Traces: runs in the paper's notation, that replay step by step."""
+"""Traces: runs in the paper's notation that replay step by step."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from checker.engines.contract import Exploration
+from checker.properties.findings import Finding
 from checker.properties.inspections import is_unfair
+from checker.properties.race_steps import RaceSteps
+from checker.properties.races import STALE
+from checker.properties.stale_steps import stale_steps
 from checker.reduction.unfolding import run_to
+from checker.steps import Step, alike, candidates, step_between, step_of
 from physical.messages import counted
-from semantics.observed_steps import Sight, steps_seen
+from semantics.observed_steps import Sight
 from semantics.races.monitor import monitored
-from semantics.state.brief import cut
 from semantics.state.canonical import digest_of_step
-from semantics.state.configuration import Configuration, Label, Transition
+from semantics.state.configuration import Configuration, Transition
 from semantics.state.observation_serialization import sight_json, sight_of
 from semantics.state.partition import Elsewhere
 from semantics.state.printing import print_changes
-from semantics.state.requests import Received
-from semantics.state.signature import Name
-from semantics.successors import expand, expand_by, served, turn_of
+from semantics.successors import expand, turn_of
 from semantics.timing.dates import clock_text
 
 if TYPE_CHECKING:
@@ -29,31 +31,13 @@ if TYPE_CHECKING:
     from checker.engines.times import Times
 
 SCHEMA = "bigactors.trace/1"
-"""The version of the step schema: schema, mission, digest, monitored, steps of label, choice and changes, and loop;
-steps of live runs also say what was observed, when, and the digest of what they wrote."""
+"""The version of the step schema: schema, mission, digest, monitored, steps of label, choice and changes, and loop.
+
+Steps of live runs also have their observation, its time, and the digest of their writes.
+"""
 
 MOST_STEPS = 1_000_000
 MOST_SECONDS = 10_000_000_000
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One transition of a trace.
-
-    Attributes:
-        label: Its label.
-        choice: The index of the chosen successor among those with that label.
-        target: The configuration after it.
-        sight: The observation, for a step that the world decided (live).
-    """
-
-    label: Label
-    choice: int
-    target: Configuration
-    sight: Sight | Elsewhere | None = None
-
-    def __repr__(self) -> str:
-        return f"<Step {cut(self.label)}>"
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,11 +47,12 @@ class Trace:
     Attributes:
         initial: The first configuration.
         steps: Its steps.
-        loop: The number of the configuration from which the run repeats for ever: the last is the same. If it is the
-            last itself, nothing has to happen there, and the run stays. None where the run is not for ever.
-        dates: When each step is taken, in ticks from the start; empty where nothing says how long things take.
-        shortest: Whether it is certain that no other run that shows the same is shorter: not where steps were put
+        loop: The number of the configuration from which the run repeats for ever; it equals the last one. If it is the
+            number of the last itself, the run stays there for ever. None for a finite run.
+        dates: The date of each step, in ticks from the start; empty without timing.
+        shortest: Whether the trace is certainly a shortest one. It isn't where steps were put
             off (`--reduce por`), nor where to find out would take too long.
+        race: The three steps of the stale-observation race that it is a trace of.
     """
 
     initial: Configuration
@@ -75,10 +60,11 @@ class Trace:
     loop: int | None = None
     shortest: bool = field(default=True, compare=False)
     dates: tuple[int, ...] = ()
+    race: RaceSteps | None = None
 
     @property
     def called(self) -> str:
-        """What it is called in a report."""
+        """The description of the trace in a report."""
         return "a shortest trace" if self.shortest else "a trace"
 
     def __len__(self) -> int:
@@ -102,78 +88,32 @@ class Trace:
         source = self.configurations[-1]
         steps = (*self.steps, step_of(source, transition.label, transition.target))
         dates = self.dates if at is None else (*self.dates, at)
-        return Trace(self.initial, steps, shortest=self.shortest, dates=dates)
+        return Trace(self.initial, steps, shortest=self.shortest, dates=dates, race=self.race)
 
     @property
     def moments(self) -> tuple[int, ...]:
-        """When each step is taken, in milliseconds from the start; empty without dates."""
+        """The date of each step, in milliseconds from the start; empty without dates."""
         timing = self.initial.setting.timing
         return () if timing is None else tuple(date * timing.tick for date in self.dates)
 
     def date(self, number: int) -> str:
-        """Return when a step is taken, as a report says it; nothing without dates."""
+        """Return the date of a step as text; empty without dates."""
         return clock_text(self.moments[number]) if self.moments else ""
 
+    def role(self, number: int) -> str:
+        """Return the word of a step, from 1, in the race that this is a trace of; nothing for other steps."""
+        return "" if self.race is None else self.race.roles.get(number, "")
 
-def step_of(source: Configuration, label: Label, target: Configuration) -> Step:
-    """Return the step between two configurations; labels that print alike are alike, as `replay` knows no more.
-
-    What an observation is received without is looked up.
-    """
-    if isinstance(label.about, Received):
-        received = (t for t in candidates(source, label=str(label)) if isinstance(t.label.about, Received))
-        label = next(t.label for t in received if t.target == target and t.label.agent == label.agent)
-    targets = [transition.target for transition in alike(source, str(label))]
-    return Step(label, targets.index(target), target)
-
-
-def step_between(source: Configuration, target: Configuration) -> Step:
-    """Return the first step from one configuration to another."""
-    changed = target.state.changed(source.state)
-    agents = source.alpha.names()
-    if changed and all(
-        len(cell) > 1 for cell in changed
-    ):  # a step changes its agent, or what is nobody's: the queue
-        named = {name for cell in changed for name in cell[1:]}
-        agents = tuple(name for name in agents if name in named)
-    steps = _in_turn(source, agents)
-    return step_of(source, next(step.label for step in steps if step.target == target), target)
-
-
-def candidates(
-    source: Configuration, sight: Sight | Elsewhere | None = None, label: str | None = None
-) -> tuple[Transition, ...]:
-    """Return what may follow, or be meant by what was observed.
-
-    With a label, agents that it does not name are passed over: every label of an agent's steps names it.
-    """
-    agents = [name for name in source.alpha.names() if label is None or name in label]
-    if sight is not None:
-        return tuple(steps_seen(source, sight, agents))
-    return _in_turn(source, agents)
-
-
-def _in_turn(source: Configuration, agents: Sequence[Name]) -> tuple[Transition, ...]:
-    """Return what some agents and the environment may do, in the turn of all."""
-    found = expand_by(source, agents).transitions
-    turn = next((turn_of(each) for each in found if turn_of(each) is not None), None)
-    if turn is None:
-        return found
-    others = (name for name in source.alpha.names() if name not in agents)
-    turns = (turn_of(each) for other in others for each in served(source, other))
-    is_first = all(other is None or turn <= other for other in turns)
-    return found if is_first else tuple(each for each in found if turn_of(each) is None)
-
-
-def alike(source: Configuration, label: str, sight: Sight | Elsewhere | None = None) -> list[Transition]:
-    """Return the steps with a label."""
-    return [each for each in candidates(source, sight, label) if str(each.label) == label]
+    @property
+    def told_race(self) -> tuple[str, ...]:
+        """The three steps of the race that this is a trace of, line by line."""
+        return () if self.race is None else tuple(self.race.told([step.label for step in self.steps]))
 
 
 def trace_to(found: Exploration, number: int, by: Transition | None = None) -> Trace:
-    """Return a trace to a configuration of an exploration: a shortest one, unless steps were put off.
+    """Return a trace to a configuration of an exploration: a shortest one, unless partial order reduction was applied.
 
-    A step by which the configuration counts is the last one, if it is its turn.
+    The transition that the finding is about comes last, if it is its turn.
     """
     if found.times is not None:
         return dated_trace(found.times, found.times.run_before(number, by))
@@ -192,6 +132,14 @@ def _is_in_turn(c: Configuration, step: Transition) -> bool:
     return turn_of(step) is None or turn_of(step) in map(turn_of, expand(c).by_agents)
 
 
+def trace_of(found: Exploration, finding: Finding) -> Trace:
+    """Return a trace to a finding; that of a stale-observation race knows its three steps."""
+    trace = trace_to(found, finding.at, finding.by)
+    if finding.kind != STALE:
+        return trace
+    return replace(trace, race=stale_steps(trace.initial, trace.steps))
+
+
 def dated_trace(times: Times, run: Run) -> Trace:
     """Return a run as a trace with dates."""
     trace = Trace(times.initial)
@@ -201,7 +149,7 @@ def dated_trace(times: Times, run: Run) -> Trace:
 
 
 def _unfolded(found: Exploration, number: int, by: Transition | None, *, shortest: bool) -> Trace:
-    """Return the run of the mission itself to what a configuration of a reduced exploration stands for."""
+    """Return an unreduced run to the configuration that a representative stands for."""
     initial = found.configurations[0] if found.start is None else found.start
     trace = Trace(initial, (), shortest=shortest)
     for transition in run_to(found, number, by):
@@ -211,17 +159,23 @@ def _unfolded(found: Exploration, number: int, by: Transition | None, *, shortes
 
 def print_trace(trace: Trace, *, changes: bool = True) -> Iterator[str]:
     """Print a trace in the paper's notation, with what changed under each step."""
-    for number, (step, source) in enumerate(zip(trace.steps, trace.configurations, strict=False)):
-        date = trace.date(number)
-        yield f"c{number} --{f'at {date} ' if date else ''}{step.label}--> c{number + 1}"
+    for number, (step, source) in enumerate(zip(trace.steps, trace.configurations, strict=False), 1):
+        yield print_step(trace, number)
         if changes:
             yield from (f"      {line}" for line in print_changes(source, step.target))
     if trace.loop is not None:
         yield print_loop(trace)
 
 
+def print_step(trace: Trace, number: int) -> str:
+    """Print one step, from 1: its date, its label, and what it is in a race."""
+    date, role = trace.date(number - 1), trace.role(number)
+    label = f"{f'at {date} ' if date else ''}{trace.steps[number - 1].label}"
+    return f"c{number - 1} --{label}--> c{number}{f'  [{role}]' if role else ''}"
+
+
 def print_loop(trace: Trace) -> str:
-    """Print where a run that goes on for ever comes round."""
+    """Print the loop of an infinite run."""
     end = len(trace)
     if trace.loop == end:
         return f"c{end} stays for ever: nothing has to happen"
@@ -233,7 +187,7 @@ def _steps_of(count: int) -> str:
 
 
 def print_length(trace: Trace) -> str:
-    """Print what a trace is, and how long."""
+    """Print the kind and the length of a trace."""
     steps = counted(len(trace), "step")
     if trace.loop is None:
         return f"{trace.called}, {steps}"
@@ -251,11 +205,11 @@ def _last(count: int) -> str:
 
 
 class ReplayError(Exception):
-    """A trace that the rules do not allow.
+    """A trace that the rules don't allow.
 
     Attributes:
         step: The number of the step, from 1.
-        enabled: What was enabled instead.
+        enabled: The labels of the transitions enabled instead.
     """
 
     def __init__(self, step: int, label: str, enabled: Sequence[str], cause: str) -> None:
@@ -268,8 +222,10 @@ class ReplayError(Exception):
 def to_json(trace: Trace, mission: str, digest: str) -> dict[str, Any]:
     """Return a trace as plain data, in the step schema."""
     steps = [
-        _step_json(source, step) | dated
-        for step, source, dated in zip(trace.steps, trace.configurations, _dates_json(trace), strict=False)
+        _step_json(source, step) | dated | ({"role": role} if (role := trace.role(number)) else {})
+        for number, (step, source, dated) in enumerate(
+            zip(trace.steps, trace.configurations, _dates_json(trace), strict=False), 1
+        )
     ]
     remembering = trace.initial.setting.monitored
     data = {"schema": SCHEMA, "mission": mission, "digest": digest, "monitored": remembering, "steps": steps}
@@ -277,7 +233,7 @@ def to_json(trace: Trace, mission: str, digest: str) -> dict[str, Any]:
 
 
 def _dates_json(trace: Trace) -> Iterator[dict[str, float]]:
-    """Yield for each step when it is taken, in seconds from the start, where the run has dates."""
+    """Yield the date of each step in seconds from the start; nothing without dates."""
     timing = trace.initial.setting.timing
     if timing is None or not trace.dates:
         yield from ({} for _ in trace.steps)
@@ -292,10 +248,10 @@ def _step_json(source: Configuration, step: Step) -> dict[str, Any]:
 
 
 def replay(initial: Configuration, data: Any) -> Trace:
-    """Return the trace that plain data describes, run again through the rules, with the monitor's memory if it had it.
+    """Return the trace of plain data, re-run through the rules; with the monitor's memory if it was recorded with it.
 
     Raises:
-        ReplayError: A step is not allowed, or the run doesn't come round where it should.
+        ReplayError: A step is not allowed, or the loop doesn't close.
         ValueError: The data are no trace.
     """
     steps, loop = _steps(data), _loop(data)
@@ -306,11 +262,28 @@ def replay(initial: Configuration, data: Any) -> Trace:
     for number, said in enumerate(steps, 1):
         trace.append(_followed(at, number, said))
         at = trace[-1].target
-    return _closed(Trace(initial, tuple(trace), loop, dates=_dates(initial, trace, data["steps"])))
+    dates, race = _dates(initial, trace, data["steps"]), _race(initial, trace, data["steps"])
+    return _closed(Trace(initial, tuple(trace), loop, dates=dates, race=race))
+
+
+def _race(initial: Configuration, trace: Sequence[Step], said: Sequence[Any]) -> RaceSteps | None:
+    """Return the race that plain data mark in a run, once the run itself shows the same steps."""
+    marked = {number: each["role"] for number, each in enumerate(said, 1) if "role" in each}
+    if not marked:
+        return None
+    race = stale_steps(initial, trace)
+    shown = {} if race is None else race.roles
+    for number in sorted(marked.keys() | shown.keys()):
+        if marked.get(number) != shown.get(number):
+            right = f"the 'role' '{shown[number]}'" if number in shown else "no 'role'"
+            raise ValueError(
+                f"step {number} should have {right}: the run itself shows what each step is in a race"
+            )
+    return race
 
 
 def _dates(initial: Configuration, trace: Sequence[Step], said: Sequence[Any]) -> tuple[int, ...]:
-    """Return the dates of a run in ticks, once its clocks allow each; nothing where it has none."""
+    """Return the dates of a run in ticks after a check against its clocks; empty without dates."""
     timing = initial.setting.timing
     if timing is None or not any("at" in each for each in said):
         return ()
@@ -343,10 +316,10 @@ def _date(number: int, said: Any, tick: int) -> int:
 
 
 def follow(before: Configuration, number: int, said: Any) -> Step:
-    """Return the step that plain data describes, taken again by the rules.
+    """Return the step of plain data, re-run by the rules.
 
     Raises:
-        ReplayError: It is not allowed there, or leads elsewhere.
+        ReplayError: The step is not allowed there, or has another target.
         ValueError: The data are no step.
     """
     return _followed(before, number, _step(number, said))
@@ -367,7 +340,7 @@ def _followed(before: Configuration, number: int, said: _Said) -> Step:
 
 
 def _closed(trace: Trace) -> Trace:
-    """Return a trace after a look at where it comes round."""
+    """Return a trace after a check that its loop closes."""
     if trace.loop is None:
         return trace
     last = trace.configurations[-1]
@@ -394,7 +367,7 @@ def _cause(alike: int) -> str:
 
 
 _Said = tuple[str, int, Sight | Elsewhere | None, str | None]
-"""What plain data say of a step: its label, which of those with that label, what was observed, what it wrote."""
+"""A step in plain data: its label, its index among the steps of that label, its observation and its digest."""
 
 
 def _steps(data: Any) -> list[_Said]:

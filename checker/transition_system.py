@@ -1,11 +1,11 @@
-"""The transition system that was explored, as a graph of networkx and as a table of pandas."""
+"""The explored transition system, as a networkx graph and as a pandas table."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from checker.engines.contract import Exploration
 from checker.engines.graph import Graph, graph_of
-from checker.traces import step_of
+from checker.steps import step_of
 from physical.messages import install_extra
 from semantics.state.requests import Received
 
@@ -26,7 +26,7 @@ class Row(NamedTuple):
 
 
 def to_networkx(found: Exploration) -> "MultiDiGraph[int]":
-    """Return configurations by their numbers, and transitions between them."""
+    """Return the graph of configurations, by number, and transitions."""
     import networkx as nx  # noqa: PLC0415 - few need it, and it takes time to load
 
     graph: nx.MultiDiGraph[Any] = nx.MultiDiGraph()
@@ -39,7 +39,7 @@ def to_networkx(found: Exploration) -> "MultiDiGraph[int]":
 
 
 def to_pandas(found: Exploration) -> "DataFrame":
-    """Return transitions as rows, in the order of their sources."""
+    """Return the transitions as rows, in the order of their sources."""
     try:
         from pandas import DataFrame  # noqa: PLC0415 - an extra
     except ImportError as error:
@@ -55,7 +55,7 @@ def rows(found: Exploration) -> Iterator[Row]:
         label = graph.labels[action]
         if found.survey is not None and isinstance(
             label.about, Received
-        ):  # rows do not hold what was received
+        ):  # rows do not hold received observations
             label = step_of(configurations[source], label, configurations[target]).label
         yield Row(int(source), int(target), label.rule, label.agent, str(label.about), str(label))
 

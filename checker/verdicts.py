@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Outcome(Enum):
-    """The word of a verdict. What was cut off never reads as *holds*."""
+    """The outcome of a verdict; an exploration that met a bound never yields *holds*."""
 
     HOLDS = "holds"
     VIOLATED = "violated"
@@ -34,13 +34,13 @@ class Violation:
     """One way in which a property fails, with a shortest trace that ends in it.
 
     Attributes:
-        kind: What it is.
-        message: In words.
+        kind: The kind of violation.
+        message: The violation in words.
         trace: A shortest run that ends in it.
         details: More lines.
-        subject: What it is about, such as a request; empty where the property itself says that.
-        alike: How many others there are of that kind that come from the same places in the mission's text.
-        path: The critical path: the steps, one after the other, that its date is made of, and what bounds them.
+        subject: Its subject, such as a request; empty where the property itself names it.
+        alike: The number of other violations of this kind from the same places in the mission's text.
+        path: The critical path: the consecutive steps that determine its date, each with its time bound.
     """
 
     kind: str
@@ -53,7 +53,7 @@ class Violation:
 
     @property
     def told(self) -> tuple[str, ...]:
-        """The details, the critical path, and how many others are alike."""
+        """The details, the critical path, and the number of similar violations."""
         path = ("critical path:", *(f"  {leg}" for leg in self.path)) if self.path else ()
         return (*self.details, *path, *([f"and {self.alike:,} alike"] if self.alike else []))
 
@@ -63,18 +63,18 @@ class Violation:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What was found of one property.
+    """The result for one property.
 
     Attributes:
         property: The property.
         outcome: Whether it holds.
-        violations: One of those that are alike, the shortest trace first, as far as they are shown.
-        count: How often a violation was met, in whichever configuration.
-        examined: How many things the property was about were found good; 0 makes a verdict vacuous.
-        witness: A trace to one of them, where something holds; None also where none was looked for.
-        note: How it was decided, or what else is to be known.
-        different: How many kinds and subjects of violations there were, shown or not.
-        remarks: What makes a verdict that holds say less than it seems to.
+        violations: The violations shown, one of each similar group, the shortest trace first.
+        count: The number of violations, over all configurations.
+        examined: The number of subjects that satisfied the property; 0 makes the verdict vacuous.
+        witness: A trace to one of them, where the property holds; None also where none was searched.
+        note: The method of the decision, or a qualification.
+        different: The number of different kinds and subjects of violations, shown or not.
+        remarks: Reasons why a positive verdict may be vacuous or weak.
     """
 
     property: Property
@@ -92,19 +92,19 @@ class Verdict:
         return f"<Verdict {cut(self.property.name)} {self.outcome.value}{found}>"
 
     def _repr_html_(self) -> str:
-        from bigactors.notebook import verdict_html  # noqa: PLC0415 - what notebooks show is built on values
+        from bigactors.notebook import verdict_html  # noqa: PLC0415 - notebooks import verdicts
 
         return verdict_html(self)
 
 
 class UnknownPropertyError(KeyError):
-    """A property that a report has no verdict of."""
+    """A property without a verdict in a report."""
 
     __str__ = Exception.__str__
 
 
 class Verdicts(tuple[Verdict, ...]):
-    """The verdicts of a report in the mission's order; one is also found by the name of its property."""
+    """The verdicts of a report in the mission's order, also accessible by the name of the property."""
 
     __slots__ = ()
 
@@ -133,22 +133,22 @@ def _instead(name: str, names: list[str]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """All that a check found.
+    """The result of a check.
 
     Attributes:
         verdicts: One for each property, in the mission's order; `verdicts["race_freedom"]` is one by its name.
-        configurations: How many were visited, the monitor's cells not counted.
-        transitions: How many transitions they have.
-        depth: The distance of the farthest.
-        bounds: Those that were met; empty where everything was explored.
-        rules: How many transitions each inference rule has.
-        notes: What is to be known of the verdicts.
-        seconds: How long it took.
-        coverage: What was reached of the mission's text.
-        reduced: What let it visit less, by name; then counts are those of what was visited.
-        allowed: How many transitions the visited configurations allow, followed or not.
-        schedule: When its flights begin and end, where that was asked for.
-        flights: How many seconds a flight of each bigActor takes at most, where times bound it, sorted by name.
+        configurations: The number of visited configurations, the monitor's cells not counted.
+        transitions: The number of their transitions.
+        depth: The greatest distance from the initial configuration.
+        bounds: The bounds that were met; empty for a complete exploration.
+        rules: The number of transitions by each inference rule.
+        notes: Qualifications of the verdicts.
+        seconds: The duration.
+        coverage: The reached parts of the mission's text.
+        reduced: The names of the reductions applied; counts are then those of the reduced exploration.
+        allowed: The number of enabled transitions in the visited configurations, followed or not.
+        schedule: The earliest and latest dates of its flights, if requested.
+        flights: The longest flight of each bigActor in seconds, where it is bounded, sorted by name.
     """
 
     verdicts: Verdicts
@@ -171,13 +171,13 @@ class Report:
         return f"<Report {found} configurations={self.configurations} complete={self.complete}>"
 
     def _repr_html_(self) -> str:
-        from bigactors.notebook import report_html  # noqa: PLC0415 - what notebooks show is built on values
+        from bigactors.notebook import report_html  # noqa: PLC0415 - notebooks import verdicts
 
         return report_html(self)
 
     @property
     def complete(self) -> bool:
-        """Whether everything reachable was visited."""
+        """Whether all reachable configurations were visited."""
         return not self.bounds
 
     @property

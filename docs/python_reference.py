@@ -1,4 +1,4 @@
-"""How sphinx's autodoc shows the public names: by their installed names, with what a type is one of.
+"""The public names as sphinx's autodoc shows them: by their installed names, with the members of enumerations and unions.
 
 The `__all__` of a module has the names of its `__init__.pyi`, so no page lists them.
 """
@@ -21,7 +21,7 @@ from bigactors.checkout import PREFIX, ROOMS
 
 SECTIONS: Final = Config(napoleon_custom_sections=[("Attributes", "params_style")])
 NAME: Final = re.compile(rf"(>>> from |`)(?=(?:{'|'.join(ROOMS)})(?: import |\.[a-z]))")
-"""Where a docstring names a module, or imports from it, by the name that it has in a checkout."""
+"""The place in a docstring where a module has the name of a checkout, in code or in an import."""
 
 MODULE: Final = re.compile(r"^\.\. automodule:: (\S+)$", re.MULTILINE)
 WORD: Final = re.compile(r"(?<!`)`(\w+)`(?!`)")
@@ -68,7 +68,7 @@ def write_docstring(
 
 
 def keep_own(line: str, own: Iterable[str]) -> str:
-    """Let the fields of a class and the arguments of a function be code: a public name may be the same word."""
+    """Mark fields of a class and arguments of a function as code: a public name may be the same word."""
     return WORD.sub(lambda found: f"`{found[0]}`" if found[1] in own else found[0], line)
 
 
@@ -81,7 +81,7 @@ def alternatives(value: Any) -> Iterator[str]:
 
 
 def is_skipped(_app: Sphinx, _what: str, _name: str, value: Any, _skip: bool, _options: Any) -> bool | None:
-    """Skip what has a place of its own: unions, and the fields of a named tuple, which its docstring describes."""
+    """Skip the unions, which are added below, and the fields of a named tuple, which its docstring describes."""
     return True if isinstance(value, UnionType) or type(value).__name__ == "_tuplegetter" else None
 
 
@@ -95,7 +95,7 @@ def find_source(_app: Sphinx, module: str, name: str) -> str | None:
 
 
 def setup(app: Sphinx) -> None:
-    """Connect all of these."""
+    """Connect these functions to sphinx."""
     app.add_domain(PublicNames, override=True)
     app.connect("source-read", list_unions)
     app.connect("autodoc-process-docstring", write_docstring)

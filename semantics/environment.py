@@ -173,7 +173,7 @@ class Says:
     @property
     def words(self) -> tuple[str, ...]:
         """What may happen, in words."""
-        return (f"{show(self.message, frozenset())} to {self.agent}",)
+        return (f"{show(self.message)} to {self.agent}",)
 
 
 @dataclass(frozen=True, slots=True)

@@ -68,7 +68,7 @@ def req_snd(c: Configuration, a: Name) -> Iterator[Transition]:
     send = SND(a, name_in(to), message)
     rests_on = held(resting_on(process, carried, deciding(chosen)), send.to, told_ever(process.program))
     process.leave()
-    label = Label("req_snd", a, f"send({show(message, frozenset())}, {send.to})")
+    label = Label("req_snd", a, f"send({show(message)}, {send.to})")
     yield Transition(label, c.with_(continuing(c, process), c.eta.adding(send, rests_on)))
 
 
@@ -110,7 +110,7 @@ def rcv_msg(c: Configuration, a: Name) -> Iterator[Transition]:
             continue  # premise: a case for it
         taken = c.with_(c.alpha.taking(a, position))
         target = taken.with_(continuing(taken, process))
-        yield Transition(Label("rcv_msg", a, f"react({show(message, frozenset())})"), target)
+        yield Transition(Label("rcv_msg", a, f"react({show(message)})"), target)
 
 
 def timeout(c: Configuration, a: Name) -> Iterator[Transition]:
@@ -224,7 +224,7 @@ def node_named(c: Configuration, value: Value) -> Name:
     """
     name = name_in(value)
     if name not in c.setting.kinds:
-        raise Fault(f"there is no node {show(value, frozenset())}")
+        raise Fault(f"there is no node {show(value)}")
     return name
 
 

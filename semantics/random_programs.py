@@ -45,7 +45,7 @@ from semantics.behaviours.statements import (
     Tested,
     While,
 )
-from semantics.behaviours.values import Truth, Value
+from semantics.behaviours.values import Text, Truth, Value
 from semantics.state.agents import Code
 from semantics.state.signature import Name
 
@@ -99,14 +99,18 @@ class _Writer:
 
     # expressions
 
+    def spelled(self) -> Text:
+        """Return a text that is spelled like an entity."""
+        return Text(self.names[0])
+
     def leaf(self, scope: Variables) -> Expression:
-        values: list[Value] = [*self.names, "go", 1, Truth.TRUE]
+        values: list[Value] = [*self.names, Text("go"), self.spelled(), 1, Truth.TRUE]
         return self.one(*map(Variable, scope), *map(Literal, values), Host(), Self())
 
     def expression(self, scope: Variables) -> Expression:
         leaf = self.leaf(scope)
         seen = [Apply("nodes", (Variable(name),)) for name in scope if name.startswith("o")]
-        go = TupleOf((Literal("go"), leaf))
+        go = TupleOf((self.one(Literal(Text("go")), Literal(self.spelled())), leaf))
         one = SetOf((leaf,))
         route = RouteOf((leaf, self.leaf(scope)))
         return self.one(leaf, go, *seen, one, Apply("first", (one,)), route)
@@ -190,7 +194,8 @@ class _Writer:
         letter = self.pick("oov")
         name = self.fresh(letter)
         message: list[CasePattern] = [
-            Elements((Exactly("go"), Anything(name))),
+            Elements((Exactly(Text("go")), Anything(name))),
+            Elements((Exactly(self.spelled()), Anything(name))),
             Anything(name, "message"),
             Anything(name),
         ]

@@ -28,6 +28,7 @@ from semantics.behaviours.reaction_rules import (
     PlaceVariable,
     Reaction,
 )
+from semantics.behaviours.values import Text
 from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
 from semantics.properties.kinds import Asked, asked_by
 from semantics.properties.property import Property
@@ -341,7 +342,9 @@ def environments(draw: st.DrawFn, world: World) -> tuple[Clause, ...]:
         st.builds(Drops, st.sampled_from(CHANNELS), st.booleans()),
         st.builds(Leaves, st.sampled_from(placed), st.sampled_from(CHANNELS), st.booleans()),
         st.builds(Vanishes, st.sampled_from(placed)),
-        st.builds(Says, st.just("go"), st.sampled_from(AGENT_NAMES), st.integers(1, 2), st.integers(0, 3)),
+        st.builds(
+            Says, st.just(Text("go")), st.sampled_from(AGENT_NAMES), st.integers(1, 2), st.integers(0, 3)
+        ),
         st.sampled_from([name for name in placed if not name.startswith("place")]).map(
             lambda name: _drift(world, name)
         ),

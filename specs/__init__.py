@@ -1,9 +1,9 @@
 """The mission language: from a text to a mission, or to the mistakes in it.
 
-It knows nothing of exploring configurations, of vehicles or of the command line. The way of a mission through the
-modules: `text` (bounds, comments), `grammar` and the two builders (`build_world`, `build_behaviour`), `syntax` (the
-tree), `recovery`, `syntax_errors`, `common_mistakes` and `codes` (what can be wrong), `diagnostics` (how it is
-printed); and back to text: `writing`, `layout`, `formatter`.
+It knows nothing of exploration, vehicles or the command line. A mission passes through the modules in this order:
+`preprocessing` (bounds, comments), `grammar` and the builders (`build_world`, `build_timing`, `build_behaviour`),
+`syntax` (the tree), `recovery`, `syntax_errors`, `common_mistakes` and `codes` (the mistakes), and `diagnostics`
+(their printing). `writing`, `layout` and `formatter` turn a tree into text.
 """
 
 import lazy_loader

@@ -1,4 +1,4 @@
-"""What autopilots and ground stations are told, and what is written here for it."""
+"""The words of autopilots and ground stations, and the mission language's forms for them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ ORDERS: Final[Mapping[str, str]] = {
     **dict.fromkeys(("rtl", "rth", "return", "return_home", "hold", "hover", "loiter", "circle"), _ORDER),
     **dict.fromkeys(("goto", "go_to", "fly_to", "waypoint"), _PLACE),
 }
-"""By their names in small letters."""
+"""The hint for each word, in small letters."""
 
 _LENGTHS: Final = frozenset({"m", "km", "ft", "nm", "kn"})
 _OPENED: Final = re.compile(r"(\w+)\s*\([^()\n]*\Z")
@@ -48,7 +48,7 @@ def ordered(at: Situation) -> Diagnostic | None:
 
 
 def _requested(at: Situation) -> Word | None:
-    """Return the word that stands where a control action begins; it may have been taken for a rule's name."""
+    """Return the word at the beginning of a control action; the parser may have read it as a rule's name."""
     if COMMAND_WORDS & at.accepted:
         return at.found
     opening = word_before(at.prepared.text, at.before.span.start)
@@ -57,7 +57,7 @@ def _requested(at: Situation) -> Word | None:
 
 
 def called_with_a_unit(at: Situation, words: Mapping[str, str]) -> Diagnostic | None:
-    """`wait(10 min)`, `takeoff(50 m)`; `words` are those of other languages."""
+    """`wait(10 min)`, `takeoff(50 m)`; `words` are the words of other languages."""
     if at.found.text not in {*_LENGTHS, *UNITS} or not at.before.is_number or ")" not in at.accepted:
         return None
     start = at.before.span.start
@@ -73,7 +73,7 @@ def called_with_a_unit(at: Situation, words: Mapping[str, str]) -> Diagnostic | 
 
 
 def sent_to_a_point(found: Diagnostic, text: str) -> Diagnostic:
-    """Return what to say of `control(MOVE_HOST_TO (37.0, -8.7))`; of another number what was found."""
+    """Return the diagnostic for `control(MOVE_HOST_TO (37.0, -8.7))`; for another bad number, the given one."""
     start = found.span.start
     if found.code is not Code.BAD_NUMBER or not _TO_A_POINT.search(text, max(0, start - _SEEN), start):
         return found

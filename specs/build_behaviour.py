@@ -1,6 +1,6 @@
 """Build the syntax tree of behaviours: one method for each rule of the grammar, with its name."""
 
-# ruff: noqa: D102 - each method is the grammar's rule of its name, and that is shown in mission.lark
+# ruff: noqa: D102 - each method builds the grammar rule of its name, and mission.lark shows that rule
 
 from __future__ import annotations
 
@@ -253,7 +253,7 @@ def _refuse_after(branch: s.After, message: str, hint: str) -> None:
 
 
 def _index(token: Token) -> s.Name | s.IntegerLiteral:
-    """Return which member is meant where nothing is computed."""
+    """Return the index of a member that is written as a name or a number."""
     return name(token) if token.type == "NAME" else s.IntegerLiteral(whole(token), span=span_of(token))
 
 

@@ -1,6 +1,6 @@
 """Build the syntax tree of the `timing` section: one method for each rule of the grammar, with its name."""
 
-# ruff: noqa: D102 - each method is the grammar's rule of its name, and that is shown in mission.lark
+# ruff: noqa: D102 - each method builds the grammar rule of its name, and mission.lark shows that rule
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from specs.building import Children, Part, agent, cover, decimal, name, names, n
 
 
 class BuildTiming(Transformer[Token, s.Mission]):
-    """Build what is said about how long everything takes."""
+    """Build the bounds on durations, speeds and times."""
 
     def timing(self, c: Children) -> s.Timing:
         return s.Timing(nodes(c), span=cover(c))
@@ -84,5 +84,5 @@ def _every_and_returning(c: Children) -> tuple[s.Duration | None, s.Duration | N
 
 
 def _between(c: Children) -> tuple[s.Duration | None, s.Duration | None]:
-    """Return what stands behind `after`, and behind what ends it."""
+    """Return the duration behind `after`, and the one behind the closing word."""
     return (c[1], c[4]) if c[0] == "after" else (None, c[1])

@@ -1,6 +1,6 @@
 """Build the syntax tree of declarations: one method for each rule of the grammar, with its name."""
 
-# ruff: noqa: D102 - each method is the grammar's rule of its name, and that is shown in mission.lark
+# ruff: noqa: D102 - each method builds the grammar rule of its name, and mission.lark shows that rule
 
 from __future__ import annotations
 

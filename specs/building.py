@@ -1,7 +1,7 @@
-"""Functions that both builders of the syntax tree share: they take the children of a grammar rule apart.
+"""Functions for all builders of the syntax tree, which take apart the children of a grammar rule.
 
-lark gives each rule its children with all tokens kept, and None for each that an optional part lacks; so a
-child's place is its place in the grammar.
+lark gives each rule all its children, tokens included, and None for each missing optional part. So a child's index
+is its position in the grammar.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from specs.diagnostics import Diagnostic
 from specs.preprocessing import MAX_WORD
 from specs.syntax import Member, Name, Node, RuleBody, Span, TextLiteral
 
-MOST: Final = 1_000_000_000  # whole numbers are smaller in value
+MOST: Final = 1_000_000_000  # whole numbers are smaller than this
 _ESCAPES: Final = {'"': '"', "\\": "\\", "n": "\n", "t": "\t"}
 _NAMES: Final = frozenset({"NAME", "CHANNEL", "DROPPING"})
 
 ANGLES: Final = "write 37°08'49\"N, 37°8.82'N or 37.147"
-"""How an angle may be written, for hints."""
+"""The ways to write an angle, for hints."""
 
 SIXTY: Final = 60
 _MARKS: Final = {"º": "°", "′": "'", "’": "'", "″": '"', "”": '"'}
 _ANGLE_PART: Final = re.compile(r"([0-9.]+)([°'\"])")
 _DECIMAL: Final = re.compile(r"[0-9]{1,6}(?:\.[0-9]{1,20})?")
 
-Child: TypeAlias = Any  # a token, a node, a Part or None, as the grammar says
+Child: TypeAlias = Any  # a token, a node, a Part or None, by the grammar rule
 Children: TypeAlias = Sequence[Child]
 N = TypeVar("N", bound=Node)
 
@@ -48,7 +48,7 @@ class Mistake(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """What a grammar rule yields that is no node of its own: a block's statements, a number."""
+    """The result of a grammar rule that is no node: a block's statements, a number."""
 
     span: Span
     value: Any
@@ -56,7 +56,7 @@ class Part:
 
 
 def span_of(child: Child) -> Span:
-    """Return where a child stands."""
+    """Return the span of a child."""
     if isinstance(child, Token):
         return Span(int(child.start_pos or 0), int(child.end_pos or 0))
     span: Span = child.span
@@ -64,7 +64,7 @@ def span_of(child: Child) -> Span:
 
 
 def cover(children: Children) -> Span:
-    """Return the span from the first child that is there to the last."""
+    """Return the span from the first child that is not None to the last."""
     there = [child for child in children if child is not None]
     return span_of(there[0]).to(span_of(there[-1])) if there else Span(0, 0)
 
@@ -90,7 +90,7 @@ def names(children: Children) -> tuple[Name, ...]:
 
 
 def agent(child: Child) -> Name | Member:
-    """Return a bigActor: a name, or a member of a family, which is built already."""
+    """Return a bigActor: a name, or a member of a family, which is already built."""
     return child if isinstance(child, Member) else name(child)
 
 
@@ -118,7 +118,7 @@ def text(token: Token) -> TextLiteral:
 
 
 def whole(token: Token) -> int:
-    """Return a whole number; raises Mistake for another one."""
+    """Return a whole number; raises Mistake for any other number."""
     if token.isdecimal() and len(token) <= 10 and int(token) < MOST:
         return int(token)
     message = f"{_short(token)} is not a whole number below {MOST:,}"
@@ -130,7 +130,7 @@ def whole(token: Token) -> int:
 
 
 def decimal(sign: Token | None, token: Token) -> float:
-    """Return a finite number; raises Mistake for one too large."""
+    """Return a finite number; raises Mistake for one that is too large."""
     value = float(token)
     if not math.isfinite(value):
         raise Mistake(
@@ -145,7 +145,7 @@ def decimal(sign: Token | None, token: Token) -> float:
 
 
 def degrees(token: Token) -> tuple[float, str]:
-    """Return an angle written in degrees, minutes and seconds, and how it is written; raises Mistake."""
+    """Return an angle in degrees from degrees, minutes and seconds, and its text; raises Mistake."""
     text = "".join(_MARKS.get(mark, mark) for mark in str(token) if not mark.isspace()).replace("''", '"')
     parts = {mark: number for number, mark in _ANGLE_PART.findall(text)}
     if not all(map(_DECIMAL.fullmatch, parts.values())) or any(
@@ -158,7 +158,7 @@ def degrees(token: Token) -> tuple[float, str]:
 
 
 def check_hemispheres(latitude: Part, longitude: Part) -> None:
-    """Raise Mistake where a letter says that the first angle is a longitude, or the second a latitude."""
+    """Raise Mistake if a letter makes the first angle a longitude or the second a latitude."""
     if latitude.word[-1:] not in ("E", "W") and longitude.word[-1:] not in ("N", "S"):
         return
     found = latitude if latitude.word[-1:] in ("E", "W") else longitude
@@ -182,7 +182,7 @@ def once(clauses: Children, owner: Token) -> dict[str, Part]:
 
 
 def rule_body(token: Token) -> RuleBody:
-    """Return a rule's body, what it says not yet looked at; raises Mistake for one over ten kilobytes."""
+    """Return a rule's body, still unparsed; raises Mistake for one over ten kilobytes."""
     span = span_of(token)
     raw = str(token)[1:-1]
     if len(token) > MAX_WORD:
@@ -193,7 +193,7 @@ def rule_body(token: Token) -> RuleBody:
 
 
 def rule_mistake(body: RuleBody) -> Diagnostic | None:
-    """Return what is wrong with a rule's body, at its place in the mission."""
+    """Return the mistake in a rule's body, at its place in the mission; None for a correct one."""
     try:
         parse_rule(body.raw)
     except NotationError as error:

@@ -1,4 +1,4 @@
-"""Every mistake a mission can contain: its code, its title, and what `bigactors explain` says of it."""
+"""The kinds of mistakes in a mission: their codes, their titles, and their explanations by `bigactors explain`."""
 
 from __future__ import annotations
 
@@ -250,7 +250,8 @@ class Code(Enum):
         "LS203",
         "name declared twice",
         """Entities, kinds, bigActors and channels all have different names; so do rules among each other, and
-        behaviours. `region` is reserved for the outermost place.""",
+        behaviours. `region` and `unknown` are reserved: an observation calls so the place of what
+        is in no place, and of what it did not see.""",
     )
     WRONG_SORT = (
         "LS204",
@@ -533,7 +534,8 @@ class Code(Enum):
     ALWAYS_THE_SAME = (
         "LS704",
         "comparison that is always the same",
-        """Values of different types are never equal, and a set or an observation has no members of that type.""",
+        """Values of different types are never equal, and a set or an observation has no members of that type. A text is
+        never equal to a name: `"base"` is a text, `base` the name of an entity.""",
     )
 
     NEVER_INSIDE = (
@@ -631,7 +633,7 @@ class Code(Enum):
 
     @property
     def range(self) -> str:
-        """What the first digit of the number says it is about."""
+        """The subject of the mistakes whose numbers begin with the same digit."""
         return RANGES[self.number[:3]]
 
 
@@ -645,7 +647,7 @@ def find_code(number: str) -> Code | None:
 
 
 def explain(code: Code) -> str:
-    """Return what `bigactors explain` prints of a code."""
+    """Return the text that `bigactors explain` prints for a code."""
     return f"{code.number}: {code.title} ({code.range})\n\n{code.explanation}\n"
 
 

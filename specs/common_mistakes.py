@@ -1,8 +1,8 @@
 """Common syntax mistakes, recognised by the word found and the words expected.
 
-lark's `match_examples` compares the state of the parser with those of a table of bad snippets, and misses the
-same mistake one state further on (`if x = y`, `if f(x) = y`); asking what could have stood there doesn't. The
-table of bad snippets is in the tests.
+lark's `match_examples` compares the parser's state with the states of a table of bad snippets. It misses the same
+mistake one state further on (`if x = y`, `if f(x) = y`). The words expected there identify both. The table of bad
+snippets is in the tests.
 """
 
 from __future__ import annotations
@@ -58,13 +58,13 @@ _LINKS: Final = frozenset({"drops"})
 _CALLED: Final = frozenset({"observe", "control", "migrate", "display", "spawn", *QueryOperator})
 _THROUGH: Final = re.compile(r"\b((?:for|choose)\s+\w+)\s+in\s+([^{}\[\]]*)")
 _SHORT: Final = 5
-"""Letters of words that are taken for others by chance."""
+"""The length up to which a word resembles others by chance."""
 
 _IN_FORMULAS: Final = frozenset({"always", "eventually"})
 _QUANTIFIERS: Final = frozenset({"forall", "exists"})
 _NAMES_AFTER: Final = re.compile(r"\b(\w+)\s+((?:\w+\s*,\s*)*\w+)\s*\Z")
 _MOST_NAMES: Final = 200
-"""So many characters of quantified names are looked through."""
+"""The number of characters searched for the names of a quantifier."""
 _GUARDS: Final = frozenset({"and", "or", "&&", "||", "when", "where", "with"})
 _WHERE: Final = re.compile(r"\b(?:in|within|inside|at|on|to|of)\s+([^\W\d]\w*)")
 _SYMBOL: Final = re.compile(r"[\w\s\"()\[\]{},;:.=<>!&|+\-]")
@@ -143,13 +143,13 @@ def unclosed_section(at: Situation) -> Diagnostic | None:
 
 
 def begins_property(word: str, *, first: bool) -> bool:
-    """Tell whether a word is what kind a property is, or was meant to be; `first` of its line it may be a formula's."""
+    """Return whether a word is a property's kind, or meant as one; the `first` word of a line may begin a formula."""
     meant = word in PROPERTY_WORDS or bool(len(word) > _SHORT and nearest(word, PROPERTY_WORDS))
     return meant or (word in ASKED and (first or word not in _IN_FORMULAS))
 
 
 def misspelt_word(at: Situation) -> Diagnostic | None:
-    """`enviroment { ... }`: nearly one of the words that could have stood here."""
+    """`enviroment { ... }`: a misspelling of a word expected here."""
     return _misspelt(at.found, at.accepted | (_LINKS if _in_environment(at) else frozenset()))
 
 
@@ -158,7 +158,7 @@ def _in_environment(at: Situation) -> bool:
 
 
 def misspelt_word_before(at: Situation) -> Diagnostic | None:
-    """`raect { ... }`: a name could stand there, but what follows fits no name."""
+    """`raect { ... }`: a name is possible there, but the next word fits no name."""
     if at.accepted == {"=", "("}:
         return _misspelt(at.before, STATEMENTS | {"case", "after"})
     if at.accepted == {")"} and at.found.text == "(":
@@ -198,7 +198,7 @@ def _unknown_command(at: Situation) -> Diagnostic | None:
 
 
 def _channel(at: Situation) -> Diagnostic | None:
-    """`wifi:land drop`: the name of a channel is read together with `drops` only."""
+    """`wifi:land drop`: the parser reads the name of a channel only together with `drops`."""
     found = _DROP.match(at.prepared.text, at.before.span.start)
     if found is None:
         return None
@@ -297,7 +297,7 @@ def missing_quotes(at: Situation) -> Diagnostic | None:
 
 
 def missing_word(at: Situation) -> Diagnostic | None:
-    """`carried vessel0`, `circle (37.0, -8.5) 400 m`, `invariant "x" true`: only one word could have stood here."""
+    """`carried vessel0`, `circle (37.0, -8.5) 400 m`, `invariant "x" true`: only one word is possible here."""
     if len(at.accepted) == 1 == len(at.sorts) and "for" not in at.accepted and at.found.text != ";":
         (word,) = at.accepted
         if at.instead and word.isalpha() and not at.is_first:
@@ -319,7 +319,7 @@ def _instead(at: Situation, word: str) -> str:
 
 
 def misplaced_statement(at: Situation) -> Diagnostic | None:
-    """A statement in the middle of nowhere, or of another section."""
+    """A statement outside all behaviours, or in a section of another sort."""
     control = at.found.text == "(" and at.before.text == "control" and at.accepted == frozenset()
     section = at.at_declaration or bool(at.accepted & {"channel", "says", "invariant", "kind"})
     statement = at.found.text in STATEMENTS and section and not at.in_expression
@@ -418,7 +418,7 @@ def missing_comma(at: Situation) -> Diagnostic | None:
     starts = at.found.is_name or at.found.is_number or at.found.text[:1] in {'"', "(", "-"}
     if (
         _in_environment(at) and at.found.text == "(" and at.before.text in _GEOMETRIES
-    ):  # read as the name of a clause
+    ):  # the parser read it as the name of a clause
         message = f"expected ',' before {at.before.shown}"
         return Diagnostic(Code.MISSING_COMMA, at.before.span, message, "separate items by commas")
     if at.found.text == "and" and "," in at.accepted:
@@ -559,7 +559,7 @@ def missing_dot(at: Situation) -> Diagnostic | None:
         kind = at.following.text if at.found.text in ("in", "of") else "Kind"
         if at.following.text == ":":
             variables += f", {at.found.text}"
-        elif at.found.is_name and not is_keyword(at.found):  # the kind first, as in Java
+        elif at.found.is_name and not is_keyword(at.found):  # the kind before the name, as in Java
             kind, variables = at.before.text, at.found.text
         hint = f"write {quantifier} {variables}: {kind} . formula"
         return at.mistake(Code.MISSING_KIND, f"expected ':' and a kind, found {at.found.shown}", hint)
@@ -573,7 +573,7 @@ def missing_dot(at: Situation) -> Diagnostic | None:
 
 
 def _quantified(text: str, end: int) -> tuple[str, str]:
-    """Return the word and the names after it, with commas between them, that end at an offset."""
+    """Return the quantifier and its comma-separated names that end at an offset."""
     found = _NAMES_AFTER.search(text, max(0, end - _MOST_NAMES), end)
     return (found[1], " ".join(found[2].split())) if found else ("", "")
 
@@ -640,7 +640,7 @@ def bad_coordinate(at: Situation) -> Diagnostic | None:
 
 
 def loose_number(at: Situation) -> Diagnostic | None:
-    """A line number that does not count on from the line before, or before a misspelt `BigActor`."""
+    """A line number that does not continue those before, or that precedes a misspelt `BigActor`."""
     if at.at_declaration and at.found.is_number:
         hint = f"write BigActor for {at.following.shown}: from there on, the numbers of printed lines are left out"
         return at.mistake(Code.UNEXPECTED, f"expected a declaration, found {at.found.shown}", hint)
@@ -650,7 +650,7 @@ def loose_number(at: Situation) -> Diagnostic | None:
 
 
 def misspelt_word_after_all(at: Situation) -> Diagnostic | None:
-    """`weak fairness of env nad ...`: what could stand here is nearly what stands before."""
+    """`weak fairness of env nad ...`: the word before is a misspelling of one expected here."""
     return _misspelt(at.before, at.accepted)
 
 

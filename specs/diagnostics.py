@@ -1,4 +1,4 @@
-"""The user's mistakes as data, and how they are printed."""
+"""The user's mistakes as data, and their printed form."""
 
 from __future__ import annotations
 
@@ -11,39 +11,39 @@ from specs.codes import Code
 from specs.syntax.nodes import Span
 
 _TAB: Final = 4
-_WIDEST: Final = 100  # columns of a line that are shown
+_WIDEST: Final = 100  # the most columns shown of a line
 _CUT: Final = "…"
-_BEFORE: Final = 40  # of these, at least so many before the caret where the line is cut
+_BEFORE: Final = 40  # the least number of these before the caret in a cut line
 
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A mission's text and what it is called in messages; lines end in line feeds."""
+    """A mission's text and its name in messages; its line ends are line feeds."""
 
     name: str
     text: str = field(repr=False)
 
     def line(self, offset: int) -> int:
-        """Return the number of the line that holds `offset`, counted from 1."""
+        """Return the number of the line with `offset`, counted from 1."""
         return self.text.count("\n", 0, offset) + 1
 
     def column(self, offset: int) -> int:
-        """Return how many characters into its line `offset` is, counted from 1."""
+        """Return the column of `offset` in its line, in characters counted from 1."""
         return offset - self.line_start(offset) + 1
 
     def line_start(self, offset: int) -> int:
-        """Return the offset of the first character of the line that holds `offset`."""
+        """Return the offset of the first character of the line with `offset`."""
         return self.text.rfind("\n", 0, offset) + 1
 
     def line_text(self, offset: int) -> str:
-        """Return the line that holds `offset`, without its end."""
+        """Return the line with `offset`, without its end."""
         end = self.text.find("\n", offset)
         return self.text[self.line_start(offset) : end if end >= 0 else len(self.text)]
 
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """A mistake: what was found and what was expected (`message`), and what to do (`hint`)."""
+    """A mistake: `message` names the found and the expected text, `hint` the remedy."""
 
     code: Code
     span: Span
@@ -52,7 +52,7 @@ class Diagnostic:
 
 
 class MissionError(Exception):
-    """The mistakes in a mission, sorted by position, printed as they are rendered; and what else was noticed."""
+    """The mistakes in a mission by position, printed as rendered blocks, and its warnings."""
 
     def __init__(
         self, source: Source, diagnostics: Iterable[Diagnostic], warnings: tuple[Diagnostic, ...] = ()
@@ -67,15 +67,15 @@ class MissionError(Exception):
 
 
 def render_all(diagnostics: Iterable[Diagnostic], source: Source) -> str:
-    """Return the mistakes as printed, by position, an empty line between two."""
+    """Return the mistakes as printed, by position, with an empty line between two."""
     return "\n\n".join(render(item, source) for item in sorted(diagnostics, key=_position))
 
 
 def render(diagnostic: Diagnostic, source: Source) -> str:
     """Return `name:line:column: code: message`, the line, a caret under the mistake, and the hint.
 
-    The column counts characters from 1. Of a line wider than a hundred columns the part around the caret is
-    shown; a mistake of several lines is underlined in its first.
+    The column counts characters from 1. A line wider than a hundred columns is cut around the caret; a mistake over
+    several lines is underlined in the first.
     """
     start = min(diagnostic.span.start, len(source.text))
     line = source.line(start)
@@ -98,7 +98,7 @@ def _underline(line: str, first: int, span: Span) -> tuple[str, str]:
 
 
 def _window(line: str, first: int) -> tuple[int, list[tuple[str, int]], bool]:
-    """Cut out what is shown around `first`: where it begins, its characters with widths, whether there is more."""
+    """Return the part of a line around `first`: its start, its characters with widths, and whether the rest is cut."""
     start = 0 if len(line) <= _WIDEST else max(0, min(first - _BEFORE, len(line) - _WIDEST))
     cells, width = list[tuple[str, int]](), 0
     for character in line[start:]:
@@ -111,7 +111,7 @@ def _window(line: str, first: int) -> tuple[int, list[tuple[str, int]], bool]:
 
 
 def _cell(character: str) -> tuple[str, int]:
-    """Return a character as it is shown, and its width in columns of a terminal."""
+    """Return the printed form of a character, and its width in terminal columns."""
     if character == "\t":
         return " " * _TAB, _TAB
     if not character.isprintable():

@@ -1,4 +1,4 @@
-"""Words and symbols of other languages, and what is written here for them."""
+"""Words and symbols of other languages, and the mission language's forms for them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ DECLARED: Final[Mapping[str, str]] = {
     ),
     **dict.fromkeys(("kinds", "types", "kind", "type"), "write signature { kind UAV driven }"),
 }
-"""What other languages begin a declaration with."""
+"""Words by which other languages begin a declaration."""
 
 DONE: Final[Mapping[str, str]] = {
     **dict.fromkeys(("var", "const", "val", "int", "set"), _VARIABLE),
@@ -54,7 +54,7 @@ DONE: Final[Mapping[str, str]] = {
         ("return", "break", "exit", "stop"), "a behaviour ends with its last statement; use if, while"
     ),
 }
-"""What other languages do something with."""
+"""Words by which other languages begin a statement."""
 
 CHOSEN: Final[Mapping[str, str]] = {
     **dict.fromkeys(("when", "on", "of"), "write case pattern => statements"),
@@ -62,7 +62,7 @@ CHOSEN: Final[Mapping[str, str]] = {
     **dict.fromkeys(("timeout", "wait", "delay", "within", "until"), "write after 10 min => statements"),
 }
 _OTHERS: Final = frozenset({"default", "otherwise", "else", "other", "others"})
-"""What other languages call the case that takes what no other takes."""
+"""Names of the default case in other languages."""
 ASKED: Final[Mapping[str, str]] = {
     **dict.fromkeys(("always", "never", "safety", "assert"), 'write invariant "name": formula'),
     **dict.fromkeys(("sometime", "possible", "cover"), 'write reachable "name": formula'),
@@ -85,14 +85,14 @@ CLAIMED: Final[Mapping[str, str]] = {
     **dict.fromkeys(("at", "inside", "within", "on", "contained", "is"), "write in: uav0 in place0"),
     **dict.fromkeys(("connected", "joined"), "write linked: uav0 linked wifi"),
 }
-"""How other languages ask where an entity is."""
+"""Words by which other languages claim an entity's place or link."""
 
 BEGINNING: Final[Mapping[str, str]] = {
     **dict.fromkeys(("globally", "henceforth", "invariantly"), "write always"),
     **dict.fromkeys(("finally", "sometime", "future"), "write eventually"),
     **dict.fromkeys(("distance", "dist", "near", "altitude", "size", "count"), "formulas have no functions"),
 }
-"""What formulas of other languages begin with, where a name could stand too."""
+"""Words by which other languages begin a formula, where a name is possible too."""
 
 JOINED: Final[Mapping[str, str]] = {
     **dict.fromkeys(("implies", "then", "if"), "write ->"),
@@ -101,7 +101,7 @@ JOINED: Final[Mapping[str, str]] = {
     "unless": "write W",
     "releases": "write R",
 }
-"""What other languages join formulas by."""
+"""Words by which other languages join formulas."""
 
 HAPPENING: Final[Mapping[str, str]] = {
     **dict.fromkeys(
@@ -110,7 +110,7 @@ HAPPENING: Final[Mapping[str, str]] = {
     **dict.fromkeys(("disappears", "dies", "sinks", "crashes"), "write vanishes"),
     **dict.fromkeys(("enters", "comes", "spawns", "shows"), "write appears at place0"),
 }
-"""What other languages say that entities do."""
+"""Verbs of entities in other languages."""
 
 WHEREABOUTS: Final = dict.fromkeys(
     ("in", "at", "on", "inside", "within"),
@@ -131,7 +131,7 @@ GEOMETRIES: Final[Mapping[str, str]] = {
         "write point (37.08, -8.55)",
     ),
 }
-"""What other languages call geometries."""
+"""Names of geometries in other languages."""
 
 OPERATORS: Final[Mapping[str, str]] = {
     **dict.fromkeys(("*", "/", "%", "^"), "numbers are only added and subtracted: + and -"),
@@ -169,7 +169,7 @@ _NAMED: Final[tuple[tuple[Callable[[Situation], bool], Mapping[str, str]], ...]]
     (lambda at: at.accepted == {":"}, ENTRIES),
     (lambda at: at.accepted == {"=", "("}, _BEFORE),
 )
-"""Where a foreign word was taken for a name, and what is wrong is behind it."""
+"""Contexts in which the parser read a foreign word as a name and stopped after it."""
 
 _CONTEXTS: Final[tuple[tuple[Callable[[Situation], bool], Mapping[str, str]], ...]] = (
     (lambda at: at.at_declaration and not at.at_statement, DECLARED),
@@ -219,7 +219,7 @@ def foreign_operator(at: Situation) -> Diagnostic | None:
 
 
 def _arrow(at: Situation) -> Diagnostic:
-    """`default => skip`, where a word was taken for a variable that is given a value."""
+    """`default => skip`, where the parser read a word as a variable in an assignment."""
     word = word_before(at.prepared.text, at.before.span.start)
     both = at.before.span.to(at.found.span)
     if word.text in _OTHERS:

@@ -14,10 +14,10 @@ from specs.syntax import Mission
 
 
 def format_mission(text: str, name: str = "mission") -> str:
-    """Return the mission in canonical layout; raises MissionError where it does not parse.
+    """Return the mission in canonical layout; raises MissionError if it does not parse.
 
-    The result says the same (the syntax trees are equal), and formatting it again changes nothing. A comment behind
-    something stays behind it, any other stays before what follows it; single empty lines stay.
+    The result has an equal syntax tree, and formatting it again changes nothing. A comment at the end of a line stays
+    there; any other stays before the next line; single empty lines stay.
     """
     source = Source(name, text.replace("\r\n", "\n").replace("\r", "\n").removeprefix("\ufeff"))
     prepared = prepare(source)
@@ -33,7 +33,7 @@ def write_mission(mission: Mission) -> str:
 
 @dataclass(slots=True)
 class _Commented:
-    """A line with the comments before it and behind it; the last may have none (`line` is None)."""
+    """A line with the comments before it and behind it; comments at the end of the file have no `line`."""
 
     line: Line | None
     before: list[Comment] = field(default_factory=list)
@@ -58,8 +58,8 @@ def _is_behind_code(comment: Comment, blanked: str) -> bool:
 
 
 def _rows(lines: Sequence[_Commented], source: str) -> Iterator[str]:
-    """Yield the rows of the result; an empty one where there is to be an empty line."""
-    opened = True  # at the start, and behind an opening brace, there is no empty line
+    """Yield the rows of the result; an empty row for an empty line."""
+    opened = True  # no empty line at the start or behind an opening brace
     for item in lines:
         closing = item.line is None or item.line.pieces[0].startswith("}")
         apart = item.line is not None and item.line.apart
@@ -73,9 +73,9 @@ def _rows(lines: Sequence[_Commented], source: str) -> Iterator[str]:
 
 
 def _own_rows(item: _Commented, closing: bool) -> Iterator[tuple[str, int | None, bool]]:
-    """Yield a line and its comments, the place whose empty line each keeps, and whether it is a comment.
+    """Yield the rows of a line and its comments: text, offset whose empty line it keeps, whether it is a comment.
 
-    Of several comments behind what becomes one line, the last stays behind it and the others go before it.
+    If one line gathers several trailing comments, the last stays behind it and the others go before it.
     """
     indent = "  " * (item.line.depth + closing) if item.line else ""
     place = item.line.anchor if item.line else None

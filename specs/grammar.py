@@ -20,7 +20,7 @@ from specs.build_world import BuildWorld
 from specs.syntax import Mission
 
 NAMED_PROPERTIES: Final = asked_by(Asked.BY_DEFAULT, Asked.BY_NAME, Asked.OF_TIMED_MISSIONS)
-"""The properties that are asked for by their names."""
+"""The properties that a mission requests by their names."""
 
 
 @cache
@@ -35,13 +35,13 @@ def grammar_text() -> str:
 
 
 def _rule(command: Command) -> str:
-    """Return how a command is written, in the grammar's notation."""
+    """Return the grammar rule of a command."""
     parts = (f'"{part}"' if part in command.words else "expression" for part in command.parts)
     return " ".join([*parts, *(["[via]"] if command.travels else [])])
 
 
 def first_words(rule: str) -> frozenset[str]:
-    """Return the words of the language that the alternatives of a rule begin with, or may begin with."""
+    """Return the words of the language with which the alternatives of a rule begin, or may begin."""
     (alternatives,) = re.findall(rf"^{rule}:(.+(?:\n +.+)*)", grammar_text(), re.MULTILINE)
     names = "|".join(re.findall(r"\w+", alternatives))
     return frozenset(re.findall(rf'^(?:{names}): \[?"(\w+)"', grammar_text(), re.MULTILINE))
@@ -71,13 +71,13 @@ TABLES: Final = Path(__file__).with_name("mission.tables.json")
 
 @cache
 def grammar() -> Lark:
-    """Return the parser, which builds the syntax tree as it goes, so that depth costs no recursion."""
+    """Return the parser, which builds the syntax tree while it parses, so that depth costs no recursion."""
     made_from = grammar_text() + Path(__file__).read_text(encoding="utf-8")
     return parser_with_tables(TABLES, made_from, make_parser, callbacks())
 
 
 def make_parser() -> Lark:
-    """Return the parser, its tables made anew."""
+    """Return a parser with newly computed tables."""
     return Lark(
         grammar_text(),
         parser="lalr",
@@ -91,34 +91,34 @@ def make_parser() -> Lark:
 
 
 def callbacks() -> dict[str, Any]:
-    """Return the options of the parser that say what it does with what it has read."""
+    """Return the parser's options with functions: those that build the tree, and those that classify words."""
     return {"transformer": Build(), "lexer_callbacks": {"NAME": _no_reserved, "CHANNEL": _no_reserved}}
 
 
 def _no_reserved(word: Token) -> Token:
-    """Take a reserved word for no name; patterns that leave them out would be compiled for each state anew."""
+    """Reclassify a reserved word; patterns that exclude those words would be compiled again for each parser state."""
     return word.update(type="RESERVED") if word in RESERVED else word
 
 
 class Run(Protocol):
-    """A parse under way: lark's interactive parser, as far as it is used, and typed.
+    """A parse under way: the used part of lark's interactive parser, typed.
 
     Attributes:
         parser_state: The stacks of states and values.
-        lexer_thread: Where in the text the parse is.
+        lexer_thread: The position of the parse in the text.
     """
 
     parser_state: Any
     lexer_thread: Any
 
     def feed_token(self, token: Token) -> Mission | None:
-        """Parse one more word; what the mission says at its end."""
+        """Parse one more word; return the mission at its end."""
 
     def accepts(self) -> set[str]:
-        """Return the grammar's names of what could come next."""
+        """Return the grammar's names of the words that may come next."""
 
     def copy(self, deepcopy_values: bool = True) -> Run:
-        """Return a parse that goes its own way from here."""
+        """Return an independent copy of the parse."""
 
 
 def start(text: str) -> Run:
@@ -129,7 +129,7 @@ def start(text: str) -> Run:
 
 @cache
 def spellings() -> dict[str, str]:
-    """Return what the user writes for each terminal of the grammar that is one word or symbol."""
+    """Return the spelling of each terminal of the grammar that is one word or symbol; empty for the others."""
     return {
         terminal.name: terminal.pattern.value.removesuffix(_WORD_END)
         if isinstance(terminal.pattern, PatternStr) or terminal.pattern.value.endswith(_WORD_END)
@@ -140,17 +140,17 @@ def spellings() -> dict[str, str]:
 
 @cache
 def terminals() -> dict[str, str]:
-    """Return the grammar's names of words and signs."""
+    """Return the terminal's name of each word and sign."""
     return {word: name for name, word in spellings().items() if word}
 
 
 def terminal(word: str) -> str:
-    """Return the grammar's name of a word or sign."""
+    """Return the terminal's name of a word or sign."""
     return terminals()[word]
 
 
 def may_follow(run: Run, *sorts: str) -> bool:
-    """Tell whether words of these sorts could come next, one after the other; nothing is built of them."""
+    """Return whether words of these sorts may come next, in this order; nothing is built of them."""
     trial = run.copy(deepcopy_values=False)
     trial.parser_state.parse_conf = copy(trial.parser_state.parse_conf)
     trial.parser_state.parse_conf.callbacks = {}
@@ -172,7 +172,7 @@ _WORD_END: Final = r"(?!\w)"
 
 
 def _match_whole_words(terminal: TerminalDef) -> None:
-    """Make a keyword match as a whole word, before any name; lark would match the `let` of `letter`."""
+    """Make a keyword match only as a whole word, before any name; lark would match the `let` of `letter`."""
     if isinstance(terminal.pattern, PatternStr) and re.fullmatch(r"\w+", terminal.pattern.value):
         terminal.pattern = PatternRE(terminal.pattern.value + _WORD_END)
         terminal.priority = 2

@@ -17,15 +17,15 @@ _STEP: Final = "  "
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """`pieces` may be broken over several lines; `anchor` is the offset in the source of what the line begins with."""
+    """A line whose `pieces` may be wrapped; `anchor` is the offset of its beginning in the source."""
 
     depth: int
     pieces: tuple[str, ...]
     anchor: int
-    apart: bool = False  # an empty line before it, whatever the source has
+    apart: bool = False  # whether an empty line precedes it, also without one in the source
 
     def text(self) -> str:
-        """Return the line, filled to the width, what does not fit indented below."""
+        """Return the line, wrapped at the width, with continuation lines indented."""
         indent, rows = _STEP * self.depth, [""]
         for piece in self.pieces:
             room = WIDTH - len(indent) - (2 * len(_STEP) if len(rows) > 1 else 0)
@@ -40,7 +40,7 @@ class Line:
 
 @dataclass(slots=True)
 class Layout:
-    """Lays out a mission: `source` is its text with comments blanked out, `comments` the offsets of these."""
+    """The layout of a mission. `source` is its text with comments blanked out, `comments` their offsets."""
 
     source: str = ""
     comments: tuple[int, ...] = ()
@@ -58,7 +58,7 @@ class Layout:
             return
         self.line(span.start, *head, "{")
         self.depth += 1
-        for item in items:  # not by `below`: deep nesting costs frames
+        for item in items:  # no call of `below`: deep nesting costs frames
             self.add(item)
         self.depth -= 1
         self.line(max(span.end - 1, 0), "}")
@@ -71,11 +71,11 @@ class Layout:
         self.depth -= 1
 
     def commented(self, span: s.Span) -> bool:
-        """Whether there is a comment within a span."""
+        """Return whether there is a comment within a span."""
         return bisect_left(self.comments, span.start) < bisect_left(self.comments, span.end)
 
     def closing(self, after: int) -> int:
-        """Return the offset of the brace that closes the block whose last statement ends at `after`."""
+        """Return the offset of the brace that closes a block whose last statement ends at `after`."""
         return max(self.source.find("}", after), 0)
 
     def add(self, node: s.Node) -> None:
@@ -88,7 +88,7 @@ class Layout:
 
 
 def lay_out(mission: s.Mission, source: str = "", comments: tuple[int, ...] = ()) -> tuple[Line, ...]:
-    """Return the lines of a mission; declarations of several lines stand apart."""
+    """Return the lines of a mission; empty lines separate declarations of several lines."""
     layout = Layout(source, comments)
     if mission.name:
         layout.line(mission.span.start, f"mission {write(mission.name)}")
@@ -104,7 +104,7 @@ def lay_out(mission: s.Mission, source: str = "", comments: tuple[int, ...] = ()
     return tuple(layout.lines)
 
 
-# --- what has blocks
+# --- constructs with blocks
 
 
 def _if(layout: Layout, node: s.If) -> None:
@@ -209,7 +209,7 @@ _BLOCKS: Final[dict[type[s.Node], Callable[..., None]]] = {
     s.Live: _block(_head, "precautions"),
 }
 
-# --- what stands on one line
+# --- constructs on one line
 
 
 def pieces(node: s.Node) -> list[str]:

@@ -1,4 +1,4 @@
-"""The canonical layout of what the `timing` section says."""
+"""The canonical layout of the `timing` section."""
 
 from __future__ import annotations
 
@@ -80,4 +80,4 @@ TIMING_PIECES: Final[dict[type[s.Node], Callable[..., list[str]]]] = {
     ],
     s.SayTime: _said,
 }
-"""How the text of each is made, in pieces."""
+"""The function that returns each construct's text in pieces."""

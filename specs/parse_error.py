@@ -1,4 +1,4 @@
-"""Where a parse stopped: the word found there, the word before it, and the words expected."""
+"""The point at which a parse stopped: the word found there, the word before it, and the words expected."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _WORD: Final = re.compile(
 )
 _NAME: Final = re.compile(r"[^\W\d_]\w*")
 LINE_NUMBERS: Final = "printed line numbers must count on from the line of BigActor"
-"""The hint at a line number that does not: where one is wrong, the others are too."""
+"""The hint for a wrong line number: after one, all others are wrong too."""
 
-_SEEN: Final = 200  # characters looked back for the previous word
+_SEEN: Final = 200  # characters searched backwards for the previous word
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Word:
 
     @property
     def is_name(self) -> bool:
-        """Whether it could be a name, but for being reserved."""
+        """Whether it has the form of a name; it may be a reserved word."""
         return bool(_NAME.fullmatch(self.text))
 
     @property
@@ -44,7 +44,7 @@ class Word:
 
     @property
     def shown(self) -> str:
-        """The word as messages show it."""
+        """The word in the form of messages."""
         if not self.text:
             return "the end of the file"
         if self.text.startswith('"') and len(self.text) > 1:
@@ -54,15 +54,15 @@ class Word:
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """Where a parse stopped.
+    """The point at which a parse stopped.
 
     Attributes:
         found: The word there.
         before: The word before it.
-        accepted: The words and symbols that could stand there.
-        sorts: The grammar's names of all that could.
+        accepted: The words and symbols expected there.
+        sorts: The grammar's names of everything expected there.
         prepared: The text.
-        instead: Whether one word alone could stand there, in the place of the one found: behind it that doesn't fit.
+        instead: Whether a single word is expected in place of the one found, which does not fit behind that word.
     """
 
     found: Word
@@ -74,7 +74,7 @@ class Situation:
 
     @property
     def following(self) -> Word:
-        """The word behind the one that was found."""
+        """The word after the one found."""
         return word_at(self.prepared.text, self.found.span.end)
 
     @property
@@ -85,31 +85,31 @@ class Situation:
 
     @property
     def in_expression(self) -> bool:
-        """Whether what is before is an expression that could go on."""
+        """Whether the text before is an expression that may continue."""
         return bool(self.accepted & {"of", "&&"})
 
     @property
     def at_expression(self) -> bool:
-        """Whether an expression could begin here."""
+        """Whether an expression may begin here."""
         return "SELF" in self.accepted
 
     @property
     def at_statement(self) -> bool:
-        """Whether a statement could begin here."""
+        """Whether a statement may begin here."""
         return "observe" in self.accepted
 
     @property
     def at_declaration(self) -> bool:
-        """Whether a declaration could begin here."""
+        """Whether a declaration may begin here."""
         return "signature" in self.accepted
 
     def mistake(self, code: Code, message: str, hint: str = "") -> Diagnostic:
-        """Return a diagnostic at the word that was found."""
+        """Return a diagnostic at the word found."""
         return Diagnostic(code, self.found.span, message, hint)
 
 
 def offset_of(found: UnexpectedInput, prepared: Prepared) -> int:
-    """Return where a parse stopped."""
+    """Return the offset at which a parse stopped."""
     if isinstance(found, UnexpectedToken):
         return len(prepared.text) if found.token.type == "$END" else int(found.token.start_pos or 0)
     if isinstance(found, UnexpectedCharacters):
@@ -118,7 +118,7 @@ def offset_of(found: UnexpectedInput, prepared: Prepared) -> int:
 
 
 def situation(prepared: Prepared, offset: int, run: Run) -> Situation:
-    """Describe a parse that stopped at `offset`, or at the end."""
+    """Return the situation of a parse that stopped at `offset`, or at the end."""
     sorts = frozenset(run.accepts())
     spelt = frozenset(word for sort in sorts if (word := spellings().get(sort)))
     found = word_at(prepared.text, offset)
@@ -133,13 +133,13 @@ def situation(prepared: Prepared, offset: int, run: Run) -> Situation:
 
 
 def _fits_behind(run: Run, sort: str, found: Word) -> bool:
-    """Tell whether a word fits behind one that is missing: not where an item of a list may end between them."""
+    """Return whether a word fits behind a missing one; false if a list's item may end between them."""
     follows = may_follow(run, sort, terminals().get(found.text, "NAME"))
     return follows and not may_follow(run, sort, terminal(";"))
 
 
 def word_at(text: str, offset: int) -> Word:
-    """Return the word that begins at `offset`, or the end just behind the last word."""
+    """Return the word at or after `offset`, or the end just behind the last word."""
     found = _WORD.search(text, offset)
     if found is None:
         end = len(text.rstrip())
@@ -148,13 +148,13 @@ def word_at(text: str, offset: int) -> Word:
 
 
 def words_from(text: str, offset: int) -> Iterator[Word]:
-    """Yield the words and symbols that begin at `offset` or behind it."""
+    """Yield the words and symbols from `offset` on."""
     for found in _WORD.finditer(text, offset):
         yield Word(found.group(), Span(found.start(), found.end()))
 
 
 def word_before(text: str, offset: int) -> Word:
-    """Return the last word that ends at or before `offset`, looked for a little way back."""
+    """Return the last word that ends at or before `offset`, searched over a short distance."""
     start = max(0, offset - _SEEN, text.rfind("\n", 0, text.rfind("\n", 0, max(0, offset - 1))) + 1)
     last = Word("", Span(offset, offset))
     for found in _WORD.finditer(text, start, offset):
@@ -163,7 +163,7 @@ def word_before(text: str, offset: int) -> Word:
 
 
 def open_brackets(text: str, offset: int) -> list[int]:
-    """Return the offsets of the brackets that are open at `offset`, outermost first."""
+    """Return the offsets of the open brackets at `offset`, outermost first."""
     waiting = []
     for found in _WORD.finditer(text, 0, offset):
         if found.group() in "([{":
@@ -174,10 +174,10 @@ def open_brackets(text: str, offset: int) -> list[int]:
 
 
 def line_of(text: str, offset: int) -> int:
-    """Return the number of the line that holds `offset`, counted from 1."""
+    """Return the number of the line with `offset`, counted from 1."""
     return text.count("\n", 0, offset) + 1
 
 
 def is_keyword(word: Word) -> bool:
-    """Whether a word is one of the language's own."""
+    """Return whether a word is a keyword of the language."""
     return word.text in keywords()

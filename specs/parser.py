@@ -14,13 +14,13 @@ from specs.recovery import Recovered, recover
 from specs.syntax import Mission, Node, RuleBody, Span, parts, walk
 
 MAX_DEPTH: Final = 200
-MAX_REPORTED: Final = 50  # mistakes in rule bodies
+MAX_REPORTED: Final = 50  # the most mistakes reported in rule bodies
 
 
 def parse(source: Source) -> Mission:
-    """Return the syntax tree of a mission; raises MissionError with every mistake that was found.
+    """Return the syntax tree of a mission; raises MissionError with all mistakes found.
 
-    Linear in the text and free of recursion; the tree is at most 200 deep.
+    It takes linear time without recursion; the tree is at most 200 deep.
     """
     return _sound(read(source), source)
 
@@ -32,7 +32,7 @@ def parse_bytes(name: str, data: bytes) -> tuple[Source, Mission]:
 
 
 def read(source: Source) -> Recovered:
-    """Return what can be read of a mission, and the mistakes in it; raises MissionError where it passes a bound."""
+    """Return the parts of a mission that parse, and its mistakes; raises MissionError beyond the limits."""
     found = _bounded(recover(prepare(source)), source)
     bodies = (node for node in walk(found.mission) if isinstance(node, RuleBody) and node.term is None)
     in_bodies = [mistake for body in islice(bodies, MAX_REPORTED) if (mistake := rule_mistake(body))]
@@ -40,7 +40,7 @@ def read(source: Source) -> Recovered:
 
 
 def build(prepared: Prepared, source: Source) -> Mission:
-    """Return the tree of a prepared text, the bodies of its rules not looked at; raises MissionError."""
+    """Return the tree of a prepared text with unchecked rule bodies; raises MissionError."""
     return _sound(_bounded(recover(prepared), source), source)
 
 

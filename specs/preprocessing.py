@@ -1,7 +1,7 @@
 """Prepare a mission's text for parsing.
 
-Check bounds and brackets, and blank comments and printed line numbers. Everything here is linear in the text, and
-replaces characters by spaces only, so offsets stay the same.
+Check limits and brackets, and blank out comments and printed line numbers. All functions take linear time and only
+replace characters by spaces, so offsets stay.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _PARTNER: Final = {"(": ")", "[": "]", "{": "}"}
 
 @dataclass(frozen=True, slots=True)
 class Comment:
-    """A comment, `text` with its `//` or `#`."""
+    """A comment; `text` includes its `//` or `#`."""
 
     span: Span
     text: str
@@ -51,14 +51,14 @@ class Comment:
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """A text ready for the grammar, and what was seen in it.
+    """A text ready for the grammar, with its comments and mistakes.
 
     Attributes:
-        text: As it was written, with spaces for all that the grammar is not to see.
-        comments: What was blanked out and may be written again.
-        mistakes: Strings that do not end, and comments of other languages.
-        unmatched: Where the first bracket that fits no other was noticed, and what to say of it.
-        open_at_end: Where the brackets are that nothing closes.
+        text: The text, with spaces for the parts hidden from the grammar.
+        comments: The blanked-out comments, for the formatter.
+        mistakes: Unclosed strings, and comments of other languages.
+        unmatched: The offset at which the first unmatched bracket was noticed, and its diagnostic.
+        open_at_end: The offsets of the brackets that are never closed.
     """
 
     text: str
@@ -69,7 +69,7 @@ class Prepared:
 
 
 def decode(name: str, data: bytes) -> Source:
-    """Return the source that a file's bytes hold, with line feeds as line ends; raises MissionError."""
+    """Return the source in a file's bytes, with line feeds as line ends; raises MissionError."""
     if len(data) > MAX_BYTES:
         raise MissionError(Source(name, ""), [_too_large(len(data))])
     try:
@@ -86,7 +86,7 @@ def decode(name: str, data: bytes) -> Source:
 
 
 def prepare(source: Source) -> Prepared:
-    """Check the bounds and blank out comments and printed line numbers; raises MissionError."""
+    """Check the limits, and blank out comments and printed line numbers; raises MissionError."""
     text = source.text
     problem = _out_of_bounds(text)
     if problem:
@@ -222,8 +222,8 @@ def _blank(text: str, spans: list[Span]) -> str:
 def _without_line_numbers(text: str) -> str:
     """Blank out the line numbers of programs pasted from print, such as the paper's Figure 8.
 
-    That is, where a line begins with a number and `BigActor`, its number and those of the following lines as far
-    as they count on and the block is open.
+    A line that begins with a number and `BigActor` starts the numbering. It ends with the block, or where a line's
+    number is not the next one.
     """
     return _blank(text, list(_line_numbers(text))) if "BigActor" in text else text
 

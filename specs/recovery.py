@@ -1,9 +1,9 @@
-"""Parse on behind a mistake: leave out the item that it is in, and no more.
+"""Error recovery: skip only the item with the mistake, and parse on behind it.
 
-The language is made of lists: declarations, entries of a section, statements, cases. A parser that stopped goes back
-to the innermost list that it is in, drops the item that it could not read, and goes on where the next one begins or the
-list ends. Where the braces of a declaration do not match, nothing tells which list a word belongs to: then the lists
-that are open are closed, and it goes on with the next declaration.
+The language consists of lists: declarations, entries of a section, statements, cases. After a mistake, the parser
+returns to the innermost open list, drops the unreadable item, and resumes at the next item or at the list's end. If
+the braces of a declaration do not match, the list of a word is unknown. Then the parser closes all open lists and
+resumes at the next declaration.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from specs.syntax import Mission
 from specs.syntax.nodes import Span
 
 MOST_MISTAKES: Final = 50
-"""After so many the rest of the file is left out."""
+"""The number of mistakes after which the rest of the file is skipped."""
 
 _NAMES: Final = frozenset({"NAME", "CHANNEL", "DROPPING"})
 SECTION: Final = re.compile(
@@ -37,12 +37,12 @@ SECTION: Final = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Recovered:
-    """What could be read of a mission.
+    """The readable parts of a mission, and its mistakes.
 
     Attributes:
-        mission: The tree of all that could be read.
-        mistakes: Why the rest could not, by position.
-        unread: Where the items are that have the mistakes in them.
+        mission: The tree of the readable parts.
+        mistakes: The mistakes in the rest, by position.
+        unread: The spans of the items with mistakes.
     """
 
     mission: Mission
@@ -51,7 +51,7 @@ class Recovered:
 
 
 def recover(prepared: Prepared) -> Recovered:
-    """Return what can be read of a prepared text."""
+    """Return the readable parts of a prepared text, and its mistakes."""
     reading = _Reading(prepared)
     mission = reading.read()
     mistakes = sorted(reading.mistakes, key=lambda item: item.span)
@@ -60,12 +60,12 @@ def recover(prepared: Prepared) -> Recovered:
 
 @dataclass(frozen=True, slots=True)
 class Expected:
-    """What could follow a text.
+    """The words that may follow a text.
 
     Attributes:
-        words: The words and signs of the language, as they are written.
-        sorts: The grammar's names of all that could follow.
-        before: What is around and before it, from the outermost: words as written, empty ones for whole constructs.
+        words: The words and signs of the language in their spelling.
+        sorts: The grammar's names of everything that may follow.
+        before: The words on the parser's stack, outermost first; an empty word stands for a whole construct.
     """
 
     words: frozenset[str]
@@ -74,7 +74,7 @@ class Expected:
 
 
 def expected_behind(prepared: Prepared) -> Expected:
-    """Return what could follow a prepared text, which may be the beginning of another."""
+    """Return the words that may follow a prepared text, which may be the beginning of a longer one."""
     reading = _Reading(prepared)
     while not reading.feed(reading.rest()):
         pass
@@ -88,9 +88,9 @@ class _Reading:
     """A parse and its mistakes.
 
     Attributes:
-        sections: Where declarations begin, by words that no other line begins with.
-        missing: How many braces were closed that the text leaves open, or closes later.
-        resumed: Where the parse went on last.
+        sections: The offsets of declarations, found by words that begin no other line.
+        missing: The number of braces closed by recovery that the text leaves open or closes later.
+        resumed: The offset at which the parse last resumed.
     """
 
     def __init__(self, prepared: Prepared) -> None:
@@ -112,19 +112,19 @@ class _Reading:
         return mission
 
     def rest(self) -> Iterator[Token]:
-        """Yield the words that are not parsed yet; which they are depends on what was parsed."""
+        """Yield the words that are not parsed yet; their classification depends on the words before."""
         words: Iterator[Token] = self.run.lexer_thread.lex(self.run.parser_state)
         return words
 
     def feed(self, words: Iterable[Token]) -> bool:
-        """Parse words, and tell whether all fit; behind the first that does not it is to be gone on."""
+        """Parse words, and return whether all fit; at the first that does not, recover."""
         at = len(self.text)
         try:
             for word in words:
                 at = len(self.text) if word.start_pos is None else word.start_pos
                 self.run.feed_token(word)
         except Mistake as mistake:
-            from specs.autopilot_words import sent_to_a_point  # noqa: PLC0415 - as below
+            from specs.autopilot_words import sent_to_a_point  # noqa: PLC0415 - most texts have no mistake
 
             self.go_on(sent_to_a_point(mistake.diagnostic, self.text), at)
         except UnexpectedInput as stopped:
@@ -137,7 +137,7 @@ class _Reading:
         return False
 
     def go_on(self, found: Diagnostic, at: int) -> None:
-        """Note a mistake, and where the parse stopped; go on behind the item that it is in."""
+        """Record a mistake and resume behind its item; `at` is the offset at which the parse stopped."""
         begin = self.item_start(at)
         surplus = self.missing and self.text[at : at + 1] == "}" and not self.stacks.open_braces()
         if len(self.mistakes) + 1 < MOST_MISTAKES:
@@ -151,20 +151,20 @@ class _Reading:
         if surplus:
             self.missing -= 1
         elif not (self.numbered(found) or any(begin <= span.start < self.resumed for span in known)):
-            self.mistakes.setdefault(found)  # one of an item
+            self.mistakes.setdefault(found)  # one mistake an item
         self.unread.append(Span(begin, self.resumed))
         if self.prepared.unmatched and found == self.prepared.unmatched[1]:
             self.prepared = replace(self.prepared, unmatched=None)
 
     def numbered(self, found: Diagnostic) -> bool:
-        """Tell whether a line number is wrong only because one before it is."""
+        """Return whether a line number is wrong only because an earlier one is."""
         return found.hint == LINE_NUMBERS and any(known.hint == LINE_NUMBERS for known in self.mistakes)
 
     def item_start(self, at: int) -> int:
-        """Complete the item that is being read, if it can end; return where the one with the mistake begins.
+        """Complete the current item if it can end; return the start of the item with the mistake.
 
-        An item whose own text is the mistake is gone from the stacks. What goes wrong in the line of a complete item is
-        part of that: `kind UAV drivn`, `uav0: UAV point (37, -8)`.
+        An item that is itself the mistake is not on the stacks any more. A mistake in the line of a complete item is
+        part of that item: `kind UAV drivn`, `uav0: UAV point (37, -8)`.
         """
         before, item = self.stacks.items()
         after = max(item.end, self.resumed)
@@ -175,9 +175,9 @@ class _Reading:
         return item.start if line[-1:] in ("", ";", "{") else max(before.start, self.resumed)
 
     def next_item(self, at: int) -> int:
-        """Go back to a list, and return where its next item begins, or it ends."""
+        """Return to a list, and return the start of its next item, or its end."""
         depth, balanced = self.stacks.back_to_list(), self.is_balanced(at)
-        behind = word_at(self.text, at).span.end if at <= self.resumed else at  # no item is looked at twice
+        behind = word_at(self.text, at).span.end if at <= self.resumed else at  # never parse an item twice
         for word in words_from(self.text, behind):
             place = word.span.start
             if self.is_section(place) and (self.stacks.open_braces() or self.stacks.accepts(word.text)):
@@ -194,9 +194,9 @@ class _Reading:
         return len(self.text)
 
     def is_boundary(self, word: Word) -> bool:
-        """Tell whether an item of the list begins at a word, the first of its line, or the list ends.
+        """Return whether an item of the list begins at a word that is the first of its line, or the list ends there.
 
-        What kind a property is stands nowhere but at its beginning; misspelt it is one all the same.
+        The kind of a property, also a misspelt one, only stands at the property's beginning.
         """
         from specs.common_mistakes import begins_property  # noqa: PLC0415 - most texts have no mistake
 
@@ -206,7 +206,7 @@ class _Reading:
         return (word.text in ";}" or line.rstrip()[-1:] in ("", ";")) and self.stacks.accepts(word.text)
 
     def close_lists(self, place: int) -> None:
-        """Close every list that is open before a place, up to that of the declarations."""
+        """Close all lists that are open before an offset, except the list of declarations."""
         end = len(self.text[:place].rstrip())
         self.stacks.complete_item()
         self.stacks.back_to_list()
@@ -219,12 +219,12 @@ class _Reading:
                 self.stacks.leave_list()
 
     def is_section(self, place: int) -> bool:
-        """Tell whether a declaration begins at an offset."""
+        """Return whether a declaration begins at an offset."""
         number = bisect_right(self.sections, place)
         return number > 0 and self.sections[number - 1] == place
 
     def is_balanced(self, at: int) -> bool:
-        """Tell whether the braces of the declaration around an offset match."""
+        """Return whether the braces of the declaration around an offset match."""
         number = bisect_right(self.sections, at)
         first = self.sections[number - 1] if number else 0
         last = self.sections[number] if number < len(self.sections) else len(self.text)
@@ -237,9 +237,9 @@ class _Reading:
 
 
 class _Stacks:
-    """The stacks of lark's parser: states, and what was read between them.
+    """The stacks of lark's parser: states, and the values between them.
 
-    A list of the language is a state from which `;` or `case` is read: all lists have items of one or the other.
+    A state that can shift `;` or `case` is a list of the language: every list has items of one or the other sort.
     """
 
     def __init__(self, run: Run) -> None:
@@ -248,7 +248,7 @@ class _Stacks:
         self.values = run.parser_state.value_stack
 
     def _list(self) -> int:
-        """Return the place of the innermost list among the states, but for lists that have ended."""
+        """Return the index of the innermost list among the states; lists that have ended don't count."""
         table = self.run.parser_state.parse_conf.states
         ended = 0
         for place in range(len(self.states) - 1, 0, -1):
@@ -258,44 +258,44 @@ class _Stacks:
         return 0
 
     def open_braces(self) -> int:
-        """Return how many braces are open around the innermost list."""
+        """Return the number of open braces around the innermost list."""
         return _braces(self.values[: self._list()])
 
     def items(self) -> tuple[Span, Span]:
-        """Return the spans of an item and of the one that is being read behind it; between two, that one twice."""
+        """Return the spans of the last complete item and of the current one; between two items, the last one twice."""
         place = self._list()
         before = _last_item(self.values[place - 1]) if place else Span(0, 0)
         begun = self.values[place:]
         return before, _last_item(begun[0]).to(_last_item(begun[-1])) if begun else before
 
     def back_to_list(self) -> int:
-        """Drop what was read of an item; return how many braces are open in that."""
+        """Drop the current item's values; return the number of open braces among them."""
         place = self._list()
         dropped = _braces(self.values[place:])
         del self.states[place + 1 :], self.values[place:]
         return dropped
 
     def leave_list(self) -> int:
-        """Drop the list, and the item that it is in; return how many braces are open in that."""
+        """Drop the innermost list and the item around it; return the number of open braces in that item."""
         del self.states[-1:], self.values[-1:]
         return self.back_to_list() + 1
 
     def complete_item(self) -> bool:
-        """End an item that may end here, and tell whether it may."""
+        """End the current item if it may end here; return whether it may."""
         if not self.accepts(";"):
             return False
-        self.feed(";", 0)  # its place is never asked for
+        self.feed(";", 0)  # its position is never used
         self.back_to_list()
         return True
 
     def accepts(self, word: str) -> bool:
-        """Tell whether a word could come next."""
+        """Return whether a word may come next."""
         name = terminals().get(word)
         sorts = _NAMES if name is None and word[:1].isalpha() else [name or word]
         return any(may_follow(self.run, sort) for sort in sorts)
 
     def feed(self, sign: str, place: int) -> None:
-        """Read a sign that the text does not have at a place."""
+        """Parse a sign that the text lacks, at an offset."""
         token = Token(terminal(sign), sign, start_pos=place, end_pos=place)
         try:
             self.run.feed_token(token)
@@ -316,7 +316,7 @@ def _braces(values: list[Child]) -> int:
 
 
 def _last_item(value: Child) -> Span:
-    """Return the span of what was read; of a list, that of its last item."""
+    """Return the span of a value; of a list, the span of its last item."""
     while isinstance(value, Tree):
         value = next((item for item in reversed(value.children) if item != ";"), value.children[-1])
     return span_of(value)

@@ -69,7 +69,7 @@ MISTAKES: Final = """\
 [codes.md](codes.md) lists the diagnostics of missions, with meaning and remedy.
 """
 
-# For some headings of the grammar the part of a mission that uses what stands under them.
+# An example for some headings of the grammar: a part of a mission with the constructs under the heading.
 EXAMPLES: Final[dict[str, str]] = {
     "Signature": """\
 signature {
@@ -201,7 +201,7 @@ check {
 """,
 }
 
-# A mission with times is checked otherwise, so its example is no part of the whole one, but of one that ships.
+# A timed mission is checked by other properties, so its example belongs to a shipped mission, not to the whole one.
 TIMED_FRAME: Final = "endurance"
 TIMED_EXAMPLE: Final = """\
 timing {
@@ -227,12 +227,12 @@ _RULE_CLEANUPS: Final = (
     (re.compile(r' \| ";"'), ""),  # separators
     (re.compile(r" -> \w+"), ""),  # names of alternatives
     (re.compile(r"\((\w+)\)([*+])"), r"\1\2"),
-    (re.compile(r"(?<![\w\"])[?_](?=[a-z])"), ""),  # what a rule leaves in the tree
+    (re.compile(r"(?<![\w\"])[?_](?=[a-z])"), ""),  # prefixes that only shape the tree
 )
 
 
 def language_reference() -> str:
-    """Return the reference page, in Markdown."""
+    """Return the reference page in Markdown."""
     parts = [INTRODUCTION]
     for heading, rules in grammar_parts():
         if NODES[heading]:
@@ -249,7 +249,7 @@ def language_reference() -> str:
 
 
 def grammar_parts() -> Iterator[tuple[str, str]]:
-    """Yield the headings of the grammar with their rules, as a reader wants them."""
+    """Yield the headings of the grammar with their rules in readers' notation."""
     for heading, rules in _parts():
         shown = rules
         for pattern, replacement in _RULE_CLEANUPS:
@@ -263,7 +263,7 @@ def _parts() -> Iterator[tuple[str, str]]:
 
 
 def _built() -> dict[str, tuple[type[s.Node], ...]]:
-    """Return what the rules under each heading are built into, each construct where it comes first."""
+    """Return the constructs built by the rules under each heading; each construct under its first heading only."""
     first: dict[type[s.Node], str] = {}
     for heading, rules in _parts():
         methods = (getattr(Build, rule or alias, None) for rule, alias in _RULE_NAME.findall(rules))
@@ -275,11 +275,11 @@ def _built() -> dict[str, tuple[type[s.Node], ...]]:
 
 
 NODES: Final = _built()
-"""For each heading of the grammar the constructs that are shown under it."""
+"""The constructs shown under each heading of the grammar."""
 
 
 def forms(node: type[s.Node]) -> tuple[str, ...]:
-    """Return the concrete syntax that a node's docstring shows, in its first line."""
+    """Return the concrete syntax in the first line of a node's docstring."""
     return tuple(re.findall(r"`([^`]+)`", _documentation(node).split("\n", 1)[0]))
 
 
@@ -287,7 +287,7 @@ def _constructs(heading: str) -> Iterator[str]:
     for node in NODES[heading]:
         if node is s.Command:
             yield from map(_command, COMMANDS.values())
-        shown, _, _ = _documentation(node).partition("\n\nAttributes:")  # those are about the tree
+        shown, _, _ = _documentation(node).partition("\n\nAttributes:")  # attributes describe the tree
         yield f"- {' '.join(shown.split())}"
     yield ""
 

@@ -1,4 +1,4 @@
-"""The kinds of the paper, which a mission declares by `signature standard`."""
+"""The kinds of the paper, declared by `signature standard`."""
 
 from __future__ import annotations
 
@@ -24,6 +24,6 @@ signature {
 
 @cache
 def standard_kinds() -> tuple[Kind, ...]:
-    """Return the kinds that `signature standard` declares; their spans are in `STANDARD`."""
+    """Return the kinds of `signature standard`; their spans are offsets in `STANDARD`."""
     (section,) = parse(Source("signature standard", STANDARD)).each(Signature)
     return section.kinds

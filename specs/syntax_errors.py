@@ -1,7 +1,8 @@
-"""Explain a stopped parse by a diagnostic."""
+"""Explain why a parse stopped, by a diagnostic."""
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from lark import UnexpectedInput
@@ -14,7 +15,7 @@ from specs.grammar import NAMED_PROPERTIES, QUERY_WORDS, SECTIONS, STATEMENTS, R
 from specs.parse_error import Situation, line_of, offset_of, situation
 from specs.preprocessing import Prepared
 
-# Groups of words that the user knows by one name: a word only they have, that name, their words and sorts.
+# Groups of words with a common name: a word that only the group has, the name, the words and the sorts.
 _EXPRESSION: Final = frozenset(["SELF", "HOST", "true", "false", "not", "!", "-", "(", "{", "["])
 _OPERATORS: Final = frozenset(
     ["of", "==", "!=", "<", "<=", ">", ">=", "in", "not", "+", "-", "or", "||", "and", "&&"]
@@ -89,7 +90,7 @@ _FORMS: Final = (
         'write invariant "name": formula, or reachable, ltl, ctl, deadlock_freedom; of times: within 5 min, endurance',
     ),
 )
-"""How what could stand somewhere is written, for mistakes that nothing else explains."""
+"""The forms of what is expected in some situations, for mistakes without a better explanation."""
 
 _SORTS: Final = {
     "NAME": "a name",
@@ -102,8 +103,12 @@ _SORTS: Final = {
 _MOST: Final = 8
 
 
+_SPELT: Final = re.compile(r'"[^\W\d]\w*"')
+"""A text that is spelled like a name."""
+
+
 def explain_syntax_error(found: UnexpectedInput, run: Run, prepared: Prepared) -> Diagnostic:
-    """Return why a parse stopped: a bracket, the end, a common mistake, or what was expected."""
+    """Return the diagnostic of a stopped parse: a bracket, the end, a common mistake, or the words expected."""
     at = situation(prepared, offset_of(found, prepared), run)
     if prepared.unmatched and at.found.span.start >= prepared.unmatched[0]:
         return prepared.unmatched[1]
@@ -113,9 +118,9 @@ def explain_syntax_error(found: UnexpectedInput, run: Run, prepared: Prepared) -
 
 
 def expected(at: Situation) -> str:
-    """Return what could stand there in the user's words: `a statement or '}'`."""
+    """Return the expected words in the user's terms: `a statement or '}'`."""
     words, sorts, groups = set(at.accepted) - {";"}, set(at.sorts), []
-    words -= {"["} if len(words) > 1 else set()  # a name could be that of a family: nobody misses that
+    words -= {"["} if len(words) > 1 else set()  # a `[` would make a family: hardly meant
     for first, title, members, also in _GROUPS:
         if first in at.accepted:
             groups.append(title)
@@ -150,4 +155,10 @@ def _hint(at: Situation) -> str:
         return "write hosted_at host with_behavior { ... }"
     if at.found.text == "}" and at.at_expression:
         return f"something is missing behind {at.before.shown}" if at.before.text else ""
-    return next((form for words, form in _FORMS if words <= at.accepted), "")
+    form = next((form for words, form in _FORMS if words <= at.accepted), "")
+    return form or _unquoted(at)
+
+
+def _unquoted(at: Situation) -> str:
+    is_spelt = "NAME" in at.sorts and _SPELT.fullmatch(at.found.text)
+    return f"write the name without quotes: {at.found.text[1:-1]}" if is_spelt else ""

@@ -1,4 +1,4 @@
-"""Common mistakes in what a mission says of times: bounds, durations, and properties with deadlines."""
+"""Common mistakes about times: in bounds, durations, and properties with deadlines."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ BEGINNING: Final[Mapping[str, str]] = {
     **dict.fromkeys(("send", "message"), "write messages over wifi within 5 s, or messages on one host"),
     "control": "write how long a command takes by its first word: HAND within 10 s; of flights how fast they are",
 }
-"""What a bound was meant to be about, by the statement that takes the time."""
+"""The hint for a bound that begins with a statement's name."""
 
 TAKING: Final[Mapping[str, str]] = {
     **dict.fromkeys(("moves", "drives", "goes", "travels", "sails", "speed", "arrives", "lands"), _FLYING),
     **dict.fromkeys(("endurance", "endures", "battery", "hovers", "survives"), _LASTING),
     **dict.fromkeys(("reacts", "react", "responds", "answers", "computes"), _REACTING),
 }
-"""What is said of a name that takes time in other words."""
+"""The hint for a name's bound with a foreign verb."""
 
 _BEFORE_DURATIONS: Final = frozenset(
     {"take", "takes", "lasts", "within", "every", "after", "until", "tick", "least"}
@@ -139,7 +139,7 @@ def timed_change(at: Situation) -> Diagnostic | None:
 
 
 def _back(at: Situation, words: int) -> Word:
-    """Return the word so many before the one that was found."""
+    """Return the word a number of words before the one found."""
     word = at.found
     for _ in range(words):
         word = word_before(at.prepared.text, word.span.start)

@@ -1,4 +1,4 @@
-"""Write constructs of one line: expressions, queries, patterns, control actions, formulas, placements."""
+"""The canonical text of constructs on one line: expressions, queries, patterns, actions, formulas, placements."""
 
 from __future__ import annotations
 
@@ -7,11 +7,10 @@ from functools import singledispatch
 from typing import Final
 
 from semantics.behaviours.commands import COMMANDS
+from semantics.behaviours.values import ESCAPES
 from specs import syntax as s
 
-_ESCAPES: Final = str.maketrans({'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t"})
-
-# How tightly an operator binds, and how tightly what stands on its two sides must; 8 binds tightest.
+# The precedence of an operator, and the least precedences of its two operands; 8 binds tightest.
 _BINARY: Final = {"or": (1, 1, 2), "and": (2, 2, 3), "+": (5, 5, 6), "-": (5, 5, 6)}
 _COMPARISON: Final = (4, 5, 5)
 _PATH: Final = (5, 6, 5)
@@ -27,17 +26,17 @@ def write(node: s.Node) -> str:
 
 
 def inner(node: s.Node, least: int) -> str:
-    """Return the text of an operand, in parentheses where it binds less tightly than `least`."""
+    """Return the text of an operand, in parentheses if it binds less tightly than `least`."""
     return write(node) if binding(node) >= least else f"({write(node)})"
 
 
 def listed(nodes: Iterable[s.Node]) -> str:
-    """Return the texts with commas between."""
+    """Return the texts, separated by commas."""
     return ", ".join(write(node) for node in nodes)
 
 
 def binding(node: s.Node) -> int:
-    """Return how tightly the outermost operator of an expression or a formula binds."""
+    """Return the precedence of the outermost operator of an expression or a formula."""
     match node:
         case s.BinaryOperation():
             return _BINARY.get(node.operator, _COMPARISON)[0]
@@ -78,7 +77,7 @@ def _(node: s.Name) -> str:
 
 @write.register
 def _(node: s.TextLiteral) -> str:
-    return f'"{node.value.translate(_ESCAPES)}"'
+    return f'"{node.value.translate(ESCAPES)}"'
 
 
 @write.register
@@ -223,7 +222,7 @@ def _(node: s.Negation) -> str:
 
 
 def _is_unlike(node: s.Negation) -> bool:
-    """Tell whether a negation is written with `!=`."""
+    """Return whether a negation is written with `!=`."""
     claim = node.operand
     return isinstance(claim, s.SameName) or (isinstance(claim, s.Stored) and claim.operator == "==")
 
@@ -306,7 +305,7 @@ def _(node: s.HasValue) -> str:
     return f"bound {write(node.agent)}.{write(node.variable)}"
 
 
-# --- what is claimed of runs
+# --- formulas of runs
 
 
 @write.register
@@ -393,7 +392,7 @@ def _(node: s.Speeds) -> str:
 
 
 def decimal(value: float) -> str:
-    """Return the shortest text that reads as the same number, without a fraction where there is none.
+    """Return the shortest text of a number, without a fraction if it is whole.
 
     >>> decimal(400.0), decimal(37.1), decimal(1e-07)
     ('400', '37.1', '1e-07')
@@ -402,13 +401,13 @@ def decimal(value: float) -> str:
 
 
 def separated(word: str, nodes: Sequence[s.Node]) -> list[str]:
-    """Return a list behind a word in pieces between which a line may be broken."""
+    """Return a list behind a word, in pieces at whose ends a line may be wrapped."""
     texts = [f"{write(node)}," for node in nodes[:-1]] + [write(nodes[-1])]
     return [f"{word} {texts[0]}", *texts[1:]]
 
 
 def placed(placement: s.Placement) -> list[str]:
-    """Return the text of a placement in pieces between which a line may be broken."""
+    """Return the text of a placement, in pieces at whose ends a line may be wrapped."""
     pieces = shape(placement.geometry)
     if placement.altitude:
         low, high = placement.altitude.lowest, placement.altitude.highest
@@ -417,7 +416,7 @@ def placed(placement: s.Placement) -> list[str]:
 
 
 def shape(geometry: s.Geometry) -> list[str]:
-    """Return the text of a geometry in pieces between which a line may be broken."""
+    """Return the text of a geometry, in pieces at whose ends a line may be wrapped."""
     match geometry:
         case s.Point(position):
             return [f"point {write(position)}"]

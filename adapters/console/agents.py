@@ -11,6 +11,7 @@ from adapters.console.draft import Draft
 from adapters.console.facts import Facts
 from adapters.console.parsing import number, text
 from adapters.console.view import Json
+from adapters.live.sayings import typed
 from adapters.live.scheduling import in_turn, own_steps
 from semantics.behaviours.computation import first_fitting
 from semantics.behaviours.expressions import Fault
@@ -96,7 +97,7 @@ def _part(pattern: Pattern) -> str:
         case Anything(variable):
             return written(variable or "_")
         case Exactly(value):
-            return show(value, frozenset())
+            return show(value)
         case Elements(items):
             return f"({', '.join(map(_part, items))})"
 
@@ -112,13 +113,14 @@ def sayings(facts: Facts) -> Mapping[str, Json]:
 @lru_cache(maxsize=1 << 10)
 def _sayings(c: Configuration) -> Mapping[str, Json]:
     found: dict[str, Json] = {}
-    for clause in c.setting.environment:
-        if isinstance(clause, Says) and is_here(c, clause.agent):
-            key = f"{clause.agent} {show(clause.message, frozenset())}"
+    clauses = [each for each in c.setting.environment if isinstance(each, Says)]
+    for clause in clauses:
+        if is_here(c, clause.agent):
+            key = f"{clause.agent} {show(clause.message)}"
             left = c.read(clause.counter) + found.get(key, {"left": 0})["left"]
             found[key] = {
                 "agent": clause.agent,
-                "message": show(clause.message),
+                "message": typed(clause, clauses),
                 "left": left,
                 "awaited": _is_awaited(c, clause),
             }

@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 
 from adapters.console.agents import agents
 from adapters.console.alerts import ALL, fallen_back, grounded
-from adapters.console.facts import Authority, Facts, Link, Order, Position
+from adapters.console.facts import Authority, Bid, Facts, Link, Order, Position
 from adapters.console.flights import concerned
 from adapters.console.parsing import text
 from adapters.console.returns import of_return
@@ -99,7 +99,8 @@ def _card(facts: Facts, name: Name, asked: Asked | None, where: Whereabouts, sai
         "authority": [*authority.stations],
         "handed": authority.handed,
         "said": facts.words.get(name),
-        "taken": facts.taken.get(name) or facts.bidden.get(name),
+        "taken": _away(facts, name),
+        "ordered": _ordered_json(facts.bidden.get(name)),
         "on_return": of_return(facts, name),
         "level": worst.level,
         "word": worst.word or WORDS[worst.level],
@@ -132,6 +133,32 @@ def _order(facts: Facts, name: Name) -> Order | None:
     """Return what a vehicle was told last: of its authority, until that is done, else where to be."""
     handing = facts.handing.get(name)
     return handing if handing is not None and handing.state != "arrived" else facts.orders.get(name)
+
+
+def _is_bidden(facts: Facts, name: Name, order: Order) -> bool:
+    """Tell whether what a vehicle was told is what an operator ordered: that has words of its own."""
+    return name in facts.bidden and facts.bidden[name].bidden.command.request == order.request
+
+
+def _away(facts: Facts, name: Name) -> str | None:
+    """Return why the mission does not command a vehicle, None while it does."""
+    if name in facts.taken:
+        return facts.taken[name]
+    return facts.bidden[name].bidden.reason if name in facts.bidden else None
+
+
+def _ordered_json(bid: Bid | None) -> Json:
+    """Return what an operator has ordered a vehicle to do, and what became of it."""
+    if bid is None:
+        return None
+    order = bid.bidden
+    return {
+        "order": order.what,
+        "by": order.by,
+        "since": bid.since,
+        "state": order.fate.value,
+        "why": order.refusal,
+    }
 
 
 def _way(facts: Facts, name: Name) -> tuple[Position, ...]:
@@ -191,7 +218,8 @@ def _reasons(
     if name in facts.taken:
         yield Reason(LOST, f"taken over: {facts.taken[name]}", "taken over")
     elif name in facts.bidden:
-        yield Reason(WATCHED, facts.bidden[name])
+        bidden = facts.bidden[name].bidden
+        yield Reason(WRONG if bidden.refusal else WATCHED, bidden.reason)
     yield from _of_assumptions(facts, name)
     for station in facts.authority.get(name, UNTOLD).stations:
         if facts.stations.get(station, {}).get("reached") is False:
@@ -202,7 +230,7 @@ def _reasons(
     if asked is None and not away and facts.status.get(name, {}).get("armed"):
         yield from _of_idleness(facts)
     for order in (facts.orders.get(name), facts.handing.get(name)):
-        if order is not None and order.state == "refused":
+        if order is not None and order.state == "refused" and not _is_bidden(facts, name, order):
             yield Reason(WRONG, f"it refuses {order.command}{f': {order.why}' if order.why else ''}")
     battery = facts.status.get(name, {}).get("battery")
     if battery is not None and battery["percent"] is not None and battery["percent"] < LOW:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, MutableMapping
 from dataclasses import fields
 from typing import Any, TypeVar
 
-from adapters.console.facts import Authority, Facts, Link, Order, Run, Seen, Shape, Standing, Trail
+from adapters.console.facts import Authority, Bid, Facts, Link, Order, Run, Seen, Shape, Standing, Trail
 from adapters.console.view import Json
 
 Value = TypeVar("Value")
@@ -79,7 +79,8 @@ class Draft:
     status: Table[Json]
     words: Table[Json]
     taken: Table[str]
-    bidden: Table[str]
+    bidden: Table[Bid]
+    rebinds: Table[tuple[str, str]]
     stopped: Table[str]
     authority: Table[Authority]
     deadlines: Table[float]
@@ -92,7 +93,6 @@ class Draft:
     found: int
     actions: Table[Json]
     acted: int
-    awaited: Table[int]
     stations: Table[Json]
     preflight: Table[Json]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from adapters.console.view import Json, Section
-from adapters.live.state import Waiting
+from adapters.live.state import Bidden, Waiting
 from semantics.contingencies import Fallback, TimeLimit
 from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name
@@ -120,7 +120,7 @@ class Order:
         to: Where to, or to which channel.
         way: The waypoints of what it passes, and of where it goes.
         since: When it was first sent.
-        state: `sent`, `accepted`, `arrived` or `refused`.
+        state: `asked` (to hold or to return, not told yet), `sent`, `accepted`, `arrived` or `refused`.
         why: Why it was refused.
     """
 
@@ -131,6 +131,21 @@ class Order:
     since: float
     state: str = "sent"
     why: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Bid:
+    """An operator's order to a vehicle to hold or to return, and what became of it.
+
+    Attributes:
+        action: The number of the action.
+        since: When it was given.
+        bidden: The order, as the run has it.
+    """
+
+    action: str
+    since: float
+    bidden: Bidden
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,7 +215,8 @@ class Facts:
         status: What vehicles say of themselves, as the topic `status` has it.
         words: What they said last, as the cards have it.
         taken: Who was taken over, and how.
-        bidden: Who does what an operator ordered, and what.
+        bidden: What operators ordered vehicles to do, until each is given back or taken over.
+        rebinds: Of vehicles to be believed from another address, the request and the number of the action.
         stopped: Whose controls are served no more (the empty name is all agents), and what their vehicles were told.
         authority: Whom vehicles obey.
         deadlines: Until when agents wait.
@@ -213,7 +229,6 @@ class Facts:
         found: How many findings there were.
         actions: The section `actions`.
         acted: How many actions there were.
-        awaited: For each request of an action that is not confirmed yet the number of the action.
         stations: When each station was heard, and whether it is reached.
         preflight: The section `preflight`.
     """
@@ -234,7 +249,8 @@ class Facts:
     status: Mapping[Name, Json] = field(default_factory=dict)
     words: Mapping[Name, Json] = field(default_factory=dict)
     taken: Mapping[Name, str] = field(default_factory=dict)
-    bidden: Mapping[Name, str] = field(default_factory=dict)
+    bidden: Mapping[Name, Bid] = field(default_factory=dict)
+    rebinds: Mapping[Name, tuple[str, str]] = field(default_factory=dict)
     stopped: Mapping[Name, str] = field(default_factory=dict)
     authority: Mapping[Name, Authority] = field(default_factory=dict)
     deadlines: Mapping[Name, float] = field(default_factory=dict)
@@ -247,6 +263,5 @@ class Facts:
     found: int = 0
     actions: Section = field(default_factory=dict)
     acted: int = 0
-    awaited: Mapping[str, int] = field(default_factory=dict)
     stations: Mapping[str, Json] = field(default_factory=dict)
     preflight: Section = field(default_factory=dict)

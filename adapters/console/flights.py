@@ -6,9 +6,10 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any, Final
 
-from adapters.console.actions import confirm
 from adapters.console.draft import Draft, Table
 from adapters.console.facts import Link, Order, Position
+from adapters.console.fates import confirm, end, refuse, sent
+from adapters.console.giving_back import not_rebound, rebind, rebound
 from adapters.console.parsing import count, number, text, texts
 from adapters.console.stations import obeys
 from adapters.console.view import Json
@@ -46,6 +47,8 @@ def take_command(draft: Draft, time: float, data: Any) -> None:
         case {"command": "HandOver", "request": str(), "entity": str(name)}:
             draft.handing[name] = _order("HandOver", time, data)
             draft.handing.bounded(MOST_VEHICLES)
+        case {"command": "Rebind", "request": str(request), "entity": str(name)}:
+            rebind(draft, name, request)
 
 
 def _order(command: str, time: float, data: Any) -> Order:
@@ -53,7 +56,8 @@ def _order(command: str, time: float, data: Any) -> Order:
     points = [_waypoint(each) for each in places[:MOST_WAY]] if isinstance(places, list) else []
     way = tuple(each for each in points if each is not None)
     to = text(data.get("join") if command == "HandOver" else data.get("name"))
-    return Order(text(data["request"]), command, to, way, time)
+    state = "asked" if command in ("Hold", "Return") else "sent"
+    return Order(text(data["request"]), command, to, way, time, state)
 
 
 def _waypoint(place: Any) -> Position | None:
@@ -68,17 +72,14 @@ def take_report(draft: Draft, time: float, data: Any) -> None:
     """Take in what a plugin reports of a request or a link."""
     match data:
         case {
-            "report": "Accepted" | "Arrived" | "Rejected" as report,
+            "report": "Sent" | "Accepted" | "Arrived" | "Rejected" as report,
             "request": str(request),
             "entity": str(name),
         }:
-            why = text(data.get("reason"))
-            _becomes(draft.orders, name, request, STATES[report], why)
-            _becomes(draft.handing, name, request, STATES[report], why)
-            confirm(draft, time, request, why if report == "Rejected" else None)
+            _answer(draft, time, name, request, report, text(data.get("reason")))
         case {"report": "TakenOver", "entity": str(name)}:
             draft.taken[name] = text(data.get("reason"))
-            draft.bidden.pop(name, None)
+            end(draft, time, name, f"then it was taken over: {draft.taken[name]}")
             draft.taken.bounded(MOST_VEHICLES)
         case {"report": "LinkLost", "entity": str(name)}:
             heard = draft.links.get(name, Link()).heard
@@ -86,7 +87,24 @@ def take_report(draft: Draft, time: float, data: Any) -> None:
             draft.links.bounded(MOST_VEHICLES)
         case {"report": "LinkRestored", "entity": str(name)}:
             draft.links[name] = Link(draft.links.get(name, Link()).heard)
-            confirm(draft, time, f"link {name}", None)
+            rebound(draft, time, name)
+
+
+def _answer(draft: Draft, time: float, name: str, request: str, report: str, why: str) -> None:
+    """Take in what became of something that a vehicle was told."""
+    if report == "Sent":
+        order: Order | None = draft.orders.get(name)
+        if order is not None and order.state == "asked":  # else it is told again what it has refused
+            _becomes(draft.orders, name, request, "sent", "")
+        sent(draft, time, name, request)
+        return
+    _becomes(draft.orders, name, request, STATES[report], why)
+    _becomes(draft.handing, name, request, STATES[report], why)
+    if report == "Rejected":
+        refuse(draft, time, name, request, why)
+        not_rebound(draft, time, name, request, why)
+    else:
+        confirm(draft, time, name, request)
 
 
 def take_flight(draft: Draft, _time: float, data: Any) -> None:

@@ -7,7 +7,7 @@ then holds or returns. The mission's requests of it stay pending until it is giv
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from ipaddress import ip_address
 
 from adapters.live.flying import ask_anew
@@ -24,7 +24,7 @@ from adapters.live.state import (
 )
 from adapters.live.turn import Turning
 from adapters.plugin import Follow, GiveBack, GoTo, HandOver, Hold, Rebind, Return
-from semantics.behaviours.values import show
+from semantics.behaviours.values import show, spoken
 from semantics.contingencies import Fallback
 from semantics.environment import Says
 from semantics.extension import say
@@ -192,20 +192,34 @@ def say_to(turning: Turning, saying: Saying) -> None:
         )
         return
     clauses = [each for each in turning.c.setting.environment if isinstance(each, Says)]
-    for clause in clauses:
-        if clause.agent == saying.agent and saying.message in (clause.message, show(clause.message)):
-            found = tuple(say(turning.c, clause))
-            if found:
-                turning.take(found[0], found)
-                turning.idle.discard(clause.agent)
-                turning.answers.append(Answer(saying))
-                return
-    left = [f"{show(each.message)} to {each.agent}" for each in clauses if turning.c.read(each.counter)]
+    for clause in _meant(saying, clauses):
+        found = tuple(say(turning.c, clause))
+        if found:
+            turning.take(found[0], found)
+            turning.idle.discard(clause.agent)
+            turning.answers.append(Answer(saying))
+            return
+    left = [f"{typed(each, clauses)} to {each.agent}" for each in clauses if turning.c.read(each.counter)]
     is_vehicle = saying.agent in turning.plan.vehicles
     nobody = f"there is no bigActor '{saying.agent:.60}'{', which is a vehicle' if is_vehicle else ''}; "
     who = "" if saying.agent in agents else nobody
     what = f"what may be said now: {', '.join(left)}" if left else "nothing may be said any more"
     turning.answers.append(Answer(saying, f"{who}the mission does not say that this is said; {what}"))
+
+
+def _meant(saying: Saying, clauses: Iterable[Says]) -> Iterator[Says]:
+    """Yield the clauses that a message may be: first those printed so, then those printed so but for quotes."""
+    mine = [each for each in clauses if each.agent == saying.agent]
+    yield from (each for each in mine if saying.message == show(each.message))
+    plain = saying.message.replace('"', "")
+    yield from (each for each in mine if plain in (show(each.message).replace('"', ""), spoken(each.message)))
+
+
+def typed(clause: Says, clauses: Iterable[Says]) -> str:
+    """Return what an operator types to say a message: a text stands in quotes only where a name is said, too."""
+    others = (each for each in clauses if each.agent == clause.agent and each.message != clause.message)
+    short = spoken(clause.message)
+    return show(clause.message) if any(short == show(each.message) for each in others) else short
 
 
 def _rebind(turning: Turning, entity: Name, at: str) -> str:

@@ -13,7 +13,7 @@ from semantics.behaviours.statements import Spawn
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, PhysicalModel, Placed, Placement, encloses
 from semantics.state.setting import Setting
-from semantics.state.signature import REGION, Name
+from semantics.state.signature import NO_ENTITIES, Name
 
 MOST_AHEAD = 5.0
 """Seconds by which a time stamp may lie in the future: clocks differ."""
@@ -62,7 +62,7 @@ def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) ->
 def _no_entities(setting: Setting) -> frozenset[Name]:
     """Return the names that belong to no entity: the region, kinds, and bigActors that may be spawned."""
     spawned = (each.name for each in setting.program.statements if isinstance(each, Spawn))
-    return frozenset({REGION, *setting.signature.kinds, *spawned})
+    return frozenset({*NO_ENTITIES, *setting.signature.kinds, *spawned})
 
 
 def _declared(plan: Plan, entity: Name) -> PhysicalProperty | None:

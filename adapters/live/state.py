@@ -116,6 +116,11 @@ class Bidden:
         return self.fate is not Fate.CONFIRMED
 
     @property
+    def told(self) -> Fate:
+        """Its fate, as people are told: what was refused stays refused while the vehicle is told again."""
+        return Fate.REFUSED if self.owed and self.refusal else self.fate
+
+    @property
     def orderer(self) -> str:
         """The orderer's name for people."""
         return "the mission" if self.by is None else operator(self.by)
@@ -234,7 +239,7 @@ class LiveState:
     @property
     def fates(self) -> Mapping[Name, tuple[str, str]]:
         """The fate of each operator's order, also in words."""
-        return {name: (each.fate.value, each.reason) for name, each in self.bidden.items()}
+        return {name: (each.told.value, each.reason) for name, each in self.bidden.items()}
 
     def later(self, seconds: float) -> LiveState:
         """Return the state with all ages and waiting times shifted by a time without listening."""

@@ -17,9 +17,11 @@ from adapters.stations.entries import MOST_BYTES, Content, Entry, Posted, Took, 
 from adapters.written_files import open_private, writing
 from physical import PhysicalError, read_json
 
-SCHEMA: Final = "bigactors.station/2"
+SCHEMA: Final = "bigactors.station/3"
 UNSUMMED: Final = "bigactors.station/1"
 """Logs of earlier versions, whose lines have no checksums; they are read, and rewritten with them."""
+UNQUOTED: Final = "bigactors.station/2"
+"""Logs of earlier versions with checksums. In their parcels, as in those before, texts and names are alike: refused."""
 
 BEGINNING: Final = 2
 """The required lines of a log: its owner, and the numbers used so far."""
@@ -65,10 +67,10 @@ class Journal:
         self.dropped = ""
         self._file = _locked(path)
         try:
-            is_summed = self._read()
+            is_current = self._read()
             if self.dropped or not self.last:
                 self.last = max(self.last + PASSED, time.time_ns() // 1_000_000)
-            if self.dropped or not is_summed:
+            if self.dropped or not is_current:
                 self._rewrite()
         except BaseException:
             self._file.close()
@@ -144,20 +146,20 @@ class Journal:
             self._sent[entry.content.to] = max(self.sent(entry.content.to), entry.content.index)
 
     def _read(self) -> bool:
-        """Read the file up to its end, or to a torn or damaged last line; return whether it has checksums."""
+        """Read the file up to its end, or to a torn or damaged last line; return whether it is of this version."""
         self._file.seek(0)
         size = os.fstat(self._file.fileno()).st_size
         is_summed = not self._file.read(1).startswith(b"{")
         self._file.seek(0)
-        number = 0
+        number, schema = 0, ""
         while self._file.tell() < size:
             number += 1
             try:
                 data = self._parsed(self._file.readline(2 * MOST_BYTES), is_summed=is_summed)
                 if number == 1:
-                    self._check(data, SCHEMA if is_summed else UNSUMMED)
+                    schema = self._check(data, (SCHEMA, UNQUOTED) if is_summed else (UNSUMMED,))
                 else:
-                    self._take(data)
+                    self._take(data, schema)
             except ForeignLog:
                 raise
             except ValueError as error:
@@ -167,7 +169,7 @@ class Journal:
                         "move it away, and the station begins another above its numbers"
                     ) from error
                 self.dropped = f"{self.path}:{number}: the last entry was dropped: {error}"
-        return is_summed and number > 0
+        return schema == SCHEMA
 
     def _parsed(self, line: bytes, *, is_summed: bool) -> Any:
         """Return the content of a line; raises ValueError if it is torn or damaged."""
@@ -184,21 +186,29 @@ class Journal:
         except PhysicalError as error:
             raise ValueError(f"{error.message:.150}") from error
 
-    def _take(self, data: Any) -> None:
+    def _take(self, data: Any, schema: str) -> None:
         match data:
             case {"last": last, "sent": dict(sent)}:
                 self.last = max(self.last, count(last))
                 self._sent |= {str(to): count(index) for to, index in sent.items()}
             case _:
-                self._keep(entry_of(self.station, data))
+                entry = entry_of(self.station, data)
+                if isinstance(entry.content, Posted) and schema != SCHEMA:
+                    raise ForeignLog(
+                        f"{self.path} has parcels of an earlier version: move it away, "
+                        "and the station begins another above its numbers"
+                    )
+                self._keep(entry)
 
-    def _check(self, head: Any, schema: str) -> None:
-        if not isinstance(head, dict) or head.get("log") != schema:
+    def _check(self, head: Any, schemas: tuple[str, ...]) -> str:
+        schema = head.get("log") if isinstance(head, dict) else None
+        if schema not in schemas:
             raise ForeignLog(f"{self.path} is no log of a station")
         for key in ("station", "mission"):
             if head.get(key) != self._head[key]:
                 what = f"{key} '{head.get(key)!s:.80}'"
                 raise ForeignLog(f"{self.path} is the log of {what}: move it away, or name another file")
+        return str(schema)
 
     def _append(self, lines: list[str]) -> None:
         found = []

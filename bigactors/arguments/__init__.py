@@ -1,7 +1,7 @@
 """The command line's grammar: commands, arguments, options, and their help.
 
-It imports nothing that takes time to load, so that help is there at once. A command is a module here with its
-arguments, one of the same name in `bigactors.commands` that runs it, and its place in `NAMES`.
+It imports nothing slow, so that help appears at once. A command has a module here with its arguments, a module of the
+same name in `bigactors.commands` that runs it, and a place in `NAMES`.
 """
 
 import argparse
@@ -35,7 +35,7 @@ GROUPS: Final = {
     "places and bigraphs": ("world", "detect", "big"),
     "begin": ("demo", "completion"),
 }
-"""The commands, as the help lists them."""
+"""The commands in groups, in the order of the help."""
 
 NAMES: Final = tuple(name for names in GROUPS.values() for name in names)
 
@@ -48,15 +48,23 @@ examples:
 
 bigactors COMMAND --help describes a command, with examples. FILE is a mission file or the name of one that ships."""
 
+GONE: Final = {
+    "bigactors check --hash-compact": "it is gone, since a configuration takes some 24 bytes: --max-memory SIZE "
+    "bounds memory, and --spill DIR moves configurations to files",
+    "bigactors big --to": "it is gone with XMI: BigraphER's language is written",
+    "bigactors big --initial": "it is gone with XMI: a whole model is written",
+}
+"""Options of earlier versions, each with its replacement."""
+
 
 def command_of(name: str) -> Command:
-    """Return a command; its module is loaded when it is asked for."""
+    """Return a command; its module is loaded on request."""
     command: Command = import_module(f"bigactors.arguments.{name.replace('-', '_')}").COMMAND
     return command
 
 
 def make_parser() -> tuple[Parser, dict[str, Parser]]:
-    """Return the parser of the whole line, and those of the commands in the order of their help."""
+    """Return the parser of the whole line, and the parsers of the commands in the order of the help."""
     whole = Parser(
         prog="bigactors",
         usage="bigactors [-h] [--version] [--color WHEN] COMMAND ...",
@@ -72,7 +80,7 @@ def make_parser() -> tuple[Parser, dict[str, Parser]]:
 
 
 def _listed(group: str) -> str:
-    """Return the commands of a group, each with what it does."""
+    """Return the commands of a group, each with its summary."""
     width = max(map(len, NAMES))
     return "\n".join(
         [f"{group}:", *(f"  {name:<{width}}  {command_of(name).summary}" for name in GROUPS[group])]
@@ -90,7 +98,7 @@ def parser_of(name: str, make: Callable[..., Parser] = Parser) -> Parser:
 
 def parse_arguments(line: Sequence[str]) -> argparse.Namespace:
     """Return the options of a command line; raises Mistake, and SystemExit after --help and --version."""
-    if line and line[0] in NAMES:  # the others' parsers are not made
+    if line and line[0] in NAMES:  # build only this command's parser
         return _parsed(parser_of(line[0]), line[1:], argparse.Namespace(command=line[0], color="auto"))
     whole, _ = make_parser()
     if line and not line[0].startswith("-"):
@@ -113,13 +121,16 @@ def _parsed(parser: Parser, line: Sequence[str], options: argparse.Namespace) ->
 def _unknown(word: str, parser: Parser) -> Mistake:
     if not word.startswith("-"):
         return Mistake(f"'{word:.60}' is one argument too many", f"see {parser.prog} --help")
+    option = word.partition("=")[0]
     known = parser.format_usage().replace("[", " ").replace("]", " ").split()
-    hint = suggestion(word.partition("=")[0], (option for option in known if option.startswith("--")))
+    hint = GONE.get(f"{parser.prog} {option}") or suggestion(
+        option, (each for each in known if each.startswith("--"))
+    )
     return Mistake(f"unknown option '{word:.60}'", hint or f"see {parser.prog} --help")
 
 
 def _joined(line: Sequence[str]) -> list[str]:
-    """Join `--within` and a southern latitude, which would be taken for an option."""
+    """Join `--within` or `--at` to a negative number, which would otherwise be parsed as an option."""
     joined: list[str] = []
     for word in line:
         if joined and joined[-1] in ("--within", "--at") and re.match(r"-[\d.]", word):

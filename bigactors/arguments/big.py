@@ -18,7 +18,7 @@ TASKS: Final = {
     "check": "whether predicates hold always, never or ever, and formulas of LTL and CTL, with a run that shows it",
     "validate": "whether the file makes sense, and what is in it",
     "show": "a state, printed and drawn",
-    "convert": "the same model in the file of another tool (.xmi of the Bigraph Framework is read, too)",
+    "convert": "the same model in BigraphER's language",
 }
 _VERBS: Final = {"convert": "Write"}
 
@@ -29,7 +29,7 @@ def fill(parser: Parser) -> None:
         dest="task",
         metavar="TASK",
         title="tasks",
-        prog=parser.prog,  # otherwise a formatter of help is made for it
+        prog=parser.prog,  # without it, argparse builds a help formatter
         parser_class=type(parser),
         required=True,
     )
@@ -191,26 +191,18 @@ def _show(task: Parser) -> None:
 
 def _convert(task: Parser) -> None:
     task.add_argument(
-        "output", metavar="OUT", type=named, help="what is written; - for standard output, which needs --to"
+        "output", metavar="OUT", type=named, help="a .big file that is written; - for standard output"
     )
     task.add_argument(
         "--from",
         dest="source",
-        choices=("big", "bgm", "xmi"),
-        help="BigraphER's language, BigMC's, or XMI of the Bigraph Framework (default: by the file's ending)",
-    )
-    task.add_argument(
-        "--to", dest="target", choices=("big", "xmi"), help="what OUT is written in (default: by its ending)"
-    )
-    task.add_argument(
-        "--initial",
-        action="store_true",
-        help="write the first state to XMI, which has no rules, and leave the rest out",
+        choices=("big", "bgm"),
+        help="BigraphER's language or BigMC's (default: by the file's ending)",
     )
 
 
 def constant(word: str) -> tuple[str, int | float | str]:
-    """Read NAME=VALUE, the value a number if it looks like one.
+    """Parse NAME=VALUE; a numeric value becomes a number.
 
     >>> constant("t=0.5"), constant("n=3"), constant("who=ann")
     (('t', 0.5), ('n', 3), ('who', 'ann'))

@@ -1,4 +1,4 @@
-"""The option `--camera` of `bigactors run`: which camera, on which vehicle, and how it looks."""
+"""The option `--camera` of `bigactors run`: the camera of a vehicle, its source and its settings."""
 
 import argparse
 import re
@@ -9,7 +9,7 @@ from bigactors.arguments.parser import Parser
 from bigactors.arguments.values import seconds
 
 NUMBERS: Final = {"fov": 60.0, "pitch": -90.0, "yaw": 0.0, "roll": 0.0}
-"""The angles of a camera, in degrees, where they are not given."""
+"""The default angles of a camera in degrees."""
 
 PERIODS: Final = {"every": 1.0, "delay": 0.0}
 WORDS: Final = {"kind": "OilSpill", "name": "oilSpill", "detector": ""}
@@ -17,7 +17,7 @@ SETTINGS: Final = (*NUMBERS, *PERIODS, *WORDS)
 
 
 def fill_cameras(parser: Parser) -> None:
-    """Add the option."""
+    """Add the option `--camera`."""
     parser.add_argument(
         "--camera",
         metavar="VEHICLE=SOURCE[,SETTING=VALUE...][,level]",
@@ -30,7 +30,7 @@ def fill_cameras(parser: Parser) -> None:
 
 
 def camera(word: str) -> Namespace:
-    """Read VEHICLE=SOURCE[,SETTING=VALUE...][,level].
+    """Parse VEHICLE=SOURCE[,SETTING=VALUE...][,level].
 
     >>> found = camera("uav0=rtsp://10.0.0.7/a,b,fov=78,level")
     >>> found.vehicle, found.source, found.fov, found.pitch, found.level

@@ -4,15 +4,12 @@ from bigactors.arguments.common import EXITS, MISSION, varying
 from bigactors.arguments.parser import Command, Parser
 from bigactors.arguments.values import (
     FORMATS,
-    LEAST_TAG,
-    MOST_TAG,
     at_least_one,
     named,
     output,
     reductions,
     seconds,
     size,
-    tag_bits,
 )
 
 
@@ -195,14 +192,6 @@ def _long_runs(parser: Parser) -> None:
         type=named,
         help="when --max-memory is reached, move configurations to files in DIR, which should be on a disk; the files "
         "are unnamed and deleted at the end",
-    )
-    group.add_argument(
-        "--hash-compact",
-        metavar="BITS",
-        type=tag_bits,
-        help=f"keep only {LEAST_TAG} to {MOST_TAG} bits of the hash of each configuration; the report gives the "
-        "probability of omissions, and what would hold everywhere is incomplete (with --engine fast only; "
-        "docs/explanation/performance.md)",
     )
     group.add_argument(
         "--paranoid",

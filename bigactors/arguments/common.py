@@ -19,7 +19,7 @@ MISSION: Final = "a mission file, or the name of a mission that ships with bigac
 
 
 def varying(parser: Parser) -> None:
-    """Add the options that put something else in the place of what a mission says."""
+    """Add the options that replace parts of a mission."""
     group = parser.add_argument_group("replace what the mission says")
     group.add_argument(
         "--scheduler", choices=("program_order", "unordered", "fcfs"), help="which request is served next"

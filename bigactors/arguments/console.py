@@ -31,7 +31,7 @@ def fill(parser: Parser) -> None:
         type=named,
         help="the run's socket, by which operators may act; needs --follow",
     )
-    # `run --console` begins it, and says whether it keeps the recording.
+    # Only for `run --console`: whether the run keeps its recording.
     parser.add_argument("--beside", choices=["kept", "unkept"], help=argparse.SUPPRESS)
     add_serving(parser)
 

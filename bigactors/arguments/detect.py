@@ -55,7 +55,7 @@ def fill(parser: Parser) -> None:
 
 
 def degrees(text: str) -> float:
-    """Read an angle.
+    """Parse an angle in degrees.
 
     >>> degrees("62.5")
     62.5
@@ -67,7 +67,7 @@ def degrees(text: str) -> float:
 
 
 def mount(text: str) -> tuple[float, float, float]:
-    """Read PITCH[,YAW[,ROLL]].
+    """Parse PITCH[,YAW[,ROLL]] in degrees.
 
     >>> mount("-60"), mount("-45,90")
     ((-60.0, 0.0, 0.0), (-45.0, 90.0, 0.0))

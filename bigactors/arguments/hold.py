@@ -5,7 +5,7 @@ from bigactors.arguments.say import add_by, add_socket
 
 
 def fill(parser: Parser) -> None:
-    """Add the arguments of an order."""
+    """Add the arguments of an order, `hold` or `return`."""
     which = parser.add_mutually_exclusive_group(required=True)
     which.add_argument("vehicle", metavar="VEHICLE", nargs="?", help="a vehicle of the running mission")
     which.add_argument(

@@ -9,11 +9,11 @@ from bigactors.arguments.values import corners, named, seconds
 
 FILTERED: Final = ("ais", "detections")
 LIVING: Final = {"ais": 600.0, "detections": 600.0, "locations": 60.0, "ros": 60.0, "vehicles": 30.0}
-"""For how many seconds a position counts that nothing newer follows, if nothing else is said."""
+"""The default time to live of a feed's positions, in seconds."""
 
 
 def fill_links(parser: Parser) -> None:
-    """Add them."""
+    """Add the options of vehicles and feeds."""
     parser.add_argument(
         "--fence",
         metavar="PLACE",
@@ -62,7 +62,7 @@ def fill_links(parser: Parser) -> None:
 
 
 def kinds(word: str) -> tuple[str, frozenset[str]]:
-    """Read FEED=KIND,...
+    """Parse FEED=KIND,...
 
     >>> kinds("detections=OilSpill")
     ('detections', frozenset({'OilSpill'}))
@@ -76,7 +76,7 @@ def kinds(word: str) -> tuple[str, frozenset[str]]:
 
 
 def living(word: str) -> tuple[str, float]:
-    """Read FEED=SECONDS.
+    """Parse FEED=SECONDS.
 
     >>> living("ais=120")
     ('ais', 120.0)

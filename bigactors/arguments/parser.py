@@ -11,17 +11,17 @@ from bigactors.mistakes import Mistake
 
 
 class Help(argparse.RawDescriptionHelpFormatter):
-    """Breaks lines between words: an option stays whole; indented lines of a description stay lines."""
+    """Wraps lines between words: options stay whole, and indented lines of a description stay separate."""
 
     def _split_lines(self, text: str, width: int) -> list[str]:
         return _wrapped(" ".join(text.split()), width)
 
-    def _fill_text(self, text: str, width: int, indent: str) -> str:  # noqa: ARG002 - as argparse calls it
+    def _fill_text(self, text: str, width: int, indent: str) -> str:  # noqa: ARG002 - argparse's signature
         return "\n".join(part for line in _lines(text) for part in _wrapped(line, width) or [""])
 
 
 def _lines(text: str) -> Iterator[str]:
-    """Yield paragraphs as a line each, and indented and empty lines as they are."""
+    """Yield each paragraph as one line, and indented and empty lines unchanged."""
     for paragraph in text.split("\n\n"):
         waiting: list[str] = []
         for line in paragraph.split("\n"):
@@ -46,13 +46,13 @@ def _wrapped(line: str, width: int) -> list[str]:
 
 
 class Parser(argparse.ArgumentParser):
-    """Reports what is wrong as a Mistake; knows no abbreviations, and no colours but its user's."""
+    """Raises a Mistake for a wrong line; allows no abbreviations; uses colours only by `--color`."""
 
     def __init__(self, **settings: object) -> None:
         super().__init__(
             allow_abbrev=False,
             formatter_class=Help,
-            **settings,  # type: ignore[arg-type]  # they are argparse's own
+            **settings,  # type: ignore[arg-type]  # the settings of argparse
         )
         self.add_argument(
             "--color",
@@ -61,10 +61,10 @@ class Parser(argparse.ArgumentParser):
             default=argparse.SUPPRESS,
             help="always, never or auto (default): a terminal unless NO_COLOR is set, a pipe if FORCE_COLOR is",
         )
-        self.color = False  # since Python 3.14 help is coloured, and the pages of docs/ would be
+        self.color = False  # since Python 3.14 argparse colours help, and so would the pages of docs/
 
     def error(self, message: str) -> NoReturn:
-        """Raise what is wrong as a mistake of the user."""
+        """Raise a parsing error as a mistake of the user."""
         raise Mistake(message, f"{self.prog} --help shows what can be written")
 
 
@@ -73,10 +73,10 @@ class Command:
     """One command.
 
     Attributes:
-        name: What it is called; its module in `bigactors.commands` has the same name.
-        summary: What it does, in the list of commands.
-        description: What it does, in its own help.
-        examples: Lines as they could be typed.
+        name: Its name; its module in `bigactors.commands` has the same name.
+        summary: Its purpose, for the list of commands.
+        description: Its purpose, for its own help.
+        examples: Example command lines.
         fill: Adds its arguments and options.
     """
 

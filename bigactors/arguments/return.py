@@ -1,4 +1,4 @@
-# ruff: noqa: N999 - commands are found by their names
+# ruff: noqa: N999 - a command's module has the command's name
 """The arguments of `bigactors return`."""
 
 from bigactors.arguments.hold import ORDER, fill

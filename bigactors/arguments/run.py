@@ -151,7 +151,7 @@ def fill(parser: Parser) -> None:
 
 
 def vehicle(word: str) -> tuple[str, int | None, str]:
-    """Read NAME[:ID]=ADDRESS.
+    """Parse NAME[:ID]=ADDRESS.
 
     >>> vehicle("uav0:3=udp:14550"), vehicle("uav0=udp:14550")
     (('uav0', 3, 'udp:14550'), ('uav0', None, 'udp:14550'))
@@ -163,7 +163,7 @@ def vehicle(word: str) -> tuple[str, int | None, str]:
 
 
 def feed(word: str) -> tuple[str, str]:
-    """Read KIND=ADDRESS.
+    """Parse KIND=ADDRESS.
 
     >>> feed("ais=udp:10110")
     ('ais', 'udp:10110')
@@ -175,7 +175,7 @@ def feed(word: str) -> tuple[str, str]:
 
 
 def published(word: str) -> str:
-    """Read ros=ADDRESS.
+    """Parse ros=ADDRESS.
 
     >>> published("ros=tcp:127.0.0.1:7447")
     'tcp:127.0.0.1:7447'
@@ -187,7 +187,7 @@ def published(word: str) -> str:
 
 
 def station(word: str) -> tuple[str, int | None]:
-    """Read NAME[=ID].
+    """Parse NAME[=ID].
 
     >>> station("gcs0=255"), station("gcs0")
     (('gcs0', 255), ('gcs0', None))

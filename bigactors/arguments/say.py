@@ -15,14 +15,14 @@ def fill(parser: Parser) -> None:
 
 
 def add_by(parser: Parser) -> None:
-    """Add the option that says who speaks."""
+    """Add the option for the speaker's name."""
     parser.add_argument(
         "--by", metavar="NAME", default=_login(), help="who says so, as it is recorded (default: your login)"
     )
 
 
 def _login() -> str:
-    """Return the user's login, empty if it is not known."""
+    """Return the user's login; empty if it is unknown."""
     try:
         return getuser()
     except (OSError, KeyError):
@@ -30,7 +30,7 @@ def _login() -> str:
 
 
 def add_socket(parser: Parser) -> None:
-    """Add the option that says which running mission is meant."""
+    """Add the option that selects the running mission."""
     parser.add_argument(
         "--socket",
         metavar="FILE",

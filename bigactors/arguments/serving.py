@@ -1,4 +1,4 @@
-"""The arguments of what serves a console."""
+"""The options of commands that serve a console."""
 
 import argparse
 from typing import Final
@@ -7,11 +7,11 @@ from bigactors.arguments.parser import Parser
 from bigactors.arguments.values import named
 
 ANYWHERE: Final = ("", 0)
-"""No place is said: this machine only, at the usual port or a free one."""
+"""The value of `--console` without an address: this machine only, at the usual port or a free one."""
 
 
 def place(word: str) -> tuple[str, int]:
-    """Read [HOST:]PORT.
+    """Parse [HOST:]PORT.
 
     >>> place("8765"), place("0.0.0.0:8765"), place("[::1]:0")
     (('127.0.0.1', 8765), ('0.0.0.0', 8765), ('::1', 0))
@@ -23,7 +23,7 @@ def place(word: str) -> tuple[str, int]:
 
 
 def add_serving(parser: Parser) -> None:
-    """Add how the console is served."""
+    """Add the options for the console's map and its security."""
     parser.add_argument(
         "--tiles",
         metavar="FILE",

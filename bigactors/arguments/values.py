@@ -1,4 +1,4 @@
-"""Values of arguments and options: each function reads one word, or says what is wrong with it."""
+"""Parsers of argument and option values: each reads one word, or raises an error that explains its fault."""
 
 import argparse
 import math
@@ -9,18 +9,18 @@ from typing import Final
 from bigactors.mistakes import suggestion
 
 FORMATS: Final = ("json", "junit", "sarif", "github")
-"""What `check --output` writes; `github` are the annotations of GitHub Actions."""
+"""The formats of `check --output`; `github` stands for the annotations of GitHub Actions."""
 
 
 def named(text: str) -> str:
-    """Return the name of a file or folder, which is not empty."""
+    """Return the name of a file or folder; refuse an empty one."""
     if not text:
         raise argparse.ArgumentTypeError("the name of a file is missing")
     return text
 
 
 def output(word: str) -> tuple[str, str]:
-    """Read FORMAT:FILE.
+    """Parse FORMAT:FILE.
 
     >>> output("sarif:report.sarif")
     ('sarif', 'report.sarif')
@@ -43,7 +43,7 @@ def at_least_zero(text: str) -> int:
 
 
 def substitute(word: str) -> tuple[str, str]:
-    """Read NAME=FILE."""
+    """Parse NAME=FILE."""
     name, equals, file = word.partition("=")
     if not (name and equals and file):
         raise argparse.ArgumentTypeError(
@@ -53,24 +53,11 @@ def substitute(word: str) -> tuple[str, str]:
 
 
 def at_least_one(text: str) -> int:
-    """Return a whole number from 1; commas may divide its thousands."""
+    """Return a whole number from 1; it may have thousands separators."""
     plain = text.replace(",", "").replace("_", "")
     if not re.fullmatch(r"[0-9]{1,12}", plain) or not int(plain):
         raise argparse.ArgumentTypeError(f"'{text:.40}' is not a whole number from 1")
     return int(plain)
-
-
-LEAST_TAG, MOST_TAG = 16, 64
-"""What `check --hash-compact` takes."""
-
-
-def tag_bits(text: str) -> int:
-    """Return how many bits of a hash are kept."""
-    if not re.fullmatch(r"[0-9]{1,3}", text) or not LEAST_TAG <= int(text) <= MOST_TAG:
-        raise argparse.ArgumentTypeError(
-            f"'{text:.40}' is not a number of bits from {LEAST_TAG} to {MOST_TAG}"
-        )
-    return int(text)
 
 
 def seconds(text: str) -> float:
@@ -82,7 +69,7 @@ def seconds(text: str) -> float:
 
 
 def time_of(text: str) -> float:
-    """Return a time in seconds since 1970; without a zone it is UTC.
+    """Return a time in seconds since 1970; a time without a zone is UTC.
 
     >>> time_of("2020-04-07T21:42:00Z")
     1586295720.0
@@ -119,7 +106,7 @@ def _number(text: str) -> float | None:
 
 
 def identity(word: str) -> tuple[str, str]:
-    """Read IDENTITY=NAME; the digits of a serial number are written large.
+    """Parse IDENTITY=NAME; a serial number is converted to upper case.
 
     >>> identity("mmsi:244660274=drifter0"), identity("serial:2f003b=uav0")
     (('mmsi:244660274', 'drifter0'), ('serial:2F003B', 'uav0'))
@@ -134,7 +121,7 @@ def identity(word: str) -> tuple[str, str]:
 
 
 def route(word: str) -> tuple[str, str]:
-    """Read VEHICLE=FILE.
+    """Parse VEHICLE=FILE.
 
     >>> route("uav0=uav0.plan")
     ('uav0', 'uav0.plan')
@@ -146,11 +133,11 @@ def route(word: str) -> tuple[str, str]:
 
 
 REDUCTIONS: Final = ("por", "symmetry")
-"""What `check --reduce` takes."""
+"""The values of `check --reduce`."""
 
 
 def reductions(text: str) -> tuple[str, ...]:
-    """Read names of reductions, separated by commas.
+    """Parse names of reductions, separated by commas.
 
     >>> reductions("por,symmetry")
     ('por', 'symmetry')
@@ -163,7 +150,7 @@ def reductions(text: str) -> tuple[str, ...]:
 
 
 def size(text: str) -> int:
-    """Return a number of bytes; k, M and G stand for thousands, millions and thousands of millions.
+    """Return a number of bytes; the suffixes k, M and G multiply by 10³, 10⁶ and 10⁹.
 
     >>> size("800M")
     800000000

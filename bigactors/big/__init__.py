@@ -1,1 +1,1 @@
-"""What `bigactors big` decides, computes and writes about systems of bigraphs."""
+"""Verdicts, computations and output files of `bigactors big` on systems of bigraphs."""

@@ -40,11 +40,11 @@ MARKS: Final = {
 
 
 SHOWN_CHOICES: Final = 8
-"""How many choices of a strategy are printed."""
+"""The most choices of a strategy that are printed."""
 
 
 def of_verdict(found: TransitionSystem, verdict: Verdict) -> Decided:
-    """Return a verdict with a shortest run to the state that shows it."""
+    """Return a verdict with a shortest run to the state that proves it."""
     if verdict.state is None:
         return Decided(verdict.claim, verdict.outcome)
     path = found.path_to(verdict.state)
@@ -54,7 +54,7 @@ def of_verdict(found: TransitionSystem, verdict: Verdict) -> Decided:
 
 
 def verdicts_on(options: Namespace, found: TransitionSystem) -> Iterator[Decided]:
-    """Yield a verdict on each thing that is claimed."""
+    """Yield a verdict on each claim."""
     for quantifier in Quantifier:
         for label in getattr(options, quantifier.value):
             yield of_verdict(found, predicate_verdict(found, quantifier, label))
@@ -63,7 +63,7 @@ def verdicts_on(options: Namespace, found: TransitionSystem) -> Iterator[Decided
     for claim in found.system.properties:
         yield of_verdict(found, property_verdict(found, claim))
     if options.storm:
-        from bigactors.big.storm import answers  # noqa: PLC0415 - what asks Storm is rarely wanted
+        from bigactors.big.storm import answers  # noqa: PLC0415 - Storm is rarely wanted
 
         yield from answers(found, options.storm)
     if asked := asked_formulas(options):
@@ -73,16 +73,16 @@ def verdicts_on(options: Namespace, found: TransitionSystem) -> Iterator[Decided
 
 
 def check_formulas(options: Namespace, system: System) -> None:
-    """Refuse what is no formula, before a long exploration and not after it."""
+    """Refuse an invalid formula before a long exploration, not after it."""
     for logic, text in asked_formulas(options):
-        from bigactors.big.formulas import parse_claim  # noqa: PLC0415 - geometry takes its time to load
+        from bigactors.big.formulas import parse_claim  # noqa: PLC0415 - geometry is slow to load
 
         try:
             parse_claim(text, logic, system)
         except NotationError as error:
             raise _mistake(error, options, logic) from error
     if options.storm:
-        from bigactors.big.storm import check_queries  # noqa: PLC0415 - as below
+        from bigactors.big.storm import check_queries  # noqa: PLC0415 - Storm is rarely wanted
 
         try:
             check_queries(options.storm, system)
@@ -95,19 +95,19 @@ def _mistake(error: NotationError, options: Namespace, option: str) -> Mistake:
 
 
 def asked_formulas(options: Namespace) -> list[tuple[str, str]]:
-    """Return the formulas that are asked about, each with its logic."""
+    """Return the requested formulas, each with its logic."""
     return [(logic, text) for logic in LOGICS for text in getattr(options, logic)]
 
 
 def asks_nothing(options: Namespace, system: System) -> bool:
-    """Say whether there is nothing to decide."""
+    """Return whether there is nothing to decide."""
     predicates = (getattr(options, quantifier.value) for quantifier in Quantifier)
     asked = (*asked_formulas(options), *options.storm)
     return not (any(predicates) or options.no_deadlock or system.properties or asked)
 
 
 def decided_lines(found: TransitionSystem, decided: Decided) -> Iterator[str]:
-    """Yield what is printed of a verdict, with the run that shows it."""
+    """Yield the printed lines of a verdict, with its run."""
     mark, colour, _ = MARKS[decided.outcome]
     value, said = decided.value, decided.outcome.value
     if value is not None and value.compared:
@@ -154,7 +154,7 @@ def _rules(step: Step) -> str:
 
 
 def decided_json(found: TransitionSystem, decided: list[Decided]) -> dict[str, Any]:
-    """Return verdicts as data; `loop` is where in `run` the last state goes on, and by which rules."""
+    """Return verdicts as data; `loop` is the index in `run` to which the last state returns, and the rules for that."""
     return {
         "states": len(found),
         "transitions": len(found.targets),
@@ -191,7 +191,7 @@ def _run_json(found: TransitionSystem, run: Run) -> list[dict[str, Any]]:
 
 
 def _value_json(value: Value) -> dict[str, Any]:
-    """Return a number as data; what is infinite is a word, since JSON has no number for it."""
+    """Return a number as data; an infinite one becomes a word, since JSON has no number for it."""
     number, *bounds = (each if isfinite(each) else str(each) for each in (value.number, *value.bounds))
     return {"number": number, "bounds": bounds or None}
 

@@ -1,7 +1,7 @@
 """Temporal formulas over a system's predicates and rules, in the syntax of a mission's `ltl` and `ctl`.
 
-Atoms are the predicates of the system, and `taken` and `enabled` with a rule of it. Before a formula may stand which
-runs it is about: `under weak fairness of walk and strong fairness of rules: <> meeting`.
+Atoms are the predicates of the system, and `taken` and `enabled` with a rule of it. A prefix may restrict the formula
+to fair runs: `under weak fairness of walk and strong fairness of rules: <> meeting`.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -17,9 +17,9 @@ from semantics.properties import temporal as t
 from semantics.properties.propositions import Always, Proposition
 
 MOST_NESTED: Final = 32
-"""The most path operators inside each other."""
+"""The deepest nesting of path operators."""
 MOST_PARTS: Final = 2_000
-"""The most parts of a formula after `<->` and W are rewritten, which doubles their operands."""
+"""The most parts of a formula after the rewriting of `<->` and W, which doubles their operands."""
 
 _PREFIXES: Final[dict[str, Callable[[t.Temporal], t.Path]]] = {
     "[]": t.Globally,
@@ -41,7 +41,7 @@ _OPERATIONS: Final[dict[str, Callable[[t.Temporal, t.Temporal], t.Path]]] = {
 
 @dataclass(frozen=True, slots=True)
 class Occurs:
-    """A predicate occurs in the state: an atom of its own, beside those of missions."""
+    """The atom that a predicate occurs in the state, beside the atoms of missions."""
 
     label: str
 
@@ -50,28 +50,28 @@ class Occurs:
 
 
 def occurs(label: str) -> t.Now:
-    """Return the formula that a predicate occurs now; the checker only ever looks its atoms up."""
+    """Return the formula that a predicate occurs now; the checker only looks its atoms up."""
     return t.Now(cast("Proposition", Occurs(label)))
 
 
 class Claim(NamedTuple):
-    """A formula, and the fairness of the runs that it is about."""
+    """A formula, and the fairness of the runs that it quantifies over."""
 
     formula: t.Temporal
     fairness: tuple[t.Fairness, ...] = ()
 
 
 EACH_RULE: Final = "rules"
-"""The word for all rules, each with its arguments being owed something."""
+"""The word for all rules; fairness then applies to each rule with each of its arguments."""
 
 
 def fair_to(strong: bool, steps: t.Steps, word: str) -> t.Fairness:
-    """Return fairness to the steps of rules, told apart by rule and arguments (the `rule` of their labels)."""
+    """Return fairness to the steps of rules; a class of steps has one rule with its arguments (the label's `rule`)."""
     return t.Fairness(strong, steps, ("rule",), word)
 
 
 def parse_claim(text: str, logic: str, system: System) -> Claim:
-    """Read a formula of a logic, `ltl` or `ctl`, about a system; raises NotationError where something is wrong."""
+    """Parse a formula of a logic, `ltl` or `ctl`, about a system; raises NotationError for an invalid formula."""
     elaboration = _Elaboration(text, logic, system)
     term = s.parse_formula(text)
     fairness: tuple[t.Fairness, ...] = ()
@@ -89,8 +89,8 @@ class _Part:
         formula: The formula.
         start: Its start in the text.
         end: Its end in the text.
-        depth: How many path operators in it are inside each other.
-        size: How many parts it has without `<->` and W.
+        depth: The nesting depth of its path operators.
+        size: The number of its parts after the rewriting of `<->` and W.
         of_path: Whether it is an unquantified path formula, in CTL.
     """
 
@@ -103,7 +103,7 @@ class _Part:
 
 
 class _Elaboration:
-    """Builds formulas of one logic from the syntax tree."""
+    """Builds the formulas of one logic from syntax trees."""
 
     def __init__(self, text: str, logic: str, system: System) -> None:
         self.text, self.logic = text, logic
@@ -120,7 +120,7 @@ class _Elaboration:
         self.labels = {rule.label for rule in rules}
 
     def state(self, part: _Part) -> t.Temporal:
-        """Return a state formula, as all are in CTL except behind A and E."""
+        """Return a state formula; in CTL, all formulas are state formulas except those directly after A and E."""
         if part.of_path:
             message = "in ctl an operator of paths stands directly behind A or E"
             raise self.wrong("logic", message, part, "write AG, EF, AX or A (F U G)")
@@ -136,7 +136,7 @@ class _Elaboration:
         found: _Part = getattr(self, term.kind)(term, *parts)
         return found
 
-    # --- atoms, and then what is made of them: a method for each kind of term
+    # --- atoms, then compound formulas: a method for each kind of term
 
     def truth(self, at: s.Term, word: s.Word) -> _Part:
         return _part(t.Now(Always(word.text == "true")), at)
@@ -155,7 +155,7 @@ class _Elaboration:
         return _part(t.Enabled(self.steps(word)), at)
 
     def fairness(self, declared: s.Term) -> Iterator[t.Fairness]:
-        """Yield what is owed to each of the rules that a declaration lists."""
+        """Yield the fairness to each of the rules that a declaration lists."""
         strength, *listed = cast("tuple[s.Word, ...]", declared.parts)
         for word in listed:
             steps = t.Steps() if word.text == EACH_RULE else self.steps(word)
@@ -171,7 +171,7 @@ class _Elaboration:
         return t.Steps((label,)) if label in self.labels else t.Steps((), label)
 
     def known(self, word: s.Word, labels: tuple[str, ...], sort: str) -> str:
-        """Return a word as a label, without spaces in its parameters."""
+        """Return the label that a word names; spaces in its parameters are ignored."""
         name = _unquoted(word.text)
         if name in labels:
             return name
@@ -214,7 +214,7 @@ class _Elaboration:
 
     def operation(self, at: s.Term, left: _Part, operator: s.Word, right: _Part) -> _Part:
         formula = _OPERATIONS[operator.text](self.state(left), self.state(right))
-        times = 2 if operator.text == "W" else 1  # in CTL, where it is written with U
+        times = 2 if operator.text == "W" else 1  # CTL rewrites W by U
         return self.over_path(formula, at, left, right, times=times)
 
     def quantified(self, at: s.Term, quantifier: s.Word, inner: _Part) -> _Part:
@@ -239,14 +239,14 @@ class _Elaboration:
         return self.over_path(t.Globally(t.Either(before, after)), at, left, right)
 
     def bounded(self, part: _Part) -> _Part:
-        """Return a part, unless its formula is too large."""
+        """Return a part, or raise NotationError if its formula is too large."""
         if part.size > MOST_PARTS:
             message = f"written out, a formula of more than {MOST_PARTS} parts"
             raise self.wrong("too-long", message, part, "check its parts one by one")
         return part
 
     def over_path(self, formula: t.Temporal, at: s.Term, *parts: _Part, times: int = 1) -> _Part:
-        """Return a path formula (in LTL every formula is one), one operator deeper than its parts."""
+        """Return a path formula (every formula is one in LTL), one operator deeper than its parts."""
         found = self.bounded(_part(formula, at, *parts, times=times))
         if found.depth >= MOST_NESTED:
             message = f"more than {MOST_NESTED} operators of paths inside each other"

@@ -1,4 +1,4 @@
-"""`bigactors big sim --runs N`: when predicates become true over many runs, as text, data and a picture."""
+"""`bigactors big sim --runs N`: the first times of predicates over many runs, as text, data and a picture."""
 
 import time
 from argparse import Namespace
@@ -32,16 +32,16 @@ from physical.map_style import PALETTE
 from physical.messages import counted
 
 LOOK_EVERY: Final = 0.2
-"""Seconds between two lines of progress."""
+"""Seconds between two updates of the progress line."""
 
 STEPS: Final = "steps of a run"
 
 MOST_POINTS: Final = 300
-"""How many steps a drawn curve has."""
+"""The most steps of a drawn curve."""
 
 
 def many_runs(options: Namespace, system: System) -> bool:
-    """Take runs and say what they come to; return whether all were taken."""
+    """Take the runs and report their statistics; return whether all runs were taken."""
     check_outputs(options)
     begun = time.monotonic()
     samples = sampled(options, system)
@@ -61,7 +61,7 @@ def many_runs(options: Namespace, system: System) -> bool:
 
 
 def check_outputs(options: Namespace) -> None:
-    """Refuse, before anything is run, files that cannot be written; raises Mistake."""
+    """Raise Mistake for an unwritable output file, before any run."""
     for path in (options.json, options.plot):
         if path and path != "-":
             check_writable(path)
@@ -70,7 +70,7 @@ def check_outputs(options: Namespace) -> None:
 
 
 def sampled(options: Namespace, system: System) -> list[Sample]:
-    """Take the runs, progress shown on a terminal; Ctrl-C ends them with those that were taken."""
+    """Take the runs, with progress on a terminal; after Ctrl-C, return the runs taken so far."""
     sampler = Sampler(system, Bounds(options.steps, options.until), options.seed)
     samples: list[Sample] = []
     with watching(Path(options.file).name) as watch:
@@ -95,7 +95,7 @@ def sampled(options: Namespace, system: System) -> list[Sample]:
 def lines(
     options: Namespace, samples: Sequence[Sample], found: Sequence[FirstTimes], seconds: float
 ) -> Iterator[str]:
-    """Yield what is printed."""
+    """Yield the lines of the report."""
     runs = f"{counted(len(samples), 'run')} of seed {options.seed}"
     yield f"{Path(options.file).name}: {runs}, {seconds:.2f} s"
     if len(samples) < options.runs:
@@ -140,7 +140,7 @@ def _estimated(found: Estimate) -> str:
 def as_data(
     options: Namespace, system: System, samples: Sequence[Sample], found: Sequence[FirstTimes]
 ) -> dict[str, Any]:
-    """Return all that is known as data: what runs say of each predicate, and the runs themselves."""
+    """Return the statistics of each predicate, and the runs themselves, as data."""
     labels = [predicate.label for predicate in system.predicates]
     return {
         "file": options.file,
@@ -187,7 +187,7 @@ def _estimate_data(found: Estimate) -> dict[str, Any]:
 
 
 def curves(samples: Sequence[Sample], found: Sequence[FirstTimes]) -> Iterator[Curve]:
-    """Yield for each predicate, as many as there are colours, the share of runs in which it was true by each time."""
+    """Yield for each predicate, as far as colours reach, the share of runs in which it was true by each time."""
     for number, each in enumerate(found[: len(PALETTE)]):
         points = list(shares_until(samples, number))
         apart = -(-len(points) // MOST_POINTS) or 1
@@ -203,7 +203,7 @@ def curves(samples: Sequence[Sample], found: Sequence[FirstTimes]) -> Iterator[C
 
 
 def _draw(options: Namespace, system: System, samples: Sequence[Sample], found: Sequence[FirstTimes]) -> None:
-    from bigactors.drawings import draw_first_times  # noqa: PLC0415 - only who draws needs matplotlib
+    from bigactors.drawings import draw_first_times  # noqa: PLC0415 - only drawing needs matplotlib
 
     end = options.until if options.until is not None else max(each.time for each in samples)
     left = len(found) - len(PALETTE)

@@ -11,7 +11,7 @@ from bigraphs.transitions import TransitionSystem
 
 
 def check_outputs(options: Namespace) -> None:
-    """Refuse, before anything is explored, paths that cannot be written; raises Mistake."""
+    """Raise Mistake for an unwritable path, before the exploration."""
     for path in (options.html, options.svg, options.dot, options.json):
         if path and path != "-":
             check_writable(path)
@@ -21,7 +21,7 @@ def check_outputs(options: Namespace) -> None:
 
 
 def write_outputs(options: Namespace, found: TransitionSystem) -> Iterator[str]:
-    """Write what was asked for, and yield the names of the files."""
+    """Write the requested files, and yield their names."""
     wanted = options.html, options.svg, options.dot, options.json, options.prism, options.storm
     if not any(wanted):
         return

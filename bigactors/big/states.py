@@ -1,4 +1,4 @@
-"""States in lines of text: any state that can be explored can be printed."""
+"""States as lines of text: every state that can be explored can be printed."""
 
 from dataclasses import replace
 from typing import Final
@@ -9,13 +9,13 @@ from bigraphs.signature import Signature
 from physical.messages import counted
 
 LONG: Final = 300
-"""From how many characters on a state is not printed where it isn't what was asked for."""
+"""The number of characters beyond which a state is replaced by its size, unless it is the requested output."""
 
 
 def state_text(bigraph: Bigraph) -> str:
-    """Return a state as it is written, nodes with names as in `.bgm` files: `u0_UAV`.
+    """Return a state in the notation of `.big`, with named nodes as in `.bgm` files: `u0_UAV`.
 
-    Of one that nests too deeply to be written, return the size.
+    A state that nests too deeply for the notation gives its size.
     """
     named = {f"{node.name}_{node.control}": node for node in bigraph.nodes if node.name is not None}
     controls = [replace(bigraph.signature[node.control], name=label) for label, node in named.items()]
@@ -31,7 +31,7 @@ def state_text(bigraph: Bigraph) -> str:
 
 
 def state_line(bigraph: Bigraph) -> str:
-    """Return a state as it is written if that is short, else how large it is."""
+    """Return a state in its notation if that is short, else its size."""
     written = state_text(bigraph)
     return written if len(written) <= LONG else f"{_size(bigraph)}; 'bigactors big show' prints it"
 

@@ -1,7 +1,7 @@
 """Probabilities, rewards and strategies of `bigactors big check --storm`, by the model checker Storm.
 
-A formula is Storm's, with the predicates of the file as they stand there. The explored system is handed over in the
-files that `big full --storm` writes. Storm answers in a process of its own (`storm_worker`).
+Formulas are in Storm's language, with the file's predicates in their own notation. The explored system goes to Storm in
+the files of `big full --storm`. Storm runs in a separate process (`storm_worker`).
 """
 
 import json
@@ -27,7 +27,7 @@ from physical.messages import counted, install_extra
 EXAMPLES: Final = "write P=? [F goal], Pmax=? [a U b], P>=0.9 [G !bad], T=? [F goal] or R=? [C<=10]"
 _OPERATORS: Final = "P|R|T|LRA"
 WORDS: Final = re.compile(rf"(?:{_OPERATORS})(?:min|max)?|[SFGXUWCI]|true|false")
-"""What Storm reads in another way than as a label."""
+"""The words of Storm's language that cannot be labels."""
 MOST_CHARACTERS: Final = 2_000
 
 _PIECE: Final = re.compile(
@@ -39,7 +39,7 @@ _PIECE: Final = re.compile(
 
 
 def translated(text: str, system: System) -> str:
-    """Return a formula with predicates as labels; raises NotationError where a name is no predicate.
+    """Return a formula with predicates as labels; raises NotationError for a name that is no predicate.
 
     >>> from bigraphs.examples import example_text
     >>> from bigraphs.notation import read_system
@@ -60,7 +60,7 @@ def translated(text: str, system: System) -> str:
 
 
 def _label(text: str, found: re.Match[str], known: dict[str, str]) -> tuple[int, str]:
-    """Return where a piece of a formula ends, and what stands for it."""
+    """Return the end of a piece of a formula, and its replacement."""
     if found["number"]:
         return found.end(), found["number"]
     if found["quoted"] is None and found["arguments"]:
@@ -81,11 +81,11 @@ def _label(text: str, found: re.Match[str], known: dict[str, str]) -> tuple[int,
 
 
 def check_queries(queries: Sequence[str], system: System) -> None:
-    """Refuse what Storm cannot read, and a missing Storm, before a long exploration.
+    """Refuse an invalid formula, and a missing Storm, before a long exploration.
 
     Raises:
-        Mistake: There is no Storm, or it does not understand a formula.
-        NotationError: A formula names what is no predicate.
+        Mistake: Storm is not installed, or it does not understand a formula.
+        NotationError: A name in a formula is no predicate.
     """
     if find_spec("stormpy") is None:
         raise Mistake("--storm needs Storm, which is not installed", install_extra("storm"))
@@ -99,7 +99,7 @@ def check_queries(queries: Sequence[str], system: System) -> None:
 
 
 def answers(found: TransitionSystem, queries: Sequence[str]) -> Iterator[Decided]:
-    """Yield what Storm says of each query about an explored system; one without an answer takes no other's."""
+    """Yield Storm's answer to each query about an explored system; a failed query leaves the other answers."""
     texts = [translated(each, found.system) for each in queries]
     for text, reply in zip(texts, _each_reply(texts, storm_files(found)), strict=True):
         claim = f"storm {' '.join(text.split())}"
@@ -110,7 +110,7 @@ def answers(found: TransitionSystem, queries: Sequence[str]) -> Iterator[Decided
 
 
 def _each_reply(texts: list[str], files: dict[str, str]) -> list[dict[str, Any]]:
-    """Return Storm's replies; where it fails as a whole, each formula is asked by itself."""
+    """Return Storm's replies; if a call fails as a whole, call Storm for each formula alone."""
     try:
         return _replies(texts, files)
     except Mistake as failed:
@@ -120,7 +120,7 @@ def _each_reply(texts: list[str], files: dict[str, str]) -> list[dict[str, Any]]
 
 
 def _without_answer(text: str, error: str, system: System) -> str:
-    """Return why there is no answer, and what to do."""
+    """Return the reason why there is no answer, and the remedy."""
     rewarded = any(each.reward for each in system.predicates) or any(each.reward for each in system.actions)
     if text.lstrip().startswith("R") and not rewarded:
         return "no answer: the system has no rewards; give a predicate one, as in preds = { p[2] }"
@@ -128,7 +128,7 @@ def _without_answer(text: str, error: str, system: System) -> str:
 
 
 def answer(found: TransitionSystem, claim: str, reply: dict[str, Any]) -> Decided:
-    """Return what Storm says of one query; of an incomplete system it knows the explored part alone."""
+    """Return Storm's answer to one query; for an incomplete system it covers only the explored part."""
     outcome = Outcome.HOLDS if reply.get("true", True) else Outcome.VIOLATED
     note = ""
     if not found.complete:
@@ -148,7 +148,7 @@ def answer(found: TransitionSystem, claim: str, reply: dict[str, Any]) -> Decide
 
 
 def _run(likeliest: Likeliest | None, has_strategy: bool, is_against: bool) -> tuple[Run | None, str]:
-    """Return the likeliest run as a run, and what it is."""
+    """Return the likeliest run, and its description."""
     if likeliest is None:
         return None, ""
     steps = (
@@ -160,7 +160,7 @@ def _run(likeliest: Likeliest | None, has_strategy: bool, is_against: bool) -> t
 
 
 def _replies(texts: list[str], files: dict[str, str] | None = None) -> list[dict[str, Any]]:
-    """Return Storm's reply to each formula, about a model if there are files of one; raises Mistake if it fails."""
+    """Return Storm's reply to each formula, on the model in `files` if there is one; raises Mistake if Storm fails."""
     with TemporaryDirectory() as name:
         folder = Path(name)
         for suffix, text in (files or {}).items():

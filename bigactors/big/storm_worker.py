@@ -1,4 +1,4 @@
-"""What asks Storm, in a process of its own: it writes logs to standard output, and a crash of it is nobody else's.
+"""The separate process that runs Storm, which logs to standard output and may crash.
 
 `python -m bigactors.big.storm_worker FOLDER` reads `request.json` in the folder, and writes `reply.json`.
 """
@@ -17,14 +17,14 @@ FILES: Final = {
 
 
 def storm() -> Any:
-    """Return Storm's module, which is an extra: without it this module can still be imported."""
+    """Return Storm's module. It is an extra, and this module can be imported without it."""
     import stormpy  # noqa: PLC0415
 
     return stormpy
 
 
 def main(folder: Path) -> None:
-    """Answer the request in a folder: what Storm makes of each formula, and of a model what they come to."""
+    """Answer the request in a folder: parse each formula, and check it on the model if there is one."""
     formulas = json.loads((folder / "request.json").read_text(encoding="utf-8"))
     files = {name: folder / f"model{suffix}" for name, suffix in FILES.items()}
     given = {name: str(file) for name, file in files.items() if file.exists()}
@@ -34,7 +34,7 @@ def main(folder: Path) -> None:
 
 
 def reply(text: str, model: Any) -> dict[str, Any]:
-    """Return what there is to say of one formula; `error` is Storm's own message."""
+    """Return the reply to one formula; `error` is Storm's own message."""
     try:
         formulas = [each.get_raw_formula() for each in storm().parse_properties(text)]
         if len(formulas) != 1:
@@ -49,7 +49,7 @@ def reply(text: str, model: Any) -> dict[str, Any]:
 
 
 def operators() -> tuple[Any, ...]:
-    """Return the sorts of formulas that have a value in a state."""
+    """Return the types of formulas that have a value in a state."""
     logic = storm().logic
     return (
         logic.ProbabilityOperatorFormula,
@@ -60,7 +60,7 @@ def operators() -> tuple[Any, ...]:
 
 
 def answer(model: Any, formula: Any) -> dict[str, Any]:
-    """Return the value of a formula in the initial state, and what a run that shows it has to do."""
+    """Return the value of a formula in the initial state, and the goals of a run that shows it."""
     start = model.initial_states[0]
     found = storm().model_checking(model, formula, extract_scheduler=model.is_nondeterministic_model)
     said: dict[str, Any] = {}
@@ -81,7 +81,7 @@ def answer(model: Any, formula: Any) -> dict[str, Any]:
 
 
 def unbounded(formula: Any, model: Any) -> Any:
-    """Return the formula that asks for the value which another one compares."""
+    """Return the formula that asks for the value that a bounded formula compares."""
     asked = formula.clone()
     asked.remove_bound()
     if model.is_nondeterministic_model and not asked.has_optimality_type:
@@ -95,7 +95,7 @@ def unbounded(formula: Any, model: Any) -> Any:
 
 
 def choices(model: Any, found: Any) -> list[int] | None:
-    """Return the choice of an optimal strategy in each state, None where Storm gives none that is so simple."""
+    """Return an optimal strategy's choice in each state; None unless it is memoryless and deterministic."""
     if not found.has_scheduler():
         return None
     scheduler = found.get_scheduler()
@@ -106,7 +106,7 @@ def choices(model: Any, found: Any) -> list[int] | None:
 
 
 def shown(model: Any, path: Any) -> dict[str, Any] | None:
-    """Return where a run leads that shows a path formula, or the opposite of one; None if no finite run does."""
+    """Return the goal states of a run that shows a path formula or its opposite; None if no finite run does."""
     logic = storm().logic
     try:
         if isinstance(path, logic.UntilFormula):
@@ -116,19 +116,19 @@ def shown(model: Any, path: Any) -> dict[str, Any] | None:
             return {"goals": where(states(model, path.subformula))}
         if isinstance(path, logic.GloballyFormula):
             return {"goals": where([not each for each in states(model, path.subformula)]), "against": True}
-    except RuntimeError:  # a path formula within, as in G F
+    except RuntimeError:  # a nested path formula, as in G F
         return None
     return None
 
 
 def states(model: Any, formula: Any) -> list[bool]:
-    """Return for each state whether a formula of states is true there; raises RuntimeError for another formula."""
+    """Return for each state whether a state formula holds there; raises RuntimeError for another formula."""
     found = storm().model_checking(model, formula)
     return [bool(found[state]) for state in range(model.nr_states)]
 
 
 def where(true: list[bool]) -> list[int]:
-    """Return the numbers of the states that are marked."""
+    """Return the indices of the true entries."""
     return [state for state, is_one in enumerate(true) if is_one]
 
 

@@ -1,7 +1,7 @@
-"""LTL and CTL on systems of bigraphs: the checker's engine on the transition system of a system.
+"""LTL and CTL on systems of bigraphs: the checker's engine on their transition systems.
 
-Runs are infinite: a run stays in a state without transitions. They are fair to a rule only where a formula says so. A
-weight only says that a step is possible.
+Runs are infinite: a run stays in a state without transitions. Runs are fair to a rule only if a formula declares it.
+A weight only makes a step possible.
 """
 
 from collections.abc import Iterable, Iterator
@@ -31,11 +31,11 @@ ENOUGH: Final = {
     f"{strength} fairness of {EACH_RULE}": (fair_to(strength == "strong", Steps(), EACH_RULE),)
     for strength in ("weak", "strong")
 }
-"""Fairness under which a formula may hold that is violated without, the less the earlier."""
+"""Fairness assumptions that may make a violated formula true, the weakest first."""
 
 
 def decided_formulas(found: TransitionSystem, asked: Iterable[tuple[str, str]]) -> Iterator[Decided]:
-    """Yield a verdict on each of some formulas, each given with its logic."""
+    """Yield a verdict on each formula, given with its logic."""
     decider = Decider(found)
     return (decider.decide(logic, text) for logic, text in asked)
 
@@ -43,7 +43,7 @@ def decided_formulas(found: TransitionSystem, asked: Iterable[tuple[str, str]]) 
 def graph_of(found: TransitionSystem) -> Graph:
     """Return the checker's graph of a transition system: an edge for each transition and each rule that makes it.
 
-    A label's `rule` is the rule with its parameters, its `agent` the name alone, so that `Steps` finds both.
+    A label's `rule` is the rule with its parameters, and its `agent` the rule's name, so that `Steps` can name either.
     """
     rules = {rule.label: rule for rule in found.system.rules()}
     number = {label: index for index, label in enumerate(rules)}
@@ -62,7 +62,7 @@ def graph_of(found: TransitionSystem) -> Graph:
 
 
 class Decider:
-    """Decides formulas about one transition system; what they share is computed once."""
+    """Decides formulas about one transition system; common computations are done once."""
 
     def __init__(self, found: TransitionSystem) -> None:
         self.found = found
@@ -74,7 +74,7 @@ class Decider:
 
     @cached_property
     def formulas(self) -> Formulas:
-        """What decides formulas, given where predicates occur."""
+        """The decision procedures, given the states in which predicates occur."""
         columns = zip(self.found.system.predicates, self.found.labels, strict=True)
         values = {
             cast("Proposition", Occurs(predicate.label)): np.frombuffer(bytes(holds), dtype=np.uint8) > 0
@@ -89,7 +89,7 @@ class Decider:
         return Formulas(truth, self.found.complete, is_still)
 
     def decide(self, logic: str, text: str) -> Decided:
-        """Decide a formula of a logic, `ltl` or `ctl`; raises NotationError if it is none.
+        """Decide a formula of a logic, `ltl` or `ctl`; raises NotationError for an invalid formula.
 
         On an incomplete system a formula can be violated, but never holds.
         """
@@ -109,7 +109,7 @@ class Decider:
         return replace(self.unviolated(said, found, linear), remarks=remarks)
 
     def violated(self, said: str, lasso: Lasso, linear: bool) -> Decided:
-        """Return the verdict on a formula that some run shows to be false."""
+        """Return the verdict on a formula with a run that violates it."""
         if linear:
             what = f"a {'shortest ' if lasso.shortest else ''}run on which it is false"
             what += "" if lasso.loop else ", whatever follows"
@@ -119,7 +119,7 @@ class Decider:
         return Decided(said, Outcome.VIOLATED, self.run(lasso), "a run that shows it")
 
     def unviolated(self, said: str, found: Decision, linear: bool) -> Decided:
-        """Return the verdict on a formula that nothing speaks against."""
+        """Return the verdict on a formula without a violation."""
         outcome = Outcome(found.outcome.value)
         if found.run is None or not len(found.run):
             return Decided(said, outcome, note=found.note)
@@ -131,18 +131,18 @@ class Decider:
         return Decided(said, outcome, run, "a run that shows it")
 
     def unfair(self, claim: Claim, linear: bool) -> Iterator[str]:
-        """Yield that a violated formula holds under fairness, where it asks for none."""
+        """Yield a note if a violated formula without fairness holds under fairness."""
         if not claim.fairness:
             ways = ((words, self.conditions(each)) for words, each in ENOUGH.items())
             if enough := self.formulas.enough(claim.formula, linear, ways):
                 yield f"only unfair runs violate it: it holds under {enough}"
 
     def conditions(self, declared: Iterable[Fairness]) -> Conditions:
-        """Return what fair runs do infinitely often."""
+        """Return the conditions that fair runs meet infinitely often."""
         return conditions_of(declared, self.graph)
 
     def empty(self, declared: Iterable[Fairness]) -> Iterator[str]:
-        """Yield what of fairness is about nothing; what was not explored may have it."""
+        """Yield each declared fairness without any step; none if the system is incomplete, as a step may follow."""
         for each in declared if self.found.complete else ():
             if not any(self.graph.taken(labels).any() for labels in classes(each, self.graph.labels)):
                 yield f"{each} is about no step that ever is"
@@ -152,7 +152,7 @@ class Decider:
         return Run(tuple(self.steps(lasso)), len(lasso.stem) if lasso.loop else None)
 
     def steps(self, lasso: Lasso) -> Iterator[Step]:
-        """Yield the steps of a lasso, the loop taken once."""
+        """Yield the steps of a lasso, with its loop taken once."""
         for edge in (*lasso.stem, *lasso.loop):
             action = int(self.graph.actions[edge])
             rules = () if action == STUTTER else (self.graph.labels[action].rule,)

@@ -1,4 +1,4 @@
-"""The commands, one module each: `run(options)` does it and returns the exit code.
+"""The commands, one module each: `run(options)` runs the command and returns its exit code.
 
-A command's module is loaded when it is asked for, and not before.
+A command's module is loaded on request.
 """

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 def run(options: Namespace) -> Exit:
-    """Do one of the tasks."""
+    """Run one of the tasks."""
     try:
         return TASKS[options.task](options)
     except NotationError as error:
@@ -41,7 +41,7 @@ def run(options: Namespace) -> Exit:
 
 
 def read_file(options: Namespace) -> System:
-    """Return the system in a file, or of an example that ships."""
+    """Return the system in a file, or in an example that ships."""
     constants = dict(options.const)
     if options.file in example_names() and not Path(options.file).exists():
         return read_system(example_text(options.file), constants=constants)
@@ -52,7 +52,7 @@ def read_file(options: Namespace) -> System:
 
 
 def explored(options: Namespace, system: System) -> TransitionSystem:
-    """Explore within the limits of the command line, progress shown on a terminal."""
+    """Explore within the limits of the command line, with progress on a terminal."""
     name = Path(options.file).name
     with watching(name) as watch:
 
@@ -69,7 +69,7 @@ def explored(options: Namespace, system: System) -> TransitionSystem:
 
 
 def warn_of_orders(options: Namespace, system: System) -> None:
-    """Say of instantaneous rules whose order matters what two orders come to."""
+    """Warn of instantaneous rules whose order matters, with two different outcomes."""
     orders = compare_orders(system)
     if orders.divergence is not None:
         for line in _divergence_lines(options.file, orders.divergence):
@@ -82,7 +82,7 @@ def warn_of_orders(options: Namespace, system: System) -> None:
 
 
 def _divergence_lines(file: str, found: Divergence) -> Iterator[str]:
-    """Yield what is said of a class that is not confluent."""
+    """Yield the warning on an instantaneous class that is not confluent."""
     place = f"{file}:{found.rules.position}" if found.rules.position else file
     names = _instances(rule.name for rule in found.rules.rules)
     yield f"warning: {place}: the instantaneous class ({names}) is not confluent: the order of its rules matters"
@@ -105,7 +105,7 @@ def _show_progress(watch: Watch, name: str, progress: Progress) -> None:
 
 
 def full(options: Namespace) -> Exit:
-    """Explore every state, and write what was asked for."""
+    """Explore every state, and write the requested files."""
     check_outputs(options)
     system = read_file(options)
     warn_of_orders(options, system)
@@ -123,7 +123,7 @@ def full(options: Namespace) -> Exit:
 
 
 def _occurrence_lines(found: TransitionSystem) -> Iterator[str]:
-    """Yield in how many states each predicate occurs; the instances of one that occur nowhere are one line."""
+    """Yield the number of states in which each predicate occurs; instances that occur nowhere share a line."""
     counts = Counter(predicate for numbers in found.holding for predicate in numbers)
     nowhere = Counter(each.name for number, each in enumerate(found.system.predicates) if not counts[number])
     for number, predicate in enumerate(found.system.predicates):
@@ -136,7 +136,7 @@ def _occurrence_lines(found: TransitionSystem) -> Iterator[str]:
 
 
 def summary(file: str, found: TransitionSystem) -> str:
-    """Say in one line how large a system is, and whether that is all of it."""
+    """Return the size of a system and the completeness of its exploration in one line."""
     end = "complete" if found.complete else f"incomplete: {found.reason}"
     return (
         f"{Path(file).name}: {counted(len(found), 'state')}, {counted(len(found.targets), 'transition')}, "
@@ -153,12 +153,12 @@ def sim(options: Namespace) -> Exit:
     if options.runs is not None and options.run is not None:
         raise Mistake("--runs takes many runs, --run one of them", "leave one of the two out", options.file)
     if options.runs is not None:
-        from bigactors.big.many_runs import many_runs  # noqa: PLC0415 - one run needs no statistics
+        from bigactors.big.many_runs import many_runs  # noqa: PLC0415 - only many runs need statistics
 
         return Exit.HOLDS if many_runs(options, system) else Exit.INCOMPLETE
     if options.plot:
         raise Mistake("--plot shows what many runs say", "give --runs, such as --runs 1000", options.file)
-    from bigraphs.simulation import Bounds, simulate  # noqa: PLC0415 - only this task takes chances
+    from bigraphs.simulation import Bounds, simulate  # noqa: PLC0415 - only this task simulates
 
     stages = []
     bounds = Bounds(options.steps, options.until)
@@ -180,7 +180,7 @@ def sim(options: Namespace) -> Exit:
 
 
 def stage_line(system: System, number: int, stage: Stage) -> str:
-    """Return how one state of a run is printed."""
+    """Return one state of a run as a line."""
     time = f" {stage.time:.6g}" if system.kind is SystemKind.SBRS else ""
     how = f" --{stage.action + ': ' if stage.action else ''}{stage.rule}-->" if stage.rule else ""
     labels = f"  [{', '.join(stage.labels)}]" if stage.labels else ""
@@ -188,7 +188,7 @@ def stage_line(system: System, number: int, stage: Stage) -> str:
 
 
 def stage_json(stage: Stage) -> dict[str, Any]:
-    """Return one state of a run as data; `kept` are pairs of a node's number before the step and after it."""
+    """Return one state of a run as data; `kept` pairs each node's number before the step with its number after it."""
     return {
         "time": stage.time,
         "rule": stage.rule,
@@ -200,8 +200,8 @@ def stage_json(stage: Stage) -> dict[str, Any]:
 
 
 def check(options: Namespace) -> Exit:
-    """Decide what is claimed."""
-    from bigactors.big import checks  # noqa: PLC0415 - only this task decides anything
+    """Decide the claims."""
+    from bigactors.big import checks  # noqa: PLC0415 - only this task decides claims
 
     system = read_file(options)
     if checks.asks_nothing(options, system):
@@ -226,7 +226,7 @@ def check(options: Namespace) -> Exit:
 
 
 def validate(options: Namespace) -> Exit:
-    """Say what is in a file, if it makes sense."""
+    """Print the contents of a valid file."""
     system = read_file(options)
     machine = Machine(system)
     kind = f"{'a' if system.kind in (SystemKind.BRS, SystemKind.PBRS) else 'an'} {system.kind.value}"
@@ -247,7 +247,7 @@ def validate(options: Namespace) -> Exit:
 
 
 def _instances(names: Iterable[str]) -> str:
-    """List names, each once, with how many instances its parameters make."""
+    """Return distinct names in a list, each with its number of instances."""
     return ", ".join(name if times == 1 else f"{name} ({times:,})" for name, times in Counter(names).items())
 
 
@@ -268,7 +268,7 @@ def show(options: Namespace) -> Exit:
 
 
 def convert(options: Namespace) -> Exit:
-    """Write the model in another tool's file."""
+    """Write the model in the file format of another tool."""
     from bigactors.commands import big_convert  # noqa: PLC0415 - only this task needs XML
 
     return big_convert.convert(options)

@@ -44,7 +44,7 @@ WORDS = {
 
 
 def run(options: Namespace) -> Exit:
-    """Check missions, with `--watch` at each save; print the reports and write what was asked for."""
+    """Check missions, with `--watch` at each save; print the reports and write the requested files."""
     ALONE.set(True)
     limits = limits_of(options)
     if options.times and options.engine not in (None, "reference"):
@@ -74,7 +74,7 @@ def run(options: Namespace) -> Exit:
 
     if not options.watch:
         return report(check(Interruption()))
-    from bigactors.continuous_check import check_at_each_save  # noqa: PLC0415 - only who watches needs it
+    from bigactors.continuous_check import check_at_each_save  # noqa: PLC0415 - only --watch needs it
 
     if any(output.to_standard_output for output in outputs):
         raise Mistake("--watch prints its reports", "give a file in the place of -")
@@ -84,7 +84,7 @@ def run(options: Namespace) -> Exit:
 def report_all(
     checked: Iterable[Checked | Failed], options: Namespace, outputs: Sequence[Output], key: SigningKey | None
 ) -> Exit:
-    """Print the reports as they come, and write what was asked for."""
+    """Print the reports as they come, and write the requested files."""
     alone = any(output.to_standard_output for output in outputs)
     results: list[Checked | Failed] = []
     folders: set[str] = set()
@@ -106,7 +106,7 @@ def report_all(
 
 
 MOST, MOST_OF_REFERENCE = 100_000_000, 2_000_000
-"""How many configurations are visited at most: those of the reference explorer take a thousand bytes each."""
+"""The most configurations visited. Those of the reference explorer take a thousand bytes each."""
 
 
 def limits_of(options: Namespace) -> Limits:
@@ -123,13 +123,13 @@ def limits_of(options: Namespace) -> Limits:
 
 
 def most_of(options: Namespace) -> int:
-    """Return how many configurations are visited at most."""
+    """Return the most configurations to visit."""
     usual = MOST_OF_REFERENCE if options.engine == "reference" else MOST
     return options.max_configurations or usual * (options.workers or 1)
 
 
 def cluster_of(options: Namespace) -> Cluster | None:
-    """Return with whom it explores, None where Ray is not the engine."""
+    """Return the Ray cluster of the exploration; None for another engine."""
     if options.engine != "ray":
         if options.workers is not None or options.address is not None:
             raise Mistake(
@@ -140,7 +140,7 @@ def cluster_of(options: Namespace) -> Cluster | None:
 
 
 def threads_of(options: Namespace) -> int | None:
-    """Return on how many threads it explores at most, None where nothing is asked for."""
+    """Return the most threads of the exploration; None without the option."""
     if options.threads is not None and options.engine in ("reference", "ray"):
         raise Mistake(
             "--threads is of the fast explorer", "leave --engine out, or say --workers with --engine ray"
@@ -150,36 +150,20 @@ def threads_of(options: Namespace) -> int | None:
 
 
 def keeping_of(options: Namespace) -> Keeping | None:
-    """Return what is kept on the way and doubted, None where nothing is asked for."""
+    """Return the options on checkpoints, re-checking and hash compaction; None without any."""
     if options.resume and options.checkpoint is None:
         raise Mistake("--resume goes on from a checkpoint", "say where it is: --checkpoint DIR")
-    if options.checkpoint is None and options.paranoid is None and options.hash_compact is None:
+    if options.checkpoint is None and options.paranoid is None:
         return None
-    kept = options.checkpoint is not None or options.hash_compact is not None
-    if kept and (options.engine == "reference" or options.reduce):
-        raise Mistake(
-            "--checkpoint and --hash-compact are of the fast explorer", "leave --engine and --reduce out"
-        )
+    if options.checkpoint is not None and (options.engine == "reference" or options.reduce):
+        raise Mistake("--checkpoint is of the fast explorer", "leave --engine and --reduce out")
     if options.paranoid is not None and options.engine not in (None, "fast") and not options.reduce:
         raise Mistake("--paranoid is of the fast explorer and of reductions", "leave --engine out")
-    if options.hash_compact is not None and (
-        options.checkpoint or options.paranoid or options.engine == "ray"
-    ):
-        raise Mistake(
-            "--hash-compact finds no configuration again",
-            "leave --checkpoint, --paranoid and --engine ray out",
-        )
-    return Keeping(
-        options.checkpoint,
-        options.resume,
-        every=options.every,
-        doubted=options.paranoid or 0,
-        compact=options.hash_compact,
-    )
+    return Keeping(options.checkpoint, options.resume, every=options.every, doubted=options.paranoid or 0)
 
 
 def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
-    """Yield what is printed of one mission; of one that has a mistake nothing, since that was told."""
+    """Yield the printed lines about one mission; none for a failed one, whose message is already printed."""
     if isinstance(result, Failed):
         return
     report = result.report
@@ -201,7 +185,7 @@ def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
 
 
 def remedies(mission: ElaboratedMission, report: Report) -> str:
-    """Return what may let an exploration that was cut off come to its end."""
+    """Return remedies for an exploration that a limit cut off."""
     if all(bound.stop is Stop.PENDING for bound in report.bounds):
         waits = "let each loop wait for what it asks for (LS708 names those that don't)"
         return f"{waits}, or raise the limit that stopped it: --max-pending"
@@ -229,7 +213,7 @@ def summary(results: list[Checked | Failed]) -> Iterator[str]:
 
 
 def coloured(line: str) -> str:
-    """Return a line with its mark coloured, where the output shows colours.
+    """Return a line with its mark coloured, if the output shows colours.
 
     >>> coloured("  ✓ deadlock_freedom  holds")
     '  ✓ deadlock_freedom  holds'
@@ -242,7 +226,7 @@ def coloured(line: str) -> str:
 
 
 def _check_verdict(options: Namespace) -> SigningKey | None:
-    """Return the key that the verdict is signed with, if any; raises Mistake before anything is explored."""
+    """Return the key that signs the verdict, if any; raises Mistake before the exploration."""
     if options.verdict is None:
         if options.sign is not None:
             raise Mistake("--sign signs a verdict", "say where it is written: --verdict FILE")
@@ -258,7 +242,7 @@ def _check_verdict(options: Namespace) -> SigningKey | None:
 
 
 def keep_verdict(checked: Checked, options: Namespace, key: SigningKey | None) -> None:
-    """Write the verdict on a mission, and say so."""
+    """Write the verdict on a mission, and print its path."""
     from bigactors.verdict_files import verdict_json  # noqa: PLC0415 - few checks are for a flight
 
     data = verdict_json(checked, options.engine or "by size", key)
@@ -267,8 +251,8 @@ def keep_verdict(checked: Checked, options: Namespace, key: SigningKey | None) -
 
 
 def keep_evidence(checked: Checked, folder: str, taken: set[str]) -> None:
-    """Write the traces of a mission into a folder of its own, and say so."""
-    from bigactors.trace_files import write_evidence  # noqa: PLC0415 - only who keeps traces waits for pictures
+    """Write the traces of a mission into a folder of its own, and print their paths."""
+    from bigactors.trace_files import write_evidence  # noqa: PLC0415 - only --trace waits for pictures
 
     stem = name = file_stem(Path(checked.name).stem)
     number = 2

@@ -1,4 +1,4 @@
-"""`bigactors completion`: a script with which a shell completes command lines."""
+"""`bigactors completion`: a script by which a shell completes command lines."""
 
 from argparse import Namespace
 

@@ -29,19 +29,19 @@ from bigactors.terminal import say, tell
 from physical import open_file
 
 PORT: Final = 8765
-"""Where a console listens if nothing is said and nobody else does."""
+"""The default port of a console."""
 
 NICENESS: Final = 5
-"""How much a console gives way to the run beside it: where both want the same core it gets a quarter."""
+"""How far a console yields to the run beside it: on a shared core it gets a quarter."""
 
 LAST: Final = "console, to watch:"
-"""What begins the last line that a console says at its start."""
+"""The beginning of the last line that a console prints at its start."""
 
 PARTING: Final = 0.5
-"""Seconds from the end of a run to that of its console."""
+"""Seconds between the end of a run and the end of its console."""
 
 READING: Final = 2.0
-"""Seconds in which what a run has recorded last is read, after its end."""
+"""Seconds to read the last records of a run after its end."""
 
 KILLED: Final = (
     "the run ended without a word: it was killed, or has crashed; vehicles go on as they were told last"
@@ -64,7 +64,7 @@ def run(options: Namespace) -> Exit:
 
 
 def _check(options: Namespace) -> None:
-    """Refuse what cannot be served, or not safely; raises Mistake."""
+    """Refuse impossible or unsafe options; raises Mistake."""
     if lacks_parts():
         raise Mistake(
             "the console's page is not whole: npm has not fetched its parts", "say `make parts` in the clone"
@@ -99,7 +99,7 @@ def _is_near(host: str) -> bool:
 
 
 def _look_into(options: Namespace) -> None:
-    """Read the beginning, so that a file that is no recording is told at once; raises Mistake."""
+    """Read the beginning, so that a file that is no recording is refused at once; raises Mistake."""
     path = options.recording
     try:
         first = next(McapReader(Path(path)).messages(), None)
@@ -135,7 +135,7 @@ async def _serve(options: Namespace, history: History) -> None:
 async def _listen(
     stack: AsyncExitStack, console: Console, listen: tuple[str, int] | None, tls: ssl.SSLContext | None
 ) -> tuple[str, int]:
-    """Listen where it is said, else at the usual port or at any free one; raises Mistake."""
+    """Listen at the given address, else at the usual port or a free one; raises Mistake."""
     host, port = listen or (LOOPBACK, PORT)
     try:
         return host, await stack.enter_async_context(serving(console, Site(port, host, tls)))
@@ -160,7 +160,7 @@ def _tls(certificate: str, key: str) -> ssl.SSLContext:
 
 
 async def _until_left(history: History) -> None:
-    """Wait until the run beside which this console is has ended: its end of the pipe is closed then."""
+    """Wait until the run beside this console ends, which closes its end of the pipe."""
     loop, closed, pipe = asyncio.get_running_loop(), asyncio.Event(), sys.stdin.fileno()
     loop.add_reader(pipe, lambda: None if os.read(pipe, 4096) else closed.set())
     await closed.wait()
@@ -170,4 +170,4 @@ async def _until_left(history: History) -> None:
             while history.ended is None and history.read_on(0.0):
                 await asyncio.sleep(0)
     history.end(f"{UNKNOWN}: {history.trouble}" if history.trouble else KILLED)
-    await asyncio.sleep(PARTING)  # in which all see how it ended
+    await asyncio.sleep(PARTING)  # time for all browsers to show the end

@@ -23,7 +23,7 @@ from physical.shape import planar
 
 
 def run(options: Namespace) -> Exit:
-    """Print what the frames show, and account for those that could not be used."""
+    """Print the regions found in the frames, and the number of unusable frames by reason."""
     left_out: Counter[str] = Counter()
     try:
         pitch, yaw, roll = options.mount

@@ -1,4 +1,4 @@
-"""`bigactors explain`: what a diagnostic code or a word of a report means."""
+"""`bigactors explain`: the meaning of a diagnostic code or of a word of a report."""
 
 from argparse import Namespace
 

@@ -21,7 +21,7 @@ def run(options: Namespace) -> Exit:
             f"{options.file} says nothing of times",
             "only missions with a section `timing` have timed automata",
         )
-    from checker.engines.zones.interchange import model_of  # noqa: PLC0415 - numba takes its time to load
+    from checker.engines.zones.interchange import model_of  # noqa: PLC0415 - numba is slow to load
     from checker.engines.zones.tchecker import tchecker_text  # noqa: PLC0415 - the same
     from checker.engines.zones.uppaal import uppaal_text  # noqa: PLC0415 - the same
     from checker.engines.zones.zone_times import ZoneTimes  # noqa: PLC0415 - the same
@@ -46,7 +46,7 @@ def run(options: Namespace) -> Exit:
 
 
 def _asked(mission: ElaboratedMission, name: str) -> Property:
-    """Return a property by its name, or by the word of its kind."""
+    """Return a property by its name or its kind."""
     for each in mission.properties:
         if name in (each.name, each.kind.value):
             return each

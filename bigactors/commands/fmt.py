@@ -12,7 +12,7 @@ from specs.preprocessing import MAX_BYTES
 
 
 def run(options: Namespace) -> Exit:
-    """Format each file; those that do not parse are left alone."""
+    """Format each file; a file that does not parse is left unchanged."""
     return worst([_file(path, options) for path in options.files])
 
 
@@ -36,7 +36,7 @@ def _file(path: str, options: Namespace) -> Exit:
 
 
 def formatted(path: str) -> tuple[str, str]:
-    """Return what a mission file holds and what it is to hold; raises Mistake where it does not parse."""
+    """Return a mission file's text and its formatted text; raises Mistake if it does not parse."""
     data = read_bytes(path, MAX_BYTES)
     try:
         source = decode(path, data)

@@ -1,4 +1,4 @@
-"""`bigactors give-back`: a vehicle that was taken over, or that is heard elsewhere, back to a running mission."""
+"""`bigactors give-back`: return a vehicle, taken over or heard from another address, to a running mission."""
 
 from argparse import Namespace
 
@@ -10,7 +10,7 @@ from bigactors.terminal import say, tell
 
 
 def run(options: Namespace) -> Exit:
-    """Give it back, and print what came of it."""
+    """Give the vehicle back, and print the answer."""
     vehicle, at = options.vehicle, options.at or ""
     check_texts("a vehicle or an address", vehicle, options.by, at)
     refusal, _, notes = heard_at(options.socket, lambda path: give_back(path, vehicle, at, options.by))

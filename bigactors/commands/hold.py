@@ -1,4 +1,4 @@
-"""`bigactors hold`: a vehicle of a running mission, or all, stays where it is."""
+"""`bigactors hold`: order a vehicle of a running mission, or all, to stay in place."""
 
 import time
 from argparse import Namespace
@@ -12,14 +12,14 @@ from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
 
 WAIT = 10.0
-"""Seconds in which vehicles should confirm an order."""
+"""Seconds within which vehicles should confirm an order."""
 
 LOOK = 0.25
-"""Seconds between two questions for what has become of it."""
+"""Seconds between two queries for the outcome of an order."""
 
 
 def run(options: Namespace) -> Exit:
-    """Order it, and print what becomes of it; `return` is run by this, too."""
+    """Give the order, and print its outcome; also runs `return`."""
     what, vehicle = options.command, options.vehicle
     check_texts("a vehicle", vehicle or "", options.by)
     refusal, left_out, notes = heard_at(options.socket, lambda path: order(path, what, vehicle, options.by))
@@ -32,7 +32,7 @@ def run(options: Namespace) -> Exit:
 
 
 def _awaited(socket: str | None, vehicle: str | None, left_out: Iterable[str]) -> Fates:
-    """Return what has become of an order once all vehicles have confirmed or refused it, or after some seconds."""
+    """Return the outcomes of an order once all vehicles have confirmed or refused it, or after the timeout."""
     until = time.monotonic() + WAIT
     while True:
         known = heard_at(socket, fates)
@@ -49,7 +49,7 @@ def _is_settled(fate: str) -> bool:
 
 
 def _concluded(found: Fates) -> Exit:
-    """Say what became of an order, and return the exit code."""
+    """Print the outcomes of an order, and return the exit code."""
     for line in _lines(found):
         say(line)
     became = {fate for fate, _ in found.values()}

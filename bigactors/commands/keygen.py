@@ -9,7 +9,7 @@ from bigactors.terminal import say
 
 
 def run(options: Namespace) -> Exit:
-    """Make it, and say where it is."""
+    """Make the key pair, and print its paths."""
     public = new_pair(Path(options.file))
     say(f"{options.file}: the key to sign with (check --sign); keep it to yourself")
     say(f"{public}: what others trust (run --trust): {fingerprint(load_trusted(str(public)))}")

@@ -11,7 +11,7 @@ from physical.messages import install_extra
 
 
 def run(options: Namespace) -> Exit:
-    """Serve an editor until it says that it ends."""
+    """Serve an editor until it ends the session."""
     del options
     try:
         from bigactors.lsp.server import make_server  # noqa: PLC0415 - an extra, and slow to import
@@ -19,7 +19,7 @@ def run(options: Namespace) -> Exit:
         if (error.name or "").split(".")[0] not in ("pygls", "lsprotocol"):
             raise
         raise Mistake("an editor is served by pygls, which is not installed", install_extra("lsp")) from error
-    # The protocol has the standard output for itself: whatever else is printed goes to the standard error.
+    # The protocol owns the standard output: all other output goes to the standard error.
     streams = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     with (
         streams[0],

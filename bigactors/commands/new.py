@@ -1,4 +1,4 @@
-"""`bigactors new`: a small mission to begin with."""
+"""`bigactors new`: a small first mission."""
 
 import re
 from argparse import Namespace
@@ -13,7 +13,7 @@ from specs.grammar import RESERVED
 
 
 def run(options: Namespace) -> Exit:
-    """Write a mission, and say what to do with it."""
+    """Write a mission, and print the next steps."""
     path = Path(options.name.removesuffix(".mission") + ".mission")
     _write(path, new_mission(path.stem))
     say(f"{path} is written. Next:")
@@ -25,7 +25,7 @@ def run(options: Namespace) -> Exit:
 
 
 def new_mission(name: str) -> str:
-    """Return the mission's text; raises Mistake for what is no name in the language."""
+    """Return the mission's text; raises Mistake for an invalid name."""
     if not re.fullmatch(r"[^\W\d_]\w*", name) or name in RESERVED:
         reason = "is a word of the language" if name in RESERVED else "is no name"
         raise Mistake(f"'{name:.60}' {reason}", "a mission's name has letters, digits and _, a letter first")

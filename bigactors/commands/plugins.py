@@ -1,4 +1,4 @@
-"""`bigactors plugins`: what --vehicle and --feed can be given."""
+"""`bigactors plugins`: the possible values of --vehicle, --feed and --detector."""
 
 from __future__ import annotations
 
@@ -43,6 +43,6 @@ def _theirs(form: str, group: str) -> list[tuple[str, str, str]]:
 
 
 def _summary(entry: EntryPoint) -> str:
-    """Return what a package says of itself, in one line."""
+    """Return a package's own summary in one line."""
     told = {} if entry.dist is None else entry.dist.metadata.json
     return legible(str(told.get("summary", "")).partition("\n")[0])

@@ -1,4 +1,4 @@
-"""`bigactors replay`: a trace or a recording run again through the rules."""
+"""`bigactors replay`: replay a trace or a recording through the rules."""
 
 import sys
 import time
@@ -36,9 +36,9 @@ Open = Callable[[str], ElaboratedMission]
 
 @dataclass(frozen=True, slots=True)
 class Replayed:
-    """A trace, replayed, with the mission that it is of and the recording that it was read from, if it was one.
+    """A replayed trace, with its mission, and the recording that it was read from, if any.
 
-    `times` are those of its steps, in seconds; empty for a trace that has none.
+    `times` are the times of its steps in seconds; empty for an undated trace.
     """
 
     mission: ElaboratedMission
@@ -48,7 +48,7 @@ class Replayed:
 
 
 def run(options: Namespace) -> Exit:
-    """Replay a trace and print it; a step that the rules do not allow ends it."""
+    """Replay a trace and print it; stop at a step that the rules do not allow."""
     if is_foreign(options.trace):
         return show_foreign(options)
     try:
@@ -70,7 +70,7 @@ def run(options: Namespace) -> Exit:
 
 
 def is_foreign(path: str) -> bool:
-    """Tell whether a file is neither a trace nor a recording of ours: a telemetry log, or AIS."""
+    """Return whether a file is a telemetry log or AIS, not a trace or a recording of ours."""
     if path.endswith((TELEMETRY, *AIS)):
         return True
     begins = read_bytes(path, 4_096).lstrip()
@@ -80,7 +80,7 @@ def is_foreign(path: str) -> bool:
 
 
 def show_foreign(options: Namespace) -> Exit:
-    """Print what a recording of others shows of a mission's world, and the bigraph that it ends in."""
+    """Print a foreign recording as a trace of the mission's world, and its last bigraph."""
     if options.waypoints:
         raise Mistake(
             "nothing is sent anywhere in a recording of others", "leave out --waypoints", options.trace
@@ -99,7 +99,7 @@ def show_foreign(options: Namespace) -> Exit:
 
 
 def _account_for(path: str, shown: Shown, write: Callable[[str], None]) -> None:
-    """Say what was in a recording of others, and what of it does not count."""
+    """Print the counts of a foreign recording: the data used, and the data left out."""
     for tally in shown.tallies:
         for row in tally.summary():
             write(f"{path}: {row}")
@@ -118,13 +118,13 @@ def _watched(
 def read_trace(
     path: str, mission_file: str | None, open_mission: Open, names: dict[str, str] | None = None
 ) -> Replayed:
-    """Return the trace in a file, replayed on its mission; warn where it was written of another mission.
+    """Return the trace in a file, replayed on its mission; warn of a trace of another mission.
 
-    Of a recording of others it is what it shows of the mission's world; `names` is what the mission calls whom in it.
+    A foreign recording gives a trace of the mission's world; `names` maps its sources to names in the mission.
 
     Raises:
         Mistake: The file holds no trace, or its mission cannot be read.
-        ReplayError: The mission does not allow it.
+        ReplayError: The mission does not allow the trace.
     """
     if is_recording(path):
         return _read_recording(path, mission_file, open_mission)
@@ -163,7 +163,7 @@ def _introduce(recording: Recording) -> None:
 
 
 def paced(trace: Trace, times: Sequence[float], speed: float | None, *, stepwise: bool) -> Iterator[str]:
-    """Yield the lines of a trace: at once, at a multiple of the speed it was recorded at, or step by step."""
+    """Yield the lines of a trace: at once, at a multiple of the recorded speed, or step by step."""
     step, began = -1, time.monotonic()
     for line in print_trace(trace):
         if line.startswith("c"):
@@ -177,7 +177,7 @@ def paced(trace: Trace, times: Sequence[float], speed: float | None, *, stepwise
 
 
 def _beside(trace: str, mission: str) -> str:
-    """Return the path of the mission that a trace names: from here, or from where the trace is."""
+    """Return the path of the mission that a trace names, relative to this folder or to the trace's."""
     beside = Path(trace).parent / mission
     known = Path(mission).is_file() or mission in shipped_missions() or not beside.is_file()
     return mission if known else str(beside)

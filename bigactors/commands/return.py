@@ -1,5 +1,5 @@
-# ruff: noqa: N999 - commands are found by their names
-"""`bigactors return`: a vehicle of a running mission, or all, goes home."""
+# ruff: noqa: N999 - a command's module has the command's name
+"""`bigactors return`: order a vehicle of a running mission, or all, to go home."""
 
 from bigactors.commands.hold import run
 

@@ -1,4 +1,4 @@
-"""`bigactors run`: a verified mission, flown."""
+"""`bigactors run`: fly a verified mission."""
 
 from __future__ import annotations
 
@@ -45,20 +45,20 @@ from specs.elaboration import ElaboratedMission, Variation
 
 @dataclass(frozen=True, slots=True)
 class Flight:
-    """All that is known of a run before it begins.
+    """A prepared run.
 
     Attributes:
-        options: What the command line says.
-        mission: The mission as it runs, under fcfs and timed control.
-        licence: The verdict that it rests on, None for a run that was forced.
-        plan: What stays the same.
-        state: Where it begins.
+        options: The command line's options.
+        mission: The mission under fcfs and timed control.
+        licence: The verdict that permits it, None with `--unverified`.
+        plan: The constants of the run.
+        state: The first state.
         plugins: Its vehicles and feeds.
-        resumed: The run that it goes on from.
-        log: What takes every frame.
-        company: The station that it is among others, None where it is the only one.
-        rate: How fast its clock runs beside that on the wall; None for as fast as can be computed.
-        start: Whether it has begun, and whether an operator has to start it.
+        resumed: The run that it resumes, if any.
+        log: The telemetry log, if any.
+        company: Its station among several, None for the only one.
+        rate: Its seconds in a real second; None for as many as can be computed.
+        start: Its start, by itself or by an operator.
     """
 
     options: Namespace
@@ -74,13 +74,13 @@ class Flight:
     start: Start = field(default_factory=Start)
 
     def resting(self, finding: Finding) -> tuple[str, ...]:
-        """Return the properties whose verdicts rest on a broken assumption: all that were decided by exploring."""
+        """Return the properties whose verdicts depend on a broken assumption: all that were decided by exploration."""
         broken = finding.kind == "broken assumption" and self.licence is not None
         return self.licence.resting if broken and self.licence is not None else ()
 
 
 def run(options: Namespace) -> Exit:
-    """Fly a mission, if there is a verdict that everything holds."""
+    """Fly a mission that has a verdict that everything holds, or with `--unverified`."""
     with flying_output():
         return _run(prepare(options), options)
 
@@ -98,7 +98,7 @@ def _run(flight: Flight, options: Namespace) -> Exit:
                 tape,
                 flight.company and flight.company.sharing,
                 ros,
-            )  # recorded first, then said
+            )  # record first, then print
             try:
                 preflight = None if tape is None else tape.preflight
                 flown = fly(flight, tuple(looker for looker in lookers if looker), preflight)
@@ -114,7 +114,7 @@ def _run(flight: Flight, options: Namespace) -> Exit:
 
 
 def conclude(ending: Ending, *, broken: bool) -> Exit:
-    """Say how a run ended, and return its exit code."""
+    """Print the end of a run, and return its exit code."""
     breach = "; not all was as the mission says" if broken else ""
     say(f"{ending.reason} after {ending.state.number} steps{breach}{standing(ending.state)}")
     if broken:
@@ -125,7 +125,7 @@ def conclude(ending: Ending, *, broken: bool) -> Exit:
 
 
 def prepare(options: Namespace) -> Flight:
-    """Read everything, and refuse what cannot be flown; raises Mistake."""
+    """Read everything, and refuse a run that cannot be flown; raises Mistake."""
     sources = {name: Path(file) for name, file in options.source}
     live = Variation(Scheduler.FCFS, Control.TIMED, sources)
     mission = checkable(open_mission(options.file, live))
@@ -174,10 +174,10 @@ def _licence(options: Namespace, mission: ElaboratedMission) -> Licence | None:
 
 
 def _log_beside(recording: str) -> Path:
-    """Return the path of the telemetry log beside a recording; raises Mistake where neither can be written."""
+    """Return the path of the telemetry log beside a recording; raises Mistake if either cannot be written."""
     try:
         check_writable(recording)
-    except ValueError as error:  # a zero byte
+    except ValueError as error:  # the path has a zero byte
         raise Mistake("this is no path of a file", place=repr(recording)) from error
     path = Path(recording).with_suffix(".tlog")
     if path == Path(recording):
@@ -190,7 +190,7 @@ def _log_beside(recording: str) -> Path:
 
 @contextmanager
 def record(flight: Flight) -> Iterator[Tape | None]:
-    """Record what happens inside, and how it ended, if a recording or a console, which reads one, is asked for."""
+    """Record the body and its end if a recording or a console is requested; a console reads a recording."""
     options = flight.options
     with recorded(options) as path, ExitStack() as stack:
         if flight.log is not None:
@@ -205,14 +205,14 @@ def record(flight: Flight) -> Iterator[Tape | None]:
 
 
 def _forget(start: Start, path: Path) -> None:
-    """Remove the recording of a run that did not begin: the next one is to have its name."""
+    """Remove the recording of a run that did not begin, so that the next run can use its name."""
     if not start.begun:
         path.unlink(missing_ok=True)
 
 
 @contextmanager
 def _published(address: str | None) -> Iterator[RosSending | None]:
-    """Publish for ROS what is watched inside, if that is asked for."""
+    """Publish the run for ROS, if requested."""
     if address is None:
         yield None
         return
@@ -226,7 +226,7 @@ def _published(address: str | None) -> Iterator[RosSending | None]:
 
 @contextmanager
 def _ending(tape: Tape) -> Iterator[None]:
-    """Record how it ended."""
+    """Record the end of the run."""
     reason = "the run has ended"
     try:
         yield
@@ -260,7 +260,7 @@ def _tape(flight: Flight, path: Path) -> Tape:
 
 
 def run_json(flight: Flight) -> dict[str, Any]:
-    """Return what is flown, and with which right, as plain data."""
+    """Return the flown mission, its verdict and its settings as plain data."""
     options, mission = flight.options, flight.mission
     return {
         "mission": options.file,
@@ -294,7 +294,7 @@ async def fly(
     watchers: Sequence[Watcher],
     tell_preflight: Callable[[dict[str, Any], float], None] | None = None,
 ) -> Ending:
-    """Begin and go; raises what `LiveRun` raises."""
+    """Start the run and fly it to its end; raises the errors of `LiveRun`."""
     options = flight.options
     async with AsyncExitStack() as stack:
         live = await stack.enter_async_context(LiveRun(flight.plan, flight.state, flight.plugins, watchers))

@@ -1,4 +1,4 @@
-"""`bigactors say`: a message to a bigActor of a running mission."""
+"""`bigactors say`: send a message to a bigActor of a running mission."""
 
 import asyncio
 from argparse import Namespace
@@ -18,7 +18,7 @@ Heard = TypeVar("Heard")
 
 
 def run(options: Namespace) -> Exit:
-    """Say it, and print what came of it."""
+    """Send the message, and print the answer."""
     check_texts("what is said", options.agent, options.by, options.message)
     refusal = heard_at(options.socket, lambda path: send(path, options.agent, options.message, options.by))
     if refusal:
@@ -28,7 +28,7 @@ def run(options: Namespace) -> Exit:
 
 
 def check_texts(what: str, name: str, by: str, *more: str) -> None:
-    """Refuse what is no text, and a name of who speaks that cannot be printed; raises Mistake."""
+    """Raise Mistake for invalid texts, and for a speaker's name that cannot be printed."""
     if not all(map(is_text, (name, *more))):
         raise Mistake(f"{what} has to be text in valid Unicode, of at most 2,000 characters")
     if by and not is_word(by):
@@ -36,7 +36,7 @@ def check_texts(what: str, name: str, by: str, *more: str) -> None:
 
 
 def heard_at(socket: str | None, saying: Callable[[Path], Coroutine[Any, Any, Heard]]) -> Heard:
-    """Say something to the mission that listens at a socket, or to the only one that runs; return what it answers."""
+    """Call a running mission, at the given socket or the only one; return its answer."""
     path = only_socket(socket)
     try:
         return asyncio.run(saying(path))

@@ -1,4 +1,4 @@
-"""`bigactors show`: a configuration printed, and drawn as a bigraph beside a map; a trace in lanes, or as a page."""
+"""`bigactors show`: a configuration as text and as a bigraph beside a map; a trace in lanes, or as a page."""
 
 import shutil
 from argparse import Namespace
@@ -18,20 +18,21 @@ from checker import Limits, ReplayError, Trace, print_loop
 from checker.reports.comparison import comparison_text
 from checker.reports.lanes import lanes_of_trace, lanes_text
 from checker.reports.times import times_text
+from checker.traces import print_step
 from physical.messages import counted
 from physical.place_files import GEOJSON
 from semantics.state.printing import print_configuration
 
 PAGES = (".html", ".htm")
 MOST_CONFIGURATIONS = 2_000_000
-"""How many configurations are visited at most for a timeline."""
+"""The most configurations visited for a timeline."""
 
 NARROW, WIDE = 40, 200
-"""The least and the most columns of a terminal that lanes are laid out for."""
+"""The least and the most columns for lanes."""
 
 
 def run(options: Namespace) -> Exit:
-    """Print and draw the initial configuration of a mission, or what is asked for of a trace."""
+    """Print and draw the initial configuration of a mission, or the requested view of a trace."""
     if options.timeline:
         return _show_timeline(options)
     try:
@@ -52,7 +53,7 @@ def run(options: Namespace) -> Exit:
 
 
 def _show_timeline(options: Namespace) -> Exit:
-    """Explore a mission, print its times and draw them; the exit code is that of a picture, not of the verdicts."""
+    """Explore a mission, print its times and draw them. The exit code reports the picture, not the verdicts."""
     if options.file is None:
         raise Mistake("a timeline is of all runs of a mission", "give the mission")
     if options.trace is not None or options.step is not None or options.lanes or options.against is not None:
@@ -81,7 +82,7 @@ def _show_timeline(options: Namespace) -> Exit:
 
 
 def _write_tracks(options: Namespace) -> Exit:
-    """Write where everything was in a recording or a trace, and when; of a recording every position."""
+    """Write the dated positions in a recording or a trace; those of a recording completely."""
     if options.trace is None:
         raise Mistake("tracks are those of a trace", "give the trace with --trace", options.output)
     if options.step is not None or options.lanes or options.against is not None:
@@ -98,7 +99,7 @@ def _write_tracks(options: Namespace) -> Exit:
 
 
 def _compare(options: Namespace) -> Exit:
-    """Print where two traces part, and what differs after that."""
+    """Print the point at which two traces part, and the differences from there."""
     if options.trace is None:
         raise Mistake("--against is for two traces", "give the other one with --trace")
     opened, names = opening(variation_of(options)), dict(options.name)
@@ -117,14 +118,14 @@ def _show_lanes(trace: Trace, *, unfolded: bool) -> None:
 
 def _show_configuration(trace: Trace, step: int) -> None:
     if step:
-        say(f"c{step - 1} --{trace.steps[step - 1].label}--> c{step}")
+        say(print_step(trace, step))
     say(f"c{step} = {print_configuration(trace.configurations[step])}")
     if trace.loop is not None and step in (trace.loop, len(trace)):
         say(print_loop(trace))
 
 
 def _write(options: Namespace, name: str, trace: Trace, times: tuple[float, ...], step: int) -> None:
-    """Write what the name of the output says: a page, the lanes as a picture, or the picture of a configuration."""
+    """Write the output by its suffix: a page, the lanes as a picture, or the picture of a configuration."""
     output = options.output
     if output is not None and Path(output).suffix.lower() in PAGES:
         start = step if options.step is not None else 0
@@ -149,7 +150,7 @@ def _write(options: Namespace, name: str, trace: Trace, times: tuple[float, ...]
 
 
 def _chosen(options: Namespace) -> tuple[str, Trace, tuple[float, ...], int]:
-    """Return the mission's name, a trace of it, when its steps were taken, and which configuration of it to show."""
+    """Return the mission's name, its trace, the times of the steps, and the number of the configuration to show."""
     if options.trace is None:
         if options.file is None:
             raise Mistake("there is nothing to show", "give a mission, or a trace with --trace")

@@ -25,7 +25,7 @@ LONGEST_ANSWER = 1_000
 
 
 def run(options: Namespace) -> Exit:
-    """Print one run; write it as a trace if asked."""
+    """Print one run; write it as a trace on request."""
     if options.choose and options.json == "-":
         raise Mistake("--choose talks on standard output", "write the trace to a file: --json FILE")
     mission = open_mission(options.file, variation_of(options))
@@ -45,7 +45,7 @@ def run(options: Namespace) -> Exit:
 
 
 def chosen(mission: ElaboratedMission, seed: int) -> OneRun:
-    """Let the user choose each step; the answers of a pipe are printed where those of a terminal stand."""
+    """Let the user choose each step; answers from a pipe are echoed after the prompt."""
     walk = Walk(OneRun(mission.initial), mission.properties, random.Random(seed))
     for line in walk.lines(_answers()):
         say(line)
@@ -53,7 +53,7 @@ def chosen(mission: ElaboratedMission, seed: int) -> OneRun:
 
 
 def _answers() -> Iterator[str]:
-    """Yield the lines of standard input; a terminal is asked for them."""
+    """Yield the lines of standard input; a terminal gets a prompt."""
     if not sys.stdin.isatty():
         while answer := sys.stdin.readline(LONGEST_ANSWER):
             say(f"{PROMPT}{answer.rstrip()}")
@@ -67,15 +67,15 @@ def _answers() -> Iterator[str]:
 
 @dataclass(frozen=True, slots=True)
 class Simulation:
-    """One run, and why it ended there."""
+    """One run, and the reason why it ended."""
 
     run: OneRun
     end: str
 
 
 def simulate(initial: Configuration, seed: int, steps: int) -> Simulation:
-    """Take one run of at most so many steps, each as likely as any other, and with times each of its moments."""
-    chance = random.Random(seed)  # a simulation, no secret
+    """Take one run of at most `steps` steps; all steps are equally likely, and with times all dates."""
+    chance = random.Random(seed)  # a simulation, not a secret
     run = OneRun(initial)
     while run.choices():
         if len(run.taken) == steps:

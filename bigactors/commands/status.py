@@ -1,4 +1,4 @@
-"""`bigactors status`: how a running mission stands."""
+"""`bigactors status`: the situation of a running mission."""
 
 from argparse import Namespace
 
@@ -9,7 +9,7 @@ from bigactors.terminal import say
 
 
 def run(options: Namespace) -> Exit:
-    """Ask, and print the answer."""
+    """Request the situation, and print it."""
     for line in heard_at(options.socket, status).split("\n"):
         say(line)
     return Exit.HOLDS

@@ -17,7 +17,7 @@ GEOJSON = (".geojson", ".json")
 
 
 def run(options: Namespace) -> Exit:
-    """Print the world, draw it if asked, and account for what could not be read."""
+    """Print the world, draw it on request, and count the data that could not be read."""
     kinds = [kind.strip() for kind in (options.kinds or "").split(",") if kind.strip()]
     world = read_world(options.files, options.at, options.within, kinds)
     configuration = configuration_of(world)

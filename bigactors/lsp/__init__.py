@@ -1,6 +1,6 @@
-"""The language server: what an editor asks of a mission while it is written.
+"""The language server: answers to an editor's requests about a mission.
 
-`reading` is what is known of a text, and `occurrences` which of its names mean the same. The modules named after
-requests answer them, as pure functions of a `Reading` and an offset that know nothing of the protocol. `server` alone
-imports pygls and lsprotocol; `worker` runs in a process of its own, where a mission is checked.
+`reading` analyses a text, and `occurrences` resolves its names. The modules named after requests answer them by pure
+functions of a `Reading` and an offset, and know nothing of the protocol. Only `server` imports pygls and lsprotocol.
+`worker` checks a mission in a separate process.
 """

@@ -1,4 +1,4 @@
-"""What may stand at a place: words of the language, and the names of the sorts that fit."""
+"""Completion: the words of the language and the names that fit at an offset."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ NAMES_BEHIND: Final[Mapping[str, tuple[str, ...]]] = {
     "observe": (*_ENTITIES, "variable"),
     "control": ("rule",),
 }
-"""The sorts of names that may follow a word, or stand anywhere behind it in its construct."""
+"""The sorts of names that may follow a word, directly or later in its construct."""
 
 _FIXED: Final[Mapping[str, tuple[str, ...]]] = {
     "step": (*RULES, *EACH),
@@ -67,19 +67,19 @@ _BEHIND: Final = {".": "field", "scheduler": "scheduler", "control": "control"}
 _SORTS_BEHIND_COLON: Final = {"case": "type", "live": "fallback"}
 _COLONS: Final = frozenset(["world", "rule", "case", "live", "forall", "exists"])
 _AMONG: Final = ("kind", "all", "family")
-"""What quantifiers go through."""
+"""The sorts of names that quantifiers range over."""
 
 _VALUES: Final = ("variable", "entity", "agent")
 
 _NEW: Final = frozenset(
     ["mission", "kind", "channel", "rule", "def", "BigActor", "let", "for", "spawn", "from", "keep"]
 )
-"""Words that a new name follows."""
+"""The words that a new name follows."""
 
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """Something that may stand at a place: `sort` is that of a name, `word`, `function` or `command`."""
+    """A possible completion: `sort` is the sort of a name, `word`, `function` or `command`."""
 
     text: str
     sort: str
@@ -87,17 +87,17 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """What may stand at a place, and the word begun there that it takes the place of."""
+    """The possible completions at an offset, and the span of the word that they replace."""
 
     span: Span
     all: tuple[Candidate, ...]
 
 
 def complete(reading: Reading, offset: int) -> Candidates:
-    """Return what may stand at an offset; nothing within comments and strings."""
+    """Return the completions at an offset; none within comments and strings."""
     begun = _BEGUN.search(reading.text, max(0, offset - 100), offset)
     start = begun.start() if begun else offset
-    if begun and "." in begun.group():  # `a.x`: the name before the dot is not part of it
+    if begun and "." in begun.group():  # in `a.x`, keep the name before the dot
         start = offset - len(begun.group().rpartition(".")[2])
     try:
         prepared = prepare(Source("", reading.text[:start]))
@@ -107,7 +107,7 @@ def complete(reading: Reading, offset: int) -> Candidates:
     if prepared.mistakes or any(line <= comment.span.start for comment in prepared.comments):
         return Candidates(Span(start, offset), ())
     expected = expected_behind(prepared)
-    if ";" in expected.words and not reading.text[line:start].strip():  # in a new line something new begins
+    if ";" in expected.words and not reading.text[line:start].strip():  # a new line may begin a new statement
         expected = expected_behind(replace(prepared, text=prepared.text + ";"))
     end = _WORD.match(reading.text, offset)
     found = [*_names(reading, expected, start), *_words(expected)]
@@ -137,7 +137,7 @@ def _names(reading: Reading, expected: Expected, offset: int) -> Iterator[Candid
 
 
 def _seen_at(text: str, offset: int) -> int:
-    """Return the offset that decides which variables are seen: where what was written ends, its block still open."""
+    """Return the offset that decides which variables are in scope: the end of the text before, its block open."""
     end = len(text[:offset].rstrip())
     return offset if text[end - 1 : end] == "}" else end
 
@@ -153,7 +153,7 @@ def _declared(reading: Reading, sort: str) -> tuple[str, ...]:
 
 
 def _sorts(expected: Expected, words: list[str]) -> tuple[str, ...]:
-    """Return the sorts of names that fit, by the words around the place."""
+    """Return the sorts of names that fit, by the words around the offset."""
     last = words[-1] if words else ""
     if not expected.sorts & {"NAME", "CHANNEL"} or last in _NEW:
         return ()
@@ -184,10 +184,10 @@ def _sorts(expected: Expected, words: list[str]) -> tuple[str, ...]:
 
 
 def _last(words: list[str], word: str) -> int:
-    """Return the place of the last of some words, their end if it isn't one."""
+    """Return the index of a word's last occurrence, or the length of the list."""
     return len(words) - 1 - words[::-1].index(word) if word in words else len(words)
 
 
 def _opening(words: list[str]) -> int:
-    """Return the place of the word that says what a colon is for."""
+    """Return the index of the word that gives a colon its meaning."""
     return max((place for place, word in enumerate(words) if word in _COLONS), default=0)

@@ -1,4 +1,4 @@
-"""Remedies that are replacements of text: what an editor offers to do about a mistake."""
+"""Quick fixes of mistakes: replacements of text that an editor offers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _STANDARD: Final = "signature standard"
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """What to write where, and how that is called."""
+    """A replacement of text, with its title."""
 
     title: str
     span: Span
@@ -35,7 +35,7 @@ class Fix:
 
 
 def fixes(found: Diagnostic, text: str) -> Iterator[Fix]:
-    """Yield what may be written to mend a mistake."""
+    """Yield the replacements that mend a mistake."""
     start, end = found.span.start, found.span.end
     if meant := _MEANT.search(found.hint):
         yield Fix(f"Write '{meant[1]}'", found.span, meant[1])
@@ -63,7 +63,7 @@ def fixes(found: Diagnostic, text: str) -> Iterator[Fix]:
 
 
 def _declaration(text: str, section: str, entry: str) -> Fix:
-    """Return what declares something: in the section of its sort, in a new one where there is none."""
+    """Return the fix that adds a declaration to its section, or adds a new section."""
     begin = re.search(rf"^{section}\b[^{{\n]*\{{", text, re.MULTILINE)
     title = f"Declare '{entry}'"
     if begin:

@@ -1,4 +1,4 @@
-"""What something in a mission is: the text that an editor shows beside it, in Markdown."""
+"""The text in Markdown that an editor shows for a name or a construct."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ SERVED_BY: Final[Mapping[type[s.Node], tuple[Callable[..., Any], ...]]] = {
 
 @dataclass(frozen=True, slots=True)
 class Hover:
-    """A text in Markdown, and what it is about."""
+    """A text in Markdown, and the span that it is about."""
 
     span: s.Span
     text: str
 
 
 def hover(reading: Reading, offset: int) -> Hover | None:
-    """Return what is known of what stands at an offset."""
+    """Return the description of the name or construct at an offset."""
     found = reading.occurrences.at(offset)
     if found is not None:
         span, parts = found.span, [_symbol(reading, found.symbol)]
@@ -66,7 +66,7 @@ def hover(reading: Reading, offset: int) -> Hover | None:
 
 
 def _explained(reading: Reading, offset: int) -> Hover | None:
-    """Return what `bigactors explain` says of the mistakes at an offset."""
+    """Return the explanations of the mistakes at an offset, as of `bigactors explain`."""
     found = [
         each
         for each in (*reading.diagnosis.mistakes, *reading.diagnosis.warnings)
@@ -115,7 +115,7 @@ def _size(node: s.Node, reading: Reading) -> Iterator[str]:
 
 
 def area_text(square_metres: float) -> str:
-    """Write an area.
+    """Return an area with its unit.
 
     >>> area_text(1538.2), area_text(2_540_000.0), area_text(262_800_000.0)
     ('1,538 m²', '2.54 km²', '263 km²')

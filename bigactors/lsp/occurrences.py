@@ -1,4 +1,4 @@
-"""Which names of a mission mean the same: where each is declared, and where it is used."""
+"""Name resolution of a mission: the declaration and the uses of each name."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ DECLARED: Final[Mapping[type[s.Node], str]] = {
     s.Family: "agent",
     s.Spawn: "agent",
 }
-"""What each construct declares by its `name`."""
+"""The sort of the names that each construct declares by its `name`."""
 
 _ONE_SORT: Final = {
     "kind": "kind",
@@ -30,12 +30,12 @@ _ONE_SORT: Final = {
     "rule": "rule",
     "behaviour": "behaviour",
 }
-"""Fields whose names are of one sort, whatever else has that name."""
+"""The fields whose names have a fixed sort, even if the same name has another sort elsewhere."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Symbol:
-    """Something with a name; `place` tells variables of the same name apart: where the first is bound."""
+    """A named thing; `place`, the offset of the first binding, distinguishes variables of the same name."""
 
     sort: str
     name: str
@@ -44,7 +44,7 @@ class Symbol:
 
 @dataclass(frozen=True, slots=True, order=True)
 class Occurrence:
-    """A name in the text: what it means, and whether it is declared here."""
+    """A name in the text: its symbol, and whether it is declared here."""
 
     span: s.Span
     symbol: Symbol
@@ -53,7 +53,7 @@ class Occurrence:
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """A variable, and the stretch of the text in which it is seen."""
+    """A variable, and its scope in the text."""
 
     symbol: Symbol
     seen: s.Span
@@ -61,11 +61,11 @@ class Binding:
 
 @dataclass(frozen=True, slots=True)
 class Occurrences:
-    """All names of a mission that mean something.
+    """All resolved names of a mission.
 
     Attributes:
-        all: By position.
-        declared: What is declared, in the order of the text.
+        all: The occurrences by position.
+        declared: The declared symbols with their spans, in the order of the text.
         bindings: The variables, in the order of the text.
     """
 
@@ -74,11 +74,11 @@ class Occurrences:
     bindings: tuple[Binding, ...]
 
     def at(self, offset: int) -> Occurrence | None:
-        """Return the name that an offset is in, or just behind."""
+        """Return the name that contains an offset or ends there."""
         return next((each for each in self.all if each.span.start <= offset <= each.span.end), None)
 
     def of(self, symbol: Symbol) -> tuple[Occurrence, ...]:
-        """Return everywhere that something is named."""
+        """Return the occurrences of a symbol."""
         return tuple(each for each in self.all if each.symbol == symbol)
 
     def names(self, sort: str) -> tuple[str, ...]:
@@ -86,17 +86,17 @@ class Occurrences:
         return tuple(sorted(symbol.name for symbol in self.declared if symbol.sort == sort))
 
     def variables(self, offset: int) -> tuple[str, ...]:
-        """Return the variables that are seen at an offset."""
+        """Return the variables in scope at an offset."""
         seen = (each for each in self.bindings if each.seen.start <= offset <= each.seen.end)
         return tuple(sorted({each.symbol.name for each in seen}))
 
 
 def occurrences_of(mission: s.Mission) -> Occurrences:
-    """Return the names of a mission, which need not be without mistakes."""
+    """Resolve the names of a mission, which may have mistakes."""
     resolver = _Resolver(mission)
     resolver.visit(mission, {})
     resolver.join_named_variables(mission)
-    found = {each.span: each for each in resolver.found}  # of one word only one: `keep Vessel` has it twice
+    found = {each.span: each for each in resolver.found}  # one entry a word: `keep Vessel` has two
     declared: dict[Symbol, s.Span] = {}
     for each in sorted(found.values()):
         if each.declares or (each.symbol.sort == "channel" and each.symbol not in declared):
@@ -105,7 +105,7 @@ def occurrences_of(mission: s.Mission) -> Occurrences:
 
 
 def variables_of(mission: s.Mission, agent: str) -> tuple[str, ...]:
-    """Return the names of the variables of a bigActor, those of the behaviours that it may run included."""
+    """Return the variables of a bigActor, including those of the behaviours that it may run."""
     spans = _running(mission).get(agent, ())
     bindings = occurrences_of(mission).bindings
     return tuple(sorted({each.symbol.name for each in bindings if _within(each.symbol, spans)}))
@@ -132,7 +132,7 @@ class _Resolver:
     # --- the tree
 
     def visit(self, node: s.Node, scope: Scope) -> None:
-        """Note the names of a node and of those below it; `scope` has the variables that are bound around it."""
+        """Record the names of a node and its descendants; `scope` has the variables bound around it."""
         for declared, sort in _declarations(node):
             self.note(declared, Symbol(sort, declared.text), declares=True)
         match node:
@@ -167,7 +167,7 @@ class _Resolver:
 
     def quantified(self, node: s.Quantified, scope: Scope) -> None:
         inner, among = dict(scope), node.range
-        if node.joined:  # its range was met before
+        if node.joined:  # the outer quantifier has visited its range
             self.bind(node.variable, inner, node.span)
             self.visit(node.body, inner)
             return
@@ -192,7 +192,7 @@ class _Resolver:
         self.block(node.body, inner, node.span)
 
     def fields(self, node: s.Node, scope: Scope) -> None:
-        """Note the names in the fields of a node that binds no variables."""
+        """Record the names in the fields of a node that binds no variables."""
         declared = {name for name, _ in _declarations(node)}
         for label in node.__dataclass_fields__:
             value = getattr(node, label)
@@ -207,7 +207,7 @@ class _Resolver:
                     self.visit(item, scope)
 
     def block(self, statements: Iterable[s.Node], scope: Scope, around: s.Span) -> None:
-        """Note the names of statements that follow each other; each `let` is seen by those behind it."""
+        """Record the names of consecutive statements; each `let` is in scope for the statements after it."""
         for statement in statements:
             if isinstance(statement, s.Let):
                 self.visit(statement.value, scope)
@@ -231,7 +231,7 @@ class _Resolver:
         self.block(node.body, inner, node.span)
 
     def rule_body(self, body: s.RuleBody, scope: Scope) -> None:
-        """Note the names in a rule's body: `uav0_UAV[wifi]` has three."""
+        """Record the names in a rule's body: `uav0_UAV[wifi]` has three."""
         if body.term is None:
             return
         for side in (body.term.redex, body.term.reactum):
@@ -260,7 +260,7 @@ class _Resolver:
     # --- names
 
     def meaning(self, name: s.Name, scope: Scope) -> Symbol | None:
-        """Return what a name means where several sorts may stand: those differ in their names, but for variables."""
+        """Return the symbol of a name where several sorts may stand; only variables share names with other sorts."""
         sort = self.known.get(name.text)
         return scope.get(name.text) or (Symbol(sort, name.text) if sort else None)
 
@@ -276,10 +276,10 @@ class _Resolver:
         self.note(name, scope[name.text], declares=True)
         self.bindings.append(Binding(scope[name.text], seen))
 
-    # --- variables that properties name
+    # --- variables named in properties
 
     def join_named_variables(self, mission: s.Mission) -> None:
-        """Make one of all variables of a bigActor that `a.x` in a property means, and of that."""
+        """Merge the variables of a bigActor that `a.x` in a property may mean, and that `x`, into one symbol."""
         bodies = _running(mission)
         for node in s.walk(mission):
             if isinstance(node, s.Stored | s.HasValue):
@@ -314,7 +314,7 @@ _STATEMENTS: Final = get_args(s.Statement)
 
 
 def _declarations(node: s.Node) -> Iterator[tuple[s.Name, str]]:
-    """Yield the names that a node declares, with their sorts; a channel is declared where it is first named."""
+    """Yield the names that a node declares, with their sorts; the first mention of a channel declares it."""
     sort = DECLARED.get(type(node))
     name = getattr(node, "name", None)
     if sort is not None and isinstance(name, s.Name):
@@ -322,7 +322,7 @@ def _declarations(node: s.Node) -> Iterator[tuple[s.Name, str]]:
 
 
 def _running(mission: s.Mission) -> dict[str, tuple[s.Span, ...]]:
-    """Return where each bigActor's statements are: its own, and those of the behaviours that it may run."""
+    """Return the spans of each bigActor's statements: its own, and those of the behaviours that it may run."""
     definitions = {each.name.text: each for each in mission.each(s.Definition)}
     starts: dict[str, list[s.Node]] = {}
     for node in s.walk(mission):

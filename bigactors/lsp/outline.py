@@ -1,4 +1,4 @@
-"""The parts of a mission, as an editor lists them; and the properties that can be checked."""
+"""The outline of a mission for editors, and the titles of its properties."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from specs.writing import write
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A part of a mission: `name` is where its name stands, or its first word."""
+    """A part of a mission; `name` is the span of its name or its first word."""
 
     title: str
     sort: str
@@ -23,7 +23,7 @@ class Part:
 
 
 def outline(reading: Reading) -> tuple[Part, ...]:
-    """Return the declarations of a mission with what stands in them."""
+    """Return the declarations of a mission with their parts."""
     return tuple(_declaration(each, reading) for each in reading.mission.declarations)
 
 
@@ -78,7 +78,7 @@ def _property(node: s.Property) -> Part:
 
 
 def title_of(node: s.Property) -> str:
-    """Return what a property is called in reports."""
+    """Return the name of a property in reports."""
     if isinstance(node, s.StandardProperty):
         return node.name
     return node.label.value if node.label is not None else "progress"

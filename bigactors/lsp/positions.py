@@ -1,4 +1,4 @@
-"""Offsets of a text and the positions of an editor: lines, and units of its encoding within them."""
+"""Conversion between offsets in a text and an editor's positions: lines, and code units within them."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import Final
 
 _LINE_END: Final = re.compile(r"\r\n|\n|\r")
 UNITS: Final = {"utf-8": ("utf-8", 1), "utf-16": ("utf-16-le", 2), "utf-32": ("utf-32-le", 4)}
-"""For each encoding that the protocol names its codec, and how many bytes a unit has."""
+"""The codec and the bytes of a code unit for each encoding of the protocol."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lines:
-    r"""Where the lines of a text begin, and in which encoding an editor counts within them.
+    r"""The beginnings of a text's lines, and the encoding in which an editor counts within them.
 
     >>> lines = Lines("a\r\nb🚁c", "utf-16")
     >>> lines.position(5), lines.offset(1, 3)
@@ -30,12 +30,12 @@ class Lines:
         object.__setattr__(self, "starts", starts)
 
     def position(self, offset: int) -> tuple[int, int]:
-        """Return the line, counted from 0, and the units before an offset in it."""
+        """Return the line of an offset, counted from 0, and the units before the offset in it."""
         line = bisect_right(self.starts, offset) - 1
         return line, self._units(self.text[self.starts[line] : offset])
 
     def offset(self, line: int, units: int) -> int:
-        """Return the offset of a position; behind the end of a line it is at its end, in a character before that."""
+        """Return the offset of a position. Past the end of a line it is that end; within a character, its beginning."""
         if line >= len(self.starts):
             return len(self.text)
         start = self.starts[line]

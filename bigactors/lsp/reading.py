@@ -1,4 +1,4 @@
-"""A mission as an editor has it: its text, what could be read of it, and what is wrong with it."""
+"""A mission in an editor: its text, its syntax tree and its mistakes."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from specs.syntax import Mission, Node
 
 @dataclass(frozen=True)
 class Reading:
-    """A text, and what it comes to; each part is worked out when it is asked for first.
+    """A text with its analyses, each computed at its first use.
 
     Attributes:
         source: The text and its name.
-        directory: Where the files are that it names.
+        directory: The folder of the files that it names.
     """
 
     source: Source
@@ -32,12 +32,12 @@ class Reading:
         return self.source.text
 
     def written(self, node: Node) -> str:
-        """Return what a node says as it is written, in one line."""
+        """Return the source text of a node in one line."""
         return " ".join(self.text[node.span.start : node.span.end].split())
 
     @cached_property
     def recovered(self) -> Recovered:
-        """What could be read; nothing of a text that passes a bound."""
+        """The parts that parse; none for a text beyond the limits."""
         try:
             return read(self.source)
         except MissionError as refused:
@@ -45,21 +45,21 @@ class Reading:
 
     @property
     def mission(self) -> Mission:
-        """The syntax tree of what could be read."""
+        """The syntax tree of the parts that parse."""
         return self.recovered.mission
 
     @cached_property
     def occurrences(self) -> Occurrences:
-        """The names in it."""
+        """The resolved names of the tree."""
         return occurrences_of(self.mission)
 
     @cached_property
     def diagnosis(self) -> Diagnosis:
-        """What it means, or all that is wrong with it."""
+        """The elaborated mission, or all its mistakes."""
         return diagnose(self.recovered, self.source, self.directory)
 
 
 def reading_of(name: str, text: str, directory: Path) -> Reading:
-    """Return the reading of an editor's text, in which every offset stays: its line ends take no other space."""
+    """Return the reading of an editor's text. Line ends are replaced by others of equal length, so offsets stay."""
     plain = text.replace("\r\n", " \n").replace("\r", "\n")
     return Reading(Source(name, f" {plain[1:]}" if plain.startswith("\ufeff") else plain), directory)

@@ -1,4 +1,4 @@
-"""Give something another name, everywhere that it is named, and nothing else another meaning."""
+"""Rename a symbol at all its occurrences without changing the meaning of any other name."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ _CHANNEL: Final = re.compile(r"\w+(?:[:.\-]\w+)*")
 
 
 class Refused(Exception):
-    """Why something cannot be renamed, to be shown to the user."""
+    """The reason why a symbol cannot be renamed, for the user."""
 
 
 def renamable(reading: Reading, offset: int) -> Span:
-    """Return the span of the name at an offset; raises Refused where there is none, or its text is elsewhere."""
+    """Return the span of the name at an offset; raises Refused if there is none or it is declared in another file."""
     found = reading.occurrences.at(offset)
     if found is None:
         raise Refused("there is no name of this mission here")
@@ -33,7 +33,7 @@ def renamable(reading: Reading, offset: int) -> Span:
 
 
 def rename(reading: Reading, offset: int, name: str) -> tuple[Span, ...]:
-    """Return where to write another name; raises Refused where that would change what anything means."""
+    """Return the spans to replace by the new name; raises Refused if that would change a meaning."""
     renamable(reading, offset)
     found = reading.occurrences.at(offset)
     if found is None:
@@ -60,7 +60,7 @@ def _said(reading: Reading) -> list[str]:
 
 
 def replaced(text: str, spans: tuple[Span, ...], by: str) -> str:
-    """Return a text with something else written in some places."""
+    """Return a text with the spans replaced."""
     pieces, last = [], 0
     for span in spans:
         pieces += [text[last : span.start], by]
@@ -69,7 +69,7 @@ def replaced(text: str, spans: tuple[Span, ...], by: str) -> str:
 
 
 def _pattern(reading: Reading) -> list[tuple[int, str]]:
-    """Return for each name of a text the first that means the same, and its sort: that stays when all is renamed."""
+    """Return for each name the index of its symbol's first occurrence, and its sort: a correct renaming keeps both."""
     first: dict[object, int] = {}
     found: list[tuple[int, str]] = []
     for number, each in enumerate(reading.occurrences.all):

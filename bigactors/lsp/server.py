@@ -1,4 +1,4 @@
-"""The language server over pygls: requests are translated, answered by pure functions, and translated back."""
+"""The language server over pygls: it translates requests, calls pure functions, and translates their answers back."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from specs import syntax as s
 
 CHECK, CANCEL, SHOW_TRACE = "bigactors.check", "bigactors.cancel", "bigactors.showTrace"
 PAUSE: Final = 0.1
-"""Seconds without a change before a text is looked at."""
+"""Seconds without a change before a text is analysed."""
 MOST_CONFIGURATIONS: Final = 2_000_000
 MOST_SECONDS: Final = 600.0
 MARKS: Final = {"holds": "✓", "violated": "✗", "incomplete": "?"}
@@ -77,7 +77,7 @@ class Document:
     running: asyncio.subprocess.Process | None = None
 
     def range(self, span: s.Span) -> t.Range:
-        """Return where a span is, as an editor counts."""
+        """Return the editor's range of a span."""
         start, end = (self.lines.position(offset) for offset in (span.start, span.end))
         return t.Range(t.Position(*start), t.Position(*end))
 
@@ -87,7 +87,7 @@ class Document:
 
 
 class Server(LanguageServer):
-    """The server, and what it knows of each text that is open."""
+    """The server, with its state for each open text."""
 
     def __init__(self) -> None:
         super().__init__("bigactors", __version__, text_document_sync_kind=t.TextDocumentSyncKind.Full)
@@ -96,8 +96,8 @@ class Server(LanguageServer):
         self.pending: dict[str, asyncio.Task[None]] = {}
 
     def document(self, uri: str) -> Document:
-        """Return what is known of a text, as it is now; nothing stands in one that the editor has not opened."""
-        opened = self.workspace.text_documents.get(unquote(uri))  # a path may be that of /dev/zero
+        """Return the state of a text as it is now; a text that the editor has not opened is empty."""
+        opened = self.workspace.text_documents.get(unquote(uri))  # its path may be /dev/zero
         text = "" if opened is None else opened.source
         known = self.documents.get(uri)
         if known is not None and known.lines.text is text:
@@ -114,7 +114,7 @@ class Server(LanguageServer):
         return known
 
     def close(self) -> None:
-        """End what runs, and delete the pages of traces."""
+        """End the running checks, and delete the pages of traces."""
         for document in self.documents.values():
             end(document)
         self.pages.cleanup()
@@ -122,7 +122,7 @@ class Server(LanguageServer):
     # --- diagnostics
 
     def look_soon(self, uri: str) -> None:
-        """Publish the mistakes of a text when it has not changed for a moment."""
+        """Publish the mistakes of a text once it has not changed for a moment."""
         waiting = self.pending.pop(uri, None)
         if waiting is not None:
             waiting.cancel()
@@ -143,13 +143,13 @@ class Server(LanguageServer):
     # --- checking
 
     async def check(self, uri: str) -> None:
-        """Check a text in another process, its progress shown and its end possible; keep the verdicts."""
+        """Check a text in another process, with progress and cancellation; store the verdicts."""
         document = self.document(uri)
         if document.running is not None:
             return
         document.running = await asyncio.create_subprocess_exec(
             sys.executable,
-            "-P",  # no module of the user's folder takes the place of one of ours
+            "-P",  # a module in the user's folder must not replace one of ours
             "-m",
             f"{__package__}.worker",
             stdin=asyncio.subprocess.PIPE,
@@ -194,7 +194,7 @@ class Server(LanguageServer):
 
     @contextlib.asynccontextmanager
     async def _progress(self, document: Document) -> Any:
-        """Show that a mission is being checked, where the editor can; its user can end it there."""
+        """Show that a mission is being checked, if the editor can; the user can cancel it there."""
         token = f"check-{id(document)}-{id(document.running)}"
         capable = self.client_capabilities.window
         if capable is None or not capable.work_done_progress:
@@ -227,7 +227,7 @@ def end(document: Document) -> None:
 
 
 def make_server() -> Server:
-    """Return a server that answers."""
+    """Return a server with all its handlers."""
     server = Server()
     for method, answer, options in (
         (t.TEXT_DOCUMENT_DID_OPEN, _opened, None),
@@ -379,7 +379,7 @@ def _formatting(server: Server, params: t.DocumentFormattingParams) -> list[t.Te
     before = document.lines.text
     try:
         after = format_mission(before, document.reading.source.name)
-    except MissionError:  # the editor shows its mistakes already
+    except MissionError:  # the editor already shows its mistakes
         return []
     if "\r\n" in before:
         after = after.replace("\n", "\r\n")
@@ -387,7 +387,7 @@ def _formatting(server: Server, params: t.DocumentFormattingParams) -> list[t.Te
 
 
 def changes(before: str, after: str) -> Iterator[tuple[s.Span, str]]:
-    """Yield the lines of a text that another replaces, so that an editor's cursor stays where nothing changes."""
+    """Yield the changed lines only, so that an editor's cursor stays in unchanged ones."""
     old, new = before.splitlines(keepends=True), after.splitlines(keepends=True)
     starts = [0]
     for line in old:

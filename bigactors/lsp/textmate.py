@@ -1,4 +1,4 @@
-"""The TextMate grammar of missions, by which editors and forges colour them, made of that of the parser."""
+"""The TextMate grammar by which editors and forges colour missions, generated from the parser's grammar."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _NEW_NAMES: Final = {
     "rule": "entity.name.function",
     "mission": "entity.name.section",
 }
-"""What the name behind each word is."""
+"""The scope of the name after each word."""
 
 
 def textmate_grammar() -> str:

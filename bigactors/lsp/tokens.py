@@ -1,4 +1,4 @@
-"""What each name is, so that an editor can colour it."""
+"""The semantic tokens by which an editor colours names."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TYPES: Final[Mapping[str, str]] = {
     "function": "behaviour",
     "variable": "variable",
 }
-"""The protocol's types of tokens, and our sorts."""
+"""The protocol's types of tokens, and our sorts of names."""
 
 MODIFIERS: Final = ("declaration",)
 _NUMBERS: Final = {sort: number for number, sort in enumerate(TYPES.values())}
@@ -26,7 +26,7 @@ _NUMBERS: Final = {sort: number for number, sort in enumerate(TYPES.values())}
 
 @dataclass(frozen=True, slots=True)
 class NameToken:
-    """A name, by the number of its type in `TYPES`."""
+    """A name, with the number of its type in `TYPES`."""
 
     span: Span
     type: int

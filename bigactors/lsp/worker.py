@@ -1,6 +1,6 @@
-"""Check the text of an editor, in a process of its own that can be ended at any time.
+"""Check the text of an editor in a separate process that can be ended at any time.
 
-It reads what is to be checked from the standard input, and writes what was found to the standard output.
+It reads the mission and the limits from the standard input, and writes the verdicts to the standard output.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from specs.parser import read
 
 
 def main() -> None:
-    """Check what the standard input says."""
+    """Check the mission on the standard input."""
     asked = json.load(sys.stdin)
     source = Source(asked["name"], asked["text"])
     limits = Limits(asked["configurations"], asked["seconds"])
@@ -62,7 +62,7 @@ def _verdict(verdict: Verdict, pages: dict[str, str]) -> dict[str, Any]:
 
 
 def _pages(result: Checked, folder: Path) -> dict[str, str]:
-    """Write the page of the first trace of each property; return their paths by its name."""
+    """Write the page of the first trace of each property; return their paths by property."""
     found: dict[str, str] = {}
     for each in evidence_of(result):
         if each.property not in found:

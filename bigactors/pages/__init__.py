@@ -1,7 +1,7 @@
 """Pages: self-contained HTML for readers without bigactors.
 
-Everything that is not markup of ours is escaped, nothing is loaded from anywhere, and a Content-Security-Policy says so
-to the browser. Without scripts a page shows everything at once.
+All text except our own markup is escaped, nothing is loaded, and a Content-Security-Policy enforces that in the
+browser. Without scripts a page shows everything at once.
 """
 
 from bigactors.pages.story import MOST_PICTURES, Story, Telling, telling

@@ -1,4 +1,4 @@
-"""HTML markup: elements are written so that no text of a mission is taken for markup."""
+"""HTML markup: elements are written so that no text of a mission can become markup."""
 
 from html import escape
 
@@ -6,7 +6,7 @@ from checker.reports.results import clean
 
 
 def text(words: object) -> str:
-    r"""Return words as text of a page: escaped, and without what no page can hold.
+    r"""Return words as text of a page: escaped, with invalid characters replaced.
 
     >>> text('<b>&"\x00')
     '&lt;b&gt;&amp;&quot;�'
@@ -15,7 +15,7 @@ def text(words: object) -> str:
 
 
 def element(tag: str, *inside: str, **attributes: object) -> str:
-    """Return an element around what is markup already; attributes are text, `_` in their names a hyphen.
+    """Return an element around markup; attributes are text, and `_` in their names becomes a hyphen.
 
     >>> element("li", text("a < b"), class_="new", data_row=3)
     '<li class="new" data-row="3">a &lt; b</li>'

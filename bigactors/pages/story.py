@@ -1,4 +1,4 @@
-"""The content of a trace's page: its rows, and its configurations with their pictures, each held once."""
+"""The content of a trace's page: its rows, and its configurations with their pictures, each stored once."""
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -12,31 +12,31 @@ from checker.reports.lanes import Lanes, LaneStep, Repetition, Row, bounded, fol
 from semantics.state.configuration import Configuration
 
 MOST_PICTURES: Final = 100
-"""The most pictures that a page holds of each model."""
+"""The most pictures of each model in a page."""
 
 MOST_ROWS: Final = 1_500
-"""The most rows that a page begins with."""
+"""The most rows of a page when it opens."""
 
 MOST_FRAMES: Final = 2_000
-"""The most configurations that a page holds which do not look alike."""
+"""The most different configurations in a page."""
 
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """What a page tells.
+    """The input of a trace's page.
 
     Attributes:
-        title: What it is called.
-        about: What the trace is evidence of; may be empty.
-        violated: Whether that is a violation.
+        title: The title.
+        about: The claim that the trace supports; may be empty.
+        violated: Whether the claim is a violation.
         trace: The trace.
-        start: Which configuration is shown first.
-        drawn: How many pictures are drawn of each model: those around the start, or of a page that starts with the
-            first configuration the last ones.
-        note: Where it comes from, such as the digest of the mission.
-        details: More of what it is evidence of, line by line.
-        times: When each step was taken, in seconds; empty where nobody knows.
-        unfolded: Whether steps that repeat others have a row each.
+        start: The number of the configuration shown first.
+        drawn: The most pictures of each model. They show the configurations nearest to the start; if it is 0, the last
+            ones.
+        note: The origin, such as the digest of the mission.
+        details: More lines about the claim.
+        times: The time of each step in seconds; empty if unknown.
+        unfolded: Whether repeated steps have a row each.
     """
 
     title: str
@@ -53,15 +53,15 @@ class Story:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A configuration of the page, and how it was come to; one frame stands for all that look alike.
+    """A configuration of the page, with the step to it; one frame stands for all identical ones.
 
     Attributes:
-        number: The number of the first that looks so.
-        count: How many do.
-        step: The step to it, None to the first configuration.
+        number: The number of the first such configuration.
+        count: The number of such configurations.
+        step: The step to it, None for the first configuration.
         c: The configuration.
         before: The one before it.
-        logical: The picture of L, None where it is not drawn.
+        logical: The picture of L, None if it is not drawn.
         physical: The picture of P.
     """
 
@@ -75,20 +75,25 @@ class Frame:
 
     @property
     def label(self) -> str:
-        """How it was come to."""
+        """The label of the step to it."""
         return "the first configuration" if self.step is None else str(self.step.label)
+
+    @property
+    def role(self) -> str:
+        """The role of the step to it in a stale-observation race; mostly empty."""
+        return "" if self.step is None else self.step.role
 
 
 @dataclass(frozen=True, slots=True)
 class Telling:
-    """A story as a page holds it.
+    """The content of a page.
 
     Attributes:
         story: The story.
         lanes: Its steps.
-        rows: The rows that the page begins with.
-        frames: What the page holds of configurations.
-        order: The index in `frames` of each configuration of the trace, None where the page doesn't hold it.
+        rows: The rows of the page when it opens.
+        frames: The stored configurations.
+        order: The index in `frames` of each configuration of the trace, None for one that is left out.
     """
 
     story: Story
@@ -99,13 +104,13 @@ class Telling:
 
     @property
     def seconds(self) -> tuple[float, ...]:
-        """When each configuration was come to, in seconds since the first step; empty where nobody knows."""
+        """The time of each configuration in seconds since the first step; empty if unknown."""
         times = self.story.times
         return (0.0, *(max(0.0, time - times[0]) for time in times)) if times else ()
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """What of the trace the page does not hold, and how to see it, in lines."""
+        """Lines on the configurations that the page leaves out, and how to see them."""
         missing = [number for number, frame in enumerate(self.order) if frame is None]
         undrawn = sum(frame.count for frame in self.frames if None in (frame.logical, frame.physical))
         of = f"of {len(self.order):,} configurations"
@@ -118,7 +123,7 @@ class Telling:
 
 
 def telling(story: Story) -> Telling:
-    """Return what a page tells of a story: of one that is too long its ends and what is around the start."""
+    """Return the content of a story's page; of a long story, the ends and the part around the start."""
     lanes = lanes_of_trace(story.trace)
     steps = lanes.steps if story.unfolded else tuple(folded(lanes.steps))
     rows = tuple(bounded(steps, MOST_ROWS, story.start))
@@ -131,16 +136,17 @@ def telling(story: Story) -> Telling:
 
 
 def _looks(trace: Trace) -> tuple[int, ...]:
-    """Return for each configuration the first that looks like it: it comes after the same one, by the same step."""
+    """Return for each configuration the first identical one: it follows the same configuration by the same step."""
     configurations = trace.configurations
     labels = ("", *(str(step.label) for step in trace.steps))
+    roles = (trace.role(number) for number in range(len(configurations)))
     first: dict[object, int] = {}
-    looks = zip((None, *configurations), configurations, labels, strict=False)
+    looks = zip((None, *configurations), configurations, labels, roles, strict=False)
     return tuple(first.setdefault(look, number) for number, look in enumerate(looks))
 
 
 def _held(rows: Sequence[Row], looks: Sequence[int]) -> Iterable[int]:
-    """Return the looks that a page has room for: those of its rows, then those of what is folded in them."""
+    """Return the frames that fit into a page: those of its rows, then those folded in them."""
     own = (row.number for row in rows if isinstance(row, LaneStep))
     again = (step.number for row in rows if type(row) is Repetition for step in row.steps)
     return islice(dict.fromkeys(looks[number] for number in chain([0], own, again)), MOST_FRAMES)

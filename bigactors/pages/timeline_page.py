@@ -1,4 +1,4 @@
-"""One self-contained page with a schedule: the picture of who flies when, and its times as a table."""
+"""A self-contained page with a schedule: the timeline of all flights as a picture, and its times as a table."""
 
 from typing import Final
 

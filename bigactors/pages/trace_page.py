@@ -1,4 +1,4 @@
-"""One self-contained page that steps through a trace: its lanes, and beside them the bigraph and the map."""
+"""A self-contained page that steps through a trace: its lanes, beside the bigraph and the map."""
 
 import base64
 import hashlib
@@ -12,6 +12,7 @@ from bigactors.pages.story import Frame, Story, Telling, telling
 from bigactors.pictures import Look, Picture, channels_of, look_of, shown_names
 from bigraphs import Bigraph, draw_text
 from bigraphs.drawing import HIGHLIGHT
+from checker.properties.race_steps import RaceSteps
 from checker.reports.lanes import Lanes, LaneStep, Repetition, Row, lapses, steps_of
 from physical.map_style import MARK
 from physical.messages import counted
@@ -19,23 +20,23 @@ from semantics.state.printing import print_agent
 from semantics.timing.dates import lapse_text
 
 LARGEST: Final = 1.35
-"""Pixels for a point of a picture, at the most."""
+"""The most pixels for a point of a picture."""
 
 SMALLEST: Final = {"L": 0.65, "P": 0.9}
-"""Pixels for a point of a picture on a phone, where it can be moved sideways."""
+"""Pixels for a point of a picture on a phone, where it scrolls sideways."""
 
 LEAST_LAPSE, MOST_LAPSE = 18, 150
-"""How high a gap in which time passes is at least, and the longest of a trace, in pixels."""
+"""The height in pixels of the shortest and of the longest gap between steps in a trace."""
 
 NARROWEST: Final = 7
-"""How wide a lane is at the least, in ems; its boxes may reach over the next."""
+"""The least width of a lane in ems; its boxes may reach over the next lane."""
 
 
 UNSCRIPTED: Final = (
     "[hidden], .unscripted { display: revert !important; } "
     ".controls, .hint, .several button, #missing { display: none !important; }"
 )
-"""What a page without scripts looks like: everything is there at once."""
+"""The style of a page without scripts: it shows everything at once."""
 
 
 def trace_page(story: Story) -> str:
@@ -44,7 +45,7 @@ def trace_page(story: Story) -> str:
 
 
 def page_of(told: Telling) -> str:
-    """Return the page."""
+    """Return the page of its content."""
     script, style = _resource("trace.js"), _resource("trace.css")
     allowed = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     policy = (
@@ -67,7 +68,7 @@ def page_of(told: Telling) -> str:
 
 
 def _steps(told: Telling) -> dict[str, str | None]:
-    """Return what the script reads: the frame of each configuration, and the tenths of a second to it from the last."""
+    """Return the script's data: the frame of each configuration, and the tenths of a second since the last."""
     order = " ".join("" if frame is None else str(frame) for frame in told.order)
     tenths = [round(10 * second) for second in told.seconds]
     gaps = (str(max(0, after - before)) for before, after in pairwise([0, *tenths]))
@@ -85,9 +86,20 @@ def _header(told: Telling) -> str:
         element("h1", text(story.title)),
         element("p", text(story.about), class_="violated" if story.violated else None) if story.about else "",
         *(element("p", text(line)) for line in story.details),
+        _race(story.trace.race),
         element("p", text(f"{counted(len(story.trace), 'step')}. {story.note}"), class_="quiet"),
         *(element("p", text(line), class_="violated") for line in told.left_out),
     )
+
+
+def _race(race: RaceSteps | None) -> str:
+    """Return links to the three steps of a stale-observation race."""
+    if race is None:
+        return ""
+    links = (
+        f"{element('a', text(role), href=f'#c{number}')} c{number}" for number, role in race.roles.items()
+    )
+    return element("p", "the race: ", " → ".join(links), class_="race")
 
 
 # --- lanes ----------------------------------------------------------------------------------------------------
@@ -109,7 +121,7 @@ def _run(told: Telling) -> str:
 
 
 def _rows(told: Telling) -> Iterator[str]:
-    """Yield the rows: of the first configuration, of steps, and of several steps that are folded."""
+    """Yield the rows: of the first configuration, of single steps, and of folded steps."""
     seconds = told.seconds
     passing = lapses(told.rows)
     longest = max(passing, default=0)
@@ -125,7 +137,7 @@ def _rows(told: Telling) -> Iterator[str]:
 
 
 def _others(told: Telling) -> Iterator[str]:
-    """Yield a row of each frame that has none in the table: the script takes them for what is folded."""
+    """Yield a row for each frame outside the table: the script inserts them when it unfolds steps."""
     shown = {told.order[row.number] for row in told.rows if isinstance(row, LaneStep)}
     for place, frame in enumerate(told.frames):
         if place not in shown and frame.step is not None:
@@ -156,7 +168,7 @@ def _cells(row: Row, lanes: Lanes) -> Iterator[str]:
 
 
 def _side(lane: int, count: int) -> str | None:
-    """Return where a box may reach over its lane: to the right from the first, to the left from the last, else both."""
+    """Return the side to which a box may overflow its lane: right in the first, left in the last, else both."""
     if lane == 0:
         return None
     return "last" if lane == count - 1 else "inner"
@@ -171,9 +183,10 @@ def _step(step: LaneStep) -> str:
     return element(
         "div",
         element("b", text(step.label.rule)),
+        element("strong", text(step.role), class_="role") if step.role else "",
         element("div", text(step.about), class_="about") if step.about else "",
         element("ul", *changes) if step.changes else "",
-        class_=f"step {sort}".strip(),
+        class_=" ".join(filter(None, ["step", sort, step.role and "raced"])),
     )
 
 
@@ -265,7 +278,7 @@ def _model(name: str, gloss: str, pictures: Sequence[Picture]) -> str:
 
 
 def _svg(picture: Picture, name: str, width: float, height: float) -> str:
-    """Return a picture in the middle of a sheet as large as the largest, so that nothing jumps between two steps."""
+    """Return a picture centred on a sheet of the largest size, so that nothing moves between two steps."""
     left, top = (picture.width - width) / 2, (picture.height - height) / 2
     return element(
         "svg",
@@ -293,12 +306,13 @@ def _frame(place: int, frame: Frame, words: Mapping[Bigraph, int]) -> str:
         class_="lists",
     )
     again = f", and {frame.count - 1:,} times more" if frame.count > 1 else ""
+    said = f"{frame.label}{f' [{frame.role}]' if frame.role else ''}"
     return element(
         "div",
-        element("h2", text(f"c{frame.number}: {frame.label}{again}"), class_="unscripted"),
+        element("h2", text(f"c{frame.number}: {said}{again}"), class_="unscripted"),
         lists,
         data_frame=place,
-        data_label=frame.label,
+        data_label=said,
         data_l="" if frame.logical is None else frame.logical.key,
         data_p="" if frame.physical is None else frame.physical.key,
         data_in_words=words[frame.c.structure.logical.bigraph()],

@@ -1,6 +1,6 @@
-"""Pictures of configurations, the bigraph beside the map, and of traces; SVG or PNG, the same bytes every time.
+"""Pictures of configurations, the bigraph beside the map, and of traces, as SVG or PNG; the bytes are reproducible.
 
-Nothing is decided here: what is believed, what is actual and what changed is asked of `semantics`.
+Beliefs, the actual world and changes come from `semantics`; nothing is decided here.
 """
 
 from bigactors.pictures.configuration import Look, draw_configuration, look_of

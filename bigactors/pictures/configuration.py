@@ -1,4 +1,4 @@
-"""Draw a configuration ⟨α | S | η⟩: L as a bigraph beside P as a map, and under them the agents and their requests."""
+"""Draw a configuration ⟨α | S | η⟩: L as a bigraph beside P as a map, above the agents and their requests."""
 
 import re
 from dataclasses import dataclass
@@ -34,13 +34,13 @@ WIDTH: Final = 960.0
 MARGIN: Final = 26.0
 GUTTER: Final = 22.0
 PANEL: Final = (WIDTH - 2 * MARGIN - GUTTER) / 2
-"""How wide the bigraph is, and the map with its latitudes."""
+"""The width of the bigraph, and of the map with its latitudes."""
 
 PANEL_HEIGHT: Final = 372.0
 LATITUDES: Final = 46.0
 LONGITUDES: Final = 16.0
 LARGEST: Final = 1.2
-"""How much a small bigraph is magnified at most."""
+"""The largest magnification of a small bigraph."""
 
 ROW: Final = 15.0
 MOST_ROWS: Final = 12
@@ -49,7 +49,7 @@ LEGEND_ROW: Final = 17.0
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One entry of the legend: what it looks like, and what that means."""
+    """One entry of the legend: its look, and the name for it."""
 
     look: str
     name: str
@@ -58,7 +58,7 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """How a configuration looks: its colours, what glows since it changed, what is marked since L and P differ."""
+    """The look of a configuration: its colours, the glowing names (changed) and the marked names (L and P differ)."""
 
     palette: Palette
     glowing: frozenset[Name]
@@ -66,7 +66,7 @@ class Look:
 
 
 def look_of(c: Configuration, before: Configuration | None) -> Look:
-    """Return how a configuration looks beside the one before."""
+    """Return the look of a configuration after another."""
     glowing = frozenset() if before is None else changed_names(before, c)
     return Look(palette_of(c), glowing, differing(c))
 
@@ -78,13 +78,13 @@ def draw_configuration(
     title: str | None = None,
     changed: Configuration | None = None,
 ) -> None:
-    """Write the picture of a configuration as the name of the file says, `.svg` or `.png`.
+    """Write the picture of a configuration to a file, `.svg` or `.png`.
 
-    What L and A(P) say different things of has a dashed outline in both. Where the configuration before is given as
-    `changed`, what changed since glows.
+    Entities on which L and A(P) differ have a dashed outline in both. With `changed`, the configuration before, the
+    changes since then glow.
 
     Raises:
-        PictureError: The name of the file ends otherwise.
+        PictureError: The file has another suffix.
         OSError: The file cannot be written.
     """
     with plain_style():
@@ -129,7 +129,7 @@ def _write_list(page: Page, x: float, y: float, heading: tuple[str, str], lines:
 
 
 def _write_line(page: Page, x: float, y: float, line: str) -> None:
-    """Write an agent or a request, its first word bold."""
+    """Write an agent or a request with its first word in bold."""
     word = re.match(r"[^ (]*", line)
     head = shortened(word[0] if word else "", PANEL, 8.0, bold=True)
     wide = text_width(head, 8.0, bold=True)
@@ -153,12 +153,12 @@ def _draw_logical(page: Page, c: Configuration, top: float, look: Look) -> None:
 
 
 def logical_layout(bigraph: Bigraph, look: Look) -> Layout:
-    """Return the layout of L, in which all that glows or is marked has a box of its own."""
+    """Return the layout of L, in which every glowing or marked node has its own box."""
     return layout(bigraph, look.glowing | look.marked)
 
 
 def draw_logical(axes: "Axes", plan: Layout, scale: float, look: Look) -> None:
-    """Draw L into axes that have the size of its plan, so many times magnified."""
+    """Draw L into axes of its plan's size times the scale."""
     draw_layout(plan, axes, highlight=look.glowing)
     numbers = [number for number, node in enumerate(plan.shown.bigraph.nodes) if node.name in look.marked]
     for number in numbers:
@@ -166,7 +166,7 @@ def draw_logical(axes: "Axes", plan: Layout, scale: float, look: Look) -> None:
 
 
 def _outline_node(axes: "Axes", plan: Layout, number: int, scale: float) -> None:
-    from matplotlib.patches import FancyBboxPatch  # noqa: PLC0415 - only who draws needs matplotlib
+    from matplotlib.patches import FancyBboxPatch  # noqa: PLC0415 - only drawing needs matplotlib
 
     box = plan.box("node", number)
     axes.add_patch(
@@ -214,7 +214,7 @@ def _entries(c: Configuration, look: Look) -> list[Entry]:
 
 
 def _legend_rows(entries: list[Entry]) -> list[list[tuple[float, Entry]]]:
-    """Return the entries in rows, each with where it begins."""
+    """Return the entries in rows, each with its left edge."""
     rows: list[list[tuple[float, Entry]]] = [[]]
     x = MARGIN
     for entry in entries:

@@ -1,4 +1,4 @@
-"""Draw when predicates first become true, over many runs: the share of runs in which each was by then."""
+"""Draw the first times of predicates over many runs: the share of runs in which each was true by then."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,12 +12,12 @@ WIDTH: Final = 640.0
 HEIGHT: Final = 360.0
 MARGIN: Final = 26.0
 NAMES: Final = 150.0
-"""Points beside the curves, where their names stand."""
+"""Points beside the curves for their names."""
 
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """The share of runs in which something was true, from each of some times on, with its interval."""
+    """The share of runs in which something was true by each of some times, with its interval."""
 
     name: str
     times: Sequence[float]
@@ -29,21 +29,21 @@ class Curve:
 def draw_curves(
     curves: Sequence[Curve], path: str | Path, *, title: str, gloss: str, axis: str, end: float
 ) -> None:
-    """Write one picture of curves; they start at 0 and go on to the end.
+    """Write one picture of curves, which start at 0 and reach to the end.
 
     Args:
-        curves: What is drawn, as many as there are colours (`physical.map_style.PALETTE`).
-        path: The file; its name says whether it is an `.svg` or a `.png`.
-        title: What stands above.
-        gloss: What stands below the title.
-        axis: What the times are.
-        end: Until when runs were followed.
+        curves: The curves; only as many as there are colours are drawn (`physical.map_style.PALETTE`).
+        path: The file, `.svg` or `.png`.
+        title: The title.
+        gloss: The line below the title.
+        axis: The label of the time axis.
+        end: The time to which runs were followed.
 
     Raises:
-        PictureError: The name of the file ends in neither `.svg` nor `.png`.
+        PictureError: The file has another suffix.
         OSError: The file cannot be written.
     """
-    from matplotlib.ticker import MaxNLocator  # noqa: PLC0415 - only who draws needs matplotlib
+    from matplotlib.ticker import MaxNLocator  # noqa: PLC0415 - only drawing needs matplotlib
 
     with plain_style():
         page = Page(WIDTH, HEIGHT)

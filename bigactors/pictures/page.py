@@ -1,7 +1,7 @@
-"""One page: a figure whose units are points from its upper left corner, written as a file.
+"""A page: a figure in points from its upper left corner, written as a file.
 
-Text in an SVG stays text, as wide as it was measured. Without dates, and with the ids of shapes salted alike, two runs
-give the same bytes.
+Text in an SVG stays text with its measured width. Files have no dates and a fixed salt for ids, so two runs give the
+same bytes.
 """
 
 import re
@@ -18,21 +18,21 @@ if TYPE_CHECKING:
 
 FORMATS: Final = ("svg", "png")
 RESOLUTION: Final = 144
-"""Dots an inch of a PNG."""
+"""The resolution of a PNG, in dots an inch."""
 
 MOST_DOTS: Final = 65_535
-"""How high the renderer draws a PNG."""
+"""The greatest height of a PNG in dots, a limit of the renderer."""
 
 
 class PictureError(ValueError):
-    """A picture that cannot be written as asked."""
+    """A picture that cannot be written as requested."""
 
 
 class Page:
     """A figure of a width and height in points, with axes over all of it; y goes downwards."""
 
     def __init__(self, width: float, height: float) -> None:
-        from matplotlib.figure import Figure  # noqa: PLC0415 - only who draws needs matplotlib
+        from matplotlib.figure import Figure  # noqa: PLC0415 - only drawing needs matplotlib
 
         self.width, self.height = width, height
         self.figure: Figure = Figure(figsize=(width / 72, height / 72), facecolor="white")
@@ -41,7 +41,7 @@ class Page:
         self.axes.axis("off")
 
     def panel(self, left: float, top: float, width: float, height: float) -> "Axes":
-        """Return new axes that take up a part of the page."""
+        """Return new axes on a part of the page."""
         frame = (
             left / self.width,
             1 - (top + height) / self.height,
@@ -51,7 +51,7 @@ class Page:
         return self.figure.add_axes(frame, xticks=(), yticks=())
 
     def write(self, x: float, baseline: float, text: str, size: float = 8.0, **style: Any) -> None:
-        """Write a line of text; `width` cuts it, `bold` and `ink` are how it looks."""
+        """Write a line of text. `width` cuts it; `bold` and `ink` set its look."""
         bold, width = style.pop("bold", False), style.pop("width", None)
         self.axes.text(
             x,
@@ -65,19 +65,19 @@ class Page:
         )
 
     def heading(self, x: float, baseline: float, text: str, gloss: str) -> None:
-        """Write a heading, and after it quietly what it means."""
+        """Write a heading, followed by its meaning in a quiet style."""
         self.write(x, baseline, text, 9.5, bold=True)
         self.write(x + text_width(text, 9.5, bold=True) + 7, baseline, gloss, 8.0, ink=QUIET)
 
     def rule(self, left: float, right: float, y: float) -> None:
-        """Draw a thin line across."""
+        """Draw a thin horizontal line."""
         self.axes.plot([left, right], [y, y], color="#d8dee4", linewidth=0.8)
 
     def save(self, path: Path, title: str) -> None:
-        """Write the page as the name says, `.svg` or `.png`.
+        """Write the page to a file, `.svg` or `.png`.
 
         Raises:
-            PictureError: The name ends otherwise, or the page is too high for a PNG.
+            PictureError: The file has another suffix, or the page is too high for a PNG.
         """
         form = path.suffix.lower().lstrip(".")
         if form not in FORMATS:
@@ -94,8 +94,8 @@ class Page:
 
 @contextmanager
 def plain_style() -> Iterator[None]:
-    """Draw within as matplotlib comes, whatever the user's own settings are."""
-    import matplotlib as mpl  # noqa: PLC0415 - only who draws needs matplotlib
+    """Use matplotlib's defaults in the body, whatever the user's settings are."""
+    import matplotlib as mpl  # noqa: PLC0415 - only drawing needs matplotlib
 
     with mpl.rc_context():
         mpl.rcdefaults()
@@ -104,7 +104,7 @@ def plain_style() -> Iterator[None]:
 
 
 def wrapped(text: str, width: float, size: float, most: int) -> tuple[str, ...]:
-    """Return a text in at most so many lines, broken after blanks and brackets, the last one cut where it is too long.
+    """Return a text in at most `most` lines, wrapped after blanks and brackets; a last line that is too long is cut.
 
     >>> wrapped("observe(CHILDREN(PARENT(uav0)))", 90.0, 7.0, 3)
     ('observe(CHILDREN(', 'PARENT(uav0)))')

@@ -18,12 +18,12 @@ MAP: Final = (600.0, 400.0)
 LATITUDES: Final = 46.0
 LONGITUDES: Final = 16.0
 MAGNIFIED: Final = 1.15
-"""How much a bigraph is magnified."""
+"""The magnification of a bigraph."""
 
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """The shapes of an SVG, and how wide and high it is in points."""
+    """The shapes of an SVG, and its size in points."""
 
     key: str
     width: float
@@ -33,13 +33,13 @@ class Picture:
 
 @dataclass(slots=True)
 class Panels:
-    """The pictures of a run, each drawn once however many configurations look so.
+    """The pictures of a run; identical ones are drawn once.
 
     Attributes:
-        within: All that the maps of the run have to have room for.
-        most: How many pictures are drawn of each model.
-        logicals: The pictures of L, by what they show.
-        physicals: The maps of P, by what they show.
+        within: All positions that must fit into the maps of the run.
+        most: The most pictures of each model.
+        logicals: The pictures of L, by their content.
+        physicals: The maps of P, by their content.
     """
 
     within: tuple[Geometry, ...]
@@ -49,13 +49,13 @@ class Panels:
 
     @staticmethod
     def of(configurations: Sequence[Configuration], most: int) -> "Panels":
-        """Return the panels of a run, with nothing drawn yet."""
+        """Return the panels of a run before anything is drawn."""
         entities = (entity for c in dict.fromkeys(configurations) for entity in map_entities(c))
         seen = (place for entity in entities for place in _places(entity))
         return Panels(tuple(dict.fromkeys(seen)), most)
 
     def logical(self, c: Configuration, before: Configuration | None) -> Picture | None:
-        """Return the picture of L, what changed since the configuration before glowing; None where there are enough."""
+        """Return the picture of L with changes since the configuration before glowing; None once there are `most`."""
         look, bigraph = look_of(c, before), c.structure.logical.bigraph()
         shown = (bigraph, look.glowing, look.marked)
         if shown not in self.logicals and len(self.logicals) < self.most:
@@ -63,7 +63,7 @@ class Panels:
         return self.logicals.get(shown)
 
     def physical(self, c: Configuration, before: Configuration | None) -> Picture | None:
-        """Return the map of P, what changed since the configuration before glowing; None where there are enough."""
+        """Return the map of P with changes since the configuration before glowing; None once there are `most`."""
         look, entities = look_of(c, before), map_entities(c)
         shown = (entities, look.glowing, look.marked)
         if shown not in self.physicals and len(self.physicals) < self.most:

@@ -14,14 +14,14 @@ from semantics.state.signature import REGION, Name
 
 @dataclass(frozen=True, slots=True)
 class Palette:
-    """Colours of kinds and of channels, those of the bigraph's picture."""
+    """The colours of kinds and of channels, as in the bigraph's picture."""
 
     kinds: Mapping[str, str]
     channels: Mapping[str, str]
 
 
 def palette_of(c: Configuration) -> Palette:
-    """Return the colours in which the bigraph is drawn: of all declared kinds, so that they stay in a trace."""
+    """Return the colours of the bigraph: of all declared kinds, so that they stay the same along a trace."""
     bigraph = c.structure.logical.bigraph()
     declared = sorted(control.name for control in bigraph.signature.controls)
     kinds = {kind: KINDS[rank % len(KINDS)][1] for rank, kind in enumerate(declared)}
@@ -39,7 +39,7 @@ def channels_of(c: Configuration) -> tuple[Name, ...]:
 
 
 def differing(c: Configuration) -> frozenset[Name]:
-    """Return the names of which L and A(P) say different things: whether they are there, where, on which links."""
+    """Return the names on which L and A(P) differ in presence, parent or links."""
     logical, physical = c.structure.logical, c.structure.physical
     actual = {name: (physical.abstract_parent(name), physical.links(name)) for name in physical.entities()}
     believed = {name: (logical.parent(name), logical.links(name)) for name in logical.nodes()}
@@ -49,7 +49,7 @@ def differing(c: Configuration) -> frozenset[Name]:
 
 
 def changed_names(before: Configuration, after: Configuration) -> frozenset[Name]:
-    """Return the names whose place or links changed in L, or whose whereabouts or channels did in P."""
+    """Return the names whose parent or links changed in L, or whose placement or channels changed in P."""
     return frozenset(
         name
         for name in after.setting.kinds
@@ -61,12 +61,12 @@ def changed_names(before: Configuration, after: Configuration) -> frozenset[Name
 
 
 def shown_names(c: Configuration) -> tuple[Name, ...]:
-    """Return all that is in P or believed to be, sorted."""
+    """Return the names of all entities that are in P or believed in L, sorted."""
     return tuple(sorted({*c.structure.physical.entities(), *c.structure.logical.nodes()}))
 
 
 def map_entities(c: Configuration) -> tuple[MapEntity, ...]:
-    """Return what the map of P shows: all that is in P, and what L still believes in."""
+    """Return the entities on the map of P: all that are in P, and those that only L believes in."""
     return tuple(_map_entity(c, name) for name in shown_names(c))
 
 
@@ -86,7 +86,7 @@ def _map_entity(c: Configuration, name: Name) -> MapEntity:
 
 
 def is_place(c: Configuration, name: Name) -> bool:
-    """Tell whether something holds others and stays where it is: nothing drives it, it does not drift or appear."""
+    """Return whether an entity is a fixed container: its kind is not driven, and the environment does not move it."""
     kind = c.setting.signature[c.setting.kind(name)]
     moves = any(isinstance(clause, Placing) and clause.entity == name for clause in c.setting.environment)
     return bool(kind.contains) and not kind.driven and not moves

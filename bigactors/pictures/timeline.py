@@ -1,8 +1,8 @@
-"""Draw a schedule: who flies when, over all runs (a Gantt chart), time going to the right.
+"""Draw a schedule of all flights over all runs as a Gantt chart; time goes to the right.
 
-Each flight is a bar from the earliest moment of its beginning to the latest of its end. It is full where the vehicle
-is under way in every run that makes the flight so: from the latest beginning to the earliest end. What has no latest
-moment goes on to the right edge, and is open there.
+Each flight is a bar from its earliest beginning to its latest end. The bar is full while the vehicle is under way in
+every run with that flight: from the latest beginning to the earliest end. A bar without a latest end reaches the right
+edge, and is open there.
 """
 
 import math
@@ -38,11 +38,11 @@ class Bar:
     """One line of the chart, in seconds from the start.
 
     Attributes:
-        name: What it is about.
-        words: What stands beside the bar.
+        name: The flight or the property.
+        words: The text beside the bar.
         colours: Its light and its full colour.
-        begins: The earliest and the latest moment of its beginning; the latest may be infinite.
-        ends: The same of its end.
+        begins: Its earliest and its latest beginning; the latest may be infinite.
+        ends: Its earliest and its latest end; both may be infinite.
     """
 
     name: str
@@ -53,7 +53,7 @@ class Bar:
 
     @property
     def surely(self) -> tuple[float, float] | None:
-        """From when to when it goes on in any case, None if there is no such time."""
+        """The interval in which it is certainly under way, None if there is none."""
         begin, end = self.begins[1], self.ends[0]
         return (begin, end) if begin < end < math.inf else None
 
@@ -62,7 +62,7 @@ def draw_timeline(schedule: Schedule, path: str | Path, *, title: str) -> None:
     """Write one picture of a schedule.
 
     Raises:
-        PictureError: The name of the file ends in neither `.svg` nor `.png`, or it is too high for a PNG.
+        PictureError: The file has another suffix than `.svg` or `.png`, or is too high for a PNG.
         OSError: The file cannot be written.
     """
     with plain_style():
@@ -128,14 +128,14 @@ def _seconds(schedule: Schedule, moments: Moments) -> tuple[float, float]:
 
 
 def span_of(bars: list[Bar]) -> float:
-    """Return how many seconds the axis is long: a little longer than all that is bounded, or begins."""
+    """Return the length of the axis in seconds: a little more than the latest bounded moment."""
     known = [each for bar in bars for each in (*bar.begins, *bar.ends) if math.isfinite(each)]
     endless = any(math.isinf(bar.ends[1]) for bar in bars)
     return max(max(known, default=0.0) * (1.25 if endless else 1.02), 1.0)
 
 
 def marks(span: float) -> tuple[float, ...]:
-    """Return the seconds that the axis names.
+    """Return the labelled seconds of the axis.
 
     >>> marks(1700.0)
     (0, 300, 600, 900, 1200, 1500)
@@ -155,7 +155,7 @@ def _legend(bars: list[Bar]) -> str:
 
 
 def _draw_axis(page: Page, left: float, rows: tuple[float, float], span: float) -> None:
-    from semantics.timing.dates import clock_text  # noqa: PLC0415 - of few pictures
+    from semantics.timing.dates import clock_text  # noqa: PLC0415 - few pictures need it
 
     top, bottom = rows
     for second in marks(span):
@@ -183,7 +183,7 @@ def _draw_bar(page: Page, bar: Bar, left: float, y: float, span: float) -> None:
 
 
 def _box(page: Page, begin: float, end: float, y: float, fill: str, edge: str) -> None:
-    from matplotlib.patches import Rectangle  # noqa: PLC0415 - only who draws needs matplotlib
+    from matplotlib.patches import Rectangle  # noqa: PLC0415 - only drawing needs matplotlib
 
     box = Rectangle(
         (begin, y + 2.5), end - begin, BAR, facecolor=fill, edgecolor=edge, linewidth=0.9, zorder=4

@@ -1,7 +1,7 @@
-"""Draw a trace: a picture of each configuration, and an overview with a lane for each agent, time going down.
+"""Draw a trace: a picture of each configuration, and an overview with a lane for each agent; time goes down.
 
-The overview of a run with dates has a time axis. Steps at one moment stand below each other; where time passes between
-two steps there is a gap as high as it is long.
+The overview of a dated run has a time axis. Steps at one moment follow without a gap; where time passes between two
+steps there is a gap in proportion.
 """
 
 from collections.abc import Sequence
@@ -12,6 +12,7 @@ from typing import Final
 
 from bigactors.pictures.configuration import draw_configuration
 from bigactors.pictures.page import Page, plain_style, wrapped
+from checker.properties.race_steps import RaceSteps
 from checker.reports.lanes import Lanes, LaneStep, Repetition, bounded, folded, lanes_of, lapses, steps_of
 from physical.map_style import INK, QUIET
 from semantics.state.configuration import Configuration, Label
@@ -25,36 +26,39 @@ CHANGES: Final = 300.0
 GUTTER: Final = 14.0
 HEAD: Final = 30.0
 LEAST_LAPSE, MOST_LAPSE = 13.0, 110.0
-"""How high a gap in which time passes is at least, and the longest of a trace."""
+"""The height in points of the shortest and of the longest gap between steps in a trace."""
 
 MOST_ROWS: Final = 2_000
 """The most rows of an overview."""
 
 MOST_LINES: Final = 6
-"""Lines that are shown of what one step changed."""
+"""The most lines about the changes of one step."""
 
 SERVED: Final = ("#e9f7ee", "#4fa672")
 AROUND: Final = ("#fdf1e3", "#d08a3c")
 AGENT: Final = ("#e8f1fd", "#4f86c6")
 TIME: Final = "#4f86c6"
 AGAIN: Final = ("#f4f6f8", "#9fadbb")
+RACE: Final = "#b3261e"
+"""The words *sensed*, *changed* and *acted*."""
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One step of the overview, or several that repeat others.
+    """One step of the overview, or several repeated steps.
 
     Attributes:
         number: The number of the configuration after it, or after the first of several.
-        lane: Where its box stands: the rank of its lane.
-        colours: Its fill and its border: of an agent's own step, of one that serves a request, of the
-            environment's, or of several.
+        lane: The rank of its lane.
+        colours: The fill and the border, for an agent's own step, a step that serves a request, a step of the
+            environment, or several steps.
         rule: The rule, as the box's heading.
-        words: What else its label says, in lines.
-        changes: What changed, in lines.
-        date: When it is taken; empty where that is not known.
-        lapse: How much time passes before it, in milliseconds.
-        gap: How high the gap is that stands for that.
+        words: The rest of its label, in lines.
+        changes: The changes, in lines.
+        date: Its date; empty if unknown.
+        lapse: The time before it, in milliseconds.
+        gap: The height of the gap for that time.
+        role: Its role in a stale-observation race; mostly empty.
     """
 
     number: int
@@ -66,19 +70,20 @@ class Row:
     date: str = ""
     lapse: int = 0
     gap: float = 0.0
+    role: str = ""
 
     @property
     def box_height(self) -> float:
-        """How high its box is."""
+        """The height of its box."""
         return 19.0 + 10.0 * len(self.words)
 
     @property
     def height(self) -> float:
-        """How much of the page it takes, with the time before it."""
+        """Its height on the page, with the gap before it."""
         return self.gap + max(self.box_height, 10.5 * len(self.changes) + 6.0) + 9.0
 
 
-def draw_trace(
+def draw_trace(  # noqa: PLR0913 - all but three are optional, and passed by name
     configurations: Sequence[Configuration],
     labels: Sequence[Label],
     directory: str | Path,
@@ -86,11 +91,13 @@ def draw_trace(
     title: str | None = None,
     loop: int | None = None,
     moments: Sequence[int] = (),
+    race: RaceSteps | None = None,
 ) -> tuple[Path, ...]:
     """Write `c00.svg`, `c01.svg`, ... and the overview `trace.svg` into a directory, and return their paths.
 
-    There is one label fewer than configurations: the label of the step to each from the one before. `loop` is from
-    where the run repeats for ever; `moments` are when its steps are taken, in milliseconds.
+    Each label names the step between two configurations, so there is one label fewer. `loop` is the number of the
+    configuration to which the run returns for ever; `moments` are the dates of the steps in milliseconds; the steps of
+    `race` are marked.
 
     Raises:
         OSError: A file cannot be written.
@@ -99,12 +106,16 @@ def draw_trace(
     digits = max(2, len(str(len(configurations) - 1)))
     names = [f"c{step:0{digits}d}.svg" for step in range(len(configurations))]
     befores = [None, *configurations[:-1]]
-    captions = ["", *map(str, labels)]
+    roles = {} if race is None else race.roles
+    words = (f"[{roles[number]}] " if number in roles else "" for number in range(1, len(configurations)))
+    captions = ["", *(f"{word}{label}" for word, label in zip(words, labels, strict=True))]
     for name, before, c, caption in zip(names, befores, configurations, captions, strict=True):
         heading = " ".join(part for part in (title, Path(name).stem, caption) if part)
         draw_configuration(c, folder / name, title=heading, changed=before)
     overview = folder / "trace.svg"
-    draw_overview(lanes_of(configurations, labels, loop, moments), overview, title=title, links=names[1:])
+    draw_overview(
+        lanes_of(configurations, labels, loop, moments, race), overview, title=title, links=names[1:]
+    )
     return (*(folder / name for name in names), overview)
 
 
@@ -116,13 +127,13 @@ def draw_overview(
     links: Sequence[str] = (),
     unfolded: bool = False,
 ) -> None:
-    """Write one picture of a trace: the steps in their lanes, from top to bottom, with what each changed.
+    """Write one picture of a trace: the steps in their lanes from top to bottom, with their changes.
 
-    `links` are what the boxes lead to in an SVG, one for each step. Steps in a row that only repeat others are one
-    box, unless `unfolded`.
+    `links` are the link targets of the boxes in an SVG, one for each step. Consecutive steps that only repeat others
+    share a box, unless `unfolded`.
 
     Raises:
-        PictureError: The name of the file ends in neither `.svg` nor `.png`, or it is too high for a PNG.
+        PictureError: The file has another suffix than `.svg` or `.png`, or is too high for a PNG.
         OSError: The file cannot be written.
     """
     rows = rows_of(lanes, unfolded=unfolded)
@@ -131,7 +142,7 @@ def draw_overview(
 
 
 def rows_of(lanes: Lanes, *, unfolded: bool = False) -> tuple[Row, ...]:
-    """Return the steps of a trace as rows of its overview; of a trace that is too long for one its ends."""
+    """Return the steps of a trace as rows of its overview; of a trace that is too long, only the ends."""
     steps = tuple(bounded(lanes.steps if unfolded else tuple(folded(lanes.steps)), MOST_ROWS))
     passing = lapses(steps)
     longest = max(passing, default=0)
@@ -147,11 +158,11 @@ def _row(step: LaneStep | Repetition) -> Row:
     if isinstance(step, Repetition):
         return Row(step.number, step.lane, AGAIN, step.heading, words, ())
     colours = SERVED if step.serves else AROUND if step.label.agent is None else AGENT
-    return Row(step.number, step.lane, colours, step.label.rule, words, _changes(step))
+    return Row(step.number, step.lane, colours, step.label.rule, words, _changes(step), role=step.role)
 
 
 def _changes(step: LaneStep) -> tuple[str, ...]:
-    """Return what changed, in a few lines."""
+    """Return the changes in a few lines."""
     shown = [piece for change in step.changes for piece in wrapped(str(change), CHANGES, 7.0, 2)]
     return tuple(
         shown
@@ -193,7 +204,7 @@ def _draw_lane(page: Page, name: str, start: float, span: tuple[float, float]) -
 
 
 def _draw_axis(page: Page, rows: Sequence[Row], tops: Sequence[float], x: float) -> None:
-    """Draw when rows are, each moment once, and how much time passes between them."""
+    """Draw the dates of rows, each once, and the time between them."""
     page.write(x, tops[0] - HEAD + 15, "time", 9.0, bold=True, ha="right")
     page.axes.plot([x, x], [tops[0], tops[-1]], color="#d8dee4", linewidth=1.0, zorder=1)
     for number, (row, y) in enumerate(zip(rows, tops, strict=False)):
@@ -208,7 +219,7 @@ def _draw_axis(page: Page, rows: Sequence[Row], tops: Sequence[float], x: float)
 
 
 def _draw_row(page: Page, row: Row, start: float, y: float, link: str | None) -> None:
-    from matplotlib.patches import FancyBboxPatch  # noqa: PLC0415 - only who draws needs matplotlib
+    from matplotlib.patches import FancyBboxPatch  # noqa: PLC0415 - only drawing needs matplotlib
 
     fill, border = row.colours
     box = FancyBboxPatch(
@@ -217,13 +228,15 @@ def _draw_row(page: Page, row: Row, start: float, y: float, link: str | None) ->
         row.box_height,
         boxstyle="round,pad=0,rounding_size=5",
         facecolor=fill,
-        edgecolor=border,
-        linewidth=1.1,
+        edgecolor=RACE if row.role else border,
+        linewidth=2.2 if row.role else 1.1,
         zorder=4,
     )
     if link:
         box.set_url(link)
     page.axes.add_patch(box)
     page.write(start + 12, y + 12.5, row.rule, 8.0, bold=True, ink=INK, zorder=5)
+    if row.role:
+        page.write(start + LANE - 12, y + 12.5, row.role, 8.0, bold=True, ink=RACE, ha="right", zorder=5)
     for rank, line in enumerate(row.words):
         page.write(start + 12, y + 23.0 + rank * 10.0, line, 7.0, ink="#3b4252", zorder=5)

@@ -1,8 +1,8 @@
-"""SVG of matplotlib's, reduced to self-contained shapes and text, for a page or a file.
+"""Matplotlib's SVG, reduced to self-contained shapes and text, for a page or a file.
 
-Only known elements and attributes are kept, and references only within the picture and to pictures beside it. Its ids
-are unique, so that one page can hold several pictures. Text stays text with its measured width, in any font of the
-reader; what stands for several names tells them.
+Only known elements and attributes are kept, and only references within the picture or to pictures in the same folder.
+Ids have a prefix, so that one page can hold several pictures. Text stays text with its measured width in the reader's
+font. A group that stands for several names has them as its title.
 """
 
 import re
@@ -42,17 +42,17 @@ ATTRIBUTES: Final = frozenset(
 )
 LINK: Final = "{http://www.w3.org/1999/xlink}href"
 NAMES: Final = "names:"
-"""How the id of a group begins that stands for several names."""
+"""The prefix of the id of a group that stands for several names."""
 
 FILE: Final = re.compile(r"[\w-]+\.svg")
-"""What a link may lead to: a picture beside this one."""
+"""The allowed targets of a link: a picture in the same folder."""
 
 FONTS: Final = "'DejaVu Sans',Verdana,Geneva,sans-serif"
 STYLE: Final = (
     ".bigactors text{white-space:pre;paint-order:stroke;stroke:#fff;stroke-opacity:.8;stroke-width:2.2px;"
     "stroke-linejoin:round}"
 )
-"""A halo around the text of a picture by itself, and of no other in the same notebook."""
+"""A halo around the text of a single picture; the class keeps it from other pictures in the same notebook."""
 
 LONG: Final = re.compile(r"-?\d+\.\d{3,}")
 FONT: Final = re.compile(r"font: (?:(?P<style>\w+) )?(?:(?P<weight>\d+|bold) )?(?P<size>[\d.]+)px")
@@ -70,12 +70,12 @@ def svg_file(figure: "Figure", title: str) -> str:
 
 
 def svg_of(figure: "Figure", key: str) -> str:
-    """Return the shapes of a figure as SVG without its outermost element; its ids begin with the key."""
-    import matplotlib as mpl  # noqa: PLC0415 - only who draws needs matplotlib
+    """Return the shapes of a figure as SVG without the outermost element; the key prefixes all ids."""
+    import matplotlib as mpl  # noqa: PLC0415 - only drawing needs matplotlib
     from matplotlib.text import Text  # noqa: PLC0415 - the same
 
     for text in figure.findobj(Text):
-        text.set_path_effects([])  # the page's style sheet draws what makes text stand out
+        text.set_path_effects([])  # the page's style sheet draws the halo of text
         text.set_text(clean(text.get_text()))
         if names := text.get_gid():
             text.set_gid(clean(names))
@@ -133,7 +133,7 @@ def _value(name: str, value: str, key: str) -> str:
 
 
 def _measured(element: ET.Element) -> Iterator[tuple[str, str]]:
-    """Yield what makes a reader's font as wide as the one that was measured."""
+    """Yield the attributes that give text its measured width in the reader's font."""
     style = element.get("style", "")
     size = re.search(r"font-size: ([\d.]+)px", style) or FONT.search(style)
     if size is not None:

@@ -1,7 +1,7 @@
 """Archives: plain data and arrays in one file, with a digest of the whole content.
 
-The digest detects accidents and alterations by hand. It is no seal: who can write there can work out another. So
-whoever reads an archive still holds each number to what it may be.
+The digest detects accidents and careless edits. It is no signature: whoever can write the file can compute a new one.
+So readers still validate every number.
 """
 
 import json
@@ -20,17 +20,17 @@ from physical import PhysicalError, open_file, opened_itself, read_json
 
 FIRST = re.compile(rb"bigactors archive 1 ([0-9a-f]{64}) ([0-9]{1,9})\n")
 MOST_FIRST, MOST_ABOUT = 128, 1 << 27
-"""Bytes of the first line, and of the plain data."""
+"""The most bytes of the first line, and of the plain data."""
 
 Kinds = Mapping[str, type[np.generic]]
-"""The arrays of an archive, in their order, and what numbers each has."""
+"""The arrays of an archive in order, each with its type of numbers."""
 
 
 def write_archive(path: Path, head: dict[str, Any], kinds: Kinds, arrays: Sequence[NDArray[Any]]) -> None:
-    """Write plain data and arrays in the place of those before: what is there is always whole.
+    """Replace an archive by plain data and arrays; readers always find a complete file.
 
     Raises:
-        OSError: They can't be written there.
+        OSError: The file can't be written.
     """
     rows = [
         np.ascontiguousarray(array, kind).ravel() for kind, array in zip(kinds.values(), arrays, strict=True)
@@ -59,7 +59,7 @@ def read_archive(path: Path, schema: str, kinds: Kinds) -> tuple[dict[str, Any],
     """Return the plain data and the arrays of a file that `write_archive` wrote.
 
     Raises:
-        CheckpointError: It is none, is not what was written, or is of another schema.
+        CheckpointError: The file is no archive, was altered, or has another schema.
     """
     try:
         with open_file(path) as file:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from checker.reduction.reducer import Reduced
 
 
-def explore(  # noqa: PLR0913 - each is optional, and named where it is used
+def explore(  # noqa: PLR0913 - independent options, passed by name
     initial: Configuration,
     inspect: Iterable[Inspect] = (),
     limits: Limits | None = None,
@@ -39,9 +39,9 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
     cluster: Cluster | None = None,
     threads: int | None = None,
 ) -> Exploration:
-    """Visit everything that is reachable, breadth-first.
+    """Visit the reachable configurations, breadth-first.
 
-    Each configuration is given to each of `inspect` as it is expanded, in the order of discovery; the rest are the
+    Each of `inspect` sees each configuration as it is expanded, in the order of discovery. The other arguments are the
     attributes of `Options`.
     """
     kept, crew = keeping or Keeping(), cluster or Cluster()
@@ -50,16 +50,13 @@ def explore(  # noqa: PLR0913 - each is optional, and named where it is used
 
 
 def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
-    """Visit everything that is reachable as options say.
+    """Visit the reachable configurations with these options.
 
     Raises:
-        EngineError: The mission says how long things take, of which the engine, or its checkpoints, know nothing; or
-            the engine keeps nothing in files.
+        EngineError: The engine, or its checkpoints, don't support the mission's timing; or the engine writes no files.
     """
     if options.engine is Engine.REFERENCE and _is_kept(options):
-        raise EngineError(
-            "the engine 'reference' explores in memory, without checkpoints, spilling and hash compaction"
-        )
+        raise EngineError("the engine 'reference' explores in memory, without checkpoints and spilling")
     if initial.setting.timing is not None:
         return _explore_in_time(initial, inspect, options)
     match options.engine:
@@ -76,8 +73,7 @@ def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Op
 
 
 def _is_kept(options: Options) -> bool:
-    kept = options.keeping
-    return kept.folder is not None or kept.compact is not None or options.limits.spill is not None
+    return options.keeping.folder is not None or options.limits.spill is not None
 
 
 def _explore_in_time(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:

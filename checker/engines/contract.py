@@ -27,15 +27,15 @@ if TYPE_CHECKING:
 
 
 class MachineError(Exception):
-    """What the machine does not give: workers that start in time and stay, room for an engine. Nothing is decided."""
+    """A failure of the machine, such as lost workers or too little memory for an engine; no property is decided."""
 
 
 class CompilerError(Exception):
-    """The loops cannot be compiled here."""
+    """A machine on which the loops can't be compiled."""
 
 
 class EngineError(Exception):
-    """An engine that cannot explore a mission."""
+    """A mission that an engine can't explore."""
 
 
 class TickError(EngineError):
@@ -43,22 +43,20 @@ class TickError(EngineError):
 
 
 class CheckpointError(Exception):
-    """A checkpoint that can't be read, or that is of something else."""
+    """A checkpoint that can't be read, or that belongs to another exploration."""
 
 
 @dataclass(frozen=True, slots=True)
 class Keeping:
-    """What is kept of an exploration, and what is doubted.
+    """Checkpoints and self-checks of an exploration.
 
     Attributes:
-        folder: Where checkpoints are written; None for nowhere.
-        resumed: Whether it goes on from the checkpoint that is there.
-        digest: What the checkpoint is of.
+        folder: The folder for checkpoints; None for none.
+        resumed: Whether the exploration continues from the checkpoint in the folder.
+        digest: The digest of the mission, the build and the limits that a checkpoint belongs to.
         every: Seconds between two checkpoints.
-        doubted: Of how many configurations it is asked once more what follows, and whether what reductions take for
-            granted is so (`--paranoid`).
-        compact: How many bits of a hash stand for each configuration, where none is compared with another: some may be
-            taken for others then (`--hash-compact`).
+        doubted: The number of sampled configurations on which successors, and the assumptions of reductions, are
+            checked again (`--paranoid`).
     """
 
     folder: str | None = None
@@ -66,21 +64,20 @@ class Keeping:
     digest: str = ""
     every: float = 60.0
     doubted: int = 0
-    compact: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How far an exploration has come.
+    """The progress of an exploration.
 
     Attributes:
-        configurations: How many were met.
-        transitions: How many were followed.
-        depth: The distance of those that are being expanded.
-        frontier: How many wait to be expanded.
-        rate: How many are expanded in a second.
-        estimate: How many there may be in all; None while nobody can say.
-        compiling: Which of the compiled functions is being compiled, counted from 1; 0 when none is.
+        configurations: The number of configurations found.
+        transitions: The number of transitions followed.
+        depth: The depth of the configurations that are being expanded.
+        frontier: The number of configurations to expand.
+        rate: Expansions per second.
+        estimate: The estimated total of configurations; None while there is no estimate.
+        compiling: The number, from 1, of the function that is being compiled; 0 for none.
     """
 
     configurations: int
@@ -93,7 +90,7 @@ class Progress:
 
     @property
     def left(self) -> tuple[float, float] | None:
-        """How many seconds it may go on, at least and at most, if layers and rate go on as they do."""
+        """The least and the most seconds left, if the layers and the rate continue alike."""
         if self.estimate is None or self.rate <= 0:
             return None
         more = self.estimate.most - self.configurations
@@ -101,7 +98,7 @@ class Progress:
 
 
 class Engine(Enum):
-    """How configurations are expanded; the results are the same."""
+    """The way to expand configurations; all engines give the same results."""
 
     REFERENCE = "reference"
     FAST = "fast"
@@ -110,11 +107,11 @@ class Engine(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Cluster:
-    """With whom `Engine.RAY` explores.
+    """The cluster of `Engine.RAY`.
 
     Attributes:
-        workers: How many processes, from 2 on.
-        address: The Ray cluster that is joined (`auto` for the one of this machine); None for one of its own, here.
+        workers: The number of processes, at least 2.
+        address: The Ray cluster to join (`auto` for this machine's); None to start one here.
     """
 
     workers: int = 2
@@ -122,42 +119,42 @@ class Cluster:
 
 
 class Surveyed(Protocol):
-    """What temporal properties ask of an exploration whose configurations are not at hand one by one."""
+    """The whole-exploration queries of temporal properties, for engines that keep rows instead of configurations."""
 
     def graph(self) -> Graph:
-        """Return every transition of the configurations that were expanded."""
+        """Return every transition of the expanded configurations."""
 
     def valuation(self, asked: Iterable[Proposition]) -> Mapping[Proposition, Bools]:
-        """Return where each proposition is true."""
+        """Return the configurations in which each proposition is true."""
 
     def is_still(self, asked: Iterable[Proposition]) -> bool:
-        """Tell whether nothing that propositions without connectives ask of configurations ever changes."""
+        """Return whether the values read by these atomic propositions never change."""
 
     def pending(self) -> Mapping[Request, Numbers]:
-        """Return for each request the configurations in which it is pending, in their order."""
+        """Return for each request the configurations in which it is pending, in order."""
 
 
 Inspect = Callable[[int, Configuration, Expansion], None]
-"""What looks at each configuration as it is expanded, given its number."""
+"""An inspection: receives each configuration as it is expanded, with its number."""
 
 Reporter = Callable[[Progress], None]
-"""What is told of the progress."""
+"""A function that receives the progress."""
 
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How everything is visited.
+    """The options of an exploration.
 
     Attributes:
-        limits: Where to stop.
-        report: Told of the progress about once in `every` seconds.
-        every: Seconds.
-        engine: Whether the rules are run everywhere, or once for each way in which they look at cells.
-        edges: Whether every transition is kept, as temporal properties need; explorers with rows find them again.
-        reduce: What lets it visit less.
-        keeping: What explorers with rows keep on the way, and what is doubted.
-        cluster: With whom, on several processes or machines.
-        threads: On how many threads the fast engine explores; None for as many as there are cores.
+        limits: The bounds of the exploration.
+        report: Receives the progress about once in `every` seconds.
+        every: Seconds between two reports.
+        engine: The engine.
+        edges: Whether to keep every transition, for temporal properties; explorers with rows recompute them instead.
+        reduce: The reductions to apply.
+        keeping: Checkpoints and self-checks, for explorers with rows.
+        cluster: The workers of the engine Ray.
+        threads: The most threads of the fast engine; None for one for each core.
     """
 
     limits: Limits = field(default_factory=Limits)
@@ -173,25 +170,25 @@ class Options:
 
 @dataclass(slots=True)
 class Exploration:
-    """What was explored.
+    """The result of an exploration.
 
     Attributes:
-        configurations: In the order of discovery; the first is the initial one.
-        origins: For each, the number of the one that it was first reached from (of the initial one, its own).
-        depth: How far the farthest is from the initial one.
-        expanded: How many of them were expanded: all, unless time ran out.
-        transitions: How many transitions there are.
-        rules: How many transitions each rule has.
-        bounds: Those that were met; empty where the exploration is complete.
-        seconds: How long it took.
-        compiling: How much of that loops were compiled, which counts to no limit.
-        rule_runs: How often an actor's rules were run in Python, where they were learned.
-        edges: Every transition, where they were asked for and the reference explorer kept them.
-        survey: What explorers with rows can be asked; None of the reference explorer.
-        allowed: How many transitions the visited configurations allow; more than `transitions` where it was reduced.
-        reducer: What made it visit less, None where it visited everything.
-        start: What it started from, where another configuration stands for it.
-        times: When everything may be done, where the mission says how long things take.
+        configurations: The configurations in the order of discovery; the first is the initial one.
+        origins: For each configuration the number of its predecessor on a shortest path; the initial one has its own.
+        depth: The greatest distance from the initial configuration.
+        expanded: The number of expanded configurations; all of them, unless a bound was met.
+        transitions: The number of transitions.
+        rules: The number of transitions by each rule.
+        bounds: The bounds that were met; empty for a complete exploration.
+        seconds: The duration.
+        compiling: The part of it spent on compiling loops, which counts towards no limit.
+        rule_runs: How often the engine ran an actor's rules in Python to learn them.
+        edges: Every transition, if the reference explorer kept them.
+        survey: The queries of explorers with rows; None from the reference explorer.
+        allowed: The number of enabled transitions in the visited configurations; a reduction follows fewer.
+        reducer: The reductions that were applied, None without.
+        start: The configuration it started from, where another one represents that.
+        times: The answers about time, for a mission with timing.
     """
 
     configurations: Sequence[Configuration]
@@ -219,12 +216,12 @@ class Exploration:
 
     @property
     def size(self) -> int:
-        """How many configurations were visited."""
+        """The number of visited configurations."""
         return len(self.configurations)
 
     @property
     def complete(self) -> bool:
-        """Whether everything reachable was visited."""
+        """Whether all reachable configurations were visited."""
         return not self.bounds
 
     def to_networkx(self) -> MultiDiGraph[int]:
@@ -259,5 +256,5 @@ SEED = 20260
 
 
 def sample(size: int, count: int) -> list[int]:
-    """Return so many of the numbers below a size, the same in every run."""
+    """Return a sample of the numbers below a size, the same in every run."""
     return sorted(Random(SEED).sample(range(size), min(count, size)))

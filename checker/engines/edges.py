@@ -1,4 +1,4 @@
-"""The edges of a transition system, stored compactly as they are found."""
+"""The edges of a transition system in compact arrays, filled during an exploration."""
 
 from __future__ import annotations  # array[int] is no type at run time before Python 3.12
 
@@ -11,14 +11,14 @@ from semantics.state.configuration import Label
 
 @dataclass(slots=True)
 class Edges:
-    """Rows of edges, one row for each configuration in the order in which they are expanded.
+    """Rows of edges, one for each configuration in the order of expansion.
 
     Attributes:
-        starts: Where each row begins; a row is closed by where the next one begins.
-        targets: For each edge, the number of the configuration that it leads to.
+        starts: The start of each row; the start of the next row ends it.
+        targets: For each edge, the number of its target.
         actions: For each edge, the number of its label.
         labels: The number of each label, in the order of discovery.
-        partial: The configurations of which not all successors are here.
+        partial: The configurations whose row lacks some successors.
     """
 
     starts: array[int] = field(default_factory=lambda: array("q", [0]))
@@ -28,7 +28,7 @@ class Edges:
     partial: set[int] = field(default_factory=set)
 
     def add(self, label: Label, target: int) -> None:
-        """Add an edge to the row that is open."""
+        """Add an edge to the open row."""
         self.targets.append(target)
         self.actions.append(self.labels.setdefault(label, len(self.labels)))
 
@@ -37,9 +37,9 @@ class Edges:
         self.starts.append(len(self.targets))
 
     def rows(self, configurations: int) -> Iterator[int]:
-        """Yield where each row of so many configurations begins, and where the last ends.
+        """Yield the start of each configuration's row, and the end of the last.
 
-        What was never expanded, or not to the end, has the edges that were found, and is partial.
+        The row of a configuration that was not fully expanded holds the edges found; the configuration is partial.
         """
         yield from self.starts
         expanded = len(self.starts) - 1

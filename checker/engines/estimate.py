@@ -1,9 +1,8 @@
-"""Estimate the total number of configurations from the sizes of layers: a range, none while layers grow.
+"""Estimate the total number of configurations from the sizes of layers: a range, or none while layers grow.
 
-Nobody knows the size of what was not visited. Layers of interleavings mostly rise and then fall; once they have fallen
-for a while, what is left is taken to be no more than if they went on at their slowest recent fall, or fell as slowly as
-they rose. Where they rise once more, the range is given up, and was wrong. At least as much as was met there is in any
-case.
+Layers of interleavings mostly rise and then fall. After some falling layers, two extrapolations bound the rest: layers
+keep falling at their slowest recent rate, or fall as slowly as they rose. If layers rise again, the estimate was wrong
+and is withdrawn. The lower bound is always the number of configurations found.
 """
 
 from collections.abc import Sequence
@@ -11,24 +10,24 @@ from itertools import accumulate, pairwise, takewhile
 from typing import NamedTuple
 
 BLOCKS = 24
-"""How many blocks the layers are put together to, where there are so many: single layers go up and down."""
+"""The number of blocks that layers are grouped into, since the sizes of single layers fluctuate."""
 
 FALLS = 3
-"""So many blocks have to be smaller each than the one before."""
+"""The number of consecutive falling blocks before there is an estimate."""
 
 MOST = 20
-"""A range up to more than so many times what was met says nothing."""
+"""The largest useful ratio of the upper bound to the configurations found."""
 
 
 class Estimate(NamedTuple):
-    """How many configurations there are in all: at least, and at most if layers go on falling as they do."""
+    """A range for the total number of configurations, if layers keep falling."""
 
     least: int
     most: int
 
 
 def estimate(layers: Sequence[int]) -> Estimate | None:
-    """Return how many there may be in all, given the sizes of all layers that were found whole; None while they grow.
+    """Return the estimated total, given the sizes of all complete layers; None while they grow.
 
     >>> estimate([1, 4, 16, 64])
     >>> estimate([1, 4, 16, 20, 15, 9, 4])
@@ -46,7 +45,7 @@ def estimate(layers: Sequence[int]) -> Estimate | None:
 
 
 def _blocks(layers: Sequence[int]) -> list[int]:
-    """Put layers together, the last ones whole: what is left over stands at the beginning."""
+    """Sum layers by blocks; the last blocks have full width, and the first may be narrower."""
     width = max(1, len(layers) // BLOCKS)
     ends = range(len(layers) % width or width, len(layers) + 1, width)
     sums = [0, *accumulate(layers)]
@@ -54,5 +53,5 @@ def _blocks(layers: Sequence[int]) -> list[int]:
 
 
 def _rise_up_to(size: int, blocks: Sequence[int]) -> int:
-    """Return how many there were before blocks first were so large."""
+    """Return the number of configurations in the blocks before the first of at least this size."""
     return sum(takewhile(lambda block: block < size, blocks))

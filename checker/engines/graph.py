@@ -13,7 +13,7 @@ Bools = NDArray[np.bool_]
 Numbers = NDArray[np.integer]
 
 STUTTER = -1
-"""The action of a step that changes nothing: where nothing has to happen, time passes all the same."""
+"""The action of a stutter step: a self-loop where no transition has to happen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,11 +21,11 @@ class Graph:
     """A transition system in compressed sparse rows; configuration 0 is the initial one.
 
     Attributes:
-        starts: Where the edges of each configuration begin, and after the last where they end (n + 1).
-        targets: For each edge, the number of the configuration that it leads to.
+        starts: The start of the edges of each configuration, and the end of the last (n + 1 numbers).
+        targets: For each edge, the number of its target.
         actions: For each edge, the number of its label, or `STUTTER`.
         labels: The labels.
-        partial: For each configuration, whether successors of it may be missing; None where none are.
+        partial: For each configuration, whether successors may be missing; None if none are.
     """
 
     starts: Numbers
@@ -36,25 +36,25 @@ class Graph:
 
     @property
     def size(self) -> int:
-        """How many configurations there are."""
+        """The number of configurations."""
         return len(self.starts) - 1
 
     @cached_property
     def open(self) -> Bools:
-        """For each configuration, whether successors of it may be missing."""
+        """For each configuration, whether successors may be missing."""
         return np.zeros(self.size, dtype=np.bool_) if self.partial is None else self.partial
 
     @cached_property
     def sources(self) -> Numbers:
-        """For each edge, the number of the configuration that it leaves."""
+        """For each edge, the number of its source."""
         return np.repeat(np.arange(self.size, dtype=self.targets.dtype), np.diff(self.starts))
 
     def total(self, optional: Bools | None = None) -> "Graph":
-        """Return the graph with one edge more, to itself, at each configuration where nothing has to happen.
+        """Return the graph with a self-loop at each configuration where no transition has to happen.
 
         Args:
-            optional: For each label, whether its steps need never happen. Without it, and where nothing is enabled at
-                all, there is that one edge and no other.
+            optional: For each label, whether its steps need never happen. By default every step has to happen, and only
+                deadlocks get the loop.
         """
         needless = self.taken(np.zeros(len(self.labels), dtype=np.bool_) if optional is None else optional)
         resting = ~self.enabled(~needless) & ~self.open
@@ -72,12 +72,12 @@ class Graph:
         )
 
     def taken(self, labels: Bools) -> Bools:
-        """Return for each edge whether its label is one of those marked; a stutter's never is."""
+        """Return for each edge whether its label is marked; a stutter step's never is."""
         marked: Bools = np.append(labels, False)[self.actions]  # STUTTER addresses the last
         return marked
 
     def enabled(self, edges: Bools) -> Bools:
-        """Return for each configuration whether one of the marked edges leaves it."""
+        """Return for each configuration whether a marked edge leaves it."""
         found = np.zeros(self.size, dtype=np.bool_)
         found[self.sources[edges]] = True
         return found

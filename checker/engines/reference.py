@@ -1,6 +1,6 @@
-"""The reference explorer: breadth-first, exact and simple; the yardstick for every faster one.
+"""The reference explorer: breadth-first, exact and simple; the oracle for the faster ones.
 
-It visits each configuration once, in the order of its distance from the first, so a path to it is a shortest one.
+It visits each configuration once, in the order of distance from the initial one, so a path to it is a shortest one.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def explore_one_by_one(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
-    """Visit everything that is reachable, running the rules everywhere."""
+    """Visit the reachable configurations, running the rules in each."""
     explorer = _Explorer(initial, inspect, options)
     if options.reduce is None:
         return explorer.run()
@@ -70,7 +70,7 @@ class _Explorer:
 
     def visit_all(self, started: float) -> None:
         reported = started
-        for number, configuration in enumerate(self.configurations):  # grows while it is gone through
+        for number, configuration in enumerate(self.configurations):  # grows during the loop
             now = time.monotonic()
             if (end := self.limits.end(now - started)) is not None:
                 self.bound(end)
@@ -101,7 +101,7 @@ class _Explorer:
             self.found.edges.close()
 
     def reduced(self, number: int, c: Configuration, expansion: Expansion, reducer: Reduced) -> None:
-        """Follow the transitions that are chosen, and note where one of them leads on."""
+        """Follow the chosen transitions, and record the target of the onward one for the cycle proviso."""
         followed = reducer.choose(c, expansion, number, self.reached, self.paths)
         if len(followed.steps) < len(expansion.transitions):
             self.missing(number)
@@ -110,7 +110,7 @@ class _Explorer:
             self.paths.lead(number, target, followed.taken)
 
     def reached(self, transition: Transition) -> int | None:
-        """Return the number of the configuration that a transition leads to, None if it is new."""
+        """Return the number of a transition's target, None if it is new."""
         return self.numbers.get(self.represent(transition.target))
 
     def follow_all(self, number: int, transitions: Iterable[Transition]) -> None:
@@ -164,5 +164,5 @@ def _itself(c: Configuration) -> Configuration:
 
 
 def crowded(c: Configuration, most: int) -> bool:
-    """Tell whether some agent has more pending requests or messages than are explored."""
+    """Return whether some agent has more pending requests or messages than the limit."""
     return any(c.eta.count(a) > most or len(c.alpha.mailbox(a)) > most for a in c.alpha.names())

@@ -1,7 +1,7 @@
-"""Runs in whole ticks, and which of many is shown.
+"""Runs in whole ticks, and the choice of the run that a report shows.
 
-The first run to something is the one with the fewest steps; of those the first by the numbers of its steps in their
-order; and each of them is taken as early as all before it allow. So it depends on no engine which run a report shows.
+The first run to a goal has the fewest steps; among those, the sequence of step numbers that is first in lexicographic
+order; and each step as early as the steps before it allow. So every engine shows the same run.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from typing import Generic, NamedTuple, TypeVar
 from checker.limits import look
 
 DELAY = -1
-"""In the place of the number of a step: a tick passes."""
+"""The step number of a delay: one tick passes."""
 
 
 class Edge(NamedTuple):
-    """What leads from one state to another: a step of the situation by its number, or `DELAY`."""
+    """An edge between two states: the number of a step in its configuration, or `DELAY`."""
 
     step: int
     target: int
@@ -28,9 +28,9 @@ class Run:
     """A run.
 
     Attributes:
-        steps: The numbers of its steps, each in the situation that it is taken in.
-        dates: When each is taken, in ticks from the start.
-        end: How long it goes on.
+        steps: The numbers of its steps, each in its own configuration.
+        dates: The date of each step, in ticks from the start.
+        end: The duration of the run in ticks.
     """
 
     steps: tuple[int, ...] = ()
@@ -48,7 +48,7 @@ Follow = Callable[[Node], Iterable[tuple[int, Node]]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Group(Generic[Node]):
-    """The states that a sequence of steps leads to first, whenever they are taken."""
+    """The states that a sequence of steps reaches first, whatever the dates."""
 
     states: tuple[Node, ...]
     step: int = DELAY
@@ -56,7 +56,7 @@ class Group(Generic[Node]):
 
     @property
     def steps(self) -> tuple[int, ...]:
-        """The steps that lead here."""
+        """The steps of the sequence."""
         found, group = [], self
         while group.before is not None:
             found.append(group.step)
@@ -65,7 +65,7 @@ class Group(Generic[Node]):
 
 
 def groups(start: Node, follow: Follow[Node]) -> Iterator[Group[Node]]:
-    """Yield all states by the first sequences of steps that lead to them, the fewest first, then by number."""
+    """Yield the states in groups, one for each first sequence of steps: the shortest first, then by step numbers."""
     met = {start}
     layer = [Group(tuple(_waiting([start], follow, met)))]
     while layer:
@@ -86,7 +86,7 @@ def groups(start: Node, follow: Follow[Node]) -> Iterator[Group[Node]]:
 
 
 def layers(start: Node, follow: Follow[Node]) -> Iterator[list[Node]]:
-    """Yield all states, layer by layer: those that so many steps lead to, and fewer do not."""
+    """Yield all states, layer by layer: those that a number of steps reaches and fewer don't."""
     met = {start}
     layer = _waiting([start], follow, met)
     while layer:
@@ -99,8 +99,8 @@ def layers(start: Node, follow: Follow[Node]) -> Iterator[list[Node]]:
 
 
 def _waiting(states: list[Node], follow: Follow[Node], met: set[Node]) -> list[Node]:
-    """Return some states with those that waiting there leads to; what was met before is left out."""
-    for state in states:  # grows on the way
+    """Add the unvisited states that delays alone reach, and return the list."""
+    for state in states:  # grows during the loop
         later = [target for step, target in follow(state) if step == DELAY and target not in met]
         met.update(later)
         states += later
@@ -119,7 +119,7 @@ def first_run(start: Node, follow: Follow[Node], is_end: Callable[[Node], bool])
 def dated(
     start: Node, follow: Follow[Node], steps: tuple[int, ...], is_end: Callable[[Node], bool]
 ) -> tuple[Run, tuple[Node, ...]]:
-    """Return a sequence of steps with its earliest dates on which it leads to an end, and to which ends it leads."""
+    """Return a sequence of steps with its earliest dates to an end, and the ends it reaches on them."""
     leading = _leading(start, follow, steps, is_end)
     now, dates, states = 0, list[int](), [start]
     for done, step in enumerate((*steps, None)):
@@ -150,10 +150,10 @@ def dated(
 def _leading(
     start: Node, follow: Follow[Node], steps: tuple[int, ...], is_end: Callable[[Node], bool]
 ) -> set[tuple[int, Node]]:
-    """Return how many steps are done in which states, if the others lead from there to an end."""
+    """Return the pairs of a number of done steps and a state from which the other steps reach an end."""
     sources: dict[tuple[int, Node], list[tuple[int, Node]]] = {(0, start): []}
     waiting = [(0, start)]
-    for done, state in waiting:  # grows on the way
+    for done, state in waiting:  # grows during the loop
         for step, target in follow(state):
             if step == DELAY or (done < len(steps) and step == steps[done]):
                 node = (done + (step != DELAY), target)

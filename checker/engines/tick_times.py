@@ -1,4 +1,4 @@
-"""What whole ticks tell of time."""
+"""The answers about time from whole ticks (digital clocks)."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from semantics.timing.actor_clocks import Sort
 from semantics.timing.clocks import Situation, TimedStep
 
 Awaiting = tuple[int, float | None]
-"""A state, and for how many ticks something is awaited; None if nothing is."""
+"""A state, and the ticks since something is awaited; None if nothing is."""
 
 IN_TIME = -math.inf
-"""For so long what comes in time in any case is awaited: how long it has been makes no difference."""
+"""The elapsed time of a wait that certainly ends in time: its actual length is irrelevant."""
 
 
 class Ticks:
@@ -38,12 +38,12 @@ class Ticks:
 
     @property
     def searched(self) -> str:
-        """Over what it searched, in words."""
+        """The size of the searched state space, in words."""
         return f"{len(self.timeline.states):,} timed configurations"
 
     @cached_property
     def situations(self) -> tuple[Situation, ...]:
-        """What time means in each configuration."""
+        """The timed situation of each configuration."""
         return tuple(self.timeline.situations[number] for number in self.timeline.order)
 
     @cached_property
@@ -53,7 +53,7 @@ class Ticks:
             found.setdefault(number, []).append(each)
         return found
 
-    # --- of configurations
+    # --- configurations
 
     def taken(self, place: int) -> set[int]:
         """Return the steps of a configuration that are taken at some time."""
@@ -62,21 +62,21 @@ class Ticks:
         return {at for at in steps if (number, at) in self.timeline.taken}
 
     def together(self, place: int) -> Iterator[tuple[Transition, ...]]:
-        """Yield each pair of pending controls that may be served at one moment."""
+        """Yield each pair of pending controls that may be served at the same moment."""
         several = self._ages[self.timeline.order[place]]
         for one, other in control_pairs(self.situations[place]):
             if any(_any_due(one, each) and _any_due(other, each) for each in several):
                 yield tuple(step.transition for step in (*one, *other))
 
     def unsayable(self, place: int) -> set[int]:
-        """Return the clauses whose message cannot be said any more at some time in a configuration."""
+        """Return the clauses whose message has expired at some time in a configuration."""
         situation, several = self.situations[place], self._ages[self.timeline.order[place]]
         return {number for each in several for number in situation.unsayable(each)}
 
     # --- runs
 
     def run_before(self, place: int, by: Transition | None) -> Run:
-        """Return the first run to a configuration, and then a transition if that is ever taken there."""
+        """Return the first run to a configuration, then through a transition if that is ever taken there."""
         number, situation = self.timeline.order[place], self.situations[place]
         steps = {at for at in self.taken(place) if situation.steps[at].transition == by}
 
@@ -89,7 +89,7 @@ class Ticks:
         return run.then(min(steps)) if steps else run
 
     def transitions(self, run: Run) -> tuple[Transition, ...]:
-        """Return what is done in a run."""
+        """Return the transitions of a run."""
         number, found = 0, list[Transition]()
         for at in run.steps:
             found.append(self.timeline.situations[number].steps[at].transition)
@@ -106,7 +106,7 @@ class Ticks:
         return [holds(formula, each.c) for each in self.situations]
 
     def way_to(self, run: Run, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
-        """Return the fewest steps in turn from the end of a run to some configuration, none if none lead there."""
+        """Return the shortest in-turn steps from the end of a run to a configuration, empty if none lead there."""
         timeline, reached = self.timeline, set(self.timeline.order)
 
         def follow(number: int) -> Iterator[tuple[Transition, int]]:
@@ -120,11 +120,11 @@ class Ticks:
         return way_to(start, lambda number: is_end(timeline.situations[number].c), follow)
 
     def unbounded(self) -> set[str]:
-        """Return the rules by which agents may do something in their turn that nothing says an end of."""
+        """Return the rules of agents' in-turn steps that have no upper time bound."""
         return {label.rule for each in self.situations for label in each.unbounded()}
 
     def longest_flights(self) -> dict[Name, int]:
-        """Return for how many ticks a flight of each agent takes at most, where that is bounded."""
+        """Return the longest flight of each agent in ticks, where it is bounded."""
         most: dict[Name, int] = {}
         for situation in self.situations:
             for clock, interval in situation.bounds.items():
@@ -140,7 +140,7 @@ class Ticks:
         return [true[number] for number, _ in self.timeline.states]
 
     def within(self, asked: Proposition | None, awaited: Proposition, most: int) -> Wait:
-        """Return how long something is waited for from the start, or from wherever something else is true."""
+        """Return the longest wait for a proposition from the start, or from wherever another one is true."""
         inside = [not true for true in self.true_in(awaited)]
         begins = [state == 0 for state in range(len(inside))] if asked is None else self.true_in(asked)
         stays = longest(self.edges, inside, lambda _: True)
@@ -166,7 +166,7 @@ class Ticks:
         return Wait(longest_stay, run, math.isinf(longest_stay))
 
     def moments(self, formula: Proposition) -> Moments:
-        """Return when something is first true."""
+        """Return the earliest and latest moments at which a proposition becomes true."""
         true = self.true_in(formula)
         if true[0]:
             return Moments(Run(), 0, may_wait=False)
@@ -176,7 +176,7 @@ class Ticks:
         return Moments(self._earliest(true), latest, math.isinf(waits))
 
     def _earliest(self, true: Sequence[bool]) -> Run | None:
-        """Return the first run that comes first to where something is true; None if none does."""
+        """Return the first of the earliest runs to a state of the given set, None if it is unreachable."""
         left = self._left(true)
         if 0 not in left:
             return None
@@ -191,7 +191,7 @@ class Ticks:
         return first_run((0, 0), follow, lambda node: true[node[0]])
 
     def _left(self, true: Sequence[bool]) -> dict[int, int]:
-        """Return for each state how many ticks pass at least until something is true, where it can become true."""
+        """Return the least ticks from each state to the given set, where it is reachable."""
         sources: dict[int, list[tuple[int, int]]] = {}
         for state, edges in enumerate(self.edges):
             for step, target in edges:
@@ -208,7 +208,7 @@ class Ticks:
         return left
 
     def spans(self, steps: Sequence[Set[TakenStep]]) -> list[Span]:
-        """Return for each of some sets of steps when one of them is taken."""
+        """Return for each set of steps the span of dates at which one of them is taken."""
         sets: dict[tuple[int, int], list[int]] = {}
         for number, several in enumerate(steps):
             for place, step in several:
@@ -221,10 +221,10 @@ class Ticks:
                 found[number] = Span(min(known.earliest, first), max(known.latest, last))
         return found
 
-    # --- endurance, and whether time goes on
+    # --- endurance and timelocks
 
     def exhausted(self) -> tuple[dict[str, Run], int]:
-        """Return the first run on which each vehicle is aloft for too long, and how many configurations show that."""
+        """Return the first run that exhausts each vehicle, and the number of configurations with an exhausted one."""
         states: dict[str, set[int]] = {}
         for state, (number, ages) in enumerate(self.timeline.states):
             for vehicle in self.timeline.situations[number].exhausted(ages):
@@ -233,7 +233,7 @@ class Ticks:
         return runs, len({self.timeline.configuration(each) for ends in states.values() for each in ends})
 
     def stop(self) -> Stop | None:
-        """Return the first run after which no time can pass any more."""
+        """Return the first run to a timelock, None if there is none."""
         stops = stopped(self.edges, [not edges for edges in self.edges])
         run = first_run(0, self.edges.__getitem__, stops.__getitem__)
         if run is None:
@@ -249,7 +249,7 @@ class Ticks:
 
 
 def control_pairs(situation: Situation) -> Iterable[tuple[list[TimedStep], list[TimedStep]]]:
-    """Return the pairs of pending controls, each by what serves it."""
+    """Return the pairs of pending controls, each as the steps that serve it."""
     controls: dict[object, list[TimedStep]] = {}
     for step in situation.steps:
         if step.transition.label.rule in CONTROLS and step.transition.served is not None:

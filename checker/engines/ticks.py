@@ -1,6 +1,6 @@
-"""The reference explorer of missions with timing: whole ticks, one after the other.
+"""The reference explorer of missions with timing: digital clocks, which advance by whole ticks.
 
-All bounds are closed and whole, so that whole ticks reach the same configurations as real time, and decide the same
+All bounds are closed integers, so digital clocks reach the same configurations as dense time and give the same verdicts
 (Henzinger, Manna, Pnueli 1992).
 """
 
@@ -21,7 +21,7 @@ from semantics.state.configuration import Configuration
 
 
 def explore_in_ticks(initial: Configuration, inspect: Iterable[Inspect], options: Options) -> Exploration:
-    """Visit everything that is reachable in time, then show each configuration to the inspections."""
+    """Visit the configurations that are reachable in time, then show each to the inspections."""
     started = time.monotonic()
     found = Exploration([], [])
     timeline = Timeline(initial)
@@ -29,7 +29,7 @@ def explore_in_ticks(initial: Configuration, inspect: Iterable[Inspect], options
         _visit_all(timeline, found, options, started)
         if not timeline.grown or found.bounds:
             break
-        timeline.begin()  # a constant is larger than it was taken for: clocks are counted further
+        timeline.begin()  # a constant is larger than assumed: clocks are counted further
     found.times = _summarise(timeline, found)
     for place in range(len(timeline.order)):
         for inspection in inspect:
@@ -72,7 +72,7 @@ def _progress(timeline: Timeline, count: int, seconds: float) -> Progress:
 
 
 def _summarise(timeline: Timeline, found: Exploration) -> Ticks:
-    """Write down the configurations in the order of discovery, and each transition that is taken, once."""
+    """Record the configurations in the order of discovery, and each taken transition once."""
     places, origins = {timeline.configuration(0): 0}, [0]
     for depth, layer in enumerate(layers(0, timeline.edges.__getitem__)):
         follow = sorted(

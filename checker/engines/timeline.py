@@ -1,6 +1,6 @@
-"""All that is reachable in whole ticks: a state is a configuration with the ages of its clocks.
+"""The reachable states in whole ticks: a state is a configuration with the ages of its clocks.
 
-Edges are steps, which take no time, and `delay`, which adds one to each clock.
+An edge is a step, which takes no time, or `delay`, which adds one to each clock.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ Edges = tuple[Edge, ...]
 
 
 class Timeline:
-    """All that is reachable in whole ticks.
+    """The reachable states in whole ticks.
 
     Attributes:
-        situations: One for each configuration, in the order of discovery.
-        states: Of each the number of its configuration, and the ages of its clocks.
-        edges: What leads from each; empty of what was not expanded.
-        order: The numbers of the configurations that were met, in the order of their first runs (`first_run`).
-        taken: Every configuration with the number of a step that is taken there at some time.
+        situations: The situation of each configuration, in the order of discovery.
+        states: For each state the number of its configuration, and the ages of its clocks.
+        edges: The edges of each state; empty before its expansion.
+        order: The numbers of the reached configurations, in the order of their first runs (`first_run`).
+        taken: The steps that are taken at some time, as pairs of a configuration's number and a step's.
     """
 
     def __init__(self, initial: Configuration) -> None:
@@ -38,7 +38,7 @@ class Timeline:
         self.begin()
 
     def begin(self) -> None:
-        """Forget the states, and keep what is known of configurations."""
+        """Discard the states and start again; keep the knowledge about configurations."""
         self.grown = False
         self.caps = [self._caps(each) for each in self.situations]
         self.indices: dict[tuple[int, tuple[int, ...]], int] = {}
@@ -49,7 +49,7 @@ class Timeline:
         self.reach(number, self.situations[number].first_ages())
 
     def number(self, c: Configuration) -> int:
-        """Return the number of a configuration, a new one for one that was not met."""
+        """Return the number of a configuration, a new one at the first visit."""
         number = self.numbers.get(c)
         if number is None:
             number = self.numbers[c] = len(self.situations)
@@ -66,7 +66,7 @@ class Timeline:
         return tuple(0 if each.sort is Sort.WINDOW else self.constants[each] for each in situation.clocks)
 
     def reach(self, number: int, ages: tuple[int, ...]) -> int:
-        """Return the index of a state."""
+        """Return the index of a state, a new one at the first visit."""
         state = (number, ages)
         index = self.indices.get(state)
         if index is None:
@@ -77,7 +77,7 @@ class Timeline:
         return index
 
     def expand(self, index: int) -> None:
-        """Follow every step of a state, and let a tick pass where it may."""
+        """Follow every enabled step of a state, and a tick if the deadlines allow it."""
         number, ages = self.states[index]
         situation = self.situations[number]
         found: list[Edge] = []
@@ -90,7 +90,7 @@ class Timeline:
         self.edges[index] = tuple(found)
 
     def passage(self, number: int, at: int, step: TimedStep) -> tuple[int, Passage]:
-        """Return where a step leads, and what it does to the clocks."""
+        """Return the target of a step, and its effect on the clocks."""
         known = self.passages.get((number, at))
         if known is None:
             target = self.number(step.transition.target)
@@ -98,7 +98,7 @@ class Timeline:
             self.passages[number, at] = known
         return known
 
-    # --- what is asked of it
+    # --- queries
 
     def configuration(self, index: int) -> int:
         """Return the number of a state's configuration."""
@@ -106,5 +106,5 @@ class Timeline:
 
 
 def older(ages: tuple[int, ...], caps: tuple[int, ...]) -> tuple[int, ...]:
-    """Return the ages a tick later; those of windows measure nothing, and stay."""
+    """Return the ages one tick later; the clocks of windows measure no time and stay."""
     return tuple(age + 1 if age < cap else age for age, cap in zip(ages, caps, strict=True))

@@ -1,4 +1,4 @@
-"""What an engine knows of time, whichever it is: what verdicts about time are made of."""
+"""The interface of answers about time, the same for every engine; verdicts about time are made of them."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from semantics.timing.clocks import Situation
 
 @dataclass(frozen=True, slots=True)
 class Wait:
-    """How long something is waited for.
+    """The wait for a proposition.
 
     Attributes:
-        most: For so many ticks at the most; 0 where nothing is waited for; infinite where that is not known to end.
-        late: The first run on which it is waited for longer than allowed, None if there is none.
-        ever: Whether it may be waited for without an end; known only where it may be for too long.
+        most: The longest wait in ticks; 0 without a wait; infinite where it has no known end.
+        late: The first run that waits longer than allowed, None if there is none.
+        ever: Whether the wait may be endless; known only where it may be too long.
     """
 
     most: float
@@ -34,12 +34,12 @@ class Wait:
 
 @dataclass(frozen=True, slots=True)
 class Moments:
-    """When something is first true.
+    """The moments at which a proposition is first true.
 
     Attributes:
-        first: The first run to there of those that come there first; None if none does.
+        first: The first of the earliest runs to such a moment; None if it is never true.
         latest: The last tick at which it becomes true; infinite where there is none.
-        may_wait: Whether it may never be.
+        may_wait: Whether it may never become true.
     """
 
     first: Run | None
@@ -48,16 +48,16 @@ class Moments:
 
 
 class TakenStep(NamedTuple):
-    """A step of a configuration, both by their numbers."""
+    """A step of a configuration, both by number."""
 
     place: int
     step: int
 
 
 class Span(NamedTuple):
-    """When something happens, in ticks from the start: at the earliest, and at the latest.
+    """The earliest and the latest date of an event, in ticks from the start.
 
-    The earliest is infinite where it never happens, the latest where nothing bounds it.
+    The earliest is infinite if the event never happens, the latest if nothing bounds it.
     """
 
     earliest: float
@@ -69,11 +69,11 @@ NO_SPAN: Final = Span(math.inf, -math.inf)
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """A run after which no time can pass any more.
+    """A run to a timelock: no time can pass after it.
 
     Attributes:
-        run: The run, with the steps that are done again and again.
-        steps: After how many steps they begin.
+        run: The run, ending with the zero-time steps that repeat.
+        steps: The number of steps before the repetition.
     """
 
     run: Run
@@ -81,72 +81,72 @@ class Stop:
 
 
 class Times(Protocol):
-    """What an engine knows of time.
+    """The answers of an engine about time.
 
     Attributes:
-        initial: What the exploration started from.
-        searched: Over what it searched, in words.
-        situations: What time means in each configuration, in the order of the exploration.
+        initial: The initial configuration of the exploration.
+        searched: The size of the searched state space, in words.
+        situations: The timed situation of each configuration, in the order of the exploration.
     """
 
     initial: Configuration
 
     @property
     def searched(self) -> str:
-        """Over what it searched, in words."""
+        """The size of the searched state space, in words."""
 
     @property
     def situations(self) -> Sequence[Situation]:
-        """What time means in each configuration, in the order of the exploration."""
+        """The timed situation of each configuration, in the order of the exploration."""
 
     def taken(self, place: int) -> set[int]:
         """Return the steps of a configuration that are taken at some time."""
 
     def together(self, place: int) -> Iterable[tuple[Transition, ...]]:
-        """Return each pair of pending controls with what serves them, if both may be served at one moment.
+        """Return the pairs of pending controls that may be served at the same moment, as the steps that serve them.
 
-        What waits for its turn counts as if it had come to its least time.
+        A control that waits for its turn counts as past its least time.
         """
 
     def unsayable(self, place: int) -> set[int]:
-        """Return the clauses whose message cannot be said any more at some time in a configuration."""
+        """Return the clauses whose message has expired at some time in a configuration."""
 
     def run_before(self, place: int, by: Transition | None) -> Run:
-        """Return the first run to a configuration, and then a transition if that is ever taken there."""
+        """Return the first run to a configuration, then through a transition if that is ever taken there."""
 
     def transitions(self, run: Run) -> tuple[Transition, ...]:
-        """Return what is done in a run."""
+        """Return the transitions of a run."""
 
     def within(self, asked: Proposition | None, awaited: Proposition, most: int) -> Wait:
-        """Return how long something is waited for from the start, or from wherever something else is true."""
+        """Return the longest wait for a proposition from the start, or from wherever another one is true."""
 
     def moments(self, formula: Proposition) -> Moments:
-        """Return when something is first true."""
+        """Return the earliest and latest moments at which a proposition becomes true."""
 
     def where(self, formula: Proposition) -> Sequence[bool]:
         """Return for each configuration whether a proposition is true there."""
 
     def way_to(self, run: Run, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
-        """Return the fewest steps in turn from the end of a run to some configuration, none if none lead there."""
+        """Return the shortest in-turn steps from the end of a run to a configuration, empty if none lead there."""
 
     def unbounded(self) -> Set[str]:
-        """Return the rules by which agents may do something in their turn that nothing says an end of."""
+        """Return the rules of agents' in-turn steps that have no upper time bound."""
 
     def longest_flights(self) -> Mapping[Name, int]:
-        """Return for how many ticks a flight of each agent takes at most, where that is bounded."""
+        """Return the longest flight of each agent in ticks, where it is bounded."""
 
     def spans(self, steps: Sequence[Set[TakenStep]]) -> list[Span]:
-        """Return for each of some sets of steps when one of them is taken."""
+        """Return for each set of steps the span of dates at which one of them is taken."""
 
     def exhausted(self) -> tuple[dict[str, Run], int]:
-        """Return the first run on which each vehicle is aloft for too long, and how many configurations show that."""
+        """Return the first run that exhausts each vehicle, and the number of configurations with an exhausted one."""
 
     def stop(self) -> Stop | None:
-        """Return the first run after which no time can pass any more."""
+        """Return the first run to a timelock, None if there is none."""
 
 
 def shown_in_time(times: Times, place: int, shown: InTime) -> Iterator[tuple[Configuration, Expansion]]:
-    """Yield what is shown of a configuration to an inspection."""
+    """Yield the views of a configuration for an inspection."""
     situation = times.situations[place]
     match shown:
         case InTime.TAKEN:
@@ -159,7 +159,7 @@ def shown_in_time(times: Times, place: int, shown: InTime) -> Iterator[tuple[Con
 
 
 def shown_to(inspection: object) -> InTime:
-    """Return what is shown to an inspection."""
+    """Return the kind of view that an inspection requires."""
     shown: InTime = getattr(inspection, "in_time", InTime.ENABLED)
     return shown
 
@@ -173,7 +173,7 @@ def _taken(situation: Situation, steps: set[int]) -> Expansion:
 
 
 def without_sayings(late: Set[int], c: Configuration) -> Configuration:
-    """Return a configuration in which nobody can say any more what some clauses say: it is too late for that."""
+    """Return a configuration in which the messages of expired clauses are used up."""
     clauses = (c.setting.environment[number] for number in sorted(late))
     counters = {clause.counter: 0 for clause in clauses if isinstance(clause, Says)}
     return c.with_(counters) if counters else c

@@ -1,1 +1,1 @@
-"""Properties: the questions about configurations and runs, the same for every engine."""
+"""Properties: the decision of questions about configurations and runs, the same for every engine."""

@@ -1,4 +1,4 @@
-"""The causes of a deadlock: why each request stays pending, and what each waiting agent waits for."""
+"""The causes of a deadlock: the reason why each request stays pending, and the awaited input of each waiting agent."""
 
 from collections.abc import Iterable, Iterator
 
@@ -18,11 +18,9 @@ from semantics.state.eta import Pending
 from semantics.state.requests import CTR, FLY, MGR, OBS, READY, SND
 from semantics.state.signature import Name
 
-NO_NAMES: frozenset[str] = frozenset()
-
 
 def causes(c: Configuration, waiting: Iterable[Name]) -> Iterator[str]:
-    """Yield why each request stays pending and what some agents at a react wait for, as far as that is known."""
+    """Yield the known reasons for each pending request, and the awaited input of agents at a react."""
     for a in c.alpha.names():
         for pending in c.eta.of(a):
             why = _why(c, pending)
@@ -61,7 +59,7 @@ def _apart(c: Configuration, here: Name, there: Name, who: str) -> str:
 
 
 def _missing(c: Configuration, here: Name, there: Name) -> str:
-    """Return what one or the other lacks to share a link: an image in P, a channel that is up, or belief."""
+    """Return the reason why two hosts share no link: no image in P, a channel that is down, or missing belief."""
     logical, physical = c.structure.logical, c.structure.physical
     absent = [host for host in (here, there) if host not in physical]
     if absent:
@@ -77,7 +75,7 @@ def _missing(c: Configuration, here: Name, there: Name) -> str:
 
 
 def _promise(c: Configuration, here: Name, there: Name) -> str:
-    """Return how to count on a link of theirs that the environment may give back; empty where it gives none back."""
+    """Return advice on a link that the environment may restore; empty if it restores none."""
     physical = c.structure.physical
     for clause in c.setting.environment:
         dropped = isinstance(clause, Drops) and clause.returns and physical.is_down(clause.channel)
@@ -87,21 +85,21 @@ def _promise(c: Configuration, here: Name, there: Name) -> str:
     return ""
 
 
-# --- what an agent waits for ----------------------------------------------------------------------------------
+# --- the awaited input of an agent ----------------------------------------------------------------------------
 
 
 def _awaited(c: Configuration, a: Name, react: React) -> str:
     if not react.cases:
         return "nothing that could come"
     wanted = " or ".join(dict.fromkeys(_shown(case.pattern) for case in react.cases))
-    there = ", ".join(show(value, NO_NAMES) for value in _got(c, a))
+    there = ", ".join(map(show, _got(c, a)))
     refused = f"; no case takes {there}" if there else ""
     patterns = [case.pattern for case in react.cases]
     return f"{wanted}{_from(c, a, patterns)}{refused}"
 
 
 def _from(c: Configuration, a: Name, patterns: Iterable[Pattern]) -> str:
-    """Return who may send what some patterns take, even if that agent is stuck itself."""
+    """Return the possible senders of a message for some patterns, even those that are stuck themselves."""
     senders = _senders(c, a, patterns)
     if senders:
         return f" from {' or '.join(senders)}"
@@ -112,7 +110,7 @@ def _from(c: Configuration, a: Name, patterns: Iterable[Pattern]) -> str:
 
 
 def _senders(c: Configuration, a: Name, patterns: Iterable[Pattern]) -> list[Name]:
-    """Return who has sent, or may still send, what one of some patterns may take."""
+    """Return the agents that have sent, or may still send, a message that a pattern may take."""
     wanted = tuple(patterns)
     return [b for b in c.alpha.names() if _on_its_way(c, a, b, wanted) or _may_send(c, a, b, wanted)]
 
@@ -142,7 +140,7 @@ def _got(c: Configuration, a: Name) -> tuple[Value, ...]:
 def _shown(pattern: Pattern) -> str:
     match pattern:
         case Exactly(value):
-            return show(value, NO_NAMES)
+            return show(value)
         case Elements(items):
             return f"({', '.join(_shown(each) for each in items)})"
         case Anything(_, "observation"):

@@ -1,4 +1,4 @@
-"""The places in a mission's text that may have asked for a control: findings about the same places are alike."""
+"""The possible sites of a control's request in the mission's text; findings with equal sites are grouped."""
 
 from functools import lru_cache
 
@@ -11,13 +11,13 @@ from semantics.state.setting import Setting
 from semantics.state.signature import Name
 
 Site = int
-"""The line of a `control`; of one without a line its number, negative."""
+"""The line of a `control`; for one without a line its number, negative."""
 
 
 def common_sites(c: Configuration, *requests: CTR | FLY) -> tuple[tuple[Site, ...], ...] | None:
-    """Return the places that may have asked for each of some controls, in order; None where some are not known.
+    """Return the possible sites of each of some controls, in order; None if some are unknown.
 
-    It is one place for each, unless the text has the same control several times.
+    Each control has one site, unless the text contains the same control several times.
     """
     found = sorted(
         _sites(c.setting, each.agent, hosts_of(c, each.agent), str(each.reaction)) for each in requests
@@ -37,7 +37,7 @@ def _sites(setting: Setting, agent: Name, hosts: Names, control: str) -> tuple[S
 
 @lru_cache(maxsize=1 << 10)
 def _may_ask(setting: Setting, number: int, hosts: Names) -> frozenset[str]:
-    """Return what a statement may ask for; nothing is known of one with too many combinations of arguments."""
+    """Return the controls that a statement may request; empty if it has too many combinations of arguments."""
     statement = setting.program.statements[number]
     found = instances(setting, statement, hosts) if isinstance(statement, ControlBy) else None
     return frozenset(map(str, found or ()))
@@ -45,7 +45,7 @@ def _may_ask(setting: Setting, number: int, hosts: Names) -> frozenset[str]:
 
 @lru_cache(maxsize=1 << 8)
 def _runs(program: Program, agent: Name) -> frozenset[int]:
-    """Return the statements that an agent may run; all where the text does not name it."""
+    """Return the statements that an agent may run; all of them if the text does not name it."""
     begun = [program.bodies[agent]] if agent in program.bodies else list(_spawned(program, agent))
     return frozenset[int]().union(*(reachable(program, block) for block in begun))
 

@@ -1,6 +1,6 @@
 """Coverage: the statements, branches and clauses of a mission that no run reaches.
 
-A pure function of the mission and of what was visited, whatever explored it.
+It is a pure function of the mission and its visited parts, independent of the engine.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Set
@@ -33,7 +33,7 @@ from semantics.state.configuration import Configuration
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """How many of them were reached."""
+    """The number of reached items, and of all items."""
 
     reached: int
     of: int
@@ -41,12 +41,12 @@ class Tally:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """Something that no run reaches.
+    """A part of the mission that no run reaches.
 
     Attributes:
-        line: Where it begins, from 1; 0 where that is not known.
+        line: Its first line, from 1; 0 if unknown.
         sort: `statement`, `branch`, `behaviour`, `rule` or `clause`.
-        message: What is to be said of it.
+        message: A sentence about it.
     """
 
     line: int
@@ -56,17 +56,17 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """What was reached of a mission's text.
+    """The reached parts of a mission's text.
 
     Attributes:
-        complete: Whether everything reachable was visited: else a gap is no more than what was not reached so far.
-        statements: How many of the statements.
-        branches: How many of the cases, alternatives and outcomes of tests.
-        rules: How many of the mission's own rules.
-        clauses: How many of the environment's clauses.
-        lines: The lines of which something was reached, in order.
-        unreached: The lines with statements, cases or clauses of which nothing was.
-        gaps: Where runs never go, from the top of the text; what lies within one is not told again.
+        complete: Whether everything reachable was visited; else a gap is only unreached so far.
+        statements: The reached statements.
+        branches: The reached cases, alternatives and outcomes of tests.
+        rules: The used rules of the mission's own.
+        clauses: The clauses of the environment that happened.
+        lines: The lines with a reached part, in order.
+        unreached: The lines with statements, cases or clauses, none of them reached.
+        gaps: The unreached parts, from the top of the text; one within another is left out.
     """
 
     complete: bool
@@ -80,7 +80,7 @@ class Coverage:
 
 
 def coverage(initial: Configuration, visited: Visited, *, complete: bool) -> Coverage:
-    """Return what was reached of a mission that begins so."""
+    """Return the coverage of a mission with this initial configuration."""
     setting = initial.setting
     found = reached(initial, visited)
     happened = [not visited.happened.isdisjoint(clause.words) for clause in setting.environment]
@@ -103,7 +103,7 @@ def coverage(initial: Configuration, visited: Visited, *, complete: bool) -> Cov
 
 
 def reached(initial: Configuration, visited: Visited) -> "Reached":
-    """Return what was reached of the program: where agents stood, and what they passed."""
+    """Return the reached parts of the program, from the agents' positions and their executed statements."""
     setting = initial.setting
     computed = {passage for moment in visited.moments for passage in passages(setting, moment)}
     passed = computed | visited.passed
@@ -115,7 +115,7 @@ def reached(initial: Configuration, visited: Visited) -> "Reached":
 
 
 def _with_loops(program: Program, reached: Set[int]) -> frozenset[int]:
-    """Add the loops that were entered: their jumps belong to the step that they stand before."""
+    """Add the entered loops; a jump into a loop belongs to the step that reaches its body."""
     found = set(reached)
     loops = [(number, s) for number, s in enumerate(program.statements) if isinstance(s, Loop) and s.body]
     for number, loop in reversed(loops):  # inner ones have the higher numbers
@@ -131,7 +131,7 @@ _NOTHING_FITS: Final[Mapping[type, str]] = {
 
 
 def _inside(program: Program, block: Block) -> Iterator[int]:
-    """Yield the numbers of the statements of a block, and of what is in them."""
+    """Yield the numbers of the statements of a block, nested ones included."""
     waiting = list(block)
     while waiting:
         number = waiting.pop()
@@ -144,7 +144,7 @@ def _inside(program: Program, block: Block) -> Iterator[int]:
 
 
 class Reached:
-    """A program, and the numbers and branches of its statements that were reached; a family's text counts once."""
+    """A program with its reached statements and taken branches; the text of a family counts once."""
 
     def __init__(self, program: Program, numbers: frozenset[int], taken: frozenset[Passage]) -> None:
         self.program, self.numbers, self.taken = program, numbers, taken
@@ -156,7 +156,7 @@ class Reached:
         self.used = frozenset(each.name for each in at if isinstance(each, ControlBy))
 
     def lines(self) -> list[tuple[int, bool]]:
-        """Return the lines of statements and of cases with whether they were reached."""
+        """Return the lines of statements and of cases, each with whether it was reached."""
         program = self.program
         stated = [(program.line(number), number in self.numbers) for number in sorted(self.written)]
         lines = sorted(program.branch_lines.items())
@@ -171,14 +171,14 @@ class Reached:
         for name, behaviour in sorted(self.program.behaviours.items()):
             if behaviour.body and behaviour.body[0] not in self.numbers:
                 if name in called:
-                    continue  # what calls it is never reached, and that is told
+                    continue  # its call is a gap already
                 line = self.program.declared.get(("behaviour", name), self.program.line(behaviour.body[0]))
                 yield Gap(line, "behaviour", f"behaviour '{name}' is never run")
             else:
                 yield from self.within(behaviour.body)
 
     def called(self) -> frozenset[str]:
-        """Return the behaviours that an agent's text calls, itself or by what it calls."""
+        """Return the behaviours that the agents' text calls, directly or through others."""
         program = self.program
         calls = [
             (number, statement.behaviour)
@@ -205,7 +205,7 @@ class Reached:
             yield Gap(self.program.declared["rule", name], "rule", f"rule '{name}' is never used")
 
     def within(self, block: Block) -> Iterator[Gap]:
-        """Yield the gaps of a block: what follows its first statement that is never reached is not told again."""
+        """Yield the gaps of a block; its first unreached statement stands for the rest."""
         for number in block:
             if number not in self.numbers:
                 yield Gap(self.program.line(number), "statement", "this is never reached")
@@ -220,12 +220,12 @@ class Reached:
                 yield from self.below(number, statement)
 
     def is_end(self, number: int, statement: Statement) -> bool:
-        """Say whether no run that comes here goes on."""
+        """Return whether no run continues after this statement."""
         ranks = range(len(branches(statement)))
         return bool(ranks) and not any((number, rank) in self.taken for rank in ranks)
 
     def end(self, number: int, statement: Statement) -> Gap:
-        """Return the gap of a statement from which no run goes on: one, however many cases it has."""
+        """Return the single gap of a statement after which no run continues."""
         if len(branches(statement)) == 1:
             return self.untaken(number, statement, 0)
         return Gap(self.program.line(number), "statement", _NOTHING_FITS[type(statement)])
@@ -241,7 +241,7 @@ class Reached:
                 yield self.untaken(number, statement, rank)
 
     def untaken(self, number: int, statement: Statement, rank: int) -> Gap:
-        """Return the gap of a branch: of a case at its line, of a test's outcome at the test's."""
+        """Return the gap of a branch: a case at its own line, an outcome at the line of its test."""
         if isinstance(statement, React | Match | Choose):
             sort = "alternative" if isinstance(statement, Choose) else "case"
             if isinstance(statement, React) and rank == len(statement.cases):

@@ -1,4 +1,4 @@
-"""The critical path of a run with dates: the steps, one after the other, that its last date is made of."""
+"""The critical path of a run with dates: the consecutive steps whose durations add up to its last date."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ Node = TypeVar("Node", bound=Hashable)
 Step = TypeVar("Step")
 
 BEGINNING: Final = -1
-"""In the place of the number of a step: the start of the mission."""
+"""The number for the start of the mission, in the place of a step's number."""
 
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """One stretch of a critical path: how long a step was waited for once it could be waited for.
+    """One stretch of a critical path: the wait for a step, from the moment it became possible.
 
     Attributes:
-        begin: The tick from which on.
-        end: The tick at which it was taken, or which the path ends at.
+        begin: The first tick of the wait.
+        end: The tick of the step, or of the end of the path.
         label: The step.
-        interval: How long it takes, in ticks.
-        bound: What says so.
+        interval: Its duration, in ticks.
+        bound: The origin of that duration in the mission.
         tick: Milliseconds of a tick.
-        going_on: Whether the path ends before it is taken.
+        going_on: Whether the path ends before the step is taken.
     """
 
     begin: int
@@ -51,7 +51,7 @@ class Leg:
 
     @property
     def why(self) -> str:
-        """How long it may take, and what says so."""
+        """The allowed duration, and its origin."""
         if not self.bound.words:
             return "and nothing says how long that takes"
         line = f", line {self.bound.line}" if self.bound.line else ""
@@ -59,7 +59,7 @@ class Leg:
 
 
 def interval_text(interval: Interval, tick: int) -> str:
-    """Say how long something takes.
+    """Return an interval as text.
 
     >>> interval_text(Interval(0, 5), 1000), interval_text(Interval(60), 1000), interval_text(Interval(2, 2), 1000)
     ('at most 5 s', 'at least 1 min', '2 s')
@@ -82,17 +82,17 @@ def critical_path(
     onward: Sequence[Transition] = (),
     since: int = 0,
 ) -> tuple[Leg, ...]:
-    """Return what the time of a run is made of, in order, from one tick on.
+    """Return the critical path of a run, in order, from one tick on.
 
-    Each leg ends with the step that the next one waits for. A leg begins with what made its step possible, or gave it
+    Each leg ends with the step that the next one waits for. A leg begins with the step that enabled its own, or gave it
     its turn.
 
     Args:
-        initial: Where it begins.
-        done: What is done in it.
-        run: When.
-        onward: How it could go on to what is awaited at its end.
-        since: From when on.
+        initial: The initial configuration.
+        done: The steps of the run.
+        run: The run, with their dates.
+        onward: Possible further steps, to the event awaited at its end.
+        since: The first tick of the path.
     """
     dates = (*run.dates[: len(done)], *(run.end for _ in onward))
     taken = tuple(_taken(initial, (*done, *onward), dates))
@@ -110,7 +110,7 @@ def critical_path(
 def way_to(
     start: Node, is_end: Callable[[Node], bool], follow: Callable[[Node], Iterable[tuple[Step, Node]]]
 ) -> tuple[Step, ...]:
-    """Return the fewest steps from somewhere to an end, none if none lead there."""
+    """Return the fewest steps from a node to an end, empty if none lead there."""
     ways: dict[Node, tuple[Step, ...]] = {start: ()}
     waiting = deque([start])
     while waiting:
@@ -129,10 +129,10 @@ class _Taken:
     """A step of a run.
 
     Attributes:
-        situation: Where it was taken.
+        situation: The situation before it.
         step: The step.
-        date: When, in ticks.
-        since: The steps since which it may have been waited for, the likeliest first.
+        date: Its date, in ticks.
+        since: The steps that may have begun the wait for it, the likeliest first.
     """
 
     situation: Situation
@@ -141,7 +141,7 @@ class _Taken:
     since: tuple[int, ...]
 
     def leg(self, taken: Sequence[_Taken]) -> tuple[Leg, int]:
-        """Return how long it was waited for, and the number of the step that this began with."""
+        """Return the wait for the step as a leg, and the number of the step that began it."""
         interval = timed_by(self.situation, self.step).interval
         begins = {each: 0 if each == BEGINNING else taken[each].date for each in self.since}
         fit = (each for each in self.since if interval.hi is None or self.date - begins[each] <= interval.hi)
@@ -152,7 +152,7 @@ class _Taken:
 
 
 def _taken(initial: Configuration, done: Sequence[Transition], dates: Sequence[int]) -> Iterator[_Taken]:
-    """Yield the steps of a run, each with since when it was waited for."""
+    """Yield the steps of a run, each with the possible starts of its wait."""
     situation = Situation(initial)
     running = {each: (BEGINNING,) * count for each, count in running_in(situation).items()}
     in_turn = dict.fromkeys(_in_turn(situation), BEGINNING)

@@ -1,4 +1,4 @@
-"""Verdicts about time: deadlines, responses, endurance, when something is first true, and whether time stops."""
+"""Verdicts about time: deadlines, responses, endurance, first moments of propositions, and timelocks."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Deadlines:
         self.timing = timing
 
     def decide(self, asked: Property) -> Verdict:
-        """Return the verdict on a property; what is not violated holds only where everything was explored."""
+        """Return the verdict on a property; it holds only after a complete exploration."""
         match asked.kind:
             case PropertyKind.WITHIN:
                 return self.within(asked)
@@ -50,7 +50,7 @@ class Deadlines:
                 raise AssertionError(f"{asked.kind} is not about time")
 
     def judge(self, asked: Property, decided: Callable[[Property], Verdict]) -> Verdict:
-        """Return the verdict on any property of a mission with timing; none that time which stops makes hold."""
+        """Return the verdict on any property of a mission with timing; a timelock prevents positive ones."""
         if asked.is_of_runs:
             return Verdict(asked, Outcome.INCOMPLETE, note=REFUSED)
         try:
@@ -78,7 +78,7 @@ class Deadlines:
         return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: time stops; {stop.message}")
 
     def notes(self) -> tuple[str, ...]:
-        """Return what all verdicts rest on: the scheduler, the bounds that were said; and what was not said."""
+        """Return the assumptions of all verdicts: the scheduler and the given bounds; and the missing bounds."""
         scheduler = self.found.configurations[0].setting.scheduler.value
         bounds = (f"{words} (line {line})" if line else words for words, line in self.timing.lines)
         unsaid = sorted(self.times.unbounded())
@@ -91,19 +91,19 @@ class Deadlines:
         )
 
     def longest_flights(self) -> tuple[tuple[Name, float], ...]:
-        """Return how many seconds a flight of each bigActor takes at most, where that is bounded."""
+        """Return the longest flight of each bigActor in seconds, where it is bounded."""
         most = sorted(self.times.longest_flights().items())
         return tuple((agent, ticks * self.timing.tick / 1000) for agent, ticks in most)
 
     @property
     def outcome(self) -> Outcome:
-        """What is to be said of what nothing was found against."""
+        """The outcome for a property without a violation."""
         return Outcome.HOLDS if self.found.complete else Outcome.INCOMPLETE
 
     # --- deadlines
 
     def within(self, asked: Property) -> Verdict:
-        """Return whether F is true in time on every run; whether G follows in time wherever F is true."""
+        """Return whether F becomes true in time on every run; of a response, whether G follows each F in time."""
         responds = asked.then is not None
         awaited = asked.formula if asked.then is None else asked.then
         wait = self.times.within(asked.formula if responds else None, awaited, asked.bound)
@@ -129,19 +129,19 @@ class Deadlines:
         return Violation("late", message, trace, details, path=path)
 
     def _path(self, run: Run, is_awaited: Callable[[Configuration], bool], since: int = 0) -> tuple[Leg, ...]:
-        """Return the steps that the date of a run is made of, with those that are awaited at its end."""
+        """Return the critical path of a run, extended to the awaited event."""
         onward = self.times.way_to(run, is_awaited)
         return critical_path(self.times.initial, self.times.transitions(run), run, onward, since)
 
     def _unsaid(self, c: Configuration) -> Iterator[str]:
-        """Yield in words what might be done in a configuration, and is nowhere said to be done in time."""
+        """Yield in words the possible steps of a configuration without an upper time bound."""
         for words in dict.fromkeys(map(str, Situation(c).unbounded())):
             yield f"nothing says how long {words} takes"
 
-    # --- when
+    # --- first moments
 
     def time(self, asked: Property) -> Verdict:
-        """Return when a proposition is first true: the earliest, the latest, whether it may never be."""
+        """Return when a proposition is first true: the earliest and the latest date, and whether it may never be."""
         moments, examined = self.times.moments(asked.formula), len(self.times.situations)
         if moments.first is None:
             note = "never" if self.found.complete else "never so far"
@@ -157,7 +157,7 @@ class Deadlines:
     # --- endurance
 
     def endurance(self, asked: Property) -> Verdict:
-        """Return whether no vehicle is ever away from where it is restored for longer than it lasts."""
+        """Return whether every vehicle is restored within its endurance."""
         runs, count = self.times.exhausted()
         examined = len(self.times.situations)
         if not runs:
@@ -178,7 +178,7 @@ class Deadlines:
         return Violation("exhausted", message, trace, details, subject=vehicle, path=path)
 
     def schedule(self, asked: Iterable[Property]) -> Schedule:
-        """Return when flights may begin and end, and what `time` properties ask for may first be true."""
+        """Return the dates of flights, and the first moments of `time` properties."""
         times = [each for each in asked if each.kind is PropertyKind.TIME]
         found = tuple(Milestone(each.name, self._first(each)) for each in times)
         return Schedule(self.timing.tick, flights_of(self.times), found, self.found.complete)
@@ -189,11 +189,11 @@ class Deadlines:
             return Moments(math.inf, NEVER, may_never=True)
         return Moments(found.first.end, found.latest, found.may_wait)
 
-    # --- whether time goes on
+    # --- timelocks
 
     @cached_property
     def stop(self) -> Violation | None:
-        """The first run after which no time can ever pass, with what goes on there for ever; None if there is none."""
+        """The first run to a timelock, with the steps that repeat there; None if there is none."""
         stop = self.times.stop()
         if stop is None:
             return None
@@ -207,11 +207,11 @@ class Deadlines:
     # --- words
 
     def clock(self, ticks: float) -> str:
-        """Say a moment."""
+        """Return a moment as text."""
         return clock_text(int(ticks) * self.timing.tick)
 
     def text(self, ticks: float) -> str:
-        """Say a duration."""
+        """Return a duration as text."""
         if ticks == NEVER:
             return "no time"
         return "any time" if math.isinf(ticks) else lapse_text(int(ticks) * self.timing.tick)

@@ -1,4 +1,4 @@
-"""How long runs may stay among some states, and whether time can go on: graphs whose edges take a tick, or none."""
+"""The longest stays of runs among some states, and timelocks: graphs whose edges take one tick or no time."""
 
 import math
 from collections import deque
@@ -9,19 +9,19 @@ from checker.engines.runs import DELAY, Edge
 from checker.limits import look
 
 NEVER: Final = -math.inf
-"""How long runs take to an end that none comes to."""
+"""The duration of runs to an unreachable end."""
 
 LOOKING: Final = 1 << 14
-"""After so many states it is looked whether a bound is met."""
+"""The number of states between two checks of the bounds."""
 
 Graph = Sequence[Sequence[Edge]]
 
 
 def longest(graph: Graph, inside: Sequence[bool], ends: Callable[[int], bool]) -> list[float]:
-    """Return for each state how many ticks a run inside may take at most to a state that is an end.
+    """Return for each state the most ticks of a run to an end that stays inside.
 
-    That is `math.inf` where a run may go round as often as it likes, and `NEVER` outside and where no run ends. Linear:
-    strongly connected components are found in reverse topological order (Tarjan 1972).
+    It is `math.inf` if such a run may repeat a cycle with a delay, and `NEVER` outside and where no run ends. Linear
+    time: strongly connected components are found in reverse topological order (Tarjan 1972).
     """
     most = [NEVER] * len(graph)
     for component in components(graph, inside):
@@ -40,7 +40,7 @@ def longest(graph: Graph, inside: Sequence[bool], ends: Callable[[int], bool]) -
 
 
 def components(graph: Graph, inside: Sequence[bool]) -> Iterator[list[int]]:
-    """Yield the strongly connected components of the states inside, each after those that it leads to."""
+    """Yield the strongly connected components of the states inside, each after its successors."""
     order: dict[int, int] = {}
     low: dict[int, int] = {}
     stack: list[int] = []
@@ -81,7 +81,7 @@ def components(graph: Graph, inside: Sequence[bool]) -> Iterator[list[int]]:
 
 
 def first_ticks(graph: Graph) -> list[float]:
-    """Return for each state after how many ticks it is reached first from the first state."""
+    """Return for each state the least ticks from the first state."""
     first = [math.inf] * len(graph)
     first[0] = 0
     waiting = deque([0])
@@ -98,7 +98,7 @@ def first_ticks(graph: Graph) -> list[float]:
 
 
 def last_ticks(graph: Graph) -> list[float]:
-    """Return for each state after how many ticks it is reached last, infinitely many by a loop in which time passes."""
+    """Return for each state the most ticks from the first state; infinite after a cycle with a delay."""
     last = [NEVER] * len(graph)
     last[0] = 0
     for component in reversed(list(components(graph, [True] * len(last)))):

@@ -7,18 +7,18 @@ from typing import NamedTuple
 from semantics.state.configuration import Transition
 
 Key = tuple[str, str]
-"""What is wrong: its kind and its subject; findings with one key are the same violation, met again."""
+"""The kind and the subject of a violation; findings with the same key are the same violation."""
 
 
 class Seen(NamedTuple):
-    """One thing that a property is about, as it was found in a configuration.
+    """One subject of a property in a configuration.
 
     Attributes:
-        wrong: What is wrong with it, None where nothing is.
-        by: The transition that it is about, if it is about one.
-        message: What is wrong, in words.
-        details: More lines; asked for only where they are told.
-        alike: What it has in common with what is alike; asked for only where something is wrong. None: nothing is.
+        wrong: Its violation, None if there is none.
+        by: The transition that it is about, if any.
+        message: The violation in words.
+        details: Returns more lines; called only where they are shown.
+        alike: Returns the group of similar violations; called only for a violation. None for no group.
     """
 
     wrong: Key | None = None
@@ -29,7 +29,7 @@ class Seen(NamedTuple):
 
 
 MOST_VIOLATIONS = 5
-"""How many different violations of one property are kept with a trace, unless more are asked for."""
+"""The most different violations of one property that keep a trace, by default."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +37,13 @@ class Finding:
     """One violation.
 
     Attributes:
-        kind: What it is: `unmatched`, `control race`, `deadlock`, ...
-        message: In words.
-        at: The number of the configuration that it was found in.
-        by: The transition that it is about, which belongs to the trace; None where it is about the configuration.
+        kind: Its kind: `unmatched`, `control race`, `deadlock`, ...
+        message: The violation in words.
+        at: The number of its configuration.
+        by: The transition that it is about, which ends the trace; None if it is about the configuration.
         details: More lines.
-        subject: What it is about: a request, the requests that race, ...; empty where the property says that itself.
-        alike: What it has in common with those of its kind that are alike; None where none is.
+        subject: Its subject: a request, racing requests, ...; empty if the property itself names it.
+        alike: The group of similar violations of its kind; None for no group.
     """
 
     kind: str
@@ -61,7 +61,7 @@ class Finding:
 
     @property
     def group(self) -> Hashable:
-        """What it has in common with those that are alike: its key if none is."""
+        """The group of similar violations; its key if it has none."""
         return self.key if self.alike is None else (self.kind, self.alike)
 
 
@@ -70,15 +70,15 @@ class Collected:
     """The findings of one property.
 
     Attributes:
-        most: How many different ones are kept of each kind.
-        first: The first of those that are alike, which has a shortest trace; of each kind `most` at the most.
-        met: Every kind and subject that was met.
-        groups: The same in groups of those that are alike.
-        apart: Whether each kind and subject is kept in `first`, however alike they are.
-        count: How many findings there were in all.
-        examined: How many things were looked at.
-        example: Where one of them was looked at and found good: the last configuration, and what was done there.
-        example_by: The transition that the example is about.
+        most: The most different findings kept of each kind.
+        first: The first finding of each group, which has a shortest trace; at most `most` of each kind.
+        met: The keys of all findings.
+        groups: The keys of each group.
+        apart: Whether `first` keeps a finding for each key, instead of one for each group.
+        count: The number of all findings.
+        examined: The number of subjects without a violation.
+        example: The configuration of the first of those.
+        example_by: The transition that it is about.
     """
 
     most: int = MOST_VIOLATIONS
@@ -93,15 +93,15 @@ class Collected:
 
     @property
     def different(self) -> int:
-        """How many kinds and subjects were met."""
+        """The number of different keys."""
         return len(self.met)
 
     def alike(self, finding: Finding) -> int:
-        """Return how many others were met that are alike."""
+        """Return the number of other keys in a finding's group."""
         return len(self.groups[finding.group]) - 1
 
     def add(self, finding: Finding) -> None:
-        """Count a finding, and keep it if it is the first of those that are alike."""
+        """Count a finding, and keep it if it is the first of its group."""
         self.count += 1
         if finding.key in self.met:
             return
@@ -117,7 +117,7 @@ class Collected:
             self.first[finding.key] = finding
 
     def note(self, number: int, seen: Seen) -> None:
-        """Count what was seen in a configuration."""
+        """Count a subject seen in a configuration."""
         if seen.wrong is None:
             self.looked(number, seen.by)
         else:
@@ -126,13 +126,13 @@ class Collected:
             self.add(Finding(kind, seen.message, number, seen.by, details, subject, alike))
 
     def looked(self, number: int, by: Transition | None = None) -> None:
-        """Count something that was looked at; the first is kept as an example."""
+        """Count a subject without a violation; the first is kept as an example."""
         self.examined += 1
         if self.example is None:
             self.example, self.example_by = number, by
 
     def chosen(self) -> tuple[Finding, ...]:
-        """Return the findings that are shown: one of each kind before a second of any, in the order of discovery."""
+        """Return the findings to show: one of each kind before a second of any, in the order of discovery."""
         kinds: set[str] = set()
         firsts: list[Finding] = []
         others: list[Finding] = []

@@ -28,10 +28,10 @@ from semantics.state.signature import Name
 from semantics.successors import Expansion, moves, served
 
 Rules = Callable[[Configuration, Name], Iterable[Transition | Fault]]
-"""What yields the steps of an agent."""
+"""A rule: yields the steps of an agent."""
 
 Wait = tuple[int, str]
-"""What is waited for, in words, after its rank among what is told of all agents."""
+"""An awaited event in words, after its rank among those of all agents."""
 
 WORDS = {
     Obstacle.UNMATCHED: "its redex matches nothing in L",
@@ -41,7 +41,7 @@ WORDS = {
 
 
 class Excerpt(NamedTuple):
-    """Some agents of a configuration, and what the rules allow them."""
+    """Some agents of a configuration, and the transitions that the rules allow them."""
 
     c: Configuration
     agents: tuple[Name, ...]
@@ -49,28 +49,28 @@ class Excerpt(NamedTuple):
 
 
 class InTime(Enum):
-    """What an inspection is shown of a configuration of a mission with timing."""
+    """The view of a configuration that an inspection gets, for a mission with timing."""
 
     ENABLED = auto()
-    """Everything that the rules allow there, whenever it may be done."""
+    """All transitions that the rules allow there, whatever the time."""
     TAKEN = auto()
-    """What is done there at some time."""
+    """The transitions that are taken there at some time."""
     TOGETHER = auto()
-    """Two controls that may be served at one moment, pair by pair."""
+    """Pairs of controls that may be served at the same moment, one pair at a time."""
 
 
 class Inspection:
-    """Looks at configurations one by one, and collects what it sees of one property.
+    """Inspects configurations one by one, and collects the findings on one property.
 
-    What it asks is written once, of excerpts: of all agents together where each configuration is looked at. Explorers
-    with rows ask about each agent by itself, and look only at the first configuration of each answer.
+    Its questions are written once, for excerpts. If each configuration is inspected, an excerpt has all agents.
+    Explorers with rows ask about each agent separately, and inspect only the first configuration of each answer.
 
     Attributes:
-        alone: The rules whose steps tell what is seen of an agent (`seen`); none where nothing is.
-        together: The rules whose steps tell whether an agent must move (`still`); none where that doesn't matter.
-        in_turn: Whether it is only about what is in its turn: of that no agent alone tells.
-        in_time: What it is shown where a mission says how long things take.
-        collected: What was found.
+        alone: The rules whose steps determine an agent's subjects (`seen`); empty for none.
+        together: The rules whose steps determine whether an agent must move (`still`); empty if that is irrelevant.
+        in_turn: Whether it depends on turns, which a single agent doesn't determine.
+        in_time: Its view of configurations, for a mission with timing.
+        collected: The findings.
     """
 
     alone: ClassVar[tuple[Rules, ...]] = ()
@@ -82,26 +82,26 @@ class Inspection:
         self.collected = Collected(most)
 
     def __call__(self, number: int, c: Configuration, expansion: Expansion) -> None:
-        """Look at a configuration."""
+        """Inspect a configuration."""
         whole = Excerpt(c, c.alpha.names(), expansion)
         still = self.still(whole)
         for seen in chain(self.seen(whole), () if still is None else self.judged(still, c)):
             self.collected.note(number, seen)
 
     def concerns(self, _: Setting) -> bool:
-        """Tell whether a mission may have anything to be seen at all."""
+        """Return whether a mission may have any subject of the inspection."""
         return True
 
     def seen(self, _: Excerpt) -> Iterator[Seen]:
-        """Yield what is seen of some agents."""
+        """Yield the subjects of some agents."""
         yield from ()
 
     def still(self, _: Excerpt) -> tuple[Wait, ...] | None:
-        """Return in words what some agents wait for, None where one of them must move."""
+        """Return the awaited events of some agents, None if one of them must move."""
         return None
 
     def judged(self, _: Iterable[Wait], __: Configuration | None = None, /) -> Iterator[Seen]:
-        """Yield what is seen where no agent must move, by what all of them wait for."""
+        """Yield the subjects of a configuration where no agent must move, from all awaited events."""
         yield from ()
 
 
@@ -131,7 +131,7 @@ def _hindered(c: Configuration, request: CTR | FLY, by: Obstacle) -> Seen:
 
 
 def disagreements(c: Configuration, request: CTR | FLY) -> tuple[str, ...]:
-    """Return in words what L believes and P shows of the nodes that a control names."""
+    """Return in words the differences between L and P about the nodes that a control names."""
     structure = c.structure
     lines = []
     for node in sorted({node for node in request.reaction.redex.nodes if isinstance(node, str)}):
@@ -152,19 +152,19 @@ def disagreements(c: Configuration, request: CTR | FLY) -> tuple[str, ...]:
 
 
 class DeadlockFreedom(Inspection):
-    """Not: nothing but the environment can move, and a request is pending or an agent waits (check 3)."""
+    """No configuration where only the environment can move, and a request is pending or an agent waits (check 3)."""
 
     together = (served, moves)
 
     def still(self, of: Excerpt) -> tuple[Wait, ...] | None:
-        """Return what is pending, in the order of the queue where there is one, who waits, and who failed."""
+        """Return the pending requests, in the order of any queue, the waiting agents, and the failed ones."""
         if of.steps.by_agents:
             return None
         failed = ((2 * LAST, f"{fault.agent} failed") for fault in of.steps.faults)
         return (*stuck_requests(of), *waiting_agents(of), *failed)
 
     def judged(self, still: Iterable[Wait], c: Configuration | None = None, /) -> Iterator[Seen]:
-        """Yield a deadlock where anything is left to be done."""
+        """Yield a deadlock if anything is left to be done."""
         who = "; ".join(words for _, words in sorted(still, key=itemgetter(0)))
         message = f"nothing but the environment can move, and {who}"
         left = tuple(sorted(who.split("; ")))
@@ -178,7 +178,7 @@ class Arrival(Inspection):
     together = (served, moves)
 
     def concerns(self, setting: Setting) -> bool:
-        """Tell whether there are flights."""
+        """Return whether there are flights."""
         return setting.control is Control.TIMED
 
     def seen(self, of: Excerpt) -> Iterator[Seen]:
@@ -186,26 +186,26 @@ class Arrival(Inspection):
         yield from (Seen(by=step) for step in of.steps.by_agents if step.label.rule == "commit")
 
     def still(self, of: Excerpt) -> tuple[Wait, ...] | None:
-        """Return the ends of flights that are waited for."""
+        """Return the awaited ends of flights."""
         fair = any(not is_unfair(of.c, step) for step in of.steps.by_agents)
         return None if fair else tuple((0, str(step.label)) for step in of.steps.by_agents)
 
     def judged(self, still: Iterable[Wait], _: Configuration | None = None, /) -> Iterator[Seen]:
-        """Yield that flights need never end, if any is waited for."""
+        """Yield a violation if flights are awaited that may never end."""
         waits = ", ".join(sorted({words for _, words in still}))
         if waits:
             yield Seen(("not arrived", waits), None, f"a run may wait here for ever for {waits}")
 
 
 def is_unfair(c: Configuration, transition: Transition) -> bool:
-    """Tell whether a transition is the end of a flight of which the mission doesn't say that it arrives."""
+    """Return whether a transition is the end of a flight without a promise to arrive."""
     if transition.served is None or not never_ends(c.setting, transition.served.request):
         return False
     return not arrives_in_time(c, transition.served.request)
 
 
 def arrives_in_time(c: Configuration, request: object) -> bool:
-    """Tell whether a request is a flight that takes no longer than some time."""
+    """Return whether a request is a flight with an upper time bound."""
     if c.setting.timing is None or not isinstance(request, FLY):
         return False
     from semantics.timing.flight_times import interval_of_flight  # noqa: PLC0415 - geometry takes its time to load
@@ -214,18 +214,18 @@ def arrives_in_time(c: Configuration, request: object) -> bool:
 
 
 def never_ends(setting: Setting, request: object) -> bool:
-    """Tell whether a request is a flight of which the mission doesn't say that it arrives."""
+    """Return whether a request is a flight without a promise to arrive."""
     if not isinstance(request, FLY):
         return False
     return not all(node in setting.arriving for node, _ in moved(request.reaction, request.match))
 
 
 LAST = 1 << 30
-"""The rank of what is told after everything pending."""
+"""The rank after everything pending."""
 
 
 def stuck_requests(of: Excerpt) -> Iterator[Wait]:
-    """Yield in words the requests that wait, a received or forgotten READY apart."""
+    """Yield in words the pending requests, except received or forgotten READY."""
     for pending in (each for a in of.agents for each in of.c.eta.of(a)):
         if isinstance(pending.request, OBS | CTR | SND | MGR | FLY):
             yield 1 + pending.position if pending.cell == QUEUE else 0, f"{pending.request} is pending"
@@ -241,17 +241,17 @@ def _causes(c: Configuration | None) -> tuple[str, ...]:
 
 
 def is_stuck(c: Configuration, a: Name) -> bool:
-    """Tell whether an agent waits and is not at rest."""
+    """Return whether an agent waits and is not at rest."""
     return is_waiting(c, a) and not is_at_rest(c, a)
 
 
 def is_waiting(c: Configuration, a: Name) -> bool:
-    """Tell whether an agent is at a react."""
+    """Return whether an agent is at a react."""
     return isinstance(next_statement(c, a), React)
 
 
 def is_at_rest(c: Configuration, a: Name) -> bool:
-    """Tell whether an agent is at the react of an outermost loop, or at one with a case that someone may still say."""
+    """Return whether an agent is at the react of an outermost loop, or at one for which a message may still be said."""
     code = c.alpha.code(a)
     statements = c.setting.program.statements
     around = statements[code[-1]]
@@ -264,7 +264,7 @@ def is_at_rest(c: Configuration, a: Name) -> bool:
 
 
 def stands_in(c: Configuration, number: int, block: Block) -> bool:
-    """Tell whether a statement stands in a block, or in that of a behaviour called there: in the call's place."""
+    """Return whether a statement is in a block, or in a behaviour called there."""
     program, seen, waiting = c.setting.program, set[str](), [block]
     while waiting:
         within = waiting.pop()
@@ -302,7 +302,7 @@ class Invariant(Inspection):
         self.valuations = Valuations(formula)
 
     def seen(self, of: Excerpt) -> Iterator[Seen]:
-        """Yield the configuration, which is one thing."""
+        """Yield the configuration as the single subject."""
         good = self.valuations.holds(of.c)
         details = partial(_names_told, self.formula, of.c)
         yield Seen() if good else Seen(self.WRONG, None, f"not true here: {self.shown}", details)
@@ -321,6 +321,6 @@ class Reachability(Inspection):
         self.formula = formula
 
     def seen(self, of: Excerpt) -> Iterator[Seen]:
-        """Yield the configuration where it is true."""
+        """Yield the configuration if the proposition is true there."""
         if holds(self.formula, of.c):
             yield Seen()

@@ -1,4 +1,4 @@
-"""Why a control can't be served, relation by relation: what its redex lacks in L, and its reactum in P."""
+"""The missing relations of a control that can't be served: those of its redex in L, those of its reactum in P."""
 
 from collections.abc import Iterator
 
@@ -10,7 +10,7 @@ from semantics.state.signature import REGION, Name
 
 
 def lacking(c: Configuration, request: CTR | FLY, by: Obstacle) -> tuple[str, ...]:
-    """Return in words what is missing for a control, as far as it names it."""
+    """Return in words the missing relations of a control, among those it names."""
     if by is Obstacle.UNREALISABLE:
         return tuple(dict.fromkeys(_unrealised(c, request)))
     return tuple(_unmatched(c, request)) if by is Obstacle.UNMATCHED else ()
@@ -44,7 +44,7 @@ def _place(parent: Name | None) -> str:
 
 
 def _unlinked(c: Configuration, link: LinkTerm, nodes: list[Name]) -> Iterator[str]:
-    """Yield which nodes are not on a link, or share none of those that a variable may stand for."""
+    """Yield the nodes that are not on a link, or that share none of a variable's possible links."""
     on = {node: [each for each in c.structure.logical.links(node) if _fits(link, each)] for node in nodes}
     shared = [each for links in on.values() for each in links if all(each in other for other in on.values())]
     if shared or not on:
@@ -72,7 +72,7 @@ def _fits(link: LinkTerm, channel: Name) -> bool:
 
 
 def _unrealised(c: Configuration, request: CTR | FLY) -> Iterator[str]:
-    """Yield what of a reactum no physical change makes true."""
+    """Yield each relation of a reactum that no physical change can make true."""
     physical, setting = c.structure.physical, c.setting
     found = (
         [request.match]

@@ -1,7 +1,7 @@
 """Race-freedom by ownership, without a search: the paper's sufficient condition, over-approximated statically.
 
 No agent may write a slot that another's redex, missing site or tested observation may read or write. `children` is no
-slot of its own: it stands for the parents that a missing site reads, so that two who write it don't interfere.
+slot of its own: it stands for the parents that a missing site reads, so two agents that write it don't interfere.
 """
 
 from collections.abc import Iterator
@@ -31,7 +31,7 @@ from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
 
 ANY = "*"
-"""Stands for every name."""
+"""The wildcard for every name."""
 
 Slot = tuple[str, Name]
 """`("parent", n)`, `("links", n)` or `("children", n)`."""
@@ -41,7 +41,7 @@ ANYTHING: frozenset[Slot] = frozenset((kind, ANY) for kind in ("parent", "links"
 
 @dataclass(frozen=True, slots=True)
 class Footprint:
-    """What one agent may write, and what its controls may rest on."""
+    """The possible writes of one agent, and the possible inputs of its controls."""
 
     agent: Name
     writes: frozenset[Slot]
@@ -49,11 +49,11 @@ class Footprint:
 
 
 def owned(c: Configuration) -> bool:
-    """Tell whether a mission is race-free by ownership; c must be its first configuration: nothing is pending yet."""
+    """Return whether a mission is race-free by ownership; c is its first configuration, with nothing pending."""
     footprints = [footprint(c, a) for a in c.alpha.names()]
     texts = [_Text(c, a) for a in c.alpha.names()]
     if any(isinstance(s, Spawn) for text in texts for s in text.statements):
-        return False  # the spawned are not there yet to be looked at
+        return False  # spawned agents can't be analysed yet
     if any(isinstance(s, Send) for text in texts for s in text.statements):
         tested = frozenset[Slot]().union(*(text.tested for text in texts))  # a message carries tests along
         footprints = [
@@ -65,7 +65,7 @@ def owned(c: Configuration) -> bool:
 
 
 def interferes(one: Footprint, other: Footprint) -> bool:
-    """Tell whether one may write what another may read or write."""
+    """Return whether one agent may write a slot that another may read or write."""
     owned_by_other = {slot for slot in other.writes if slot[0] != "children"}  # children follow from parents
     return any(_overlaps(write, slot) for write in one.writes for slot in other.reads | owned_by_other)
 
@@ -75,7 +75,7 @@ def _overlaps(one: Slot, other: Slot) -> bool:
 
 
 def footprint(c: Configuration, agent: Name) -> Footprint:
-    """Return what an agent may write and read, from its text alone."""
+    """Return the possible writes and reads of an agent, from its text alone."""
     text = _Text(c, agent)
     if text.reactions is None:
         return Footprint(agent, ANYTHING, ANYTHING)
@@ -85,7 +85,7 @@ def footprint(c: Configuration, agent: Name) -> Footprint:
 
 
 class _Text:
-    """All that one agent's behaviour may lead to."""
+    """The possible statements, reactions and tests of one agent."""
 
     def __init__(self, c: Configuration, agent: Name) -> None:
         self.c = c
@@ -99,7 +99,7 @@ class _Text:
 
     @cached_property
     def statements(self) -> tuple[Statement, ...]:
-        """The statements that the agent may come to."""
+        """The statements that the agent may reach."""
         reach = reachable(self.program, self.c.alpha.code(self.agent))
         return tuple(self.program.statements[number] for number in sorted(reach))
 
@@ -110,7 +110,7 @@ class _Text:
         return ANY if migrates else self.c.alpha.host(self.agent)
 
     def name(self, expression: Expression) -> Name:
-        """Return the name that an expression stands for, `ANY` where that isn't known from the text."""
+        """Return the name that an expression denotes, `ANY` if the text doesn't determine it."""
         if isinstance(expression, Host):
             return self.host
         known = isinstance(expression, Literal) and isinstance(expression.value, str)
@@ -118,7 +118,7 @@ class _Text:
 
     @cached_property
     def reactions(self) -> tuple[Reaction, ...] | None:
-        """The reactions that the agent may request, whatever its arguments may name; None if too many."""
+        """The reactions that the agent may request, for any arguments; None if too many."""
         controls = [statement for statement in self.statements if isinstance(statement, ControlBy)]
         setting = self.c.setting
         hosts = frozenset(setting.kinds) if self.host == ANY else frozenset({self.host})
@@ -130,7 +130,7 @@ class _Text:
     def writes(self, reaction: Reaction) -> frozenset[Slot]:
         """Return the slots that a reaction may change.
 
-        What may contain something may take anything along. What carries something decides where its cargo can be put.
+        A moved container may take any content along. The place of a carrier decides where its cargo can be put.
         """
         before, after = reaction.redex, reaction.reactum
         moved = {self._term(node) for node, _ in reaction.moves}
@@ -140,7 +140,7 @@ class _Text:
         return frozenset(slots.union(*map(self._along, moved)))
 
     def _along(self, node: Name) -> frozenset[Slot]:
-        """Return what may be elsewhere, or may no longer be put down, once a node has moved."""
+        """Return the slots of entities that move along with a node, or can no longer be put down afterwards."""
         kind = None if node == ANY else self.c.setting.kind(node)
         if kind not in self._taken_along:
             self._taken_along[kind] = self._along_with(kind)
@@ -162,12 +162,12 @@ class _Text:
         return frozenset(("parent", name) for name, of in kinds.items() if of in carried)
 
     def redex(self, reaction: Reaction) -> frozenset[Slot]:
-        """Return the slots that a redex uses, missing sites included, and those that say where its places are."""
+        """Return the slots that a redex uses, missing sites included, and those of its places' positions."""
         pattern: Pattern = reaction.redex
         pairs = (*pattern.parents, *reaction.reactum.parents)
         parents = {("parent", self._term(node)) for node, _ in pattern.parents}
         parents |= {("parent", place) for _, place in pairs if isinstance(place, str)}
-        if self._has_passive:  # nothing reacts inside of what is passive: all places around are read
+        if self._has_passive:  # nothing reacts inside a passive place, so all places around are read
             parents = {("parent", ANY)}
         links = {("links", self._term(node)) for _, node in pattern.links}
         return frozenset(parents | links | {("children", self._term(node)) for node in pattern.closed})
@@ -188,7 +188,7 @@ class _Text:
         return frozenset(asked)
 
     def _tests(self, statement: Statement) -> Iterator[Name]:
-        """Yield the name that each use of a variable's value asks for: `ANY` unless it is `name in variable`."""
+        """Yield the tested name for each use of a variable's value; `ANY` unless the use is `name in variable`."""
         if isinstance(statement, Display):
             return
         for expression in expressions_of(statement):
@@ -207,7 +207,7 @@ class _Text:
                 yield ANY
 
     def _asked(self, query: QueryOf, tests: list[Name]) -> Iterator[Slot]:
-        """Yield the slots that decide whether the tested names are shown."""
+        """Yield the slots that determine whether the tested names are shown."""
         inner = query.argument
         match query.operator:
             case QueryOperator.CHILDREN:

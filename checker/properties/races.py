@@ -20,16 +20,16 @@ from semantics.state.signature import Name
 from semantics.successors import served
 
 STALE: Final = "stale-observation race"
-"""What a violation is called."""
+"""The kind of violation."""
 
 
 class ControlRaces(Inspection):
-    """Two enabled controls, where serving one disables the other, or the two orders end differently."""
+    """No two enabled controls where serving one disables the other, or the two orders end differently."""
 
     in_time = InTime.TOGETHER
 
     def seen(self, of: Excerpt) -> Iterator[Seen]:
-        """Yield every pair of controls that are enabled, apart from the scheduler's turn."""
+        """Yield every pair of controls that are enabled, regardless of turns."""
         return self.between(of)
 
     def between(self, of: Excerpt, pair: Set[Name] | None = None) -> Iterator[Seen]:
@@ -65,9 +65,9 @@ def enabled_controls(enabled: Iterable[Transition]) -> list[Control]:
 def compared(
     c: Configuration, controls: list[Control], between: Set[Name] | None = None
 ) -> Iterator[tuple[Control, Control, tuple[str, str] | None]]:
-    """Yield each pair of controls, or those between some agents, with what is wrong with it: in words, and about what.
+    """Yield each pair of controls, or those between some agents, with its race: a message and a subject; None without.
 
-    Of one agent there are pairs under `unordered` alone; two that are equal are served by the same transitions.
+    Only under `unordered` may both controls belong to one agent; two equal ones are served by the same transitions.
     """
     unordered = c.setting.scheduler is Scheduler.UNORDERED
     twice = [(each, each) for each in controls if unordered and _is_twice(c, _request(each[0]))]
@@ -85,7 +85,7 @@ def _is_twice(c: Configuration, request: Request) -> bool:
 
 
 def conflict(one: Control, other: Control) -> str | None:
-    """Return in words that serving one control disables another, None where it doesn't."""
+    """Return a message if serving one control disables another, None if not."""
     request = _request(other[0])
     for transition in one:
         if not list(serving(transition.target, request)):
@@ -94,9 +94,9 @@ def conflict(one: Control, other: Control) -> str | None:
 
 
 def different_ends(c: Configuration, one: Control, other: Control) -> str | None:
-    """Return in words that the two orders end differently, None where they don't.
+    """Return a message if the two orders end differently, None if not.
 
-    Aside are η's order, and what is only remembered beside α, S and η: by the race monitor, and of flights.
+    The comparison ignores the order of η, and the memories of the race monitor and of flights.
     """
     ends = [_ends(one, _request(other[0])), _ends(other, _request(one[0]))]
     cells = sorted({cell for end in ends for after in end for cell in after.state.changed(c.state)})
@@ -111,7 +111,7 @@ def _ends(first: Control, then: Request) -> list[Configuration]:
 
 
 def serving(c: Configuration, request: Request) -> Iterator[Transition]:
-    """Yield the transitions that serve a control, apart from the scheduler's turn."""
+    """Yield the transitions that serve a control, regardless of its turn."""
     for rule in (actuate, *TIMED_RULES):
         for transition in rule(c, request.agent):
             if transition.served is not None and transition.served.request == request:
@@ -125,7 +125,7 @@ def _request(transition: Transition) -> CTR | FLY:
 
 
 class StaleObservationRaces(Inspection):
-    """A control that rests on a test whose answer another agent's control has changed since it was observed."""
+    """No control depends on a test whose answer another agent's control has changed since the observation."""
 
     alone = (served,)
     in_turn = True
@@ -155,11 +155,11 @@ _QUESTIONS: Final[Mapping[str, str]] = {
     "children": "what {seen} shows in {name}",
     "links": "the links on which {seen} shows {name}",
 }
-"""What may be asked of an observation, by the first word of the key."""
+"""The questions to an observation in words, by the first word of the key."""
 
 
 def asked_in_words(stale: Dependency) -> str:
-    """Return what was asked of an observation, as a report says it.
+    """Return a question to an observation in words.
 
     >>> from semantics.behaviours.observations import Nodes, Of, QueryOperator
     >>> asked_in_words(Dependency(Of(QueryOperator.CHILDREN, Nodes(("gate0",))), (), asked=("in", "uav0")))
@@ -170,12 +170,12 @@ def asked_in_words(stale: Dependency) -> str:
 
 
 def is_stale(c: Configuration, pending: Pending) -> tuple[Dependency, ...]:
-    """Return what a control rests on that others have changed since it was observed."""
+    """Return the dependencies of a control that other agents have changed since they were observed."""
     return stale_tests(pending.request, pending.rests_on, used_slots(c, pending))
 
 
 def used_slots(c: Configuration, pending: Pending) -> frozenset[tuple[str, ...]]:
-    """Return the slots that the redex of a pending control uses, in whichever match."""
+    """Return the slots that the redex of a pending control uses, in any match."""
     request = pending.request
     assert isinstance(request, CTR | FLY)
     redex = request.reaction.redex

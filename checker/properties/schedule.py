@@ -1,4 +1,4 @@
-"""The schedule of a mission: how long its flights may take and when, and when what it asks for is first true."""
+"""The schedule of a mission: the durations and dates of its flights, and the first moments of its `time` properties."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from semantics.timing.intervals import ANY_TIME, Interval
 
 @dataclass(frozen=True, slots=True)
 class Moments:
-    """When something happens, in ticks from the start.
+    """The dates of an event, in ticks from the start.
 
     Attributes:
-        earliest: At the earliest; infinite where it never does.
-        latest: At the latest; infinite where nothing bounds it.
+        earliest: The earliest; infinite if it never happens.
+        latest: The latest; infinite if nothing bounds it.
         may_never: Whether there is a run in which it never happens.
     """
 
@@ -39,17 +39,17 @@ class Moments:
 
 @dataclass(frozen=True, slots=True)
 class Flight:
-    """A flight that a mission can make: of one vehicle, by one request, from one place to another.
+    """A possible flight of a mission: of one vehicle, by one request, from one place to another.
 
     Attributes:
-        vehicle: Who flies.
-        agent: Who asked for it.
-        origin: Where it begins, the place that L has the vehicle in.
-        destination: Where it ends.
-        takes: How long, in ticks.
-        begins: When, from the first time to the last.
-        ends: When; never where it is not known to arrive.
-        bound: What bounds it.
+        vehicle: The vehicle.
+        agent: The requesting agent.
+        origin: The place in which L has the vehicle at the start.
+        destination: The place in which it ends.
+        takes: Its duration, in ticks.
+        begins: The dates of its start.
+        ends: The dates of its end; never if its arrival isn't known.
+        bound: The origin of its duration in the mission.
     """
 
     vehicle: Name
@@ -64,7 +64,7 @@ class Flight:
 
 @dataclass(frozen=True, slots=True)
 class Milestone:
-    """When what a `time` property asks for is first true."""
+    """The first moments of a `time` property's proposition."""
 
     name: str
     moments: Moments
@@ -76,9 +76,9 @@ class Schedule:
 
     Attributes:
         tick: Milliseconds of a tick.
-        flights: The flights that it can make, in the order of their first beginnings.
-        milestones: The first moments of what its `time` properties ask for.
-        complete: Whether everything was explored: else the latest moments are not known.
+        flights: The possible flights, in the order of their first starts.
+        milestones: The first moments of the propositions of its `time` properties.
+        complete: Whether everything was explored; else the latest moments are unknown.
     """
 
     tick: int
@@ -91,7 +91,7 @@ class Schedule:
         return None if ticks is None or math.isinf(ticks) else ticks * self.tick / 1000
 
     def clock(self, ticks: float) -> str:
-        """Say a moment; nothing of one that is not bounded."""
+        """Return a moment as text; empty if it is unbounded."""
         return "" if math.isinf(ticks) else clock_text(int(ticks) * self.tick)
 
 
@@ -100,7 +100,7 @@ _Key = tuple[Name, Name, Name, Name]
 
 
 def flights_of(times: Times) -> tuple[Flight, ...]:
-    """Return the flights that are made in time, in the order of their first beginnings."""
+    """Return the flights that are made in time, in the order of their first starts."""
     begun: dict[_Key, set[TakenStep]] = {}
     ended: dict[_Key, set[TakenStep]] = {}
     set_out: dict[tuple[FLY, Name], dict[_Key, None]] = {}
@@ -147,7 +147,7 @@ def _steps_of_flights(times: Times, rule: str) -> Iterator[tuple[TakenStep, Situ
 
 
 def _begun_as(arriving: _Key, set_out: Iterable[_Key]) -> list[_Key]:
-    """Return as which flights one may have begun: where L has lost where the vehicle set out, as any of these."""
+    """Return the flights that may have this end; all begun ones if L has lost the origin meanwhile."""
     known = list(set_out)
     return [arriving] if arriving in known or not known else known
 
@@ -162,7 +162,7 @@ def _flight_of(step: TimedStep) -> FLY | None:
 
 
 def _keys(c: Configuration, fly: FLY) -> Iterator[_Key]:
-    """Yield what tells flights apart; L has a vehicle where it set out, until it learns otherwise."""
+    """Yield the keys of a flight's vehicles; L keeps a vehicle at its origin until an observation corrects it."""
     for vehicle, place in moved(fly.reaction, fly.match):
         yield vehicle, fly.agent, c.structure.logical.parent(vehicle) or REGION, place
 

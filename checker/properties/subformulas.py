@@ -1,9 +1,8 @@
-"""Occurrences of subformulas, in formulas of configurations and of runs; and those that are never needed.
+"""Occurrences of subformulas in state formulas and temporal formulas; and the unneeded ones (vacuity).
 
-A part is *never needed* if the formula holds whatever stands in its place: if it still holds with false there where it
-stands positively, with true where negatively (Kupferman and Vardi, Vacuity detection in temporal model checking, 1999).
-A quantifier is elaborated into one operand for each name of its range; what is said of its body is said once, and not
-of each instance.
+A subformula is *never needed* if the formula holds for any replacement. It suffices to replace a positive occurrence by
+false, a negative one by true (Kupferman and Vardi, Vacuity detection in temporal model checking, 1999). A quantifier is
+elaborated into one operand for each name of its range; a remark on its body is made once, not for each instance.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -17,7 +16,7 @@ from semantics.properties.temporal import Both, Denied, Either, Now, Temporal, p
 from semantics.state.agents import written
 
 Path = tuple[int, ...]
-"""Where a part stands in a formula: which operand of which operand."""
+"""The position of a part in a formula: the ranks of operands, from the outermost."""
 
 Formula = Proposition | Temporal
 Operand = tuple[Path, Formula]
@@ -29,12 +28,12 @@ STILL: Final = "vacuous: nothing that it speaks of ever changes"
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A part of a formula as it was written: in the body of a quantifier it stands in many places.
+    """A part of a formula as it was written; in the body of a quantifier it has several occurrences.
 
     Attributes:
-        formula: What it is; in the body of a quantifier its first instance.
-        paths: Where it stands.
-        positive: Whether it stands below an even number of negations.
+        formula: The part; in the body of a quantifier its first instance.
+        paths: The positions of its occurrences.
+        positive: Whether it occurs below an even number of negations.
     """
 
     formula: Formula
@@ -42,7 +41,7 @@ class Part:
     positive: bool = True
 
     def parts(self, ranges: Ranges) -> Iterator["Part"]:
-        """Yield the parts that it has itself."""
+        """Yield its immediate parts."""
         operands = tuple(map(_said, operands_of(self.formula, ranges)))
         positive = self.positive is not isinstance(_bare(self.formula), Not | Denied)
         if _are_instances(operands, ranges):
@@ -54,7 +53,7 @@ class Part:
 
 
 def operands_of(formula: Formula, ranges: Ranges) -> tuple[Operand, ...]:
-    """Return what a formula is made of, each with where it stands in it; of a chain of `and` or `or` all operands."""
+    """Return the operands of a formula, each with its position; all operands of a chain of `and` or `or`."""
     match formula:
         case Now(proposition):
             return tuple(((0, *at), operand) for at, operand in operands_of(proposition, ranges))
@@ -69,9 +68,9 @@ def operands_of(formula: Formula, ranges: Ranges) -> tuple[Operand, ...]:
 
 
 def _chain(formula: Both | Either, ranges: Ranges) -> tuple[Operand, ...]:
-    """Return the operands of a connective and of those like it within: all, or as many as make it a quantifier's.
+    """Return the operands of a chain of equal connectives: all, or just those that form a quantifier's instances.
 
-    A quantifier is elaborated in pairs of pairs, so the largest are taken apart first.
+    A quantifier is elaborated in nested pairs, so the largest are divided first.
     """
     operands: tuple[Operand, ...] = (((0,), formula.left), ((1,), formula.right))
     while not _are_instances(operands, ranges):
@@ -83,7 +82,7 @@ def _chain(formula: Both | Either, ranges: Ranges) -> tuple[Operand, ...]:
 
 
 def _halves(operand: Operand, sort: type[Both | Either], size: int) -> tuple[Operand, ...]:
-    """Return both operands of a connective that has some size, and of another operand only itself."""
+    """Return both operands of a connective of some size; any other operand unchanged."""
     path, formula = operand
     if isinstance(formula, sort) and _size(formula) == size:
         return ((*path, 0), formula.left), ((*path, 1), formula.right)
@@ -99,7 +98,7 @@ def _are_instances(operands: tuple[Operand, ...], ranges: Ranges) -> bool:
 
 
 def _said(operand: Operand) -> Operand:
-    """Return what a quantifier says of a name, without what it implies: that it is there."""
+    """Return a quantifier's body for a name, without the implied condition that the name exists."""
     path, formula = operand
     match formula:
         case Or((Not(condition), said)) | And((condition, said)):
@@ -124,7 +123,7 @@ def _bare(formula: Formula) -> Formula:
 
 
 def at(formula: Formula, path: Path) -> Formula:
-    """Return the part that stands somewhere in a formula."""
+    """Return the part at a position of a formula."""
     for rank in path:
         formula = formula.formulas[rank] if isinstance(formula, And | Or) else _field(formula, rank)
     return formula
@@ -136,7 +135,7 @@ def _field(formula: Formula, rank: int) -> Formula:
 
 
 def replaced(formula: Formula, path: Path, by: Always) -> Formula:
-    """Return a formula with `true` or `false` in the place of a part."""
+    """Return a formula with the part at a position replaced by `true` or `false`."""
     if not path:
         return Now(by) if isinstance(formula, Temporal) else by
     rank, rest = path[0], path[1:]
@@ -151,21 +150,21 @@ def replaced(formula: Formula, path: Path, by: Always) -> Formula:
 
 
 def strengthened(formula: Formula, part: Part) -> Formula:
-    """Return a formula with the worst that may stand there in all places of a part."""
+    """Return a formula with all occurrences of a part replaced by the strongest constant."""
     for path in part.paths:
         formula = replaced(formula, path, Always(not part.positive))
     return formula
 
 
 def few(remarks: Sequence[str]) -> tuple[str, ...]:
-    """Return the first remarks on parts, and how many more there are."""
+    """Return the first remarks on parts, and the number of the others."""
     rest = len(remarks) - MOST_REMARKS
     more = (f"{rest:,} more of its parts are never needed",) if rest > 0 else ()
     return (*remarks[:MOST_REMARKS], *more)
 
 
 def never_needed(around: Part, part: Part) -> str:
-    """Say that a part is never needed."""
+    """Return the remark that a part is never needed."""
     shown = part.formula
     if isinstance(shown, Not | Denied) and isinstance(_bare(around.formula), Or | Either):
         shown = shown.formula  # the condition of an implication
@@ -176,12 +175,12 @@ def never_needed(around: Part, part: Part) -> str:
 def unneeded(
     formula: Formula, ranges: Ranges, holds: Callable[[Formula], bool]
 ) -> Iterator[tuple[Part, Part]]:
-    """Yield the outermost parts that are never needed of a formula that holds, each with the one around it.
+    """Yield the outermost unneeded parts of a true formula, each with the part around it.
 
     Args:
         formula: The formula.
-        ranges: What its quantifiers go through, to know the instances of a body.
-        holds: Tells of a formula with something replaced whether it holds.
+        ranges: The ranges of its quantifiers, to recognise the instances of a body.
+        holds: Returns whether a formula with a replaced part holds.
     """
     yield from _unneeded(formula, Part(formula), ranges, holds)
 
@@ -194,7 +193,7 @@ def _unneeded(
     for part in found:
         if isinstance(_bare(part.formula), Always) or _is_implied(_unsigned(part.formula)):
             continue
-        # What stands alone is needed as what is around it is.
+        # A single operand is needed if the part around it is.
         if not alone and holds(strengthened(formula, part)):
             yield around, part
         else:
@@ -202,7 +201,7 @@ def _unneeded(
 
 
 def is_quantified(operands: Sequence[Any], ranges: Ranges) -> bool:
-    """Tell whether operands of a connective differ in one name only, which goes through one of some ranges."""
+    """Return whether the operands of a connective differ in a single name, which ranges over one of some ranges."""
     if len(operands) < 2:
         return False
     names = _varying([list(_words(part)) for part in operands])
@@ -210,7 +209,7 @@ def is_quantified(operands: Sequence[Any], ranges: Ranges) -> bool:
 
 
 def _varying(operands: list[list[Any]]) -> list[Any] | None:
-    """Return the word of each operand that the others have another for, None where they differ in more."""
+    """Return the word in which each operand differs from the others, None if they differ in more."""
     first = operands[0]
     if any(len(words) != len(first) for words in operands):
         return None
@@ -222,10 +221,13 @@ def _varying(operands: list[list[Any]]) -> list[Any] | None:
 
 
 def _words(formula: Any) -> Iterator[Any]:
-    """Yield what a formula is made of, from left to right; `true` and `false` alike, as comparing names gives them."""
+    """Yield the words of a formula from left to right; `true` and `false` alike.
+
+    Comparisons of names have become either.
+    """
     if isinstance(formula, Always):
         yield "always"
-    elif isinstance(formula, VariableOf):  # each member of a family has variables of its own
+    elif isinstance(formula, VariableOf):  # each member of a family has its own variables
         yield formula.agent
         yield written(formula.variables[0])
     elif isinstance(formula, Instances):

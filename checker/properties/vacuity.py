@@ -1,7 +1,6 @@
 """Vacuity of invariants: whether one holds only because nothing could break it.
 
-Which parts of it are never needed (`checker.properties.subformulas`) is decided exactly: on the
-valuations of its atoms that were met.
+The unneeded parts (`checker.properties.subformulas`) are decided exactly, on the valuations of its atoms that occur.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
@@ -31,7 +30,7 @@ from semantics.state.cells import Cell, Cells, Changes, Edit, Question, State, W
 from semantics.state.configuration import Configuration
 
 MOST_ATOMS: Final = 64
-"""The most different atoms of a formula whose valuations are gathered."""
+"""The most different atoms of a formula whose valuations are collected."""
 
 Columns = Mapping[Atom, int]
 """For each atom the valuations in which it is true, a bit for each."""
@@ -39,13 +38,13 @@ Columns = Mapping[Atom, int]
 
 @dataclass(slots=True)
 class Valuations:
-    """The truth of a formula's atoms in each configuration that was visited, and whether anything they read changed.
+    """The truth of a formula's atoms in each visited configuration, and whether anything they read changed.
 
     Attributes:
         formula: The formula.
-        atoms: Its atoms, once each; none where there are too many to be gathered.
-        met: The valuations that were met, a bit for each atom.
-        still: What the first configuration answered, as long as all others answer alike; None since one didn't.
+        atoms: Its atoms, once each; none if there are too many.
+        met: The valuations that occur, a bit for each atom.
+        still: The answers of the first configuration while all others agree; None after a different one.
     """
 
     formula: Proposition
@@ -58,7 +57,7 @@ class Valuations:
         self.atoms = few_atoms(self.formula)
 
     def holds(self, c: Configuration) -> bool:
-        """Tell whether the formula is true of a configuration, and remember its valuation."""
+        """Return whether the formula is true of a configuration, and record its valuation."""
         self.compare(c)
         if not self.atoms:
             return holds(self.formula, c)
@@ -68,14 +67,14 @@ class Valuations:
         return truth(self.formula, columns, 1) == 1
 
     def add(self, part: "Valuations") -> None:
-        """Add what was met elsewhere."""
+        """Add the valuations of another worker."""
         self.met |= part.met
         if part.begun:
             self.still = part.still if not self.begun or part.still is None else self.still
             self.begun = True
 
     def compare(self, c: Configuration) -> None:
-        """Note whether a configuration still answers as the first one did."""
+        """Record whether a configuration gives the same answers as the first one."""
         if not self.begun:
             self.begun = True
             self.still = asked(self.atoms or tuple(atoms_of(self.formula)), c)
@@ -87,7 +86,7 @@ class Valuations:
 
     @property
     def columns(self) -> Columns:
-        """The valuations that were met, atom by atom."""
+        """The valuations that occur, atom by atom."""
         met = sorted(self.met)
         return {
             atom: sum(1 << number for number, valuation in enumerate(met) if valuation >> rank & 1)
@@ -95,7 +94,7 @@ class Valuations:
         }
 
     def remarks(self, ranges: Ranges) -> tuple[str, ...]:
-        """Return what makes the invariant vacuous, if it holds: at most a few sentences."""
+        """Return the reasons why a true invariant is vacuous, at most a few sentences."""
         if self.still is not None and self.begun:
             return (STILL,)
         if not self.atoms:
@@ -104,7 +103,7 @@ class Valuations:
 
 
 def is_still(configurations: Iterable[Configuration], atoms: tuple[Atom, ...]) -> bool:
-    """Tell whether nothing that atoms ask of configurations ever changes."""
+    """Return whether the values that atoms read never change."""
     valuations = Valuations(And(atoms))
     for c in configurations:
         look()
@@ -115,54 +114,54 @@ def is_still(configurations: Iterable[Configuration], atoms: tuple[Atom, ...]) -
 
 
 Answers = dict[tuple[Cell, Question, tuple[Any, ...]], Any]
-"""What was asked of cells, with the answers."""
+"""Questions to cells, with their answers."""
 
 
 class Asking:
-    """Cells that note what is asked of them."""
+    """Cells that record the questions to them."""
 
     def __init__(self, asked: Cells) -> None:
         self.cells = asked
         self.answers: Answers = {}
 
     def read(self, cell: Cell) -> Any:
-        """Return the value of a cell: it is asked whether it is this one."""
+        """Return the value of a cell; recorded as the question whether it is this value."""
         value = self.cells.read(cell)
         self.answers[cell, is_, (value,)] = True
         return value
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
-        """Ask a cell."""
+        """Return whether the answer to a question about a cell is true."""
         return bool(self.ask(cell, question, *constants))
 
     def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
-        """Ask a cell."""
+        """Return the answer to a question about a cell, and record both."""
         self.answers[cell, question, constants] = found = self.cells.ask(cell, question, *constants)
         return found
 
     def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
-        """Return what an edit makes of a cell's value."""
+        """Return the edited value of a cell."""
         return edit(self.read(cell), *constants)
 
     def each(self, names: Iterable[str], part: Callable[[str], cells.Part]) -> Mapping[str, cells.Part]:
-        """Return what a pointwise definition says of each name."""
+        """Return a pointwise definition's value for each name."""
         return {name: part(name) for name in names}
 
     def with_(self, changes: Mapping[Cell, Any]) -> Written:
-        """Return the cells with more written over them."""
+        """Return the cells with changes written over them."""
         return Written(self, dict(changes))
 
     def with_each(self, parts: Mapping[str, Changes]) -> Written:
-        """Return the cells with what each part writes."""
+        """Return the cells with the changes of each part written over them."""
         return Written(self, merged(parts.values()))
 
-    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # it is where everything begins
-        """Return that nothing was written."""
+    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # nothing is earlier
+        """Return the empty set: nothing was written."""
         return frozenset()
 
 
 def asked(atoms: Iterable[Atom], c: Configuration) -> Answers:
-    """Return all that atoms ask of a configuration."""
+    """Return all questions of atoms to a configuration, with their answers."""
     asking = Asking(c.state)
     atoms = tuple(atoms)
     for atom in (*atoms, *bindings(atoms)):
@@ -171,15 +170,16 @@ def asked(atoms: Iterable[Atom], c: Configuration) -> Answers:
 
 
 def bindings(atoms: Iterable[Proposition]) -> tuple[IsBound, ...]:
-    """Return that each variable has a value that atoms compare.
+    """Return the propositions that each compared variable has a value.
 
-    At first none has one. So a comparison that is true throughout is about something as soon as there is a value.
+    Initially no variable has a value. These propositions change with the first one, so a comparison that is always true
+    doesn't count as constant.
     """
     return tuple({IsBound(atom.variable): None for atom in atoms if isinstance(atom, VariableIs)})
 
 
 def few_atoms(formula: Proposition) -> tuple[Atom, ...]:
-    """Return the atoms of a formula, once each; none where there are more than can be gathered."""
+    """Return the atoms of a formula, once each; none if there are too many."""
     found: dict[Atom, None] = {}
     for atom in atoms_of(formula):
         found[atom] = None
@@ -188,7 +188,7 @@ def few_atoms(formula: Proposition) -> tuple[Atom, ...]:
     return tuple(found)
 
 
-# --- which parts are never needed -----------------------------------------------------------------------------
+# --- unneeded parts -------------------------------------------------------------------------------------------
 
 
 def truth(formula: Proposition, columns: Columns, every: int) -> int:
@@ -207,7 +207,7 @@ def truth(formula: Proposition, columns: Columns, every: int) -> int:
 
 
 def remarks_on(formula: Proposition, columns: Columns, count: int, ranges: Ranges) -> Iterator[str]:
-    """Yield in words the outermost parts of an invariant that are never needed, on so many valuations."""
+    """Yield in words the outermost unneeded parts of an invariant, on so many valuations."""
     every = (1 << count) - 1
 
     def is_true(formula: Any) -> bool:
@@ -218,7 +218,7 @@ def remarks_on(formula: Proposition, columns: Columns, count: int, ranges: Range
 
 
 def _remark(around: Part, part: Part, columns: Columns, every: int) -> str:
-    """Say that a part is never needed, and why."""
+    """Return the remark that a part is never needed, with the reason."""
     many, said = len(part.paths) > 1, never_needed(around, part)
     match around.formula:
         case Or((Not(condition), conclusion)) if part.formula == conclusion:
@@ -242,6 +242,6 @@ def _remark(around: Part, part: Part, columns: Columns, every: int) -> str:
 
 
 def _others(parts: Formulas, part: Part) -> tuple[Proposition, ...]:
-    """Return the operands of a connective but for one."""
+    """Return the operands of a connective without one of them."""
     rank = part.paths[0][-1]
     return (*parts[:rank], *parts[rank + 1 :])

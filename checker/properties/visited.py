@@ -1,8 +1,8 @@
-"""Visited parts of a mission's text: statements, branches not taken, and clauses of the environment.
+"""Visited parts of a mission's text: statements, branches, and clauses of the environment.
 
-All of it are projections of configurations: an agent's `code` cell, the cells that its computation depends on, and the
-words of labels. What one `fun` passes over leaves no trace in a configuration, so that each different moment is
-computed once more: a computation depends on nothing but its agent's code, variables and host, and what it hears.
+All of them are projections of configurations: an agent's `code` cell, the inputs of its computation, and the words of
+labels. The statements within one `fun` step leave no trace in a configuration, so each different moment is computed
+again. A computation depends only on its agent's code, variables and host, and on its incoming values.
 """
 
 from collections.abc import Iterator
@@ -26,17 +26,17 @@ from semantics.state.signature import Name
 from semantics.successors import Expansion
 
 COMPUTING = frozenset({"fun", "rcv_obs", "rcv_msg", "timeout"})
-"""The rules in which an agent passes over statements, or takes a case."""
+"""The rules by which an agent executes statements, or takes a case."""
 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """One agent about to compute, or at a react.
+    """One agent before a computation, or at a react.
 
     Attributes:
-        agent: Who.
-        host: Where it is hosted.
-        code: What is left of it to run.
+        agent: The agent.
+        host: Its host.
+        code: Its remaining code.
         store: Its variables.
         heard: The observations and messages that it may receive, if it is at a react.
     """
@@ -50,15 +50,15 @@ class Moment:
 
 @dataclass(slots=True)
 class Visited:
-    """What coverage is computed from; as an inspection it gathers it from each configuration.
+    """The data for coverage; as an inspection it collects them from each configuration.
 
     Attributes:
-        codes: What was left of each agent to run.
-        moments: In which it computed or received something.
-        passed: What computations passed over, as far as it is known without their moments.
-        happened: The words of what the environment did and said.
-        known: The cells of agents that were met, so that no moment is made twice.
-        in_time: What it is shown where a mission says how long things take.
+        codes: The remaining code of each agent.
+        moments: The moments of computing or receiving agents.
+        passed: The executed statements and branches that are known without a moment.
+        happened: The words of the environment's events and messages.
+        known: The cells of agents seen so far, so that no moment is constructed twice.
+        in_time: Its view of configurations, for a mission with timing.
     """
 
     in_time: ClassVar[InTime] = InTime.TAKEN
@@ -70,7 +70,7 @@ class Visited:
     known: set[tuple[Any, ...]] = field(default_factory=set)
 
     def __call__(self, _: int, c: Configuration, expansion: Expansion) -> None:
-        """Look at where every agent stands, at who computes, and at what the environment does."""
+        """Record every agent's position, the computing agents, and the environment's events."""
         read = c.state.read
         for a in c.alpha.names():
             self.codes.setdefault(a, set()).add(read(code_cell(a)))
@@ -82,7 +82,7 @@ class Visited:
         self.happened.update(str(transition.label.about) for transition in expansion.by_environment)
 
     def add(self, part: "Visited") -> None:
-        """Add what was gathered elsewhere."""
+        """Add the data of another worker."""
         for agent, codes in part.codes.items():
             self.codes.setdefault(agent, set()).update(codes)
         self.moments |= part.moments
@@ -91,7 +91,7 @@ class Visited:
         self.known |= part.known
 
     def meet(self, c: Configuration, a: Name) -> None:
-        """Note a moment of an agent, unless its cells were met before."""
+        """Record the moment of an agent, unless its cells were seen before."""
         cells = (code_cell(a), store_cell(a), mailbox_cell(a), line_cell(a), host_cell(a))
         key = (a, *map(c.state.read, cells))
         if key not in self.known:
@@ -100,14 +100,14 @@ class Visited:
 
 
 def where_it_stands(a: Name, c: Configuration) -> tuple[Code, frozenset[Passage]] | None:
-    """Return what is left of an agent to run, and what its computation passes over in one step."""
+    """Return an agent's remaining code, and the statements and branches it executes in one step."""
     if a not in c.alpha:
         return None
     return c.read(code_cell(a)), frozenset(passages(c.setting, moment_of(c, a)))
 
 
 def moment_of(c: Configuration, a: Name) -> Moment:
-    """Return what an agent's computation depends on; it reads no cells but that agent's and its requests."""
+    """Return the inputs of an agent's computation; they are in that agent's cells and requests only."""
     code, heard = c.alpha.code(a), tuple[Value, ...]()
     if code and isinstance(c.setting.program.statements[code[0]], React):
         ready = (each.request for each in c.eta.ready(a))
@@ -116,11 +116,11 @@ def moment_of(c: Configuration, a: Name) -> Moment:
     return Moment(a, c.alpha.host(a), code, c.alpha.store(a), heard)
 
 
-# --- what was passed ------------------------------------------------------------------------------------------
+# --- executed statements and branches -------------------------------------------------------------------------
 
 
 def passages(setting: Setting, moment: Moment) -> Iterator[Passage]:
-    """Yield the statements that a computation steps over from a moment, and the branches that it takes."""
+    """Yield the statements that a computation executes from a moment, and the branches that it takes."""
     if not moment.code:
         return
     statement = setting.program.statements[moment.code[0]]
@@ -128,14 +128,14 @@ def passages(setting: Setting, moment: Moment) -> Iterator[Passage]:
         yield from ((moment.code[0], rank) for rank in _ranks(setting, moment, statement))
     elif at_internal(statement):
         process = _process(setting, moment)
-        with suppress(Fault):  # what was passed before it was passed all the same
+        with suppress(Fault):  # a fault doesn't undo the statements before it
             for _ in compute(process):
                 pass
         yield from process.passed
 
 
 def _ranks(setting: Setting, moment: Moment, react: React) -> Iterator[int]:
-    """Yield the ranks of the cases that take something; that of the `after` branch if none takes anything."""
+    """Yield the ranks of the cases that take a value; that of the `after` branch if none does."""
     waits = react.after is not None
     for value in moment.heard:
         try:

@@ -1,6 +1,6 @@
-"""Less to explore: partial-order reduction and symmetry, each refused with a reason where it would be unsound.
+"""Partial-order reduction and symmetry reduction, each refused with a reason where it would be unsound.
 
-Both depend on what the text of a mission allows, never on observed runs. docs/explanation/reduction.md has the reasons.
+Both depend on the text of a mission, never on observed runs. docs/explanation/reduction.md has the reasons.
 """
 
 import lazy_loader

@@ -1,9 +1,9 @@
-"""The footprints of actors, now and for ever: functions of a few cells' values.
+"""The footprints of actors, now and for ever, as functions of a few cells' values.
 
-An agent is several actors, since it doesn't wait for its requests: its *program* (the rest of its code), its *line*
-(whose first request may be served), and each *request* outside a line. A clause of the environment is one actor. What
-an actor may do before its own next step depends only on its agent's code, requests and host, whatever others do. So
-does a bound of all its later steps.
+An agent doesn't wait for its requests, so it is several actors: its *program* (the rest of its code), its *line* (whose
+first request may be served), and each *request* outside a line. A clause of the environment is one actor. The possible
+next step of an actor depends only on its agent's code, requests and host, whatever others do. So does a bound on all
+its later steps.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -36,7 +36,7 @@ from semantics.state.signature import Name
 Requests = tuple[Request, ...]
 
 MOST_INSTANCES = 5_000
-"""A control with more possible combinations of arguments is assumed to change anything."""
+"""The most combinations of a control's arguments; a control with more is assumed to change everything."""
 
 InLine = Observe | ControlBy | Migrate
 """Statements whose requests wait in the line, if there is one."""
@@ -46,7 +46,7 @@ EVERYTHING = Footprint(-1, -1, -1)
 
 
 class Actor(NamedTuple):
-    """A part of an agent, or a clause of the environment, that moves by itself.
+    """An independently moving part of an agent, or a clause of the environment.
 
     Attributes:
         kind: `program`, `line`, `request` or `clause`.
@@ -68,7 +68,7 @@ class Acting(NamedTuple):
 
 
 class Actors:
-    """The footprints of a mission's actors; c must be the configuration that the exploration starts in.
+    """The footprints of a mission's actors; c must be the initial configuration of the exploration.
 
     Attributes:
         everything: The union of all actors' footprints.
@@ -85,7 +85,7 @@ class Actors:
         everything = joined([*map(self.clause, self.setting.environment), *self._lives(c)])
         self.footprints.settle(everything)
         self.everything = replace(everything, merges=everything.merges & ~self.footprints.settled)
-        self._forget()  # bounds from before the settled slots were known
+        self._forget()  # they were bounded without the settled slots
 
     def _forget(self) -> None:
         self.marks = Marks(self.footprints)
@@ -108,14 +108,14 @@ class Actors:
     # --- of a configuration -----------------------------------------------------------------------------------
 
     def local(self, agent: Name) -> tuple[Cell, ...]:
-        """Return the cells that decide an agent's actors and their footprints."""
+        """Return the cells that determine an agent's actors and their footprints."""
         return (code_cell(agent), line_cell(agent), sends_cell(agent), host_cell(agent))
 
     def of(self, c: Configuration) -> dict[Actor, Acting]:
         """Return the actors of a configuration, with their footprints.
 
-        They depend only on the `local` cells of each agent, on whether it rests on any observation, on the existing
-        agents, and on the counters of messages from outside.
+        They depend only on the `local` cells of each agent, on whether it has any provenance, on the existing agents,
+        and on the counters of messages from outside.
         """
         found: dict[Actor, Acting] = {}
         for agent in c.alpha.names():
@@ -125,7 +125,7 @@ class Actors:
         return found
 
     def of_agent(self, c: Configuration, agent: Name) -> dict[Actor, Acting]:
-        """Return the actors of one existing agent; observations that it has not received don't matter."""
+        """Return the actors of one existing agent; observations that it has not received are irrelevant."""
         code, line, sends, host = (c.read(cell) for cell in self.local(agent))
         asked = tuple(each for each in (*line, *(sends or ())) if not isinstance(each, READY))
         told = self.ordered and any(isinstance(each, READY) for each in line)
@@ -140,7 +140,7 @@ class Actors:
         return {Actor("clause", number): Acting(does, does, does)}
 
     def actor_of(self, label: Label) -> Actor:
-        """Return which of an agent's actors takes a transition, by its label."""
+        """Return the actor that takes a transition of an agent, by its label."""
         assert label.agent is not None
         if isinstance(label.about, str | Received):
             return Actor("program", label.agent)
@@ -151,7 +151,7 @@ class Actors:
         in_line = self.ordered and not isinstance(request, SND)
         return Actor("line", request.agent) if in_line else Actor("request", request.agent, request)
 
-    # --- of the values of an agent's cells --------------------------------------------------------------------
+    # --- from the values of an agent's cells ------------------------------------------------------------------
 
     def _agent(
         self, agent: Name, code: Code, asked: Requests, told: bool, host: Name, blank: bool
@@ -162,7 +162,7 @@ class Actors:
             carried = [self.marks.carried(agent, each, rested_on) for each in requests]
             ever = joined([*carried, *(self._of_request(agent, each) for each in requests)])
             now = self._serve(agent, requests[0], {host})
-            begins = isinstance(requests[0], OBS)  # by it something is rested on
+            begins = isinstance(requests[0], OBS)  # it starts provenance
             return Acting(now | carried[0] if begins or not blank else now, ever, ever)
 
         in_line = [each for each in asked if self.ordered and not isinstance(each, SND)]
@@ -183,7 +183,7 @@ class Actors:
         return found
 
     def _next(self, agent: Name, number: int, told: bool) -> Footprint:
-        """Bound the rules that take an agent's next step; if its first observation is ready, nothing else matters."""
+        """Bound the rules that take an agent's next step; a ready first observation decides it alone."""
         statement = self.program.statements[number]
         here = self.footprints.slots.footprint([("host", agent)])
         if isinstance(statement, React):
@@ -201,10 +201,10 @@ class Actors:
                 return NOTHING
 
     def _reached(self, agent: Name, reach: frozenset[int]) -> tuple[Footprint, Footprint]:
-        """Return the footprint of all statements that code may come to, and of those before the agent's line moves."""
+        """Return the footprint of all statements reachable from code, and of those before the agent's line moves."""
         born = self.roles.descendants(reach)
         theirs = joined(map(self._life, born))
-        here = self.footprints.slots.footprint([("host", agent)])  # any step may ask for HOST
+        here = self.footprints.slots.footprint([("host", agent)])  # any step may evaluate HOST
         free = (each for each in reach if not isinstance(self.program.statements[each], InLine))
         aside = joined([here, theirs, *(self._of_statement(agent, each) for each in free)])
         return aside | joined(self._of_statement(agent, each) for each in reach), aside
@@ -233,7 +233,7 @@ class Actors:
                 return NOTHING
 
     def _statement(self, agent: Name, number: int) -> Footprint:
-        """Return the footprint of a statement itself, without the statements in it."""
+        """Return the footprint of a statement without its nested statements."""
         return self._asked_by(agent, number) | self._telling(agent, number)
 
     def _asked_by(self, agent: Name, number: int) -> Footprint:
@@ -274,5 +274,5 @@ class Actors:
 
 def _instances(make: Callable[..., Reaction], several: list[Sequence[Name]]) -> Iterator[Reaction]:
     for chosen in product(*several):
-        with suppress(Fault):  # the command does not take every name
+        with suppress(Fault):  # the command rejects some names
             yield make(*chosen)

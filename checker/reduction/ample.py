@@ -1,4 +1,4 @@
-"""Partial-order reduction: the ample subset of the steps that a configuration allows.
+"""Partial-order reduction: an ample set of the enabled steps of a configuration.
 
 Independent steps of different actors are followed in one order only. docs/explanation/reduction.md explains why this is
 sound, and for which properties it is refused.
@@ -17,7 +17,7 @@ from semantics.state.signature import Name
 from semantics.successors import Expansion, by_clause
 
 Reached = Callable[[Transition], int | None]
-"""The number of the configuration that a transition leads to, None if it is new."""
+"""Returns the number of a transition's target, None if it is new."""
 
 
 class Persistent(NamedTuple):
@@ -28,7 +28,7 @@ class Persistent(NamedTuple):
 
 
 class Followed(NamedTuple):
-    """The steps to be followed, what is taken by them, and the one that leads on; None where no step is ignored."""
+    """The steps to follow, the parts that they take, and the onward step; None for the latter if no step is ignored."""
 
     steps: tuple[Transition, ...]
     taken: Parts = frozenset()
@@ -45,9 +45,9 @@ class Ample:
     def choose(
         self, c: Configuration, expansion: Expansion, number: int, reached: Reached, paths: Paths
     ) -> Followed:
-        """Return the steps of an ample set, or of several, or all.
+        """Return the steps of an ample set, of a union of several, or all.
 
-        Where every step leads back to here, another set joins, with an actor that is ignored on the way.
+        If every step of the sets so far leads back here, another set joins, with an actor that is ignored on the cycle.
         """
         acting, owners = self.actors.of(c), self.owners(c, expansion)
         inside: frozenset[Actor] = frozenset()
@@ -71,7 +71,7 @@ class Ample:
         return Followed(expansion.transitions)
 
     def is_ample(self, c: Configuration, chosen: tuple[Transition, ...]) -> bool:
-        """Tell whether the steps are invisible to all properties, and one of them must be taken eventually."""
+        """Return whether the steps are invisible to all properties, and one of them must be taken eventually."""
         if any(self.eyes.differ(c, each.target) for each in chosen):
             return False
         return any(each.label.agent is not None and not is_unfair(c, each) for each in chosen)
@@ -83,7 +83,7 @@ class Ample:
         owners: Sequence[Actor],
         mover: Name | None,
     ) -> Iterator[Persistent]:
-        """Yield the persistent sets that omit some step: those around who moved last, then others, by their size."""
+        """Yield the persistent sets that omit some step, by size; those around the last mover come first."""
         found: set[frozenset[Actor]] = set()
         allowed = list(zip(expansion.transitions, owners, strict=True))
         movable = dict.fromkeys(owners[: len(expansion.by_agents)])
@@ -95,7 +95,7 @@ class Ample:
             yield from sorted(several, key=lambda each: len(each.steps))
 
     def owners(self, c: Configuration, expansion: Expansion) -> tuple[Actor, ...]:
-        """Return whose each transition is; what several clauses allow is the first one's."""
+        """Return the actor of each transition; the first clause, if several allow it."""
         environment = c.setting.environment if expansion.by_environment else ()
         clauses = {
             step: Actor("clause", number)
@@ -107,7 +107,7 @@ class Ample:
 
 
 def persistent(acting: Mapping[Actor, Acting], seeds: Iterable[Actor]) -> Iterator[frozenset[Actor]]:
-    """Yield for each seed the least set around it whose current steps no actor outside ever disturbs."""
+    """Yield for each seed the least persistent set around it: no actor outside ever disturbs its current steps."""
     for seed in seeds:
         inside = {seed}
         waiting = [seed]
@@ -120,9 +120,9 @@ def persistent(acting: Mapping[Actor, Acting], seeds: Iterable[Actor]) -> Iterat
 
 
 def disturbed(acting: Mapping[Actor, Acting], actor: Actor, other: Actor) -> bool:
-    """Tell whether another actor may ever disturb an actor's current steps.
+    """Return whether another actor may ever disturb an actor's current steps.
 
-    An agent's next request is served after those that already wait in its line.
+    A line serves the requests that already wait in it before the program's next one.
     """
     behind = actor.kind == "line" and other == Actor("program", actor.owner)
     return acting[actor].now.disturbs(acting[other].aside if behind else acting[other].ever)

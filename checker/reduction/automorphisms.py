@@ -1,4 +1,4 @@
-"""The automorphisms of a mission: transpositions of names that preserve it, and why others don't."""
+"""The automorphisms of a mission: transpositions of names that preserve it, and the reasons against others."""
 
 from collections.abc import Callable, Iterable, Iterator, Set
 from dataclasses import fields, is_dataclass
@@ -42,9 +42,9 @@ class Automorphisms:
         return renaming
 
     def of_setting(self, pairing: Pairing) -> Renaming:
-        """Return the renaming that exchanges both sides; raises Unlike if it changes what holds in every configuration.
+        """Return the renaming that exchanges both sides; raises Unlike if it changes the mission's setting.
 
-        Where it does not, the rules allow the image of a configuration the images of its transitions.
+        The rules commute with such a renaming: the transitions of an image are the images of the transitions.
         """
 
         def both(pairs: dict[Any, Any]) -> dict[Any, Any]:
@@ -63,13 +63,13 @@ class Automorphisms:
 
     @cached_property
     def _words(self) -> frozenset[str]:
-        """What channels and rules are named with."""
+        """The words in the names of channels and rules."""
         words = (word for channel in _channels(self.c) for word in WORD.findall(channel))
         return frozenset((*words, *self.program.reactions))
 
     @cached_property
     def _inhabited(self) -> frozenset[str]:
-        """The kinds that may contain something that there is."""
+        """The kinds that may contain an existing entity."""
         setting = self.c.setting
         there = frozenset(setting.kinds.values())
         return frozenset(kind for kind in there if setting.signature[kind].contains & there)
@@ -124,7 +124,7 @@ class Automorphisms:
     def _check_rule(self, renaming: Renaming, rule: str, arguments: int) -> None:
         make, names = self.program.reactions[rule], sorted(self.c.setting.kinds)
         mentions: Set[str] | None = getattr(make, "mentions", None)
-        if mentions is not None:  # a rule of a mission's text; any other function is tried
+        if mentions is not None:  # a rule from the mission's text; other functions are tried
             if not mentions.isdisjoint(renaming.names):
                 raise Unlike(f"the rule '{rule}' tells them apart")
             return
@@ -159,7 +159,7 @@ class Automorphisms:
 
 
 DIFFERENCES = {"placement": "they are not in the same place", "channels": "they are on different channels"}
-"""How a difference between two cells at first is said, by what they are."""
+"""The messages for a difference between two initial cells, by the kind of cell."""
 
 
 def _stated_at(number: int, statement: Statement, renaming: Renaming) -> tuple[int, Any]:
@@ -178,7 +178,7 @@ def _sayings(c: Configuration, renaming: Renaming, first: Iterable[Name]) -> dic
     """Return the permutation of the counters of messages from outside, those of the first side first.
 
     Raises:
-        Unlike: It changes the environment.
+        Unlike: The renaming changes the environment.
     """
     counters: dict[Cell, Cell] = {}
     left = list(c.setting.environment)
@@ -195,7 +195,7 @@ def _sayings(c: Configuration, renaming: Renaming, first: Iterable[Name]) -> dic
 
 
 def _said_to(c: Configuration, agents: Iterable[Name]) -> Iterator[Says]:
-    """Yield the messages that may be said to some agents."""
+    """Yield the messages from outside to some agents."""
     to = set(agents)
     return (each for each in c.setting.environment if isinstance(each, Says) and each.agent in to)
 
@@ -220,7 +220,7 @@ def restated(renaming: Renaming, value: Any) -> Any:
     if isinstance(value, str):
         return renaming.variables.get(
             value, value
-        )  # of a behaviour's parameters: others are members, see below
+        )  # a behaviour's parameter; names of members are handled below
     if isinstance(value, Literal | Exactly):
         return type(value)(renaming.value(value.value))
     if not is_dataclass(value) or isinstance(value, type):
@@ -239,7 +239,7 @@ def _restated_member(renaming: Renaming, value: Any, member: str) -> Any:
 
 
 class _Parts:
-    """A property as its parts: a transposition keeps it if the image of each part that it changes is a part."""
+    """A property as a conjunction; a transposition preserves it if it maps each changed part to a part."""
 
     def __init__(self, formula: Proposition) -> None:
         self.formula = formula
@@ -248,7 +248,7 @@ class _Parts:
         self.mentions = Mentions((number, partial(_image, part)) for number, part in enumerate(self.parts))
 
     def kept(self, renaming: Renaming) -> bool:
-        """Tell whether the property is invariant under a transposition."""
+        """Return whether the property is invariant under a transposition."""
         changed = (self.parts[number] for number in self.mentions.of(renaming))
         return all(_normal(_image(part, renaming)) in self.normal for part in changed)
 
@@ -265,7 +265,7 @@ def _normal(formula: Any) -> Any:
 
 
 def _flat(kind: type, formulas: Iterable[Any]) -> Iterator[Any]:
-    if isinstance(formulas, Instances):  # what is quantified is kept if its range and its body are
+    if isinstance(formulas, Instances):  # invariant if its range and its body are
         yield formulas
         return
     for each in formulas:

@@ -1,4 +1,4 @@
-"""Bounds: what a mission's entities may ever hold, carry or contain, from its kinds and its first world."""
+"""Bounds: the possible contents, carriers and places of a mission's entities, from its kinds and its first world."""
 
 from collections.abc import Callable, Iterable
 from functools import cache
@@ -18,7 +18,7 @@ class Bounds:
         names: Every entity.
         known: The nodes of the first L; a node never leaves L.
         channels: The channels that may drop.
-        cyclic: Nodes that may lie on a cycle of L, if it were not broken.
+        cyclic: Nodes that may lie on a cycle of L before it is broken.
         passive: Whether some kind of place is passive.
     """
 
@@ -43,7 +43,7 @@ class Bounds:
         self.cyclic: Names = frozenset(name for name in self.names if name in self.above(name))
 
     def _carriers(self, name: Name) -> Names:
-        """Return what may carry an entity: by its kind, at the start, and where it may appear."""
+        """Return the possible carriers of an entity: by its kind, at the start, and where it may appear."""
         setting = self.setting
         found = {other for other in self.names if setting.carries(other, name)}
         first = self.initial.structure.physical.placement(name)
@@ -63,7 +63,7 @@ class Bounds:
         return self.carriers(name).union(self.setting.containers(self.setting.kind(name)), flying)
 
     def _aboard(self, name: Name) -> Names:
-        """Return what an entity may carry, at any depth."""
+        """Return the possible cargo of an entity, at any depth."""
         return frozenset(
             other for other in self.names if name in reached(self.carriers(other), self.carriers)
         )

@@ -1,7 +1,7 @@
-"""Crosscheck: compare what rules do in a configuration with the hand-written footprints of the reduction.
+"""Crosscheck: compare the rules' recorded reads and writes with the static footprints of the reduction.
 
-Footprints and what properties see are worked out from the text, apart from the rules. Here rules and properties run
-over cells that note what is asked of them: whatever lies outside is a bug of ours.
+Footprints and visible cells are computed from the text, independently of the rules. Here rules and properties run over
+recording cells; any access outside its footprint is a bug of ours.
 """
 
 from collections import Counter
@@ -38,7 +38,7 @@ from semantics.state.signature import REGION, Name
 from semantics.successors import SERVING, by_clause, expand, rules_of, steps
 
 Rule = Callable[[Configuration, Any], Iterable[Transition]]
-"""A rule, given a configuration and whom it is about."""
+"""A rule, given a configuration and its agent or clause."""
 
 OWN = {
     "program": frozenset({"code", "store", "mailbox", "line", "sends"}),
@@ -46,37 +46,37 @@ OWN = {
     "request": frozenset({"line", "sends"}),
     "clause": frozenset({"says"}),
 }
-"""Cells of its own that each kind of actor uses; an agent is parted into actors along them."""
+"""The private cells of each kind of actor; they divide an agent into actors."""
 
 PRIVATE = frozenset({MONITOR}).union(*OWN.values())
-"""Cells that only their owner uses as they are; what others may come to tell by them are slots."""
+"""Cells that only their owner accesses as a whole; questions that others ask about them are slots."""
 
 RECEIVED = ("mail", "fault", "ready")
-"""Slots of what an agent gets."""
+"""The kinds of slots for an agent's incoming messages and observations."""
 
 MEMORY = frozenset({"agents", "code", "line", "sends", MONITOR})
-"""What tells which marks matter to whom: who changes it reads the marks that may be made there."""
+"""The cells that decide which marks are relevant to whom; changing them reads the marks that may be made there."""
 
 
 NOBODY = Acting(NOTHING, NOTHING, NOTHING)
 
 
-class Drift(Exception):  # what it is
-    """What rules do is not within what is said of them: a bug of ours."""
+class Drift(Exception):  # named for the event, not the error
+    """A deviation of the rules from their static footprints: a bug of ours."""
 
 
 def crosscheck(ample: Ample, c: Configuration) -> None:
-    """Hold a configuration to what is said of it.
+    """Check a configuration against the footprints.
 
     Raises:
-        Drift: Something lies outside; it says what, whose, and where.
+        Drift: An access is outside its footprint; the message names the access, its actor, and the configuration.
     """
     for found in outside(ample, c):
         raise Drift(f"{found}, in the configuration\n{print_configuration(c)}")
 
 
 def outside(ample: Ample, c: Configuration) -> Iterator[str]:
-    """Yield in words what lies outside of what is said."""
+    """Yield in words the deviations from footprints and visible cells."""
     acting, slots = ample.actors.of(c), ample.actors.footprints.slots
     for formula in ample.eyes.formulas:
         yield from _unseen(ample, c, formula)
@@ -94,13 +94,13 @@ def outside(ample: Ample, c: Configuration) -> Iterator[str]:
 # --- slots and cells ------------------------------------------------------------------------------------------------
 
 Told = Callable[[Any], Any]
-"""What a slot says of a cell's value."""
+"""The part of a cell's value that a slot covers."""
 
 
 def slots_over(actors: Actors, cell: Cell) -> Iterator[tuple[Slot, Told | None]]:
-    """Yield the slots that speak of a cell, each with what it says of the value; None for all of it.
+    """Yield the slots of a cell, each with the part of the value that it covers; None for the whole value.
 
-    Of marks it says nothing: they are sets that others add to (`slot_of_mark`).
+    Marks are left out: they are sets to which others add (`slot_of_mark`).
     """
     reacts = actors.footprints.reacts
     match cell:
@@ -110,7 +110,7 @@ def slots_over(actors: Actors, cell: Cell) -> Iterator[tuple[Slot, Told | None]]
             yield from ((cell, None), (("known", name), is_something))
         case ("mailbox", agent):
             yield from (((what, agent, n), _waking(actors, n)) for what in ("mail", "fault") for n in reacts)
-        case ("left", entity, _):  # who writes channels may write it
+        case ("left", entity, _):  # writers of channels may write it
             yield ("channels", entity), None
         case ("line", agent):
             yield ("ready", agent), _observations
@@ -121,30 +121,30 @@ def slots_over(actors: Actors, cell: Cell) -> Iterator[tuple[Slot, Told | None]]
 
 
 def _waking(actors: Actors, react: int) -> Told:
-    """Return what of a mailbox may wake a `react`."""
+    """Return a function that selects the messages of a mailbox that may wake a `react`."""
     return lambda mailbox: [each for each in mailbox or () if react in actors.footprints.wakes(Known(each))]
 
 
 def _observations(line: tuple[Any, ...] | None) -> Any:
-    """Return what of a line may be received."""
+    """Return the received observations of a line."""
     return [each for each in line or () if isinstance(each, READY)]
 
 
 def varies(actors: Actors, cell: Cell) -> bool:
-    """Tell whether anybody may ever write a cell: what nobody writes is in no footprint."""
+    """Return whether any actor may ever write a cell; footprints omit the other cells."""
     changes, slots = actors.everything.changes, slots_over(actors, cell)
     return cell[0] in PRIVATE or any(actors.footprints.slots.has(changes, slot) for slot, _ in slots)
 
 
 def recorded(actors: Actors, c: Configuration) -> tuple[Asked, Configuration]:
-    """Return what will have been asked of a configuration, and that to be asked: of nothing that never varies."""
+    """Return a record of questions, and a configuration that fills it; questions about constant cells don't count."""
     assert isinstance(c.state, Row)
     recorder = Recorder(_Whole(c.state), c.state, lambda cell: varies(actors, cell), frozenset())
     return recorder.scopes[0].asked, Configuration(c.setting, recorder)
 
 
 class _Whole(Source):
-    """Cells whose values are not taken apart."""
+    """Cells with undivided values."""
 
     def __init__(self, row: Row) -> None:
         self.row = row
@@ -153,17 +153,17 @@ class _Whole(Source):
         return self.row.read(cell)
 
     def fact(self, cell: Cell, number: int, name: Name) -> Fact:
-        raise NotImplementedError  # nothing is taken apart
+        raise NotImplementedError  # values are undivided
 
 
 def _written(step: Transition) -> Changes:
-    """Return what a recorded step writes, all of it worked out."""
+    """Return the writes of a recorded step, fully evaluated."""
     state = step.target.state
     assert isinstance(state, Conclusion)
     return {cell: settled(state.read(cell)) for cell in sorted(state.changed(state))}
 
 
-# --- what properties see --------------------------------------------------------------------------------------------
+# --- visible cells --------------------------------------------------------------------------------------------------
 
 
 def _unseen(ample: Ample, c: Configuration, formula: Proposition) -> Iterator[str]:
@@ -177,11 +177,11 @@ def _unseen(ample: Ample, c: Configuration, formula: Proposition) -> Iterator[st
             yield f"the property '{formula}' reads {ask.cell}, which is not taken for visible"
 
 
-# --- what rules read and write --------------------------------------------------------------------------------------
+# --- reads and writes of rules --------------------------------------------------------------------------------------
 
 
 def hindered(c: Configuration, agent: Name) -> Iterator[Transition]:
-    """Yield what hinders an agent's controls, as if it were a step."""
+    """Yield the obstacle of each of an agent's controls, in the form of a step."""
     for pending in c.eta.in_line(agent):
         if isinstance(pending.request, CTR | FLY):
             found = obstacle(c, pending.request)
@@ -189,7 +189,7 @@ def hindered(c: Configuration, agent: Name) -> Iterator[Transition]:
 
 
 class _Held:
-    """One actor in a configuration, held to what it may do now."""
+    """The check of one actor's steps in a configuration against its current footprint."""
 
     def __init__(self, actors: Actors, c: Configuration, actor: Actor, now: Footprint) -> None:
         self.actors = actors
@@ -205,14 +205,14 @@ class _Held:
         self.posting = {mailbox_cell(to), watch_cell(to)} if to else set()
 
     def outside(self) -> Iterator[str]:
-        """Yield what its rules read and write beyond that."""
+        """Yield its rules' accesses outside the footprint."""
         for rule in self.rules():
             for done, things in self.of_rule(rule):
                 for each in things:
                     yield f"{rule.__name__} of {self.whose} {done} {each}, which its footprint leaves out"
 
     def rules(self) -> tuple[Rule, ...]:
-        """Return the rules by which it moves."""
+        """Return the actor's rules."""
         if self.actor.kind == "clause":
             return (env, say)
         serving = self.actor.kind != "program"
@@ -220,7 +220,7 @@ class _Held:
         return (*found, *([hindered] if serving else []))
 
     def of_rule(self, rule: Rule) -> Iterator[tuple[str, Iterable[Any]]]:
-        """Yield what is read and written outside, by a rule and by the marks that its steps make."""
+        """Yield the reads, writes and marks of a rule's steps outside the footprint."""
         asked, over = recorded(self.actors, self.c)
         found = self.run(rule, over)
         written = [_written(step) for step in found]
@@ -236,17 +236,17 @@ class _Held:
             yield "marks", [slot for slot in sorted(made) if not self.slots.has(self.now.changes, slot)]
 
     def run(self, rule: Rule, c: Configuration) -> list[Transition]:
-        """Return the steps of a rule, as far as no computation fails."""
+        """Return the steps of a rule, up to the first fault."""
         found: list[Transition] = []
         with suppress(Fault):
             found.extend(rule(c, self.about))
         return found
 
     def matters(self, rule: Rule, cell: Cell, written: list[Changes]) -> bool:
-        """Tell whether what is read outside may decide anything.
+        """Return whether a read outside the footprint may affect the writes.
 
-        Up the places of L a control looks whether it would close a circle; where no circle can be, it looks in vain.
-        So it is tried with all that L may ever believe there.
+        A control reads the ancestors of a place in L to prevent a cycle; where no cycle is possible, the read is
+        without effect. So the rule is run with every parent that L may ever hold there.
         """
         if cell[0] != "parent":
             return True
@@ -261,14 +261,14 @@ class _Held:
         return node == place or node in self.c.structure.logical.ancestors(place)
 
     def may_read(self, rule: Rule, ask: Ask) -> bool:
-        """Tell whether a question was foreseen: what an actor writes itself nobody else does."""
+        """Return whether a question is within the footprint; a cell that only the actor itself writes needs no slot."""
         cell, value = ask.cell, self.c.read(ask.cell)
         if ask.question is has and not self.actors.roles.may_come(ask.constants[0]):
             return True
         if ask.question is is_aboard and not ask.constants[0] & self.actors.footprints.bounds.carriers(
             cell[1]
         ):
-            return True  # nothing else ever carries it
+            return True  # nothing else can carry it
         if cell == self.mailbox:
             return self.has(("mail", cell[1], *self.c.alpha.code(cell[1])[:1]))
         if rule is rcv_obs and cell[0] == "line" and not (self.actors.ordered and _observations(value)):
@@ -280,9 +280,9 @@ class _Held:
         )
 
     def unwritten(self, rule: Rule, cell: Cell, value: Any) -> Iterator[Slot]:
-        """Yield what should have been foreseen of a write; a cell of somebody else's by its address."""
+        """Yield the slots that a write changes outside the footprint, and the written private cells of other actors."""
         if rule is spawn and cell[-1] not in self.c.alpha:
-            return  # nobody looks at who is not there
+            return  # nobody reads the cells of absent agents
         old = self.c.read(cell)
         for slot, told in slots_over(self.actors, cell):
             changed = told(old) != told(value) if told else old != value or varies(self.actors, cell)
@@ -292,16 +292,16 @@ class _Held:
             yield cell
 
     def kept(self, changes: Changes) -> set[Slot]:
-        """Return the slots of what is remembered anew, passed on or forgotten: others may mark it."""
+        """Return the slots of provenance that is added, passed on or dropped; other agents may mark it."""
         before, after = self.memory({}), self.memory(changes)
         return {(ANSWERS, holder) for holder, _ in (before - after) + (after - before)}
 
     def marks(self, changes: Changes) -> set[Slot]:
-        """Return the slots of all marks that there are after some changes."""
+        """Return the slots of all marks after some changes."""
         return {slot_of_mark(holder, key) for holder, one in self.memory(changes) for key, _ in one.changed}
 
     def memory(self, changes: Changes) -> Counter[tuple[Name, Dependency]]:
-        """Return what is rested on after some changes, by whose memory it is: that of a message is its receiver's."""
+        """Return the provenance after some changes, with its holders; the holder of a message's is the receiver."""
         if not self.c.setting.monitored:
             return Counter()
         after = self.c.with_(changes)
@@ -318,21 +318,24 @@ class _Held:
         return Counter((holder, one) for holder, rests_on in kept if holder in there for one in rests_on)
 
     def has(self, slot: Slot) -> bool:
-        """Tell whether a slot is in the footprint."""
+        """Return whether a slot is in the footprint."""
         return self.slots.has(self.now.reads | self.now.changes, slot)
 
     def consumes(self, slot: Slot) -> bool:
-        """Tell whether a slot is about what an agent itself receives: nobody else waits for that."""
+        """Return whether a slot is about the actor's own incoming messages; nobody else waits for those."""
         return self.actor.kind == "program" and slot[:2] in {(what, self.actor.owner) for what in RECEIVED}
 
     def is_own(self, cell: Cell) -> bool:
-        """Tell whether a private cell is its own, or the mailbox that it posts to."""
+        """Return whether a private cell is the actor's own, or belongs to the mailbox that it posts to."""
         own = cell[-1] == self.actor.owner and cell[0] in OWN[self.actor.kind] | {MONITOR}
         return own or cell in self.posting or cell == getattr(self.about, "counter", None)
 
 
 def _alone(actors: Actors, c: Configuration, actor: Actor) -> Configuration:
-    """Return the configuration without what other actors of its agent have asked for: reading that is theirs."""
+    """Return the configuration without the requests of the agent's other actors.
+
+    The footprints of those actors cover reading them.
+    """
     if actor.kind not in ("line", "request"):
         return c
     for each in c.eta.of(str(actor.owner)):
@@ -341,14 +344,14 @@ def _alone(actors: Actors, c: Configuration, actor: Actor) -> Configuration:
     return c
 
 
-# --- what is alike --------------------------------------------------------------------------------------------------
+# --- symmetry -------------------------------------------------------------------------------------------------------
 
 
 def exchange(symmetry: Symmetry, c: Configuration) -> None:
-    """Hold a configuration to what symmetry says of it: what follows is exchanged with its likes.
+    """Check that the exchanges of symmetric members commute with the transitions of a configuration.
 
     Raises:
-        Drift: It is not.
+        Drift: An exchange does not.
     """
     for each in symmetry.classes:
         for other in range(1, len(each.members)):
@@ -359,21 +362,21 @@ def exchange(symmetry: Symmetry, c: Configuration) -> None:
                 raise Drift(f"{who} are not alike, in the configuration\n{print_configuration(c)}")
 
 
-# --- what the race monitor remembers --------------------------------------------------------------------------------
+# --- the race monitor's provenance ----------------------------------------------------------------------------------
 
 
 def heed(c: Configuration) -> None:
-    """Hold a configuration to what the race monitor takes for all that agents may come to ask, or use.
+    """Check that the race monitor's over-approximations cover the questions and used slots of a configuration.
 
     Raises:
-        Drift: It is not all.
+        Drift: One is not covered.
     """
     for found in unheeded(c):
         raise Drift(f"{found}, in the configuration\n{print_configuration(c)}")
 
 
 def unheeded(c: Configuration) -> Iterator[str]:
-    """Yield in words what agents ask or use, or what they may ask later, beyond what they may come to ask."""
+    """Yield in words the questions and used slots, now or after a step, that the race monitor's approximations miss."""
     for agent in c.alpha.names() if c.setting.monitored else ():
         known, may_ask = _asked(c, agent), questions_of(c, agent)
         for step in steps(c, agent):
@@ -394,7 +397,7 @@ def unheeded(c: Configuration) -> Iterator[str]:
 
 
 def _asked(c: Configuration, agent: Name) -> frozenset[Key]:
-    """Return what an agent has asked, as far as something rests on it, and what its controls may use."""
+    """Return the questions behind an agent's provenance, and the slots that its controls may use."""
     requests, watch = c.eta.of(agent), c.alpha.watch(agent) or Watch()
     kept = (*watch.code, *watch.store, *watch.mailbox, watch.host, *(each.rests_on for each in requests))
     asked = {one.asked for rests_on in kept for one in rests_on if one.asked is not None}
@@ -402,11 +405,11 @@ def _asked(c: Configuration, agent: Name) -> frozenset[Key]:
     return frozenset(asked).union(*used)
 
 
-# --- what comes of a step -------------------------------------------------------------------------------------------
+# --- abilities after a step -----------------------------------------------------------------------------------------
 
 
 def _moves(actors: Actors, c: Configuration) -> Iterator[tuple[Actor, Transition]]:
-    """Yield all steps with who takes them."""
+    """Yield all steps, each with its actor."""
     for agent in c.alpha.names():
         found = (step for step in steps(c, agent) if isinstance(step, Transition))
         yield from ((actors.actor_of(step.label), marked(c, step)) for step in found)
@@ -415,7 +418,7 @@ def _moves(actors: Actors, c: Configuration) -> Iterator[tuple[Actor, Transition
 
 
 def _beyond(actors: Actors, acting: dict[Actor, Acting], mover: Actor, step: Transition) -> Iterator[str]:
-    """Yield what actors may do after a step that was not foreseen before it, of its mover or of those it left alone."""
+    """Yield the unforeseen accesses after a step, of its actor and of actors that it should not disturb."""
     for actor, may in actors.of(step.target).items():
         known = acting.get(actor, NOBODY)
         bounds = [("may ever do", may.ever, known.ever | acting[mover].ever)]

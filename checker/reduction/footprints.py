@@ -1,7 +1,7 @@
 """Footprints of queries, reactions, messages, migrations, and the environment's clauses.
 
-Static and larger than any run: they are derived from the text, the kinds and the first configuration, never from what
-a run was seen to read. Each function names the rule whose reads and writes it bounds.
+They are static over-approximations from the text, the kinds and the first configuration, never from observed reads.
+Each function names the rule whose reads and writes it bounds.
 """
 
 from collections.abc import Iterable, Iterator
@@ -31,7 +31,7 @@ AGENTS: Slot = ("agents",)
 
 
 class Footprints:
-    """What may be read and written, within the bounds of one mission."""
+    """The possible reads and writes of rules, within the bounds of one mission."""
 
     def __init__(self, bounds: Bounds, roles: Roles) -> None:
         self.bounds = bounds
@@ -42,20 +42,20 @@ class Footprints:
         statements = enumerate(bounds.setting.program.statements)
         self.reacts = tuple(number for number, each in statements if isinstance(each, React))
         self.settled = 0
-        """Bits of L that no look can change: see `settle`."""
+        """Bits of L that no observation can change: see `settle`."""
 
-    # --- what rules ask of P and L ----------------------------------------------------------------------------
+    # --- reads of P and L -------------------------------------------------------------------------------------
 
     def where(self, names: Iterable[Name]) -> int:
-        """Return what decides where entities are, and what holds them."""
+        """Return the slots that determine the places of entities, and their holders."""
         return self._where(frozenset(names))
 
     def there(self, names: Iterable[Name]) -> int:
-        """Return what decides whether entities have an image in P."""
+        """Return the slots that determine whether entities have an image in P."""
         return self.slots.of("present", names)
 
     def connected(self, names: Iterable[Name]) -> int:
-        """Return what decides on which links entities are in A(P)."""
+        """Return the slots that determine the links of entities in A(P)."""
         several = frozenset(names)
         here = self.slots.of("channels", several) | self.slots.of("present", several)
         return here | self.slots.of("down", self.bounds.channels)
@@ -74,7 +74,7 @@ class Footprints:
     # --- rules ------------------------------------------------------------------------------------------------
 
     def sense(self, query: Query) -> Footprint:
-        """Bound `sense`: what a query looks at, and what of L ⊕ L_q it may change."""
+        """Bound `sense`: the reads of a query, and its changes to L ⊕ L_q."""
         looking = _Looking(self, query)
         merges = looking.merges & ~self.settled
         cyclic = self.slots.of("parent", self.bounds.cyclic)
@@ -86,13 +86,13 @@ class Footprints:
         return _Reacting(self, reaction).footprint() | self.slots.footprint([("host", agent)])
 
     def post(self, agent: Name, hosts: Iterable[Name], to: Name, message: Message) -> Footprint:
-        """Bound `snd`: the message is put into one mailbox if hosts are linked."""
+        """Bound `snd`: it delivers the message to one mailbox if hosts are linked."""
         reads = [("host", agent), ("host", to), *([AGENTS] if self.roles.may_come(to) else [])]
         delivered = self.slots.footprint(reads, merges=self.mail(to, message))
         return delivered | self.linked(hosts, self.roles[to].hosts)
 
     def mail(self, to: Name, message: Message) -> Iterator[Slot]:
-        """Yield what a message in a mailbox may change: which `react` of the receiver's it may wake, or make fail."""
+        """Yield the slots for each of the receiver's `react` statements that a message may wake, or make fail."""
         for number in self.wakes(message):
             yield from (("mail", to, number), ("fault", to, number))
 
@@ -101,25 +101,25 @@ class Footprints:
         return self.linked(hosts, {to}) | self.slots.footprint(writes=[("host", agent)])
 
     def waiting(self, agent: Name, react: int, told: bool) -> Footprint:
-        """Bound `rcv_msg` and `rcv_obs`, but for the agent's own cells: what else it may get.
+        """Bound `rcv_msg` and `rcv_obs` without the agent's own cells: its other possible messages and observations.
 
         Args:
-            agent: Who waits.
-            react: Where.
-            told: Whether the observation that it gets first is there.
+            agent: The waiting agent.
+            react: The number of its statement.
+            told: Whether its first observation is ready.
         """
         return self.slots.footprint([("mail", agent, react), *([] if told else [("ready", agent)])])
 
     def telling(self, agent: Name) -> Footprint:
-        """Bound what `sense` does to its agent: an observation more to receive."""
+        """Bound the effect of `sense` on its agent: one more observation to receive."""
         faults = (("fault", agent, number) for number in self.reacts)
         unordered = self.bounds.setting.scheduler is Scheduler.UNORDERED
         return self.slots.footprint(merges=[("ready", agent), *(faults if unordered else ())])
 
     def wary(self, agent: Name, react: int) -> Footprint:
-        """Bound what may hinder a `react` later.
+        """Bound the slots that may obstruct a `react` later.
 
-        A guard that fails on one message hides those after it; whatever comes may end the wait for a timeout.
+        A guard that fails on one message hides the messages after it. Any arrival may end the wait for a timeout.
         """
         statement = self.bounds.setting.program.statements[react]
         assert isinstance(statement, React)
@@ -129,7 +129,7 @@ class Footprints:
         return self.slots.footprint([*faults, *comes])
 
     def spawn(self) -> Footprint:
-        """Bound `spawn`, but for what the new agent does."""
+        """Bound `spawn`, without the new agent's steps."""
         return self.slots.footprint([AGENTS], [AGENTS])
 
     # --- the environment --------------------------------------------------------------------------------------
@@ -148,8 +148,7 @@ class Footprints:
                 by = (placement.by for placement in placements if isinstance(placement, Carried))
                 return Footprint(self.there([entity, *by]), self._all_of([entity]))
             case Vanishes(entity):
-                gone = {entity, *self.bounds.aboard(entity)}
-                return Footprint(self.there([entity]) | self.where(gone), self._all_of(gone))
+                return Footprint(writes=self._all_of({entity, *self.bounds.aboard(entity)}))
             case Says(message, agent):
                 reads = [AGENTS] if self.roles.may_come(agent) else []
                 return self.slots.footprint(reads, merges=self.mail(agent, Known(message)))
@@ -160,13 +159,13 @@ class Footprints:
         several = frozenset(names)
         return self.slots.of("placement", several) | self.there(several) | self.slots.of("channels", several)
 
-    # --- what never changes -----------------------------------------------------------------------------------
+    # --- constant slots ---------------------------------------------------------------------------------------
 
     def settle(self, everything: Footprint) -> None:
-        """Note what a look cannot change: where L has what A(P) has, and neither is ever written by anyone.
+        """Record the slots of L that no observation can change: L agrees with A(P), and neither is ever written.
 
         Args:
-            everything: What all actors may ever do.
+            everything: The union of all actors' footprints.
         """
         logical, physical = self.bounds.initial.structure.logical, self.bounds.initial.structure.physical
         for name in self.bounds.names & self.bounds.known:
@@ -183,7 +182,7 @@ class Footprints:
 
 
 class _Looking:
-    """What the evaluation of one query may read, and which slots of L may change by what it shows."""
+    """The possible reads of one query's evaluation, and the slots of L that its result may change."""
 
     def __init__(self, of: Footprints, query: Query) -> None:
         self.of = of
@@ -193,12 +192,12 @@ class _Looking:
         self.show(self.ask(query))
 
     def show(self, names: Iterable[Name]) -> None:
-        """Let what is shown and was no node of L become one."""
+        """Add the slots of shown names that are no nodes of L yet."""
         new = frozenset(names) - self.bounds.known - {REGION}
         self.merges |= self.slots.of("parent", new) | self.slots.of("known", new)
 
     def ask(self, query: Query) -> Names:
-        """Return all that a query may denote."""
+        """Return all names that a query may denote."""
         if isinstance(query, Nodes):
             self.reads |= self.of.there(query.names)
             return frozenset(query.names) & self.bounds.names
@@ -209,7 +208,7 @@ class _Looking:
         return frozenset[Name]().union(*found)
 
     def answer(self, operator: QueryOperator, name: Name) -> Names:
-        """Return all that an operator may denote of one node."""
+        """Return all names that an operator may denote for one node."""
         match operator:
             case QueryOperator.PARENT:
                 return self.parent(name)
@@ -258,7 +257,7 @@ class _Looking:
 
 
 class _Reacting:
-    """What serving a control may read and write, for any match of its redex."""
+    """The possible reads and writes of serving a control, for any match of its redex."""
 
     def __init__(self, of: Footprints, reaction: Reaction) -> None:
         self.of = of
@@ -269,7 +268,7 @@ class _Reacting:
         self.reads = self.writes = 0
 
     def footprint(self) -> Footprint:
-        """Return it."""
+        """Return the footprint."""
         self.matching()
         self.placing()
         self.relinking()
@@ -291,7 +290,7 @@ class _Reacting:
         return frozenset[Name]().union(*map(self.bounds.believable, around))
 
     def matching(self) -> None:
-        """Bound `matches`, `is_active`, `is_full` and consistency: what R uses, in L and in P."""
+        """Bound `matches`, `is_active`, `is_full` and consistency: the parts of L and P that R uses."""
         self.reads |= self.slots.of("known", self.nodes) | self.of.there(self.nodes)
         for pattern in (self.redex, self.reactum):
             for term, place in pattern.parents:
@@ -320,7 +319,7 @@ class _Reacting:
             self.reads |= self.of.where(inside) | self.of.there(inside)
 
     def placing(self) -> None:
-        """Bound `moved`, `stays_forest` and `drive`: who may be moved, and where to."""
+        """Bound `moved`, `stays_forest` and `drive`: the nodes that may move, and their targets."""
         pairs = self.reaction.moves
         moving = frozenset[Name]().union(*(self.nodes_of(node) for node, _ in pairs)) & self.bounds.names
         places = frozenset[Name]().union(
@@ -328,13 +327,13 @@ class _Reacting:
         ) & self.bounds.names  # fmt: skip
         for node in moving:
             self.writes |= self.slots.of("parent", [node]) | self.slots.of("placement", [node])
-            self.reads |= self.of.where({node, *self.bounds.aboard(node)})
+            self.reads |= self.of.where({node})
         above = places.union(*map(self.bounds.above, places))
         if above & moving:
             self.reads |= self.slots.of("parent", above)
 
     def relinking(self) -> None:
-        """Bound `relinked`: whose links and channels may be changed."""
+        """Bound `relinked`: the nodes whose links and channels may change."""
         changed = set(self.redex.links) ^ set(self.reactum.links)
         nodes = frozenset[Name]().union(*(self.nodes_of(node) for _, node in changed))
         self.writes |= self.slots.of("links", nodes) | self.slots.of("channels", nodes)

@@ -1,7 +1,7 @@
-"""Informants: the agents that may pass on what they have observed.
+"""Informants: the agents that may pass on their observations.
 
-A message or a spawned agent carries what its sender rests on, if that had observed anything by then. In many missions
-nobody's does: first they agree, then they look and move.
+A message or a spawned agent carries its sender's provenance, if the sender had observed anything. In many missions no
+sender had: agents first agree, then observe and move.
 """
 
 from collections.abc import Iterator
@@ -29,7 +29,7 @@ from semantics.state.signature import Name
 
 
 def tellers(initial: Configuration, roles: Roles) -> Names:
-    """Return the agents that may tell others of what they have observed, or were told of by others that had."""
+    """Return the agents that may pass on observations, their own or received ones."""
     first = frozenset(_tellers(initial, roles, carrying=False))
     return frozenset(_tellers(initial, roles, carrying=True)) if first else first
 
@@ -47,18 +47,18 @@ def _tellers(initial: Configuration, roles: Roles, *, carrying: bool) -> Iterato
 
 
 class _Passed(NamedTuple):
-    """What is so once something was passed: whether anything may be observed, and told of once it was."""
+    """The effect of passing statements: whether the agent may have observed anything, and passed it on."""
 
     observed: bool
     told: bool
 
 
 class _Lives:
-    """What comes of each statement, begun with something observed or not; a least fixpoint, since loops lead back.
+    """The effect of each statement, with and without an earlier observation; a least fixpoint because of loops.
 
     Args:
         program: The statements.
-        carrying: Whether messages may carry what others have observed.
+        carrying: Whether messages may carry the observations of others.
     """
 
     def __init__(self, program: Program, *, carrying: bool) -> None:
@@ -75,7 +75,7 @@ class _Lives:
             grown, self.passed = after != self.passed, after
 
     def through(self, code: Block, *, observed: bool) -> _Passed:
-        """Return what may be so after some statements, one after another."""
+        """Return the effect of a sequence of statements."""
         told = False
         for number in code:
             observed, more = self.passed[number][observed]
@@ -91,7 +91,7 @@ class _Lives:
             case React() if self.carrying:
                 observed = True
         told = False
-        for _ in range(2):  # what is a loop begins again with what was observed in it
+        for _ in range(2):  # a loop's body runs again after its own observations
             found = [self.through(block, observed=observed) for block in self._blocks(statement)]
             observed |= any(each.observed for each in found)
             told |= any(each.told for each in found)

@@ -1,8 +1,8 @@
-"""Items: what a configuration says of interchangeable members, piece by piece, and how that is exchanged.
+"""Items: the parts of a configuration that mention interchangeable members, and their images under exchanges.
 
-An item is a cell's value, or what one observation in it says of one mobile name: no piece is larger than what the fast
-explorer has a column for. Numbers of 64 bits stand for items, and sums of them for many, in whatever order: both
-explorers come to the same ones.
+An item is a cell's value, or the fact about one mobile name in one of its observations; so it fits one column of the
+fast explorer. 64-bit digests stand for items, and sums of digests for unordered collections. Both explorers compute the
+same ones.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,16 +21,16 @@ from semantics.state.signature import Name
 BITS = (1 << 64) - 1
 
 SAME, OTHER = "⟨same⟩", "⟨other⟩"
-"""Placeholders of a member's own names, and of those of other members."""
+"""Placeholders for a member's own names, and for those of other members."""
 
 Member = int
-"""Interchangeable members are numbered class by class."""
+"""The number of an interchangeable member, class by class."""
 
 Place = tuple[Cell, int, Name] | tuple[Cell]
-"""Where an item is said: in a cell, or by the observation of that number in it of a name."""
+"""The place of an item: a cell, possibly with the number of an observation in it and a name."""
 
 Roles = tuple[tuple[Member, int], ...]
-"""The members that an item mentions, each with a number for what it says of that one, without names."""
+"""The members that an item mentions, each with a digest of its role in the item, without names."""
 
 
 @dataclass(frozen=True)
@@ -69,11 +69,11 @@ class Items:
     """The items of configurations, for given classes.
 
     Attributes:
-        initial: The first configuration: every exchange leaves it as it is, so what is as there says nothing.
-        mobile: The names of which observations speak item by item.
-        unordered: Whether requests stand in the order of their texts.
+        initial: The first configuration; every exchange preserves it, so unchanged values need no item.
+        mobile: The names with items of their own in observations.
+        unordered: Whether requests are sorted by their texts.
         begins: The number of each class's first member, and the number of members.
-        owner: The member that a name, or a counter's cell, belongs to.
+        owner: The member of each name, and of each counter's cell.
     """
 
     initial: Row
@@ -99,7 +99,7 @@ class Items:
         self.number = lru_cache(maxsize=1 << 16)(self._number)
 
     def of(self, c: Configuration) -> Iterator[tuple[Place, Any]]:
-        """Yield the items of a configuration that are not as at first."""
+        """Yield the items of a configuration that differ from the first configuration."""
         assert isinstance(c.state, Row)
         for cell, value in c.state.items():
             if cell in (AGENTS, NAMES) or (
@@ -116,7 +116,7 @@ class Items:
                 yield from (((cell, number, name), fact) for name, fact in told if fact != NOTHING_SEEN)
 
     def is_whole(self, cell: Cell, skeleton: Any) -> bool:
-        """Tell whether a value is one item: an exchange may change the order of the observations in it."""
+        """Return whether a value is a single item: an exchange may reorder the observations in it."""
         kept_in_order = cell[0] in ("mailbox", "sends") or (cell[0] == "line" and self.unordered)
         return kept_in_order and len(skeleton) > 1 and has_holes(skeleton)
 
@@ -130,14 +130,14 @@ class Items:
         return (cell,), taken_apart(content, self.mobile)[0] if has_holes(value) else content
 
     def mentions(self, place: Place, value: Any) -> tuple[Member, ...]:
-        """Return the members that an item mentions: first whose cell it is, then as they occur."""
+        """Return the members that an item mentions: the owner of its cell first, then by occurrence."""
         first = [self.owner[place[0]]] if place[0] in self.owner else []
         said = Observation({place[2]: value}) if len(place) == 3 else _of_the_still(value)
         names = mentioned((place[0][1:], said), self.movable)
         return tuple(dict.fromkeys((*first, *(self.owner[name] for name in names))))
 
     def exchanging(self, pairs: Mapping[Member, Member]) -> Renaming:
-        """Return an exchange by which each of some members is replaced by another of its class."""
+        """Return an exchange that replaces each of some members by another of its class."""
         moved = dict(pairs)
         free = [member for member in moved if member not in set(moved.values())]
         for member in set(moved.values()) - pairs.keys():
@@ -151,7 +151,7 @@ class Items:
         return tuple((member, self._role(place, value, member)) for member in self.mentions(place, value))
 
     def _role(self, place: Place, value: Any, member: Member) -> int:
-        """Return a number for what an item says of a member, the same for all that are alike."""
+        """Return a digest of a member's role in an item; symmetric members have equal ones."""
         names = dict.fromkeys(self.movable, OTHER)
         names |= {name: f"{SAME}{k}" for k, name in enumerate(self.members[member][0])}
         return number_of(
@@ -163,22 +163,22 @@ class Items:
 
 
 def has_holes(skeleton: Any) -> bool:
-    """Tell whether a skeleton is one of a value with observations."""
+    """Return whether a skeleton has holes for observations."""
     return any(True for _ in holes(skeleton))
 
 
 def _of_the_still(skeleton: Any) -> Any:
-    """Return a value with observations that say only what they do of names that are not mobile."""
+    """Return a value whose observations keep only their facts about immobile names."""
     return put_together(skeleton, lambda hole: dict(hole.still))
 
 
 def number_of(value: Any) -> int:
-    """Return 64 bits that stand for a value, the same in every process."""
+    """Return a 64-bit digest of a value, the same in every process."""
     return int.from_bytes(blake2b(spelled(value).encode(), digest_size=8).digest(), "little")
 
 
 def mix(one: int, other: int) -> int:
-    """Return 64 bits that stand for two numbers in their order."""
+    """Return a 64-bit digest of an ordered pair of numbers."""
     mixed = ((one ^ (one >> 32)) * 0x9E3779B97F4A7C15 + other) & BITS
     mixed = ((mixed ^ (mixed >> 29)) * 0xBF58476D1CE4E5B9) & BITS
     return mixed ^ (mixed >> 32)

@@ -1,9 +1,9 @@
-"""The race monitor's part of footprints: which steps mark or pass on stale observations.
+"""The race monitor's part of footprints: the steps that mark observations as stale, or pass marks on.
 
-A control marks what it changes in all that others rest on (`semantics.races.monitor.marked`), and in what its own
-agent may tell of. Whatever an agent does with that (test it, pass it on, forget it, ask for more) ends otherwise
-before a mark than after it, so it reads the marks that may be made there. Marks of two controls are put into sets, so
-they commute, if neither control changes what the other's marks are worked out from.
+A control marks its changes in the provenance of other agents (`semantics.races.monitor.marked`), and in its own agent's
+where that may be passed on. Any use of provenance (test, pass on, drop, extend) has another result before a mark than
+after it, so it reads the marks that may be made there. Marks are added to sets, so those of two controls commute, if
+neither control changes the inputs of the other's marks.
 """
 
 from collections.abc import Iterable, Iterator
@@ -26,7 +26,7 @@ from semantics.state.requests import CTR, FLY, OBS, SND, Request
 from semantics.state.signature import Name
 
 ANSWERS = "answers"
-"""Marks on answers to queries; those on slots of A(P) are told apart by what they are about."""
+"""Marks on answers to queries; marks on slots of A(P) have a kind for each sort of slot."""
 
 PARENT, LINKS, CHILDREN = (f"{SLOT}{kind}" for kind in ("parent", "links", "children"))
 MARKS = frozenset({ANSWERS, PARENT, LINKS, CHILDREN})
@@ -40,7 +40,7 @@ def slot_of_mark(holder: Name, key: Key) -> Slot:
 
 
 class Marks:
-    """Footprints over marks; there are none where nothing is remembered."""
+    """Footprints over marks; empty without the race monitor."""
 
     def __init__(self, footprints: Footprints) -> None:
         self.footprints = footprints
@@ -54,10 +54,10 @@ class Marks:
         self._reading = cache(self._of)
         self.resting = cache(self._resting)
 
-    # --- who marks ------------------------------------------------------------------------------------------------
+    # --- making marks ---------------------------------------------------------------------------------------------
 
     def made(self, author: Name, does: Footprint) -> Footprint:
-        """Bound what a control marks in the memory of others, and what decides that, by what it does to P."""
+        """Bound the marks of a control in other agents' memory, and their inputs, given the control's writes to P."""
         return self._making(author, does.writes) if self.monitored else NOTHING
 
     def _make(self, author: Name, writes: int) -> Footprint:
@@ -73,7 +73,7 @@ class Marks:
                 found |= slots.footprint(merges=self._of_slots(holder, moved, linked))
             if (
                 holder != author or holder in self.tellers
-            ):  # what it may tell of, its own doing makes stale too
+            ):  # its own controls also make its passed-on observations stale
                 found |= self._of_answers(holder, writes, touched)
         return found
 
@@ -88,7 +88,7 @@ class Marks:
             yield (CHILDREN, holder)
 
     def _of_answers(self, holder: Name, writes: int, touched: Names) -> Footprint:
-        """Bound the marks on answers to what an agent has asked: of those queries that look at what is changed."""
+        """Bound the marks on the answers to an agent's queries, for queries that read a change."""
         looks = [each for each in self.held(holder) if writes & self.looking(each).reads]
         reads = 0
         for query in looks:
@@ -96,16 +96,16 @@ class Marks:
         return Footprint(reads, 0, self.footprints.slots.bits([(ANSWERS, holder)]) if looks else 0)
 
     def _deciding(self, query: Query, touched: Names) -> Footprint:
-        """Bound what else decides how what somebody does to some entities changes the answers to a query.
+        """Bound the other inputs that decide how a change of some entities affects the answer to a query.
 
-        Of the children of a place each is there or not whoever else is.
+        Each child of a place is there or not, whatever the others do.
         """
         if not isinstance(query, Of) or query.operator != QueryOperator.CHILDREN or not is_local(query):
             return self.looking(query)
         return self.looking(query if touched.intersection(nodes_of(query)) else query.of)
 
     def _held(self, agent: Name) -> tuple[Query, ...]:
-        """Return the queries of all observations that an agent may rest on: where any are told of, all agents'."""
+        """Return the queries in an agent's possible provenance; all agents' queries if observations are passed on."""
         whose = self.roles.agents if self.tellers else (agent,)
         return tuple(dict.fromkeys(query for each in whose for query in self._asked(each)))
 
@@ -118,10 +118,10 @@ class Marks:
             if isinstance(statement, Observe):
                 yield self.roles.query(agent, statement.query)
 
-    # --- who passes marks on --------------------------------------------------------------------------------------
+    # --- passing marks on -----------------------------------------------------------------------------------------
 
     def is_blank(self, c: Configuration, agent: Name) -> bool:
-        """Tell whether nothing rests on anything that an agent has in mind, has got or has asked for."""
+        """Return whether an agent's memory, mailbox and requests have no provenance."""
         if not self.monitored:
             return True
         requests = ((MONITOR, *cell) for cell in (line_cell(agent), sends_cell(agent)))
@@ -130,7 +130,7 @@ class Marks:
         )
 
     def rested_on(self, agent: Name, code: Code) -> Footprint:
-        """Bound the marks in an agent's memory, as long as so much is left for it to run."""
+        """Bound the marks in an agent's memory while this code is left to it."""
         return self.resting(agent, reachable(self.program, code)) if self.monitored else NOTHING
 
     def _resting(self, agent: Name, reach: frozenset[int]) -> Footprint:
@@ -140,14 +140,14 @@ class Marks:
         return self._reading(agent, questions_in(initial.setting, reach, hosts_of(initial, agent)))
 
     def told(self, agent: Name, listeners: Iterable[Name]) -> Footprint:
-        """Bound the marks in what an agent tells others; who will never be there is told nothing."""
+        """Bound the marks in an agent's messages; receivers that can never exist don't count."""
         if agent not in self.tellers:
             return NOTHING
         there = (each for each in listeners if each in self.roles.agents)
         return joined(self._reading(each, anybodys(self.bounds.initial)) for each in there)
 
     def carried(self, agent: Name, request: Request, rested_on: Footprint) -> Footprint:
-        """Bound the marks in what a request of an agent's rests on, given those in its memory."""
+        """Bound the marks in the provenance of an agent's request, given those in its memory."""
         match request:
             case SND(_, to):
                 return self.told(agent, [to])
@@ -176,7 +176,7 @@ def _rests(kept: tuple[Provenance, ...] | None) -> bool:
 
 
 def is_local(query: Of) -> bool:
-    """Tell whether a query begins with nodes and goes up from them before its last step."""
+    """Return whether a query starts at nodes and goes only to parents before its last operator."""
     inner = query.of
     while isinstance(inner, Of) and inner.operator == QueryOperator.PARENT:
         inner = inner.of
@@ -184,7 +184,7 @@ def is_local(query: Of) -> bool:
 
 
 def nodes_of(query: Query) -> tuple[Name, ...]:
-    """Return the nodes that a query begins with; none for ALL."""
+    """Return the nodes that a query starts at; none for ALL."""
     while isinstance(query, Of):
         query = query.of
     return query.names if isinstance(query, Nodes) else ()

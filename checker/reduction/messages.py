@@ -1,4 +1,4 @@
-"""Messages, statically: what may be sent, and which `react` may take it."""
+"""Static messages: the possible messages, and the `react` statements that may take them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from semantics.behaviours.values import Value
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """A message with this value."""
+    """A message with a constant value."""
 
     value: Value
 
@@ -34,7 +34,7 @@ Message = Known | Tuple | Unknown
 
 
 def message_of(expression: Expression) -> Message:
-    """Return what is known statically of a message."""
+    """Return the static knowledge about a message."""
     match expression:
         case Literal(value):
             return Known(value)
@@ -45,7 +45,7 @@ def message_of(expression: Expression) -> Message:
 
 
 def may_take(pattern: Pattern, message: Message) -> bool:
-    """Tell whether a pattern may take a message."""
+    """Return whether a pattern may take a message."""
     match message:
         case Known(value):
             return bind(pattern, value) is not None

@@ -27,7 +27,7 @@ from semantics.state.setting import Scheduler
 
 
 def ordered(c: Configuration) -> str | None:
-    """Return why the order of names may matter to a mission's program; None where it doesn't."""
+    """Return why the order of names may affect a mission's program; None if it can't."""
     program, environment = c.setting.program, c.setting.environment
     told = any(isinstance(each, Send) for each in program.statements)
     told |= any(isinstance(each, Says) for each in environment)
@@ -55,7 +55,7 @@ def ordered(c: Configuration) -> str | None:
 
 
 def _routes(program: Program) -> frozenset[str]:
-    """Return the variables that never hold anything but a route; a greatest fixpoint, since loops lead back."""
+    """Return the variables that always hold a route; a greatest fixpoint because of loops."""
     given = [each for statement in program.statements for each in _given(statement, program)]
     routes = frozenset(variable for variable, _ in given)
     while True:
@@ -67,7 +67,7 @@ def _routes(program: Program) -> frozenset[str]:
 
 
 def _given(statement: Statement, program: Program) -> Iterator[tuple[str, Expression | None]]:
-    """Yield what a statement gives to variables, None for what the text does not say."""
+    """Yield the variables that a statement binds, each with its expression, None for a value unknown from the text."""
     match statement:
         case Assign(variable, value):
             yield variable, value
@@ -80,7 +80,7 @@ def _given(statement: Statement, program: Program) -> Iterator[tuple[str, Expres
 
 
 def _is_route(value: Expression, routes: frozenset[str]) -> bool:
-    """Tell whether an expression is a route, in the order that is written, where so many variables are."""
+    """Return whether an expression is a route, whose order is written in the text, if these variables are routes."""
     match value:
         case RouteOf():
             return True

@@ -1,4 +1,4 @@
-"""The correspondence that two agents or entities have in all that their texts name, part by part."""
+"""The correspondence between two agents or entities: the names and variables at equal positions of their texts."""
 
 from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any
@@ -6,6 +6,7 @@ from typing import Any
 from semantics.behaviours.expressions import Literal, Variable
 from semantics.behaviours.patterns import Anything, Exactly
 from semantics.behaviours.statements import Assign, ChooseFrom, For, ForEach, Spawn
+from semantics.behaviours.values import show
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
 
@@ -24,7 +25,7 @@ UNLIKE_TEXTS = "their texts differ"
 
 
 class Unlike(Exception):
-    """Two agents or entities are not interchangeable; says why."""
+    """Two agents or entities are not interchangeable; the message has the reason."""
 
 
 @dataclass
@@ -43,7 +44,7 @@ class Pairing:
         self.unify(self.c.alpha.code(one), self.c.alpha.code(other))
 
     def pair(self, known: dict[Any, Any], one: Any, other: Any) -> bool:
-        """Note that one thing corresponds to another; tell whether that is new."""
+        """Record that one thing corresponds to another; return whether that is new."""
         if one == other or known.get(one) == other:
             return False
         if one in known or one in known.values() or other in known or other in known.values():
@@ -95,7 +96,7 @@ class Pairing:
         elif isinstance(one, str) and isinstance(other, str) and {one, other} <= self.movable():
             self.pair(self.names, one, other)
         elif type(one) is not type(other) or one != other:
-            raise Unlike(f"the text of one says {one} where the other's says {other}")
+            raise Unlike(f"the text of one says {show(one)} where the other's says {show(other)}")
 
     def movable(self) -> frozenset[Name]:
         """Return the names that may be exchanged: of agents and of entities."""

@@ -1,7 +1,7 @@
-"""Paths that followed steps make, so that no step is ignored: put off in every configuration of a cycle, for ever.
+"""The cycle proviso: paths of followed steps, which ensure that no enabled step is ignored for ever.
 
-From every configuration one of the followed steps leads *on*. These steps make a forest; what a tree ends in was not
-expanded yet, or ignores no step. Where a cycle is closed, what was taken on it is taken together.
+From each configuration one of the followed steps leads *onward*. These steps form a forest; the root of a tree is
+unexpanded or ignores no step. When a cycle closes, the parts taken along it count together.
 """
 
 from collections.abc import Iterable, Mapping
@@ -11,39 +11,38 @@ from checker.reduction.actors import Acting, Actor
 from semantics.state.signature import Name
 
 Part = tuple[str, Name | int]
-"""An actor, but that all requests of an agent outside its line are one part: taken only where all of them are."""
+"""An actor, except that all requests of an agent outside its line form one part, taken only if all of them are."""
 
 Parts = frozenset[Part]
 
 
 def part_of(actor: Actor) -> Part:
-    """Return the part that an actor belongs to."""
+    """Return the part of an actor."""
     return (actor.kind, actor.owner)
 
 
 def parts_of(inside: Iterable[Actor], acting: Mapping[Actor, Acting]) -> Parts:
-    """Return the parts of which all actors are inside."""
+    """Return the parts whose actors are all inside."""
     within = set(inside)
     return frozenset(map(part_of, within)) - {part_of(each) for each in acting if each not in within}
 
 
 NOWHERE = -1
-"""What stands for the number of a configuration that is new."""
+"""The number of a new configuration."""
 
 
 class Lead(NamedTuple):
-    """Where a path leads from some configuration: to another, with what is taken before that."""
+    """The end of a path from a configuration, and the parts taken before it."""
 
     to: int
     taken: Parts
 
 
 class Paths:
-    """The paths of one exploration, configuration by configuration, by their numbers.
+    """The paths of one exploration, by the numbers of configurations.
 
     Args:
-        named: Whether an actor has the same name all along a path; under symmetry it has not, and nothing is taken
-            to be the same.
+        named: Whether an actor keeps its name along a path. Under symmetry it doesn't, so no part counts as taken.
     """
 
     def __init__(self, *, named: bool = True) -> None:
@@ -52,7 +51,7 @@ class Paths:
         self.leads: dict[int, Lead] = {}
 
     def end(self, number: int | None) -> Lead:
-        """Return where the path from a configuration ends, and what is taken on it; of one that is new, nowhere."""
+        """Return the end of the path from a configuration, and the parts taken on it; `NOWHERE` for a new one."""
         if number is None:
             return Lead(NOWHERE, frozenset())
         passed = []
@@ -66,5 +65,5 @@ class Paths:
         return Lead(number, taken if self.named else frozenset())
 
     def lead(self, number: int, to: int, taken: Parts) -> None:
-        """Note where the path leads on from a configuration."""
+        """Record the onward step of a configuration."""
         self.leads[number] = Lead(to, taken)

@@ -37,11 +37,11 @@ class Reduced:
 
     @property
     def putting_off(self) -> bool:
-        """Whether steps are postponed: then a trace need not be a shortest one."""
+        """Whether steps are postponed, so that a trace may not be a shortest one."""
         return self.ample is not None
 
     def refuses(self, asked: Property) -> str | None:
-        """Return why a property is not decided under these reductions, None if it is."""
+        """Return why a property is undecided under these reductions, None if it is decided."""
         return refusal(asked)
 
     def representative(self, c: Configuration) -> Configuration:
@@ -49,13 +49,13 @@ class Reduced:
         return c if self.symmetry is None else self.symmetry.representative(c)
 
     def paths(self) -> Paths:
-        """Return the paths of a new exploration; exchanges give actors other names on the way."""
+        """Return the paths of a new exploration; symmetry renames actors along them."""
         return Paths(named=self.symmetry is None)
 
     def choose(
         self, c: Configuration, expansion: Expansion, number: int, reached: Reached, paths: Paths
     ) -> Followed:
-        """Return the transitions to follow from a configuration with some number."""
+        """Return the transitions to follow from a configuration, given its number."""
         if self.ample is None:
             return Followed(expansion.transitions)
         return self.ample.choose(c, expansion, number, reached, paths)
@@ -64,7 +64,7 @@ class Reduced:
         """Check the reductions' assumptions on a configuration: footprints, visibility, and symmetry.
 
         Raises:
-            Drift: One does not hold; a bug of ours.
+            Drift: An assumption fails; a bug of ours.
         """
         from checker.reduction.footprint_check import crosscheck, exchange  # noqa: PLC0415  # for --paranoid only
 

@@ -21,8 +21,8 @@ class RefusedError(ValueError):
     """A reduction that would be unsound for a mission, or useless; with the reason.
 
     Attributes:
-        reduction: Which one.
-        reason: Why.
+        reduction: The refused reduction.
+        reason: The reason.
     """
 
     def __init__(self, reduction: Reduction, reason: str) -> None:
@@ -32,7 +32,7 @@ class RefusedError(ValueError):
 
 
 def refusal(asked: Property) -> str | None:
-    """Return why a property is not decided under reductions, None where it is."""
+    """Return why a property is undecided under reductions, None if it is decided."""
     if asked.kind.about.reducible and not asked.is_of_runs:
         return None
     if asked.kind.about.reducible:
@@ -41,10 +41,10 @@ def refusal(asked: Property) -> str | None:
 
 
 def refuse_symmetry(c: Configuration) -> None:
-    """Refuse symmetry for missions in which the race monitor must remember observations.
+    """Refuse symmetry for missions with the race monitor's provenance.
 
     Raises:
-        RefusedError: It would be unsound.
+        RefusedError: Symmetry would be unsound.
     """
     if c.setting.monitored:
         reason = (
@@ -54,10 +54,10 @@ def refuse_symmetry(c: Configuration) -> None:
 
 
 def refuse_partial_order(c: Configuration) -> None:
-    """Refuse partial-order reduction for missions in which the order of all requests matters.
+    """Refuse partial-order reduction for missions in which the order of all requests is relevant.
 
     Raises:
-        RefusedError: It would be unsound.
+        RefusedError: Partial-order reduction would be unsound.
     """
     if c.setting.scheduler is Scheduler.FCFS:
         reason = (

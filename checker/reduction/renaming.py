@@ -21,7 +21,7 @@ from semantics.behaviours.reaction_rules import (
     PlaceVariable,
     Reaction,
 )
-from semantics.behaviours.values import Truth, order_key
+from semantics.behaviours.values import Text, Truth, order_key
 from semantics.properties.propositions import Instances, Range
 from semantics.state.cells import AGENTS, NAMES, Cell, Changes, Row
 from semantics.state.configuration import Configuration
@@ -33,7 +33,7 @@ Where = TypeVar("Where", int, Cell)
 
 WORD = re.compile(r"[^\W\d]\w*")
 
-FIXED = (int, Truth, Geometry, Placed, All, NodeVariable, PlaceVariable, LinkVariable, type(None))
+FIXED = (int, Truth, Text, Geometry, Placed, All, NodeVariable, PlaceVariable, LinkVariable, type(None))
 """Types without names."""
 
 
@@ -192,18 +192,18 @@ def spelled(value: Any) -> str:
     return repr(value)
 
 
-# --- what is mentioned where ----------------------------------------------------------------------------------
+# --- mentions -------------------------------------------------------------------------------------------------
 
 
 class _Asked(dict[Any, Any]):
-    """An empty permutation that notes what it is asked for."""
+    """An empty permutation that records the requested keys."""
 
     def __init__(self, met: dict[Any, None]) -> None:
         super().__init__()
         self.met = met
 
     def get(self, key: Any, default: Any = None) -> Any:
-        """Note a key; there is nothing under it."""
+        """Record a key; return the default."""
         self.met[key] = None
         return default
 
@@ -213,19 +213,19 @@ class _Asked(dict[Any, Any]):
 
 
 def asked(look: Callable[[Renaming], object]) -> tuple[Any, ...]:
-    """Return the names, numbers, variables and cells that a look asks a renaming for, in order."""
+    """Return the names, numbers, variables and cells that a function requests from a renaming, in order."""
     met: dict[Any, None] = {}
     look(Renaming(*(_Asked(met) for _ in range(4))))
     return tuple(met)
 
 
 def mentioned(value: Any, among: frozenset[str]) -> tuple[str, ...]:
-    """Return which of some names occur in a value, in the order in which they do."""
+    """Return the given names that occur in a value, in the order of occurrence."""
     return tuple(name for name in asked(lambda renaming: renaming.value(value)) if name in among)
 
 
 class Mentions(Generic[Where]):
-    """Where things are mentioned: what a renaming changes lies among the places that mention what it moves."""
+    """An index of the places that mention each thing; a renaming changes only places that mention a moved thing."""
 
     def __init__(self, places: Iterable[tuple[Where, Callable[[Renaming], object]]]) -> None:
         self.places: dict[Any, dict[Where, None]] = {}
@@ -234,6 +234,6 @@ class Mentions(Generic[Where]):
                 self.places.setdefault(thing, {})[place] = None
 
     def of(self, renaming: Renaming) -> list[Where]:
-        """Return the places that mention what a renaming moves, sorted."""
+        """Return the places that mention a thing that a renaming moves, sorted."""
         moved = (thing for part in renaming.parts for thing in part)
         return sorted(set().union(*(self.places.get(thing, ()) for thing in moved)))

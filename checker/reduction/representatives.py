@@ -1,9 +1,9 @@
-"""Representatives: in which order the members of each class stand for their configuration.
+"""Representatives: the order in which the members of each class appear in a representative configuration.
 
-Each member has a colour: a number for all that a configuration says of it, without names. Members are sorted by it.
-Where equal ones occur in one item with others, colours are refined by those of the others. Then equal ones that may
-change places are left as they are. If the others are left in a few orders, all are tried, so symmetric configurations
-have one representative. If they are in many, one member after another is set apart: there may be several
+Each member has a colour: a digest of the items that mention it, without names. Members are sorted by colour. Where
+members of equal colour share items with others, colours are refined by those of the others. Then members of equal
+colour that can be exchanged keep their order. If the rest has few orders, all are tried, so symmetric configurations
+have one representative. If there are many, one member after another gets a colour of its own. There may be several
 representatives then, which costs configurations but is sound.
 """
 
@@ -17,7 +17,7 @@ from checker.reduction.renaming import Renaming
 from semantics.state.configuration import Configuration
 
 MOST_ORDERS = 120
-"""How many orders of equal members are tried for one configuration."""
+"""The most orders of equal members that are tried for one configuration."""
 
 Group = tuple[Member, ...]
 
@@ -40,7 +40,7 @@ def _renaming(items: Items, order: Sequence[Member]) -> Renaming:
 
 
 def _spelling(items: Items, renaming: Renaming, said: Said) -> int:
-    """Return a number for a configuration as it is renamed."""
+    """Return a digest of a renamed configuration."""
     return sum(items.number(*items.renamed(renaming, place, value)) for place, value, _ in said) & BITS
 
 
@@ -72,7 +72,7 @@ def _orders(items: Items, said: Said) -> list[tuple[Member, ...]]:
 
 
 def _may_change(items: Items, said: Said, one: Member, other: Member) -> bool:
-    """Tell whether a configuration is the same with two members exchanged."""
+    """Return whether exchanging two members preserves a configuration."""
     both = {one, other}
     about = [each for each in said if not both.isdisjoint(member for member, _ in each[2])]
     return _spelling(items, items.exchanging({one: other, other: one}), about) == _spelling(
@@ -81,7 +81,7 @@ def _may_change(items: Items, said: Said, one: Member, other: Member) -> bool:
 
 
 def _groups(items: Items, colours: Sequence[int]) -> Iterator[Group]:
-    """Yield the members in order, equal ones together."""
+    """Yield the members in order, those of equal colour together."""
 
     def place(member: Member) -> tuple[int, int]:
         return items.class_of[member], colours[member]
@@ -91,12 +91,12 @@ def _groups(items: Items, colours: Sequence[int]) -> Iterator[Group]:
 
 
 def _tied(groups: Sequence[Group], beside: set[Member]) -> list[Group]:
-    """Return the groups of several of which some occur in one item with others: else their order does not matter."""
+    """Return the groups of several members whose order is relevant, since some of them share items with others."""
     return [group for group in groups if len(group) > 1 and not beside.isdisjoint(group)]
 
 
 def _refined(colours: Sequence[int], together: Sequence[Roles]) -> list[int]:
-    """Return colours that tell apart members that are mentioned with members of different colours."""
+    """Return colours that distinguish members by the colours of the members they share items with."""
     met = [0] * len(colours)
     for roles in together:
         parts = [mix(role, colours[member]) for member, role in roles]

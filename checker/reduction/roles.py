@@ -1,7 +1,7 @@
 """Roles: the statements that each agent may reach, the values of its variables, and its possible hosts.
 
-A least fixpoint over the text, not over runs: an agent's variables hold the names that any reachable statement may
-assign. A value that is not a constant, a host or a place in which something was seen may be any name.
+They are a least fixpoint over the text, not over runs: a variable holds the names that any reachable statement may
+assign. A value may be any name, unless it is a constant, a host, or the observed place of something.
 """
 
 from collections.abc import Iterable, Iterator
@@ -37,10 +37,10 @@ from semantics.behaviours.statements import (
     Spawn,
     Statement,
 )
-from semantics.behaviours.values import Route, Truth, Value, within
+from semantics.behaviours.values import Route, Text, Truth, Value, within
 from semantics.environment import Says
 from semantics.state.requests import MGR, SND
-from semantics.state.signature import REGION, Name
+from semantics.state.signature import NO_ENTITIES, Name
 
 
 @dataclass(slots=True)
@@ -62,7 +62,7 @@ class Roles:
     """The roles of all first agents and of those that may be spawned.
 
     Attributes:
-        first: The first agents: no agent ever leaves.
+        first: The first agents; no agent ever leaves.
     """
 
     def __init__(self, bounds: Bounds) -> None:
@@ -89,7 +89,7 @@ class Roles:
         return tuple(sorted(self.roles))
 
     def may_come(self, agent: Name) -> bool:
-        """Tell whether an agent that does not exist may exist later: no agent ever leaves."""
+        """Return whether an agent that doesn't exist may exist later."""
         return agent in self.roles and agent not in self.first
 
     def descendants(self, reach: Iterable[int]) -> Names:
@@ -100,10 +100,10 @@ class Roles:
         statements = (self.program.statements[number] for number in numbers)
         return frozenset(each.name for each in statements if isinstance(each, Spawn))
 
-    # --- what expressions may name ----------------------------------------------------------------------------
+    # --- possible names of expressions ------------------------------------------------------------------------
 
     def names(self, agent: Name, expression: Expression) -> Names | None:
-        """Return the names that a value, or the members of a set or a route, may be; None for any."""
+        """Return the possible names of a value, or of the members of a set or a route; None for any."""
         match expression:
             case Literal(value):
                 return _spelled(value)
@@ -127,14 +127,14 @@ class Roles:
                 return None
 
     def _members(self, members: Iterable[Value], nodes: Names | None) -> Names:
-        """Return the members of a family that may be meant by some nodes."""
+        """Return the members of a family that some nodes may denote."""
         pairs = (each for each in members if isinstance(each, tuple))
         return frozenset(str(agent) for node, agent in pairs if nodes is None or node in nodes)
 
     def _places(self, nodes: Names | None) -> Names:
-        """Return the places in which an observation may have seen some nodes."""
+        """Return the places in which an observation may have shown some nodes."""
         among = self.bounds.names if nodes is None else nodes & self.bounds.names
-        return frozenset({REGION, "unknown"}).union(*map(self.bounds.holders, among))
+        return NO_ENTITIES.union(*map(self.bounds.holders, among))
 
     def entities(self, agent: Name, expression: Expression) -> tuple[Name, ...]:
         """Return the entities that an expression may name, sorted."""
@@ -147,7 +147,7 @@ class Roles:
         return tuple(each for each in self.agents if found is None or each in found)
 
     def query(self, agent: Name, template: QueryOf) -> Query:
-        """Return a query over all that the leaves of another may name: it observes at least as much."""
+        """Return a query for all possible names in a template; it observes at least as much."""
         argument = template.argument
         if argument is None:
             return All()
@@ -200,7 +200,7 @@ class Roles:
                 self._pass(agent, name, behaviour, arguments)
 
     def _receive(self, agent: Name, pattern: Pattern) -> None:
-        """Bind the variables of a pattern to what messages may have there; to anything if it may be an observation."""
+        """Bind a pattern's variables to the possible parts of messages; to any value if it may take an observation."""
         if not isinstance(pattern, Elements):
             for variable in variables(pattern):
                 self._bind(agent, variable, None)
@@ -264,4 +264,4 @@ def _spelled(value: object) -> Names | None:
         return frozenset({value})
     if isinstance(value, frozenset | Route):
         return _either(map(_spelled, within(value)))
-    return frozenset() if isinstance(value, int | Truth) else None
+    return frozenset() if isinstance(value, int | Truth | Text) else None

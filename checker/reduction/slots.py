@@ -18,7 +18,7 @@ class Footprint:
     """The slots that an actor may read, write and merge, a bit for each.
 
     Attributes:
-        reads: The slots that decide whether it is enabled and what it does.
+        reads: The slots that determine whether it is enabled, and its effect.
         writes: The slots whose value it may change.
         merges: The slots to which it may add commutatively: messages in a mailbox, and observations of the same P in L.
     """
@@ -36,7 +36,7 @@ class Footprint:
         return Footprint(self.reads | other.reads, self.writes | other.writes, self.merges | other.merges)
 
     def disturbs(self, other: "Footprint") -> bool:
-        """Tell whether one may disable the other, change its effect, or not commute with it."""
+        """Return whether one actor may disable the other, change its effect, or not commute with it."""
         return bool(
             self.writes & (other.reads | other.changes)
             or other.writes & (self.reads | self.merges)
@@ -62,7 +62,7 @@ def joined(footprints: Iterable[Footprint]) -> Footprint:
 
 
 class Slots:
-    """Numbers slots as they are met."""
+    """A numbering of slots by first use."""
 
     def __init__(self) -> None:
         self.numbers: dict[Slot, int] = {}
@@ -89,7 +89,7 @@ class Slots:
         return Footprint(self.bits(reads), self.bits(writes), self.bits(merges))
 
     def has(self, bits: int, slot: Slot) -> bool:
-        """Tell whether a slot is among some bits; a slot without number is only among all."""
+        """Return whether a slot is among some bits; an unnumbered slot only belongs to `EVERYTHING`."""
         return bool(bits >> self.numbers.get(slot, len(self.numbers)) & 1)
 
     def named(self, bits: int) -> tuple[Slot, ...]:

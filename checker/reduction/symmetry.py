@@ -1,6 +1,6 @@
 """Symmetry: interchangeable agents and entities, and one representative of symmetric configurations.
 
-Any permutation may exchange the members of a class.
+The symmetry group contains every permutation of the members of a class.
 """
 
 from collections.abc import Iterable, Iterator
@@ -23,14 +23,14 @@ from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
 
 MOST_PAIRS = 2_000
-"""How many pairs of entities without agents are tried."""
+"""The most pairs of entities without agents that are tried."""
 
 
 class Symmetry:
     """The interchangeable parts of a mission, and representatives.
 
     Raises:
-        RefusedError: There are none, or the order of names matters.
+        RefusedError: Nothing is interchangeable, or the order of names is relevant.
     """
 
     def __init__(self, initial: Configuration, formulas: Iterable[Proposition] = ()) -> None:
@@ -52,7 +52,7 @@ class Symmetry:
         self.items = Items(initial.state, self.classes, mobile, unordered)
         self.sorting = lru_cache(maxsize=4096)(self._sorting)
 
-    # --- what is interchangeable ------------------------------------------------------------------------------
+    # --- classes ----------------------------------------------------------------------------------------------
 
     def _of_entities(self) -> Iterator[Class]:
         moved = {name for each in self.classes for names in each.names for name in names}
@@ -65,7 +65,7 @@ class Symmetry:
                 yield from self._classes(names)
 
     def _classes(self, names: Iterable[Name]) -> Iterator[Class]:
-        """Yield classes of at least two members that each begin with one of some names."""
+        """Yield classes of at least two members, each beginning with one of the given names."""
         left, taken = list(names), set[Any]()
         while left:
             first = left.pop(0)
@@ -93,7 +93,7 @@ class Symmetry:
             return None
 
     def _fits(self, swap: Renaming, likes: list[Renaming], taken: set[Any]) -> bool:
-        """Tell whether a member shares nothing with those found before."""
+        """Return whether a member is disjoint from those found before."""
         used = {name for like in likes for name in like.names} | taken
         first = [side[0] for side in self._sides(swap)]
         if not likes:
@@ -102,7 +102,7 @@ class Symmetry:
         return alike and len(used.intersection(swap.names)) == len(first[0])
 
     def _sides(self, swap: Renaming) -> tuple[tuple[tuple[Any, ...], tuple[Any, ...]], ...]:
-        """Return for each part of a swap the one side and the other, position by position."""
+        """Return for each part of a swap both sides, position by position."""
         return tuple(_halves(part) for part in swap.parts)
 
     def _members(self, likes: list[Renaming]) -> Iterator[tuple[tuple[Any, ...], ...]]:

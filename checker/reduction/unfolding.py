@@ -1,4 +1,4 @@
-"""Unfolding: what was visited under a reduction is told of the mission itself, in a run of its rules."""
+"""Unfolding: the run of the unreduced mission behind a configuration of a reduced exploration."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def run_to(found: Exploration, number: int, by: Transition | None = None) -> tuple[Transition, ...]:
-    """Return a run of the rules to what a visited configuration stands for, and then `by`."""
+    """Return an unreduced run to the configuration that a visited one represents, and then through `by`."""
     assert found.reducer is not None
     steps, real, renaming = _unfold(found, found.reducer, number)
     if by is not None:
@@ -24,7 +24,7 @@ def run_to(found: Exploration, number: int, by: Transition | None = None) -> tup
 
 
 def told(found: Exploration, number: int, text: str) -> str:
-    """Return what is said of a visited configuration as it is said of the one that the run leads to."""
+    """Return a text about a visited configuration in the names of the unreduced run to it."""
     if found.reducer is None or found.reducer.symmetry is None:
         return text
     return _unfold(found, found.reducer, number)[2].inverse.text(text)
@@ -33,7 +33,7 @@ def told(found: Exploration, number: int, text: str) -> str:
 def _unfold(
     found: Exploration, reducer: Reduced, number: int
 ) -> tuple[list[Transition], Configuration, Renaming]:
-    """Return the run, its end, and the renaming that leads from there to the visited configuration."""
+    """Return the unreduced run, its end, and the renaming from there to the visited configuration."""
     real = found.configurations[0] if found.start is None else found.start
     renaming = _sorting(reducer, real)
     steps: list[Transition] = []
@@ -54,7 +54,7 @@ def _sorting(reducer: Reduced, c: Configuration) -> Renaming:
 
 
 def _really(reducer: Reduced, taken: Transition, real: Configuration, renaming: Renaming) -> Transition:
-    """Return the step of a real run that a step of what stands for its end is."""
+    """Return the step of the unreduced run that corresponds to a step of the representative."""
     if reducer.symmetry is None:
         return taken
     target = renaming.inverse.configuration(taken.target)

@@ -1,4 +1,4 @@
-"""Visible slots: the questions about cells that decide the truth of a proposition."""
+"""Visible slots: the questions about cells that determine the truth of a proposition."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -63,7 +63,7 @@ class Eyes:
         self.seen = tuple(dict.fromkeys(each for atom in atoms for each in self._sees(atom)))
 
     def differ(self, before: Configuration, after: Configuration) -> bool:
-        """Tell whether two configurations differ visibly."""
+        """Return whether two configurations differ visibly."""
         return any(each.of(before) != each.of(after) for each in self.seen)
 
     def _sees(self, atom: Atom) -> Iterator[Seen]:
@@ -112,5 +112,5 @@ class Eyes:
 
 
 def _anywhere(atom: Atom) -> Atom:
-    """Return an atom that sees as much: where something is is seen alike for all places that it may be in."""
+    """Return an atom with the same visible cells: those of a node's position are the same for all places."""
     return Inside(atom.node, REGION, atom.actually) if isinstance(atom, Inside) else atom

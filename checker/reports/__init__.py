@@ -1,1 +1,1 @@
-"""Reports: what a check found, as text, lanes and the formats of other programs."""
+"""Reports: the results of a check as text, as lanes, and in the formats of other programs."""

@@ -24,7 +24,7 @@ def _command(result: Result, issue: Issue) -> str:
 
 
 def _place(issue: Issue) -> dict[str, str]:
-    """Return where an issue is; columns are GitHub's on a single line only."""
+    """Return the place of an issue; GitHub supports columns on a single line only."""
     place = {"line": issue.line, "endLine": issue.end_line}
     if issue.end_line in (0, issue.line):
         place |= {"col": issue.column, "endColumn": issue.end_column}
@@ -32,7 +32,7 @@ def _place(issue: Issue) -> dict[str, str]:
 
 
 def escape_message(text: str) -> str:
-    r"""Return a text so that it ends no command.
+    r"""Return a text escaped so that it can't end a command.
 
     >>> escape_message("100%\n::error::x")
     '100%25%0A::error::x'
@@ -41,7 +41,7 @@ def escape_message(text: str) -> str:
 
 
 def escape_property(text: str) -> str:
-    """Return a text so that it ends no property either.
+    """Return a text escaped so that it can't end a property either.
 
     >>> escape_property("a,line=1::b")
     'a%2Cline=1%3A%3Ab'

@@ -1,21 +1,22 @@
-"""Compare two traces: where they diverge, which steps they still share, and how their ends differ."""
+"""Compare two traces: the point of divergence, the steps still shared after it, and the differences of their ends."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import Final
 
-from checker.traces import Step, Trace
+from checker.steps import Step
+from checker.traces import Trace, print_step
 from physical.messages import counted
 from semantics.state.differences import Difference, differences
 
 MOST_ALIGNED: Final = 1_000
-"""How many steps of each trace are aligned after they diverge; the cost is quadratic."""
+"""The most steps of each trace that are aligned after the divergence; the cost is quadratic."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Steps beside each other, by their numbers from 1; None where only the other trace has one."""
+    """Aligned steps, by their numbers from 1; None where only the other trace has one."""
 
     one: int | None
     other: int | None
@@ -23,12 +24,12 @@ class Pair:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """How two traces differ.
+    """The differences of two traces.
 
     Attributes:
-        shared: How many steps they have in common from the start.
-        pairs: The steps after that, aligned by their labels; at most `MOST_ALIGNED` of each trace.
-        beyond: How many more steps each trace has.
+        shared: The number of common steps from the start.
+        pairs: The steps after those, aligned by their labels; at most `MOST_ALIGNED` of each trace.
+        beyond: The number of further steps of each trace.
         ends: The differences between the last configurations; None if the missions have different entities.
     """
 
@@ -39,7 +40,7 @@ class Comparison:
 
 
 def compare(one: Trace, other: Trace) -> Comparison:
-    """Return how two traces differ."""
+    """Return the differences of two traces."""
     ways = [_ways(trace.steps) for trace in (one, other)]
     both = min(map(len, ways))
     shared = next((n for n in range(both) if ways[0][n] != ways[1][n]), both)
@@ -69,7 +70,7 @@ def _aligned(one: list[tuple[str, int]], other: list[tuple[str, int]], after: in
 
 
 def comparison_text(one: Trace, other: Trace, names: tuple[str, str]) -> Iterator[str]:
-    """Yield line by line how two traces differ; `<` marks what only the first has, `>` what only the other."""
+    """Yield the differences of two traces, line by line; `<` marks steps of the first only, `>` of the other only."""
     found = compare(one, other)
     steps = counted(found.shared, "step")
     yield f"< {names[0]}: {counted(len(one), 'step')}"
@@ -90,7 +91,7 @@ def _pair(pair: Pair, one: Trace, other: Trace) -> str:
     number, trace = (pair.one, one) if pair.one else (pair.other, other)
     assert number is not None
     beside = f" (c{pair.other} there)" if pair.one and pair.other and pair.one != pair.other else ""
-    return f"  {sign} c{number - 1} --{trace.steps[number - 1].label}--> c{number}{beside}"
+    return f"  {sign} {print_step(trace, number)}{beside}"
 
 
 def _ends(found: Comparison) -> Iterator[str]:

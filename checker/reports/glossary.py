@@ -1,4 +1,4 @@
-"""The words of reports: what each means, and what to do where it names a fault."""
+"""The words of reports: the meaning of each, and a remedy for each fault."""
 
 from collections.abc import Mapping
 from inspect import getdoc
@@ -117,10 +117,10 @@ WORDS: Final[Mapping[str, str]] = {
         What a control needs to find, the left side of its reaction rule; the right side, the
         reactum, is what it makes.""",
 }
-"""What no rule and no property is."""
+"""The words that are neither rules nor properties."""
 
 SHORTEST: Final = 3
-"""Letters of a word that are not enough to find it by its beginning."""
+"""The most letters that are too few to find a word by its beginning."""
 
 PROPERTIES: Final[Mapping[str, str]] = {
     "local_consistency": """
@@ -157,20 +157,20 @@ PROPERTIES: Final[Mapping[str, str]] = {
         The earliest and the latest moment at which a proposition first becomes true, or that it
         may never: `time "name": formula`.""",
 }
-"""What each kind of properties means, by its word."""
+"""The meaning of each kind of properties, by its word."""
 
 RULES: Final = (
     *("fun", "req_obs", "sense", "rcv_obs", "req_ctr", "actuate", "env", "command", "commit"),
     *("req_snd", "snd", "rcv_msg", "timeout", "req_mgr", "migrate", "spawn", "say"),
 )
-"""The rules, which are imported only where one is asked for: that takes time."""
+"""The rules; their docstrings are imported on demand, since that is slow."""
 
 ALL: Final = (*PROPERTIES, *WORDS, *RULES)
-"""All that can be asked for."""
+"""All words with an entry."""
 
 
 def find_word(asked: str) -> tuple[str, str] | None:
-    """Return a word of reports with its meaning; hyphens, underscores and case don't matter, nor does its end.
+    """Return a word of reports with its meaning; hyphens, underscores, case and endings may differ.
 
     >>> find_word("stale-observation")[0], find_word("Race Freedom")[0], find_word("unserved OBS")[0]
     ('stale-observation race', 'race_freedom', 'unserved request')
@@ -199,7 +199,7 @@ def _found(asked: str) -> str | None:
 
 
 def _begins(word: str, asked: str) -> bool:
-    """Tell whether one is the beginning of the other, or both begin with the same of several words."""
+    """Return whether the word begins as asked, or with the first of several words asked."""
     first, *rest = asked.split() or [""]
     return len(asked) > SHORTEST and (word.startswith(asked) or (bool(rest) and word.startswith(f"{first} ")))
 

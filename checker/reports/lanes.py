@@ -9,6 +9,7 @@ from typing import Final
 
 from wcwidth import ljust, wrap
 
+from checker.properties.race_steps import RaceSteps
 from checker.traces import Trace
 from semantics.state.configuration import Configuration, Label
 from semantics.state.differences import Difference, differences
@@ -21,13 +22,13 @@ SERVING: Final = frozenset({"sense", "actuate", "command", "commit", "snd", "mig
 """Rules that serve a request: they act between the requesting agent and the world."""
 
 LEAST_REPEATED: Final = 8
-"""How many steps in a row have to repeat others to be folded into one line."""
+"""The least number of consecutive repeated steps that are folded into one line."""
 
 WORLD: Final = frozenset({"L", "P", "E"})
-"""The parts that are not the agents' own."""
+"""The parts of a configuration outside the agents."""
 
 COUNTED: Final = re.compile(r"(?<= = )-?\d+$")
-"""The number that a variable has become: it may differ from one round of a loop to the next."""
+"""The new number of a variable; it may differ from one round of a loop to the next."""
 
 NARROWEST: Final = 24
 NUMBERS: Final = 6
@@ -43,6 +44,7 @@ class LaneStep:
         label: Its label.
         changes: Its changes.
         at: When it is taken, in milliseconds from the start; None where the run has no dates.
+        role: What it is in a stale-observation race: *sensed*, *changed* or *acted*; mostly nothing.
     """
 
     number: int
@@ -50,10 +52,11 @@ class LaneStep:
     label: Label
     changes: tuple[Difference, ...]
     at: int | None = None
+    role: str = ""
 
     @property
     def date(self) -> str:
-        """When it is taken, as a clock says it; nothing where the run has no dates."""
+        """Its date as text; empty without dates."""
         return "" if self.at is None else clock_text(self.at)
 
     @property
@@ -73,13 +76,13 @@ class LaneStep:
 
     @property
     def deed(self) -> tuple[str, tuple[str, ...]]:
-        """What was done and what it changed, whatever a counter has come to."""
+        """The step and its changes, without the values of counters."""
         return str(self.label), tuple(COUNTED.sub("#", str(change)) for change in self.changes)
 
 
 @dataclass(frozen=True, slots=True)
 class Repetition:
-    """Steps in a row that only repeat others since the world last changed, such as an agent's observation loop.
+    """Consecutive steps that only repeat earlier ones since the world last changed, such as a loop of observations.
 
     Attributes:
         steps: Those steps.
@@ -103,34 +106,39 @@ class Repetition:
         return Counter(step.lane for step in self.steps).most_common(1)[0][0]
 
     @property
+    def role(self) -> str:
+        """Nothing: a step of a race has a row of its own."""
+        return ""
+
+    @property
     def heading(self) -> str:
-        """How many they are."""
+        """The number of steps."""
         return f"↻ {len(self.steps):,} steps, to c{self.last}"
 
     @property
     def about(self) -> str:
-        """What is done again and again."""
+        """The repeated rules, with their counts."""
         counts = Counter(step.label.rule for step in self.steps)
         return "again " + ", ".join(f"{rule} ×{count:,}" for rule, count in counts.items())
 
 
 @dataclass(frozen=True, slots=True)
 class LeftOut(Repetition):
-    """Steps in a row for which a report has no room."""
+    """Consecutive steps for which a report has no room."""
 
     @property
     def heading(self) -> str:
-        """How many they are."""
+        """The number of steps."""
         return f"⋯ {len(self.steps):,} steps, to c{self.last}"
 
     @property
     def about(self) -> str:
-        """That they are not told."""
+        """The words for omitted steps."""
         return "left out here"
 
 
 Row = LaneStep | Repetition
-"""What stands in one line of a run."""
+"""One line of a run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +148,7 @@ class Lanes:
     Attributes:
         names: The names of the lanes: the agents, then the environment if it takes a step.
         steps: The steps, from the first.
-        loop: The number of the configuration from which the run repeats for ever, if it does: the last is the same.
+        loop: The number of the configuration from which the run repeats for ever, if it does; it equals the last.
     """
 
     names: tuple[Name, ...]
@@ -162,8 +170,10 @@ def lanes_of(
     labels: Sequence[Label],
     loop: int | None = None,
     moments: Sequence[int] = (),
+    race: RaceSteps | None = None,
 ) -> Lanes:
     """Return a run in lanes; there is one label fewer than configurations, and a moment, in milliseconds, for each."""
+    roles = {} if race is None else race.roles
     agents = tuple(sorted({a for c in dict.fromkeys(configurations) for a in c.alpha.names()}))
     around = any(label.agent is None for label in labels)
     told = {pair: differences(*pair) for pair in dict.fromkeys(pairwise(configurations))}
@@ -171,23 +181,27 @@ def lanes_of(
     for number, (label, pair) in enumerate(zip(labels, pairwise(configurations), strict=True), 1):
         lane = len(agents) if label.agent is None else agents.index(label.agent)
         at = moments[number - 1] if moments else None
-        steps.append(LaneStep(number, lane, label, told[pair], at))
+        steps.append(LaneStep(number, lane, label, told[pair], at, roles.get(number, "")))
     return Lanes((*agents, *([ENVIRONMENT] if around else [])), tuple(steps), loop)
 
 
 def lanes_of_trace(trace: Trace) -> Lanes:
     """Return a trace in lanes."""
-    return lanes_of(trace.configurations, [step.label for step in trace.steps], trace.loop, trace.moments)
+    labels = [step.label for step in trace.steps]
+    return lanes_of(trace.configurations, labels, trace.loop, trace.moments, trace.race)
 
 
 def folded(steps: Sequence[LaneStep]) -> Iterator[Row]:
-    """Yield the steps in their order, those folded that only repeat what was done since the world last changed."""
+    """Yield the steps in their order, those folded that only repeat what was done since the world last changed.
+
+    A step of a race is never folded.
+    """
     known: set[object] = set()
     again: list[LaneStep] = []
     for step in steps:
         if any(change.part in WORLD for change in step.changes):
             known.clear()
-        if step.deed in known:
+        if step.deed in known and not step.role:
             again.append(step)
             continue
         yield from _again(again)
@@ -205,12 +219,16 @@ def _again(steps: list[LaneStep]) -> Iterator[Row]:
 
 
 def bounded(rows: Sequence[Row], most: int, around: int = 0) -> Iterator[Row]:
-    """Yield the rows if they are at most so many; else the first, the last and those around a step, a third each."""
+    """Yield the rows if they are at most so many; else the first, the last and those around a step, a third each.
+
+    The steps of a race are kept, wherever they are.
+    """
     third, count = most // 3, len(rows)
     at = next((number for number, row in enumerate(rows) if around <= row.last), count)
     near = (range(third), range(at - third // 2, at + third // 2), range(count - third, count))
     for kept, group in groupby(
-        enumerate(rows), lambda each: count <= most or any(each[0] in r for r in near)
+        enumerate(rows),
+        lambda each: count <= most or bool(each[1].role) or any(each[0] in r for r in near),
     ):
         found = [row for _, row in group]
         if kept:
@@ -225,7 +243,7 @@ def steps_of(row: Row) -> tuple[LaneStep, ...]:
 
 
 def lapses(rows: Sequence[Row]) -> tuple[int, ...]:
-    """Return how much time passes before each row, in milliseconds; nothing where the run has no dates."""
+    """Return the time before each row, in milliseconds; zeros for a run without dates."""
     moments = [(steps_of(row)[0].at, steps_of(row)[-1].at) for row in rows]
     ends = [0, *(end or 0 for _, end in moments)]
     return tuple((begin or 0) - end for (begin, _), end in zip(moments, ends, strict=False))
@@ -251,7 +269,8 @@ def _lines(step: Row) -> Iterator[str]:
     if isinstance(step, Repetition):
         yield from (step.heading, f"  {step.about}")
         return
-    yield f"● {step.label.rule}{f' at {step.date}' if step.date else ''}"
+    role = f"  [{step.role}]" if step.role else ""
+    yield f"● {step.label.rule}{f' at {step.date}' if step.date else ''}{role}"
     if step.about:
         yield f"  {step.about}"
     yield from (f"  {change}" for change in step.changes)

@@ -38,7 +38,7 @@ def report_text(name: str, report: Report, *, traces: bool = True) -> Iterator[s
 
 
 def size_text(report: Report) -> str:
-    """Return how much was explored."""
+    """Return the size of the exploration as text."""
     size = f"{counted(report.configurations, 'configuration')}, {_followed(report)}, depth {report.depth}"
     searched = f", reduced by {' and '.join(report.reduced)}" if report.reduced else ""
     return f"{size}, {'complete' if report.complete else 'INCOMPLETE'}{searched}"
@@ -57,7 +57,7 @@ def _verdict(verdict: Verdict, width: int, *, traces: bool) -> Iterator[str]:
 
 
 def verdict_text(verdict: Verdict) -> str:
-    """Return the word of a verdict, and what else is to be said of it."""
+    """Return the word of a verdict, with its note, remarks and counts."""
     return "; ".join(filter(None, [verdict.outcome.value, verdict.note, *verdict.remarks, *_sizes(verdict)]))
 
 
@@ -74,7 +74,7 @@ def _sizes(verdict: Verdict) -> Iterator[str]:
             else "nothing against it so far"
         )
     elif verdict.examined and verdict.property.kind.about.counted:
-        yield _examined(verdict)  # no witness was looked for: that is not to say that nothing was examined
+        yield _examined(verdict)  # no witness was searched, but subjects were examined
     elif verdict.property.kind.about.nothing:
         yield verdict.property.kind.about.nothing
 
@@ -177,7 +177,7 @@ def _leg_json(leg: Leg) -> dict[str, Any]:
 
 
 WIDEST: Final = 100
-"""Columns of a line of the mission that are quoted."""
+"""The most columns of a quoted line of the mission."""
 
 
 def coverage_text(name: str, covered: Coverage, text: str) -> Iterator[str]:

@@ -13,7 +13,7 @@ from checker.verdicts import Outcome, Report, Verdict, Violation
 
 
 class Level(Enum):
-    """The severity of an issue: something is wrong, looks wrong, was not decided, or bigactors itself failed."""
+    """The severity of an issue: an error, a suspicion, an undecided property, or a failure of bigactors itself."""
 
     WRONG = "wrong"
     WARNING = "warning"
@@ -30,7 +30,7 @@ class Issue:
         rule: The kind of a property, or the code of a mistake.
         title: A few words.
         message: A sentence.
-        line: Its line in the mission, from 1; 0 if that is not known. The others alike.
+        line: Its line in the mission, from 1; 0 if unknown. The same for the column and the ends.
         asked: The line of the property, if there is one.
         identity: A text that identifies it in another run, even if lines have moved.
         details: More lines.
@@ -57,9 +57,9 @@ class Result:
 
     Attributes:
         name: The mission as the user gave it.
-        file: Its file, from the working directory where it lies inside.
+        file: Its file, relative to the working directory if it is inside.
         report: Its report; None if it was not explored.
-        failures: Why it was not.
+        failures: The reasons why it was not explored.
         check_line: The line of its `check` section, 1 without one: the place of implicit properties.
         text: The mission's text, to quote its lines.
         cautions: Warnings on its text.
@@ -90,7 +90,7 @@ class Result:
             yield self._without_trace(verdict, Level.INCOMPLETE, self._cut_off())
 
     def undecided(self) -> Iterator[Issue]:
-        """Yield that a limit was met, if no verdict says so: an incomplete check never reads as a success."""
+        """Yield an issue for a met limit, unless a verdict reports it: an incomplete check never reads as a success."""
         if self.report is None or self.report.complete:
             return
         if all(verdict.outcome is Outcome.HOLDS for verdict in self.report.verdicts):
@@ -109,7 +109,7 @@ class Result:
         yield from self.gaps()
 
     def remarks_of(self, verdict: Verdict) -> Iterator[Issue]:
-        """Yield warnings about a verdict that says less than it seems to."""
+        """Yield warnings about a vacuous or weak verdict."""
         for remark in verdict.remarks:
             yield self._remark(verdict, remark)
 
@@ -183,7 +183,7 @@ def placed_text(result: Result, issue: Issue) -> str:
 
 
 def caution_text(name: str, caution: Issue) -> Iterator[str]:
-    """Yield a warning on a mission's text, as a report has it before all else: it may tell why a verdict is odd."""
+    """Yield a warning on a mission's text, which a report prints first: it may explain an unexpected verdict."""
     yield f"{name}:{caution.line}: warning: {caution.rule}: {caution.message}"
     yield from (f"  {detail}" for detail in caution.details)
 
@@ -202,7 +202,7 @@ def result_text(result: Result) -> str:
 
 
 def clean(text: str) -> str:
-    r"""Put U+FFFD in the place of what XML 1.0 cannot hold, of the other control characters and of lone surrogates.
+    r"""Replace characters that XML 1.0 forbids, other control characters and lone surrogates by U+FFFD.
 
     >>> clean("a\x1b[31m\tb\n\ud800")
     'a�[31m\tb\n�'

@@ -13,7 +13,7 @@ from urllib.parse import quote
 
 from checker.reports.results import Issue, Level, Result, clean
 from checker.reports.source_lines import step_lines
-from checker.traces import Trace
+from checker.traces import Trace, print_step
 from semantics.properties.kinds import PropertyKind
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
@@ -24,7 +24,7 @@ RULES = {
     "coverage": "Some run reaches each statement, takes each branch, and meets each clause of the environment.",
     "vacuity": "What holds does not hold for want of anything that could break it.",
 }
-"""What each kind of property says, and what else is found."""
+"""The description of each kind of property, and of other findings."""
 
 LEVELS = {Level.WRONG: "error", Level.WARNING: "warning"}
 """The levels of results; other issues are notifications."""
@@ -95,15 +95,12 @@ def _notification(result: Result, issue: Issue, rules: list[str]) -> dict[str, A
 
 
 def _flow(file: str, trace: Trace) -> list[dict[str, Any]]:
-    steps = zip(trace.steps, step_lines(trace), strict=True)
     return [
         {
-            "location": {
-                **_location(file, line),
-                "message": _message(f"c{number} --{step.label}--> c{number + 1}"),
-            }
+            "location": {**_location(file, line), "message": _message(print_step(trace, number))},
+            **({"importance": "essential"} if trace.role(number) else {}),
         }
-        for number, (step, line) in enumerate(steps)
+        for number, line in enumerate(step_lines(trace), 1)
     ]
 
 

@@ -21,10 +21,10 @@ def step_lines(trace: Trace) -> tuple[int, ...]:
 
 
 def violation_line(violation: Violation) -> int:
-    """Return the line of the statement that a violation is about, from 1; 0 if there is no single one.
+    """Return the line of a violation's statement, from 1; 0 if there is no single one.
 
-    It is the first that its message names: the statement that made a request, at which an agent waits, or whose
-    computation fails.
+    It is the statement of the first request in its message, else the one at which an agent waits, or whose computation
+    fails.
     """
     asked = _walk(violation.trace)[1]
     named = [(at, asked[each]) for each in asked if (at := violation.message.find(str(each))) >= 0]

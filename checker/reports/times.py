@@ -11,7 +11,7 @@ HEAD: Final = ("times", "takes", "begins", "ends, is true")
 
 
 def times_text(schedule: Schedule) -> Iterator[str]:
-    """Yield the times line by line: how long each flight takes, and when, from the earliest to the latest."""
+    """Yield the times line by line: the duration and the dates of each flight, from the earliest to the latest."""
     first, *others = times_rows(schedule)
     rows = [first, *((f"  {name}", *cells) for name, *cells in others)]
     if not others:
@@ -24,7 +24,7 @@ def times_text(schedule: Schedule) -> Iterator[str]:
 
 
 def times_rows(schedule: Schedule) -> Iterator[tuple[str, str, str, str]]:
-    """Yield the table row by row, the first of them its head."""
+    """Yield the table row by row, its head first."""
     yield HEAD
     for flight in schedule.flights:
         takes = interval_text(flight.takes, schedule.tick)
@@ -35,7 +35,7 @@ def times_rows(schedule: Schedule) -> Iterator[tuple[str, str, str, str]]:
 
 
 def name_of(flight: Flight) -> str:
-    """Say which flight it is."""
+    """Return the words for a flight."""
     return f"{flight.vehicle} from {flight.origin} to {flight.destination}, by {flight.agent}"
 
 

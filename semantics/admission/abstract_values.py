@@ -9,7 +9,7 @@ from typing import Final
 
 from semantics.behaviours.observations import AGENT, Fact, Observation
 from semantics.behaviours.patterns import Anything, Elements, Exactly, Pattern, variables
-from semantics.behaviours.values import Route, Truth, Value
+from semantics.behaviours.values import Route, Text, Truth, Value
 from semantics.state.signature import REGION, Name
 
 DEEPEST: Final = 6
@@ -21,7 +21,7 @@ class Abstract:
     """A set of values.
 
     Attributes:
-        words: These texts and names.
+        words: These names and texts.
         kinds: Every entity of these kinds.
         agents: Whether every bigActor's name is in it.
         plain: Every number (`int`), truth value (`Truth`) or observation (`Observation`).
@@ -32,7 +32,7 @@ class Abstract:
         anything: Whether it has every value.
     """
 
-    words: frozenset[str] = frozenset()
+    words: frozenset[Name | Text] = frozenset()
     kinds: frozenset[str] = frozenset()
     agents: bool = False
     plain: frozenset[type] = frozenset()
@@ -84,15 +84,15 @@ def tuple_of(items: tuple[Abstract, ...]) -> Abstract:
     return _bounded(Abstract(tuples=frozenset({items})))
 
 
-def word(text: str) -> Abstract:
-    """Return one text or name."""
-    return Abstract(words=frozenset({text}))
+def word(value: Name | Text) -> Abstract:
+    """Return one name or text."""
+    return Abstract(words=frozenset({value}))
 
 
 def constant(value: Value) -> Abstract:
     """Return what stands for a constant."""
     match value:
-        case str():
+        case str() | Text():
             return word(value)
         case tuple():
             return tuple_of(tuple(map(constant, value)))
@@ -120,15 +120,15 @@ def _either(one: Abstract | None, other: Abstract | None) -> Abstract | None:
     return other if one is None else one if other is None else one | other
 
 
-def _shape(items: tuple[Abstract, ...]) -> tuple[int, str]:
-    """Return the length of tuples and the text that is their first item, if that is fixed."""
+def _shape(items: tuple[Abstract, ...]) -> tuple[int, Name | Text | None]:
+    """Return the length of tuples and the name or text that is their first item, if that is fixed."""
     first = items[0] if items else NOTHING
     is_fixed = len(first.words) == 1 and first == Abstract(first.words)
-    return len(items), min(first.words) if is_fixed else ""
+    return len(items), next(iter(first.words)) if is_fixed else None
 
 
 def _merged(tuples: Iterable[tuple[Abstract, ...]]) -> frozenset[tuple[Abstract, ...]]:
-    found: dict[tuple[int, str], tuple[Abstract, ...]] = {}
+    found: dict[tuple[int, Name | Text | None], tuple[Abstract, ...]] = {}
     for items in tuples:
         known = found.get(_shape(items))
         found[_shape(items)] = (
@@ -158,6 +158,8 @@ class Vocabulary:
             return (abstract.anything or Observation in abstract.plain) and self.observes(value)
         if isinstance(value, str):
             return abstract.anything or self._names(value, abstract)
+        if isinstance(value, Text):
+            return abstract.anything or value in abstract.words
         if isinstance(value, tuple):
             return self._all(value, abstract) or any(
                 len(items) == len(value) and all(map(self.fits, value, items)) for items in abstract.tuples
@@ -166,7 +168,7 @@ class Vocabulary:
             return self._holds(value, abstract)
         return abstract.anything or type(value) in abstract.plain
 
-    def _names(self, value: str, abstract: Abstract) -> bool:
+    def _names(self, value: Name, abstract: Abstract) -> bool:
         if value in abstract.words or self.kinds(value) in abstract.kinds:
             return True
         return abstract.agents and value in self.agents
@@ -206,7 +208,8 @@ def named(value: Abstract) -> Abstract:
     """Return the names that a value stands for: itself, or its members."""
     if value.anything:
         return ANYTHING
-    own = Abstract(value.words, value.kinds, value.agents)
+    words = frozenset(each for each in value.words if isinstance(each, str))
+    own = Abstract(words, value.kinds, value.agents)
     return join([own, *(each for each in (value.sets, value.routes) if each is not None)])
 
 

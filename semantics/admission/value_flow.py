@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Final
+from typing import Final, TypeGuard
 
 from semantics.admission.abstract_values import (
     ANYTHING,
@@ -56,9 +56,10 @@ from semantics.behaviours.statements import (
     Spawn,
     Statement,
 )
+from semantics.behaviours.values import Text
 from semantics.environment import Says
 from semantics.state.setting import Setting
-from semantics.state.signature import REGION, Name
+from semantics.state.signature import NO_ENTITIES, REGION, Name
 
 
 @dataclass(slots=True)
@@ -287,16 +288,22 @@ def _difference(flow: ValueFlow, left: Abstract, right: Abstract) -> Abstract:
     return _part(flow, left, right) | number
 
 
+def _is_name(word: Name | Text) -> TypeGuard[Name]:
+    return isinstance(word, str)
+
+
 def _of_kind(flow: ValueFlow, left: Abstract, kind: Abstract) -> Abstract:
     part = _part(flow, left)
-    wanted = flow.entities.kinds if kind.anything or kind.kinds or kind.agents else kind.words
+    is_known = not (kind.anything or kind.kinds or kind.agents)
+    wanted = frozenset(filter(_is_name, kind.words)) if is_known else flow.entities.kinds
     if part.anything:
         return join((Abstract(sets=Abstract(kinds=wanted)), Abstract(routes=Abstract(kinds=wanted))))
 
     def kept(inside: Abstract) -> Abstract:
         if inside.anything:
             return Abstract(kinds=wanted)
-        words = frozenset(each for each in inside.words if flow.setting.kinds.get(each) in wanted)
+        names = filter(_is_name, inside.words)
+        words = frozenset(each for each in names if flow.setting.kinds.get(each) in wanted)
         return Abstract(words, inside.kinds & wanted)
 
     return Abstract(
@@ -319,7 +326,7 @@ def _of_family(_: ValueFlow, family: Abstract, _node: Abstract) -> Abstract:
     return join(items[1] for items in pairs.tuples if len(items) > 1)
 
 
-_SEEN_PLACES: Final = Abstract(words=frozenset({REGION, "unknown"}))
+_SEEN_PLACES: Final = Abstract(words=NO_ENTITIES)
 
 _RESULTS: Final[Mapping[str, Callable[..., Abstract]]] = {
     **dict.fromkeys(("in", "==", "!=", "<", "<=", ">", ">=", "not", "empty", "linked"), lambda *_: TRUTH),
@@ -333,7 +340,7 @@ _RESULTS: Final[Mapping[str, Callable[..., Abstract]]] = {
     "nodes": lambda flow, _: Abstract(sets=flow.entities | _SEEN_PLACES),
     "children": lambda flow, *_: Abstract(sets=flow.entities),
     "agents": lambda *_: Abstract(sets=Abstract(agents=True)),
-    "kind": lambda flow, _: Abstract(words=flow.entities.kinds),
+    "kind": lambda flow, _: Abstract(words=frozenset(map(Text, flow.entities.kinds))),
     "parent": lambda flow, *_: flow.entities | _SEEN_PLACES,
     "first": lambda flow, value: flow.members(value),
     "element": _element,

@@ -40,7 +40,7 @@ from semantics.behaviours.statements import (
     Tested,
     While,
 )
-from semantics.behaviours.values import Value, show
+from semantics.behaviours.values import Value, show, spoken
 from semantics.races.provenance import NOTHING, Provenance, asking, deciding
 from semantics.state.agents import Code, Store
 
@@ -233,7 +233,7 @@ def _step(process: Process, statement: Internal) -> None:
             process.scope.binding({variable: value}, rests_on | process.leave())
         case Display(expression):
             value, _ = process.evaluate(expression)
-            process.shown.append(show(value))
+            process.shown.append(spoken(value))
             process.leave()
         case If(test, then, otherwise):
             value, rests_on = process.evaluate(test)

@@ -10,6 +10,7 @@ from semantics.behaviours.values import (
     LARGEST_NUMBER,
     MOST_PARTS,
     Route,
+    Text,
     Truth,
     Value,
     in_order,
@@ -18,7 +19,7 @@ from semantics.behaviours.values import (
     within,
 )
 from semantics.races.provenance import ANY, EVERYTHING, MEMBERS, NOTHING, SIZE, Key, Provenance, asking
-from semantics.state.signature import Name
+from semantics.state.signature import UNKNOWN, Name
 
 
 class Fault(Exception):
@@ -297,6 +298,12 @@ def _bounded(number: int) -> int:
     return number
 
 
+def _name(value: Value) -> Name:
+    if isinstance(value, str):
+        return value
+    raise TypeError("a name was expected")
+
+
 def _seen(value: Value) -> Observation:
     if isinstance(value, Observation):
         return value
@@ -324,7 +331,7 @@ def _intersect(_: Scope, a: Value, b: Value) -> Value:
 
 
 def _of_kind(scope: Scope, value: Value, kind: Value) -> Value:
-    return _only(value, lambda item: scope.kinds.get(str(item)) == kind)
+    return _only(value, lambda item: isinstance(item, str) and scope.kinds.get(item) == kind)
 
 
 def _first(_: Scope, value: Value) -> Value:
@@ -351,9 +358,7 @@ def _member(_: Scope, family: Value, entity: Value) -> Value:
         if isinstance(each, tuple) and each[0] == entity:
             return each[1]
     known = ", ".join(sorted(str(each[1]) for each in within(family) if isinstance(each, tuple))[:5])
-    raise Fault(
-        f"there is no member for {show(entity, frozenset())}: the family's members are {known or 'none'}"
-    )
+    raise Fault(f"there is no member for {show(entity)}: the family's members are {known or 'none'}")
 
 
 def _compare(holds: Callable[[int, int], bool]) -> Callable[..., Value]:
@@ -362,7 +367,7 @@ def _compare(holds: Callable[[int, int], bool]) -> Callable[..., Value]:
 
 def _linked(_: Scope, a: Value, b: Value, seen: Value) -> Value:
     observation = _seen(seen)
-    return Truth.of(bool(observation.links(str(a)) & observation.links(str(b))))
+    return Truth.of(bool(observation.links(_name(a)) & observation.links(_name(b))))
 
 
 def members_asked(*values: Value, key: Key = MEMBERS) -> tuple[Key, ...]:
@@ -450,17 +455,17 @@ OPERATORS: Mapping[str, Operator] = {
         lambda _, a: frozenset(_seen(a).agents),
         members_asked,
     ),
-    "kind": Operator(1, "the kind of an entity, as a text", lambda scope, a: scope.kinds[str(a)]),
+    "kind": Operator(1, "the kind of an entity, as a text", lambda scope, a: Text(scope.kinds[_name(a)])),
     "parent": Operator(
         2,
-        "the place in which an observation saw a node",
-        lambda _, x, o: _seen(o).parent(str(x)) or "unknown",
+        "the place in which an observation saw a node; `unknown` if it did not see it, `region` if it is in no place",
+        lambda _, x, o: _seen(o).parent(_name(x)) or UNKNOWN,
         _keys("parent"),
     ),
     "children": Operator(
         2,
         "the nodes that an observation saw in a place",
-        lambda _, x, o: _seen(o).children(str(x)),
+        lambda _, x, o: _seen(o).children(_name(x)),
         _keys("children"),
     ),
     "linked": Operator(

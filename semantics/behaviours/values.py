@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Union
+from typing import TYPE_CHECKING, Final, Union
 
 if TYPE_CHECKING:
     from semantics.behaviours.observations import Observation
@@ -24,15 +24,24 @@ class Truth(Enum):
 
 
 @dataclass(frozen=True, slots=True)
+class Text:
+    """A text of the mission, such as `"handover"`; never equal to a name, however it is spelled."""
+
+    characters: str
+
+
+@dataclass(frozen=True, slots=True)
 class Route:
     """`[a, b, a]`: values in their order, each as often as it is written; never equal to a tuple."""
 
     stops: tuple["Value", ...]
 
 
-Value = Union[str, int, Truth, tuple["Value", ...], frozenset["Value"], Route, "Observation"]
-"""Names and texts are both strings: a text that spells a name is that name."""
+Value = Union[str, Text, int, Truth, tuple["Value", ...], frozenset["Value"], Route, "Observation"]
+"""A Python string is the name of an entity, a bigActor or a kind; what a mission writes in quotes is a `Text`."""
 
+ESCAPES: Final = str.maketrans({'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t"})
+"""How the characters are written that do not stand for themselves in a text."""
 
 LARGEST_NUMBER = 10**18
 """Numbers lie between this and its negative: what is printed, compared and stored stays small."""
@@ -65,6 +74,8 @@ def order_key(value: Value) -> tuple[str, str]:
         return ("int", f"{value + LARGEST_NUMBER:019d}")
     if isinstance(value, str | Truth):
         return (type(value).__name__, str(value))
+    if isinstance(value, Text):
+        return ("text", value.characters)
     return (type(value).__name__, repr(value))  # an observation shows less than it holds
 
 
@@ -77,20 +88,31 @@ def in_order(values: "frozenset[Value] | tuple[Value, ...]") -> tuple[Value, ...
     return tuple(sorted(values, key=order_key))
 
 
-def show(value: Value, names: "frozenset[str] | None" = None) -> str:
-    """Print a value in the notation of the mission language; a text that is no known name is quoted.
+def show(value: Value) -> str:
+    """Print a value in the notation of the mission language: a name as it is, a text in quotes.
 
-    >>> show(("found", frozenset({"b0", "a0"})), frozenset({"a0", "b0"}))
+    >>> show((Text("found"), frozenset({"b0", "a0"})))
     '("found", {a0, b0})'
     """
     if isinstance(value, str):
-        return value if names is None or value in names else f'"{value}"'
+        return value
+    if isinstance(value, Text):
+        return f'"{value.characters.translate(ESCAPES)}"'
     if isinstance(value, Truth):
         return value.value
     if isinstance(value, tuple):
-        return f"({', '.join(show(item, names) for item in value)})"
+        return f"({', '.join(map(show, value))})"
     if isinstance(value, Route):
-        return f"[{', '.join(show(item, names) for item in value.stops)}]"
+        return f"[{', '.join(map(show, value.stops))}]"
     if isinstance(value, frozenset):
-        return f"{{{', '.join(show(item, names) for item in in_order(value))}}}"
+        return f"{{{', '.join(map(show, in_order(value)))}}}"
     return str(value)
+
+
+def spoken(value: Value) -> str:
+    """Print a value as people say and read it: a text, if it is nothing else, without its quotes.
+
+    >>> spoken(Text("no answer")), spoken((Text("go"), "base"))
+    ('no answer', '("go", base)')
+    """
+    return value.characters if isinstance(value, Text) else show(value)

@@ -138,7 +138,7 @@ class VariableIs:
     unbound: bool = False
 
     def __str__(self) -> str:
-        return f"{self.variable} {self.operator} {show(self.value, frozenset())}"
+        return f"{self.variable} {self.operator} {show(self.value)}"
 
 
 @dataclass(frozen=True, slots=True)

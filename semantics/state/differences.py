@@ -58,10 +58,10 @@ def _of_cell(before: Configuration, after: Configuration, cell: Cell) -> Iterato
     elif what == "host":
         yield Difference("α", whose, f"{whose} hosted_at {new}" if new else f"{whose} is gone")
     elif what == "store":
-        texts = dict.fromkeys(_variables(after, old or (), new or ()))
+        texts = dict.fromkeys(_variables(old or (), new or ()))
         yield from (Difference("α", whose, f"{whose}.{text}") for text in texts)
     elif what == "mailbox":
-        yield from (Difference("α", whose, f"mail of {whose}: {text}") for text in _shown(after, old, new))
+        yield from (Difference("α", whose, f"mail of {whose}: {text}") for text in _shown(old, new))
     elif what in ("line", "sends") or cell == QUEUE:
         yield from (Difference("η", agent, text) for agent, text in _requests(old or (), new or ()))
     elif what == "parent":
@@ -86,21 +86,18 @@ def _at(c: Configuration, a: Name) -> str:
     return f"at {word_of(program.statements[code[0]])}" + (f" (line {line})" if line else "")
 
 
-def _variables(
-    c: Configuration, old: Iterable[tuple[str, object]], new: Iterable[tuple[str, object]]
-) -> Iterator[str]:
+def _variables(old: Iterable[tuple[str, object]], new: Iterable[tuple[str, object]]) -> Iterator[str]:
     """Yield the variables that are new or have another value; what is merely forgotten is no news."""
-    before, names = dict(old), frozenset((*c.setting.kinds, *c.alpha.names()))
+    before = dict(old)
     for name, value in new:
         if before.get(name) != value and written(name):
-            yield f"{written(name)} = {show(value, names)}"  # type: ignore[arg-type]  # stores hold values
+            yield f"{written(name)} = {show(value)}"  # type: ignore[arg-type]  # stores hold values
 
 
-def _shown(c: Configuration, old: Iterable[object] | None, new: Iterable[object] | None) -> Iterator[str]:
-    names = frozenset((*c.setting.kinds, *c.alpha.names()))
+def _shown(old: Iterable[object] | None, new: Iterable[object] | None) -> Iterator[str]:
     yield from _more_and_less(
-        [show(each, names) for each in old or ()],  # type: ignore[arg-type]  # mail is values
-        [show(each, names) for each in new or ()],  # type: ignore[arg-type]
+        [show(each) for each in old or ()],  # type: ignore[arg-type]  # mail is values
+        [show(each) for each in new or ()],  # type: ignore[arg-type]
     )
 
 

@@ -11,7 +11,7 @@ from types import UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from semantics.behaviours.observations import All, Fact, Nodes, Observation, Of, Query, QueryOperator, Swept
-from semantics.behaviours.values import LARGEST_NUMBER, MOST_PARTS, Route, Truth, Value, in_order, parts
+from semantics.behaviours.values import LARGEST_NUMBER, MOST_PARTS, Route, Text, Truth, Value, in_order, parts
 from semantics.state.parcels import Controls, Parcel, Running
 from semantics.state.partition import Belief, Elsewhere, Passage, Whereabouts
 from semantics.state.requests import MGR, OBS, READY, SND
@@ -80,6 +80,8 @@ def _plain(value: Any) -> Any:
     match value:
         case None | str() | int():
             return value
+        case Text(characters):
+            return {"text": characters}
         case Truth():
             return {"truth": value.value}
         case tuple():
@@ -178,6 +180,8 @@ def _any_value(data: Any, depth: int) -> Value:
             return frozenset(_any_value(each, depth + 1) for each in members)
         case {"route": list(stops)}:
             return Route(tuple(_any_value(each, depth + 1) for each in stops))
+        case {"text": str(characters)}:
+            return Text(characters)
         case {"truth": "true" | "false" as truth}:
             return Truth(truth)
         case {"seen": _}:

@@ -17,13 +17,12 @@ from semantics.state.signature import Name
 
 def print_agent(c: Configuration, a: Name) -> str:
     """Print an agent: its name, host, what it is at, variables and mailbox."""
-    agents, names = c.alpha, frozenset((*c.setting.kinds, *c.alpha.names()))
-    code = agents.code(a)
+    agents, code = c.alpha, c.alpha.code(a)
     line = c.setting.program.lines[code[0]] if code and c.setting.program.lines else None
     at = word_of(c.setting.program.statements[code[0]]) if code else "ended"
-    held = (f"{written(name)} = {show(value, names)}" for name, value in agents.store(a) if written(name))
+    held = (f"{written(name)} = {show(value)}" for name, value in agents.store(a) if written(name))
     variables = ", ".join(dict.fromkeys(held))
-    mail = ", ".join(show(message, names) for message in agents.mailbox(a))
+    mail = ", ".join(map(show, agents.mailbox(a)))
     parts = [f"{a}@{agents.host(a)}", f"at {at}" + (f" (line {line})" if line else "") if code else at]
     return " ".join(
         [*parts, *([f"[{variables}]"] if variables else []), *([f"mail [{mail}]"] if mail else [])]
@@ -88,8 +87,7 @@ def _change(before: Configuration, after: Configuration, cell: Cell) -> Iterator
         shown = (
             after.alpha.host(whose)
             if what == "host"
-            else ", ".join(show(each, frozenset(after.setting.kinds)) for each in after.alpha.mailbox(whose))
-            or "∅"
+            else ", ".join(map(show, after.alpha.mailbox(whose))) or "∅"
         )
         yield f"α  {what}({whose}) = {shown}"
     elif what in ("parent", "links"):

@@ -66,7 +66,7 @@ class SND:
     message: Value
 
     def __str__(self) -> str:
-        return f"SND({self.agent}, {self.to}, {show(self.message, frozenset())})"
+        return f"SND({self.agent}, {self.to}, {show(self.message)})"
 
 
 @dataclass(frozen=True, slots=True)

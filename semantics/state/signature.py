@@ -11,6 +11,12 @@ Name = str
 REGION: Final = "region"
 """The outermost place of L and of A(P): it contains everything, and has no physical image of its own."""
 
+UNKNOWN: Final = "unknown"
+"""What an observation calls the place of a node that it has not seen anywhere."""
+
+NO_ENTITIES: Final = frozenset({REGION, UNKNOWN})
+"""The names of places that no entity may have."""
+
 
 @dataclass(frozen=True, slots=True)
 class Kind:

@@ -128,7 +128,7 @@ def clause_beginnings(setting: Setting, number: int) -> Iterator[str]:
         case Vanishes(entity=entity):
             yield f"{entity} vanishes "
         case Says(message=message, agent=agent):
-            said = f"someone says {show(message, frozenset(setting.kinds))} "
+            said = f"someone says {show(message)} "
             yield f"{said}to {agent} "
             yield said
 

@@ -257,5 +257,6 @@ def _hosts_of(agent: str, bodies: Bodies, names: Names) -> set[str] | None:
     places: list[Expression] = [] if declared is None else [Literal(declared.text)]
     places += [site.host for site in bodies.spawned.get(agent, ())]
     places += [host for body in bodies.running(agent) for host in body.migrations]
-    named = [place.value for place in places if isinstance(place, Literal)]
-    return {str(name) for name in named} if len(named) == len(places) else None
+    literals = [place.value for place in places if isinstance(place, Literal)]
+    named = [name for name in literals if isinstance(name, str)]
+    return set(named) if len(named) == len(places) else None

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from semantics.behaviours.values import Route, Truth, Value
+from semantics.behaviours.values import Route, Text, Truth, Value
+from semantics.state.signature import NO_ENTITIES
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import shorten
@@ -15,7 +16,7 @@ def elaborate_constant(node: s.Expression, names: Names, bound: Mapping[str, Val
     """Return the value of a constant; reports what is none. `bound` are names that stand for another value."""
     match node:
         case s.TextLiteral(text):
-            return text
+            return Text(text)
         case s.IntegerLiteral(number):
             return number
         case s.TruthLiteral(truth):
@@ -31,7 +32,7 @@ def elaborate_constant(node: s.Expression, names: Names, bound: Mapping[str, Val
         case s.Name(name):
             if bound and name in bound:
                 return bound[name]
-            if name not in names.agents:
+            if name not in names.agents and name not in NO_ENTITIES:
                 names.entity(node, otherwise=f'a text stands in quotes: "{shorten(name)}"')
             return name
         case s.Member():

@@ -26,12 +26,24 @@ from semantics.behaviours.expressions import (
 )
 from semantics.behaviours.expressions import Scope as EvaluationScope
 from semantics.behaviours.observations import QueryOperator
-from semantics.behaviours.values import Truth
+from semantics.behaviours.values import Text, Truth
+from semantics.state.signature import NO_ENTITIES
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import Findings
 from specs.elaboration.names import Names
-from specs.elaboration.needs import AGENT, COLLECTION, CONDITION, NODE, NODES, NUMBER, Need, operands
+from specs.elaboration.needs import (
+    AGENT,
+    COLLECTION,
+    CONDITION,
+    MEMBER,
+    NODE,
+    NODES,
+    NUMBER,
+    Need,
+    operands,
+    unquoted,
+)
 from specs.elaboration.scopes import Scope
 from specs.elaboration.value_types import MISTAKEN
 from specs.grammar import QUERY_WORDS
@@ -56,7 +68,9 @@ def elaborate_expression(node: s.Expression, scope: Scope, names: Names) -> Expr
             return _name(node, scope, names)
         case s.Member():
             return _member(node, scope, names)
-        case s.TextLiteral(value) | s.IntegerLiteral(value):
+        case s.TextLiteral(value):
+            return Literal(Text(value))
+        case s.IntegerLiteral(value):
             return Literal(value)
         case s.TruthLiteral(value):
             return Literal(Truth.of(value))
@@ -139,7 +153,7 @@ def _name(node: s.Name, scope: Scope, names: Names) -> Expression:
         return Variable(variable)
     if node.text in scope.constants:
         return Literal(scope.constants[node.text])
-    if node.text in names.kinds or node.text in names.agents:
+    if node.text in names.kinds or node.text in names.agents or node.text in NO_ENTITIES:
         return Literal(node.text)
     sort = names.sort_of(node.text)
     if sort is None:
@@ -183,6 +197,7 @@ def _member(node: s.Member, scope: Scope, names: Names) -> Expression:
             number = evaluate(index, EvaluationScope("", "", {}, {}, names.kinds, {}))
             if isinstance(number, int) and 0 <= number < len(members):
                 return Literal(tuple(members.values())[number])
+    names.need(node.index, index, MEMBER, f"'{node.family.text}[...]'")
     return Apply("[]", (Literal(frozenset(members.items())), index))
 
 
@@ -213,12 +228,13 @@ def _named(node: s.Expression, scope: Scope, names: Names, need: Need, by: str) 
         else:
             names.entity(node)
         return Literal(node.text)
-    if isinstance(node, s.TextLiteral) and node.value not in known:
+    if isinstance(node, s.TextLiteral):
         wanted = "a bigActor" if need is AGENT else "an entity"
-        message = f"{by} needs {wanted}, and a text that names none is given"
-        hint = names.findings.suggest(node.value, known) or need.remedy
+        spells = unquoted(node, known)
+        message = f"{by} needs {wanted}, and a text {'' if spells else 'that names none '}is given"
+        hint = spells or names.findings.suggest(node.value, known) or need.remedy
         names.findings.add(Code.WRONG_VALUE, node, message, hint)
-        return Literal(node.value)
+        return Literal(Text(node.value))
     return names.need(node, elaborate_expression(node, scope, names), need, by)
 
 

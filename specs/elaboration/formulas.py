@@ -10,9 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from semantics.behaviours.program import VariableOf
-from semantics.behaviours.values import Value, show
 from semantics.properties.propositions import (
-    ORDERS,
     Always,
     And,
     Ended,
@@ -39,10 +37,11 @@ from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.among import Among
 from specs.elaboration.bodies import Bodies
+from specs.elaboration.comparisons import check_comparable
 from specs.elaboration.constants import elaborate_constant
 from specs.elaboration.findings import a
 from specs.elaboration.names import Names
-from specs.elaboration.value_types import ANY, NAMES, NOTHING, Sort, Types, sort_of
+from specs.elaboration.value_types import Types
 from specs.writing import write
 
 MOST_ATOMS: Final = 50_000
@@ -53,16 +52,6 @@ LONG: Final = 1_000
 
 MOST_ASKED: Final = 200_000
 """So many atoms such a quantifier may ask of one configuration."""
-
-_PLURALS: Final = {
-    Sort.NUMBER: "numbers",
-    Sort.TEXT: "names and texts",
-    Sort.TRUTH: "true and false",
-    Sort.TUPLE: "tuples",
-    Sort.SET: "sets",
-    Sort.ROUTE: "routes",
-    Sort.OBSERVATION: "observations",
-}
 
 NOBODY: Final = REGION
 """What a quantified name stands for where there is nothing to quantify over."""
@@ -360,23 +349,8 @@ class Formulas:
         variable = self._variable(node.agent, node.variable, around.names)
         value = elaborate_constant(node.value, self.names, around.names)
         if len(self.names.findings) == mistakes:
-            self._check_comparable(node, variable, value)
+            check_comparable(node, variable, value, self.names, self.types)
         return VariableIs(variable, value, node.operator, around.unbound)
-
-    def _check_comparable(self, node: s.Stored, variable: VariableOf, value: Value) -> None:
-        """Report a comparison that no value of the variable can meet."""
-        if node.operator in ORDERS and not isinstance(value, int):
-            message = f"'{node.operator}' compares numbers, and {show(value)} is none"
-            hint = "write a whole number, or compare with == or !="
-            self.names.findings.add(Code.NOT_COMPARABLE, node, message, hint)
-            return
-        sorts = frozenset[Sort]().union(*(self.types.get(each, NOTHING).sorts for each in variable.variables))
-        sorts = sorts | NAMES if sorts & NAMES else sorts or ANY.sorts
-        if sort_of(value) not in sorts:
-            has = " or ".join(words for sort, words in _PLURALS.items() if sort in sorts)
-            message = f"'{variable}' never has a value of that type, only {has}"
-            hint = f"whether it has a value at all is asked with: bound {variable}"
-            self.names.findings.add(Code.NOT_COMPARABLE, node, message, hint)
 
     def _variable(self, agent: s.Agent, variable: s.Name, bound: Mapping[str, str]) -> VariableOf:
         if isinstance(agent, s.Name) and agent.text in self.names.kinds.keys() - bound:

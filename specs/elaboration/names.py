@@ -10,11 +10,11 @@ from typing import Final
 from bigraphs.notation.spelling import listed
 from semantics.behaviours.expressions import Expression
 from semantics.behaviours.values import Value, show
-from semantics.state.signature import REGION, Signature
+from semantics.state.signature import NO_ENTITIES, REGION, Signature
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import Findings, a, shorten
-from specs.elaboration.needs import Demand, Need, Use
+from specs.elaboration.needs import Demand, Need, Use, unquoted
 
 SORTS: Final = ("entity", "agent", "family", "kind", "channel", "rule", "behaviour")
 AGENTS: Final = "agents"
@@ -93,6 +93,8 @@ class Names:
             if taken is not None
             else "is what lies around everything"
             if name == REGION and sort in EXCLUSIVE
+            else "is where an observation has not seen something"
+            if name in NO_ENTITIES and sort in EXCLUSIVE
             else ""
         )
         if problem:
@@ -168,8 +170,9 @@ class Names:
         if isinstance(index, str) and index in members:
             return members[index]
         hint = f"its members are {', '.join(called[:5])}{', ...' if len(called) > 5 else ''}"
-        message = f"'{family.text}' has no member for {show(index, frozenset(self.kinds))}"
-        self.findings.add(Code.UNKNOWN_NAME, where, message, hint if called else "")
+        message = f"'{family.text}' has no member for {show(index)}"
+        hint = unquoted(where, members) or (hint if called else "")
+        self.findings.add(Code.UNKNOWN_NAME, where, message, hint)
         return None
 
     def family(self, name: s.Name) -> Mapping[str, str] | None:

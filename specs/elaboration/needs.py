@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
 from semantics.behaviours.expressions import Expression, Literal, Variable
 from semantics.behaviours.patterns import Pattern
 from semantics.behaviours.statements import React, Send
+from semantics.behaviours.values import Value, show
+from semantics.state.signature import NO_ENTITIES
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import Findings, shorten
@@ -23,6 +25,7 @@ from specs.elaboration.value_types import (
     Sorts,
     Type,
     Types,
+    compared,
     may_take,
     members_of,
 )
@@ -77,6 +80,8 @@ AGENT: Final = Need(
     HOLDERS | {Sort.AGENT}, f"{_NAME_IT}: send message to bigActor", Sorts({Sort.AGENT}), filled=True
 )
 ENTITY: Final = Need(Sorts({Sort.ENTITY}), _NAME_IT)
+NAME: Final = Need(NAMES, _NAME_IT)
+MEMBER: Final = Need(Sorts({Sort.ENTITY, Sort.NUMBER}), "a member is called by its entity or its number")
 
 OPERANDS: Final[Mapping[str, tuple[Need | None, ...]]] = {
     **dict.fromkeys(("<", "<=", ">", ">="), (NUMBER, NUMBER)),
@@ -84,8 +89,8 @@ OPERANDS: Final[Mapping[str, tuple[Need | None, ...]]] = {
     **dict.fromkeys(("size", "empty"), (COLLECTION,)),
     "first": (FILLED,),
     **dict.fromkeys(("nodes", "agents"), (SEEN,)),
-    **dict.fromkeys(("parent", "children"), (None, SEEN)),
-    "linked": (None, None, SEEN),
+    **dict.fromkeys(("parent", "children"), (NAME, SEEN)),
+    "linked": (NAME, NAME, SEEN),
     "of": (COLLECTION, None),
     "in": (None, COLLECTION),
     "not": (CONDITION,),
@@ -124,11 +129,11 @@ class Pair:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A `match`: one of its cases has to take the subject."""
+    """The cases of a `match`, one of which has to take the subject, or of a `react`, which has none."""
 
     where: s.Node
-    subject: Expression
-    patterns: tuple[Pattern, ...]
+    subject: Expression | None
+    cases: tuple[tuple[s.Pattern, Pattern], ...]
 
 
 Demand = Use | Pair | Choice
@@ -197,6 +202,8 @@ class _Judge:
             return
         several = use.need in (NODE, AGENT) and bool(use.need.members & members_of(given))
         hint = f"take one: choose x in {write(use.where)} {{ ... }}" if several else use.need.remedy
+        if use.need.sorts & NAMES and Sort.TEXT in given.sorts | given.members:
+            hint = self.unquoted(use.where) or "a name is written without quotes"
         if isinstance(use.where, s.TupleLiteral) and use.need.sorts >= COLLECTIONS:
             hint = f"in this order it is a route: {write(s.RouteLiteral(use.where.items))}"
         self.findings.add(Code.WRONG_VALUE, use.where, message + origin, hint)
@@ -219,11 +226,31 @@ class _Judge:
         return f" (line {first})" if first else ""
 
     def choice(self, choice: Choice) -> None:
-        given = self.inference.type(choice.subject, self.known)
-        taken = (may_take(pattern, given, self.inference) for pattern in choice.patterns)
-        if given.sorts and not any(taken):
-            message = f"no case takes {_shown(choice.where)}, which is {_listed(given.sorts)}"
-            self.findings.add(Code.WRONG_VALUE, choice.where, message, "add one that does: case _ => ...")
+        if choice.subject is None:
+            given = self.inference.messages(self.known)
+        else:
+            given = self.inference.type(choice.subject, self.known)
+            taken = (may_take(pattern, given, self.inference) for _, pattern in choice.cases)
+            if given.sorts and not any(taken):
+                message = f"no case takes {_shown(choice.where)}, which is {_listed(given.sorts)}"
+                hint = next((hint for where, _ in choice.cases if (hint := self.unquoted(where, "="))), "")
+                self.findings.add(
+                    Code.WRONG_VALUE, choice.where, message, hint or "add one that does: case _ => ..."
+                )
+                return
+        for where, pattern in choice.cases:
+            self.quotes(where, pattern, given)
+
+    def quotes(self, where: s.Pattern, pattern: Pattern, given: Type) -> None:
+        """Warn of a case with a text where only a name can be, or the other way round."""
+        for constant, there in compared(pattern, given):
+            own = self.inference.constant(constant).sorts
+            if own.isdisjoint(there) and Sort.TEXT in own | there <= NAMES | {Sort.TEXT}:
+                what = f"{show(constant)} is {_listed(own)}, and {_listed(there)} stands there"
+                message = f"nothing is taken here: {what}"
+                hint = self.unquoted(where, "=") or requoted(constant)
+                self.findings.warn(Code.ALWAYS_THE_SAME, where, message, hint)
+                return
 
     def item(self, pair: Pair) -> None:
         """Report an item that no tuple has."""
@@ -258,7 +285,15 @@ class _Judge:
         those = f"{_shown(pair.right)} {verb} {_listed(others)}"
         message = f"this is always {outcome}: {_shown(pair.left)} is {_listed(left.sorts)}, and {those}"
         span = pair.left.span.to(pair.right.span)
-        self.findings.warn(Code.ALWAYS_THE_SAME, span, message, "compare it with a value of the same type")
+        hint = self.unquoted(pair.left) or self.unquoted(pair.right)
+        self.findings.warn(
+            Code.ALWAYS_THE_SAME, span, message, hint or "compare it with a value of the same type"
+        )
+
+    def unquoted(self, node: s.Node, sign: str = "") -> str:
+        """Return the remedy where a text in something spells a name; in a pattern a name has a sign before it."""
+        known = self.inference.entities | self.inference.agents
+        return next((hint for part in s.walk(node) if (hint := unquoted(part, known, sign))), "")
 
 
 _SETS: Final = Need(COLLECTIONS, COLLECTION.remedy)
@@ -277,6 +312,18 @@ def operands(
             yield Use(node, value, need, f"'{operator}'")
 
 
+def requoted(value: Value) -> str:
+    """Return the remedy where a name stands instead of a text, or a text that spells no name."""
+    is_name = isinstance(value, str)
+    return f'a text is written in quotes: "{value}"' if is_name else "a name is written without quotes"
+
+
+def unquoted(node: s.Node, names: Container[str], sign: str = "") -> str:
+    """Return the remedy where a text spells a name, which stands behind a sign."""
+    spells = isinstance(node, s.TextLiteral) and (node.value in names or node.value in NO_ENTITIES)
+    return f"write the name without quotes: {sign}{write(node)[1:-1]}" if spells else ""
+
+
 def _words(need: Need) -> str:
     return _listed(need.sorts - HOLDERS if need in (NODE, NODES, AGENT) else need.sorts)
 
@@ -289,8 +336,6 @@ def _said(given: Type, need: Need) -> str:
 
 
 def _listed(sorts: Sorts) -> str:
-    if sorts >= NAMES:
-        sorts = sorts - {Sort.TEXT}
     words = [sort.value for sort in Sort if sort in sorts]
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
 

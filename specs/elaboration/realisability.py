@@ -227,8 +227,8 @@ def _check_command(site: ControlSite, command: Command, hosts: tuple[str, ...], 
 def _check_use(site: ControlSite, rule: Schema, hosts: tuple[str, ...], ground: Ground) -> None:
     given = {}
     for parameter, value in zip(rule.parameters, site.statement.arguments, strict=True):
-        name = str(value.value) if isinstance(value, Literal) else None
-        if name is not None and name in ground.names.kinds:
+        name = value.value if isinstance(value, Literal) else None
+        if isinstance(name, str) and name in ground.names.kinds:
             given[parameter.name] = name
             kind = ground.names.kinds[name]
             if parameter.kind not in (None, kind):
@@ -277,9 +277,8 @@ def _report(
 def _value(expression: Expression | None, host: str, ground: Ground) -> Someone:
     if isinstance(expression, Host):
         return ground.node(host)
-    if isinstance(expression, Literal) and str(expression.value) in ground.names.kinds:
-        return ground.node(str(expression.value))
-    return Someone(None)
+    name = expression.value if isinstance(expression, Literal) else None
+    return ground.node(name) if isinstance(name, str) and name in ground.names.kinds else Someone(None)
 
 
 def _term(term: object, rule: Schema, given: Mapping[str, str], host: str | None, ground: Ground) -> Someone:

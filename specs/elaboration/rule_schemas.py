@@ -162,9 +162,8 @@ class Maker:
     def _node(self, parameter: Parameter, value: Value) -> Name:
         node = _node(value, self.kinds, f"a node was expected for {parameter.shown}, not")
         if parameter.kind is not None and self.kinds[node] != parameter.kind:
-            shown = show(value, frozenset(self.kinds))
             raise Fault(
-                f"{parameter.shown} is of kind {parameter.kind}, and {shown} is of kind {self.kinds[node]}"
+                f"{parameter.shown} is of kind {parameter.kind}, and {show(value)} is of kind {self.kinds[node]}"
             )
         return node
 
@@ -183,7 +182,7 @@ class Maker:
 def _node(value: Value, kinds: Mapping[Name, str], otherwise: str) -> Name:
     """Return a value that is a node; raises Fault."""
     if not isinstance(value, str) or value not in kinds:
-        raise Fault(f"{otherwise} {show(value, frozenset(kinds))}")
+        raise Fault(f"{otherwise} {show(value)}")
     return value
 
 

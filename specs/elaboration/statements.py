@@ -248,6 +248,7 @@ class _Statements:
 
     def react(self, node: s.React, place: _Place, number: int) -> k.Statement:
         cases = self.cases(node.cases, place, number, react=True)
+        self.judged(node, None, node.cases, cases)
         if node.after is None:
             return k.React(cases)
         check_duration(node.after.duration, self.names.findings)
@@ -333,7 +334,7 @@ class _Statements:
     def match(self, node: s.Match, place: _Place, number: int) -> k.Statement:
         subject = self.expression(node.subject, place)
         cases = self.cases(node.cases, place, number, react=False)
-        self.names.demands.append(Choice(node.subject, subject, tuple(case.pattern for case in cases)))
+        self.judged(node.subject, subject, node.cases, cases)
         return k.Match(subject, cases)
 
     def choose(self, node: s.Choose, place: _Place, number: int) -> k.Statement:
@@ -365,6 +366,17 @@ class _Statements:
             self.names.findings.unknown(node.behaviour, known, sort="behaviour", otherwise=instead)
         else:
             check_arity(node.behaviour, len(node.arguments), len(behaviour.parameters), self.names.findings)
+
+    def judged(
+        self,
+        where: s.Node,
+        subject: Expression | None,
+        written: tuple[s.Case, ...],
+        cases: tuple[k.Case, ...],
+    ) -> None:
+        """Have cases judged when all types are known."""
+        pairs = zip((each.pattern for each in written), (each.pattern for each in cases), strict=True)
+        self.names.demands.append(Choice(where, subject, tuple(pairs)))
 
     def cases(
         self, written: tuple[s.Case, ...], place: _Place, number: int, *, react: bool

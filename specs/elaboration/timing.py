@@ -458,7 +458,7 @@ def _say_time(said: _Said, node: s.SayTime) -> None:
             lambda clause: (
                 isinstance(clause, Says) and clause.message == message and agent in (None, clause.agent)
             ),
-            f"nobody ever says {show(message, frozenset(said.names.kinds))}{to}",
+            f"nobody ever says {show(message)}{to}",
             f"says {write(node.message)}{to}",
             ClauseTimes(Sayable(*said.ticks.ordered(node, node.after, node.until))),
         )

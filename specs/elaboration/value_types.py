@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Final
@@ -34,7 +34,7 @@ from semantics.behaviours.statements import (
     Spawn,
     Statement,
 )
-from semantics.behaviours.values import Route, Truth, Value, within
+from semantics.behaviours.values import Route, Text, Truth, Value, within
 
 MISTAKEN: Final = Literal("")
 """Stands for an expression with a mistake, by its identity: the mission is refused, and its type is unknown."""
@@ -56,14 +56,15 @@ class Sort(StrEnum):
 
 Sorts = frozenset[Sort]
 EVERY: Final = Sorts(Sort)
-NAMES: Final = Sorts({Sort.TEXT, Sort.ENTITY, Sort.AGENT})
+NAMES: Final = Sorts({Sort.ENTITY, Sort.AGENT})
 HOLDERS: Final = Sorts({Sort.SET, Sort.ROUTE})
 COLLECTIONS: Final = HOLDERS | {Sort.OBSERVATION}
-PLACES: Final = Sorts({Sort.TEXT, Sort.ENTITY})
-"""What an observation calls a place: an entity, or the region around everything, which is none."""
 
-Shape = tuple[int, str | None]
-"""How many items a tuple has, and the text that is its first item, if that is fixed."""
+Tag = Text | str | None
+"""The text or name by which tuples of one length are told apart, if it is fixed."""
+
+Shape = tuple[int, Tag]
+"""How many items a tuple has, and the text or name that is its first item, if that is fixed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,14 +110,15 @@ def of(*sorts: Sort) -> Type:
     )
 
 
-def sort_of(value: Value) -> Sort:
-    """Return the sort of a constant; whether a text names something is left open."""
+def sort_of(value: Value, agents: Container[str]) -> Sort:
+    """Return the sort of a constant; a name is an entity's, or a place's, if it is no bigActor's."""
     if isinstance(value, str):
-        return Sort.TEXT
+        return Sort.AGENT if value in agents else Sort.ENTITY
     return next(sort for type_, sort in _SORT_OF.items() if isinstance(value, type_))
 
 
 _SORT_OF: Final[Mapping[type, Sort]] = {
+    Text: Sort.TEXT,
     Truth: Sort.TRUTH,
     int: Sort.NUMBER,
     tuple: Sort.TUPLE,
@@ -152,7 +154,7 @@ class Inference:
         grown = True
         while grown:
             grown = False
-            messages = self._messages(known)
+            messages = self.messages(known)
             for statement in self.program.statements:
                 for variable, given in self.given(statement, known, messages):
                     before = known.get(variable, NOTHING)
@@ -160,7 +162,8 @@ class Inference:
                     grown = grown or known[variable] != before
         return known
 
-    def _messages(self, known: Types) -> Type:
+    def messages(self, known: Types) -> Type:
+        """Return the type of what is sent or said to anybody."""
         sent = (each.message for each in self.program.statements if isinstance(each, Send))
         found = NOTHING
         for message in (*map(self.constant, self.said), *(self.type(each, known) for each in sent)):
@@ -197,18 +200,16 @@ class Inference:
     def constant(self, value: Value) -> Type:
         """Return the type of a constant."""
         match value:
-            case str() if value in self.entities | self.agents:
-                return of(Sort.ENTITY if value in self.entities else Sort.AGENT)
             case tuple():
-                shape = (len(value), value[0] if value and isinstance(value[0], str) else None)
+                shape = (len(value), _tag(value[0]) if value else None)
                 return Type(
                     Sorts({Sort.TUPLE}), tuples={shape: tuple(self.constant(each).sorts for each in value)}
                 )
             case frozenset() | Route():
                 members = (self.constant(each).sorts for each in within(value))
-                return Type(Sorts({sort_of(value)}), Sorts().union(*members))
+                return Type(Sorts({sort_of(value, self.agents)}), Sorts().union(*members))
             case _:
-                return of(sort_of(value))
+                return of(sort_of(value, self.agents))
 
     def type(self, expression: Expression, known: Types) -> Type:
         """Return the type of an expression."""
@@ -224,8 +225,7 @@ class Inference:
             case Either():
                 return of(Sort.TRUTH)
             case TupleOf(items):
-                first = items[0].value if isinstance(items[0], Literal) else None
-                shape = (len(items), first if isinstance(first, str) else None)
+                shape = (len(items), _tag(items[0].value) if isinstance(items[0], Literal) else None)
                 return Type(
                     Sorts({Sort.TUPLE}), tuples={shape: tuple(self.type(each, known).sorts for each in items)}
                 )
@@ -237,6 +237,10 @@ class Inference:
                 if operator == "element":
                     return _element(given[0], arguments[1])
                 return _RESULTS[operator](*given) if operator in _RESULTS else ANY
+
+
+def _tag(value: Value) -> Tag:
+    return value if isinstance(value, Text | str) else None
 
 
 def members_of(collection: Type) -> Sorts:
@@ -271,6 +275,18 @@ def may_take(pattern: Pattern, value: Type, inference: Inference) -> bool:
             return Sort.TUPLE in value.sorts and all(
                 may_take(item, of(*sorts), inference) for item, sorts in parts
             )
+
+
+def compared(pattern: Pattern, value: Type) -> Iterator[tuple[Value, Sorts]]:
+    """Yield the constants of a pattern, each with what it is compared with in tuples of its length; nothing of any."""
+    match pattern:
+        case Exactly(constant) if value.sorts:
+            yield constant, value.sorts
+        case Elements(items):
+            parts = _items(items, value)
+            parts = parts if any(parts) else _items((Anything(),) * len(items), value)
+            for item, sorts in zip(items, parts, strict=True):
+                yield from compared(item, of(*sorts))
 
 
 def _items(items: tuple[Pattern, ...], value: Type) -> tuple[Sorts, ...]:
@@ -334,11 +350,11 @@ _RESULTS: Final[Mapping[str, Callable[..., Type]]] = {
     "minus": lambda left, _: _part(left, members_of(left)),
     "intersect": lambda left, right: _part(left, members_of(left) & members_of(right)),
     "[]": _always(Sort.AGENT),
-    "nodes": lambda _: _set(PLACES),
-    "children": lambda *_: _set(PLACES),
+    "nodes": lambda _: _set({Sort.ENTITY}),
+    "children": lambda *_: _set({Sort.ENTITY}),
     "agents": lambda _: _set({Sort.AGENT}),
     "kind": _always(Sort.TEXT),
-    "parent": _always(*PLACES),
+    "parent": _always(Sort.ENTITY),
     "size": _always(Sort.NUMBER),
     "first": lambda value: of(*members_of(value)),
 }

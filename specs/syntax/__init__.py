@@ -1,7 +1,6 @@
 """The syntax tree of a mission: frozen values with spans, one class per construct.
 
-It knows nothing of what the constructs mean: names are not resolved and numbers are not
-checked against the world.
+It knows nothing of the constructs' meaning: names are not resolved, and numbers are not checked against the world.
 """
 
 from specs.syntax.actions import (

@@ -1,4 +1,4 @@
-"""Control actions: what `control` requests, and the bodies of reaction rules."""
+"""Control actions: the requests of `control`, and the bodies of reaction rules."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from specs.syntax.nodes import Name, Node, node
 
 @node
 class Command(Node):
-    """`MOVE u TO e`, `HAND u TO g`: a command, each operand the name of a node, or a variable that holds one.
+    """`MOVE u TO e`, `HAND u TO g`: a command; each operand is the name of a node, or a variable that holds one.
 
-    Behind `VIA v, w` stand the places that it passes on its way, in their order: twenty at the most, each named once.
-    These are context: L has to have them, P has to show them, and nothing else is asked of them. On its way it is in
-    none of them: what flies is in transit to its destination. Live, the vehicle gets the way as a mission on board.
+    `VIA v, w` lists the places on its way in their order: twenty at the most, each named once. They are context: L has
+    to have them, P has to show them, and no other condition applies to them. On its way, the mover is in none of them:
+    it is in transit to its destination. In a live run, the vehicle gets the way as a mission on board.
     """
 
     name: str
@@ -28,7 +28,7 @@ class Command(Node):
 
 @node
 class ApplyRule(Node):
-    """`land(uav0, base0)`: a named reaction rule, its parameters given."""
+    """`land(uav0, base0)`: a named reaction rule with its arguments."""
 
     rule: Name
     arguments: tuple[Expression, ...]
@@ -39,9 +39,9 @@ class RuleBody(Node):
     """`{ u[c] || b.$0 -> b.(u[c] | $0) }`: a reaction rule in the notation of the paper's runtime.
 
     Attributes:
-        text: What it says, its white space collapsed.
-        raw: The text between the braces, its comments replaced by spaces: offsets in it count from `raw_start`.
-        raw_start: Where that text begins in the mission.
+        text: The body with collapsed white space.
+        raw: The text between the braces with comments replaced by spaces; its offsets count from `raw_start`.
+        raw_start: The offset of that text in the mission.
     """
 
     text: str
@@ -50,7 +50,7 @@ class RuleBody(Node):
 
     @property
     def term(self) -> RuleTerm | None:
-        """What it says, or None where it has a mistake; never None in a parsed mission."""
+        """The parsed rule, or None if it has a mistake; never None in a mission without mistakes."""
         return _read(self.raw or self.text)
 
 

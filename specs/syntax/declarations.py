@@ -18,7 +18,7 @@ from specs.syntax.world import Believes, Placement, Signature, World
 
 @node
 class Parameter(Node):
-    """`u: UAV`: a parameter of a reaction rule, and the kind of node that it stands for."""
+    """`u: UAV`: a parameter of a reaction rule, which stands for a node of this kind."""
 
     name: Name
     kind: Name
@@ -62,10 +62,10 @@ class BigActor(Node):
 class Family(Node):
     """`BigActor patrol[i] for u in UAV hosted_at u with_behavior visit(u, i)`.
 
-    A family of agents: one for each entity of a kind, or of a set or a route of entities. A member is called by its
-    entity, `patrol[uav0]`, so a name says where to look however many there are. In its body `u` is that entity, and `i`
-    the member's number, from 0: in the order of a route, else of the entities' names. `BigActor patrol[u] for u in ...`
-    does without the number. The host may be `u` or an entity that all have in common.
+    A family of agents: one for each entity of a kind, or of a set or a route of entities. A member is named after its
+    entity, `patrol[uav0]`, so its name shows where it acts. In its body, `u` is that entity, and `i` the member's
+    number, from 0: in the order of a route, else of the entities' names. `BigActor patrol[u] for u in ...` has no
+    number. The host may be `u`, or an entity that hosts all members.
     """
 
     name: Name
@@ -84,7 +84,7 @@ class DriftsAmong(Node):
     """`oilSpill0 drifts among circle (37.0, -8.7) radius 400 m, searchArea1`.
 
     The entity may move to any of these placements at any time; a place stands for its centroid. An entity that is
-    absent, carried or in transit does not drift. A vehicle drifts again from where its flight has ended.
+    absent, carried or in transit does not drift. After a flight, a vehicle drifts again from its destination.
     """
 
     entity: Name
@@ -150,7 +150,7 @@ class Says(Node):
 
 @node
 class Arrives(Node):
-    """`uav0 arrives`: its flights always end, so `commit` is fair."""
+    """`uav0 arrives`: all flights of uav0 end, so `commit` is fair."""
 
     entity: Name
 
@@ -162,17 +162,17 @@ EnvironmentClause: TypeAlias = (
 
 @node
 class Environment(Node):
-    """`environment { ... }`: everything that may happen without an agent's doing."""
+    """`environment { ... }`: all changes that may happen without an action of an agent."""
 
     clauses: tuple[EnvironmentClause, ...]
 
 
-# --- how it runs and what is checked
+# --- scheduler, control and checks
 
 
 @node
 class Scheduler(Node):
-    """`scheduler program_order`: which request is served next: program_order (the default), unordered or fcfs."""
+    """`scheduler program_order`: the order of service of requests: program_order (the default), unordered or fcfs."""
 
     name: str
 
@@ -186,7 +186,7 @@ class ControlMode(Node):
 
 @node
 class StandardProperty(Node):
-    """`race_freedom`: a standard property, which is asked for by its name alone."""
+    """`race_freedom`: a standard property, requested by its name alone."""
 
     name: str
 
@@ -211,8 +211,8 @@ class Reachable(Node):
 class Deadline(Node):
     """`within 40 min "there": uav0 in oilSpill0`, `within 5 min "answered": pending OBS a leads to not pending OBS a`.
 
-    On every run it is true at some moment up to that time, counted from the start. With `leads to`: whenever the first
-    is true, the second is then or at most so much later. In missions with `timing` only.
+    On every run, the formula is true at some moment up to that time from the start. With `leads to`: whenever the first
+    formula is true, the second is true then or within that time. In missions with `timing` only.
     """
 
     limit: Duration
@@ -222,7 +222,7 @@ class Deadline(Node):
 
 @node
 class FirstTime(Node):
-    """`time "found": uav0 in oilSpill0`: when it is true first, at the earliest and at the latest.
+    """`time "found": uav0 in oilSpill0`: the earliest and the latest moment at which it is first true.
 
     In missions with `timing` only.
     """

@@ -1,4 +1,4 @@
-"""Expressions: what a behaviour computes with, and the queries it observes with."""
+"""Expressions: the values of behaviours, and the queries of observations."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from specs.syntax.nodes import Name, Node, node
 
 @node
 class TextLiteral(Node):
-    """`"handover"`: a string."""
+    """`"handover"`: a text, never equal to a name. `"base"` and `base` are two values."""
 
     value: str
 
@@ -57,9 +57,8 @@ class SetLiteral(Node):
 class RouteLiteral(Node):
     """`[gate0, gate1, gate0]` or `[]`: a route.
 
-    An ordered list: `for` goes through it in its order, and what stands in it twice is passed twice. `r + s` is one
-    route behind the other; `r - s`, `minus`, `intersect` and `r of Location` leave some stops out and keep the order of
-    the others.
+    An ordered list: `for` visits its stops in order, and a repeated stop each time. `r + s` appends a route to another;
+    `r - s`, `minus`, `intersect` and `r of Location` remove stops and keep the order of the others.
     """
 
     items: tuple[Expression, ...]
@@ -69,7 +68,7 @@ class RouteLiteral(Node):
 class Member(Node):
     """`patrol[uav0]`, `patrol[0]`: a member of a family of bigActors, by its entity or by its number, from 0.
 
-    In behaviours both may be computed: `send "go" to patrol[who]`, `patrol[i + 1]`. Behind a variable the brackets
+    In behaviours, both may be computed: `send "go" to patrol[who]`, `patrol[i + 1]`. Behind a variable, the brackets
     give an element of its tuple or route: `route[0]` is `element(route, 0)`.
     """
 
@@ -122,9 +121,9 @@ class AllNodes(Node):
 class QueryApplication(Node):
     """`PARENT(q)`, `CHILDREN(q)`, `LINKED_TO(q)` or `HOSTED_AT(q)`.
 
-    A relation, applied to each node that the inner query yields. `PARENT_HOST`, `CHILDREN_HOST`, `LINKED_TO_HOST` and
-    `HOSTED_AT_HOST` are short for the relation applied to `HOST`. An observation of `CHILDREN(x)` shows x, too, so that
-    `x in o` is true. `size`, `empty`, `first`, `of`, `for` and `choose` go through its members: the children alone.
+    A relation, applied to each node of the inner query's answer. `PARENT_HOST`, `CHILDREN_HOST`, `LINKED_TO_HOST` and
+    `HOSTED_AT_HOST` are short for the relation applied to `HOST`. An observation of `CHILDREN(x)` also shows x, so
+    `x in o` is true. `size`, `empty`, `first`, `of`, `for` and `choose` use only its members, the children.
     """
 
     relation: QueryOperator

@@ -1,4 +1,4 @@
-"""Formulas: what properties claim of configurations and of runs, and the temporal properties made of them."""
+"""Formulas: claims on configurations and on runs, and temporal properties."""
 
 from __future__ import annotations
 
@@ -28,10 +28,9 @@ class Connective(Node):
 class Quantified(Node):
     """`forall x: UAV . F`, `exists x: UAV . F`, `forall x, y: UAV . F`, `forall x: agents . F`, `forall x: patrol . F`.
 
-    All entities of a kind, or some; all bigActors; those of a family. F extends as far as possible. `agents
-    with_behavior visit` are those that are declared or spawned so, and `agents hosted_at Y` those that Y hosts at that
-    moment, or that an entity of the kind Y hosts. Of bigActors that are spawned, those count that are there at that
-    moment.
+    All entities of a kind, or some; all bigActors; the members of a family. F extends as far as possible. `agents
+    with_behavior visit` are the bigActors declared or spawned with it. `agents hosted_at Y` are those that Y, or an
+    entity of the kind Y, hosts at that moment. A spawned bigActor counts from its spawning on.
     """
 
     quantifier: str
@@ -70,7 +69,7 @@ class LinkedTo(Node):
 
 @node
 class Present(Node):
-    """`present X`: X is in P; of a bigActor that it is there, at first or since it was spawned."""
+    """`present X`: the entity X is in P, or the bigActor X exists, from the beginning or since its spawning."""
 
     entity: Agent
 
@@ -86,7 +85,7 @@ class Known(Node):
 class Pending(Node):
     """`pending a`, `pending CTR a`.
 
-    Agent a has a request in η: any, or one of that sort (`OBS`, `READY`, `CTR`, `FLY`, `SND` or `MGR`).
+    Agent a has a request in η, or one of that sort (`OBS`, `READY`, `CTR`, `FLY`, `SND` or `MGR`).
     """
 
     agent: Agent
@@ -95,7 +94,7 @@ class Pending(Node):
 
 @node
 class Ended(Node):
-    """`ended a`: agent a has nothing left to run; what it has asked for may still be pending, like its last flight."""
+    """`ended a`: agent a has no statement left; its last requests, such as a flight, may still be pending."""
 
     agent: Agent
 
@@ -127,7 +126,7 @@ class SameName(Node):
 class Stored(Node):
     """`a.x == 3`, `a.x < 3`, `a.x <= 3`, `a.x > 3`, `a.x >= 3`: compare agent a's variable x with a value.
 
-    The variable keeps its last value to the end of the run. Before it has one, the comparison neither violates nor
+    The variable keeps its last value to the end of the run. Before it has a value, the comparison neither violates nor
     fulfils a property ([temporal.md](temporal.md#variables-in-properties)).
     `<`, `<=`, `>` and `>=` compare numbers only.
     """
@@ -149,7 +148,7 @@ class HasValue(Node):
 # --- runs
 
 SIGNS = {"G": "[]", "F": "<>", "X": "X"}
-"""The signs of the operators that letters stand for."""
+"""The signs of the operators with letters."""
 
 
 @node
@@ -201,7 +200,7 @@ class Steps(Node):
     """`sense a`, `a`, `sense`, `agents`, `rules`, `requests`, `environment`.
 
     The steps of a bigActor by one rule, all its steps, all steps by one rule, those of the bigActors, or those of the
-    environment. [temporal.md](temporal.md#fairness) lists what each means under fairness.
+    environment. [temporal.md](temporal.md#fairness) lists the meaning of each under fairness.
     """
 
     words: tuple[Agent, ...]
@@ -280,8 +279,8 @@ class TemporalProperty(Node):
 class FairDeadlockFreedom(Node):
     """`deadlock_freedom under weak fairness of env`, `deadlock_freedom "but for the link" under weak fairness of env`.
 
-    No fair run stays for ever where nothing but the environment can move and something is left to be done. So it is no
-    deadlock where a promised change of the world leads on, such as the return of a link that `drops and returns`.
+    No fair run stays for ever in states where work is left and only the environment can move. So a promised change of
+    the world that leads on, such as the return of a link that `drops and returns`, prevents a deadlock.
     """
 
     fairness: tuple[Fairness, ...]
@@ -292,8 +291,8 @@ class FairDeadlockFreedom(Node):
 class Progress(Node):
     """`progress`, `progress under strong fairness of actuate`.
 
-    Every pending request is eventually served, under weak fairness of each rule and request, and the fairness that is
-    added. Flights end only if the environment says that they arrive. A name is optional: `progress "served in time"`.
+    Every pending request is eventually served, under weak fairness of each rule and request, and the added fairness.
+    Flights end only if the environment has `arrives`. A name is optional: `progress "served in time"`.
     """
 
     fairness: tuple[Fairness, ...] = ()

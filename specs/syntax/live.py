@@ -1,4 +1,4 @@
-"""The `live` section: what vehicles do when an assumption breaks or a request takes too long."""
+"""The `live` section: the reactions of vehicles to a broken assumption or a slow request."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from specs.syntax.statements import Duration
 class OnBroken(Node):
     """`on broken assumption: return`: hold (the default), return or continue.
 
-    What vehicles do when the world does what the environment section does not allow.
+    The reaction of vehicles to a change of the world that the environment section does not allow.
     """
 
     fallback: str
@@ -23,8 +23,8 @@ class OnBroken(Node):
 class TimeLimit(Node):
     """`FLY a within 10 min: return`, `anyone within 1 min: continue`.
 
-    How long a request of an agent may be first in its line, and what is done then. `OBS`, `CTR`, `FLY`, `SND` or `MGR`
-    restricts the limit to one sort of request.
+    The longest time for which a request of an agent may be first in its queue, and the reaction after that. `OBS`,
+    `CTR`, `FLY`, `SND` or `MGR` restricts the limit to one sort of request.
     """
 
     request: str | None
@@ -38,6 +38,6 @@ Precaution: TypeAlias = OnBroken | TimeLimit
 
 @node
 class Live(Node):
-    """`live { ... }`: precautions for live runs. They do not change what is checked."""
+    """`live { ... }`: precautions for live runs. They have no effect on checks."""
 
     precautions: tuple[Precaution, ...]

@@ -1,4 +1,4 @@
-"""What every node of the syntax tree is: a frozen value that knows where it was written."""
+"""The base of all nodes of the syntax tree: a frozen value with its place in the text."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TypeVar, dataclass_transform
 
 @dataclass(frozen=True, slots=True, order=True)
 class Span:
-    """A stretch of the mission's text: offsets in characters, `end` excluded."""
+    """A range of the mission's text: offsets in characters, `end` excluded."""
 
     start: int
     end: int
@@ -24,7 +24,7 @@ NOWHERE = Span(0, 0)
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Node:
-    """A piece of syntax. Two nodes are equal when they say the same, wherever they were written."""
+    """A piece of syntax. Two nodes are equal if their contents are, wherever they are in the text."""
 
     span: Span = field(default=NOWHERE, compare=False, repr=False, kw_only=True)
 
@@ -48,7 +48,7 @@ N = TypeVar("N", bound=Node)
 
 @dataclass_transform(frozen_default=True, field_specifiers=(field,))
 def node(cls: type[N]) -> type[N]:
-    """Make a class one of nodes: a frozen dataclass without methods of its own, which are slow to compile."""
+    """Make a class a class of nodes: a frozen dataclass without generated methods, which are slow to compile."""
     return dataclass(frozen=True, slots=True, eq=False, repr=False)(cls)
 
 
@@ -56,14 +56,14 @@ def node(cls: type[N]) -> type[N]:
 class Name(Node):
     """`uav0`, `control:gcs0`.
 
-    A name of an entity, a kind, a channel or a variable: the context decides.
+    A name of an entity, a kind, a channel or a variable, by context.
     """
 
     text: str
 
 
 def parts(node: Node) -> Iterator[Node]:
-    """Yield the nodes directly below `node`, in the order of its fields."""
+    """Yield the child nodes of `node`, in the order of its fields."""
     for spec in fields(node):
         value = getattr(node, spec.name)
         if isinstance(value, Node):
@@ -73,7 +73,7 @@ def parts(node: Node) -> Iterator[Node]:
 
 
 def walk(node: Node) -> Iterator[Node]:
-    """Yield `node` and every node below it, parents before their parts."""
+    """Yield `node` and its descendants, parents before their parts."""
     waiting = [node]
     while waiting:
         current = waiting.pop()

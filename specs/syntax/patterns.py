@@ -1,4 +1,4 @@
-"""Patterns: what a case of `react` or `match` matches."""
+"""Patterns of the cases of `react` and `match`."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class ConstantPattern(Node):
 
 @node
 class TuplePattern(Node):
-    """`("found", x, _)`: a tuple of as many values, each of which matches its pattern."""
+    """`("found", x, _)`: a tuple of the same length whose values match these patterns."""
 
     items: tuple[Pattern, ...]
 

@@ -1,4 +1,4 @@
-"""Statements: what a bigActor does."""
+"""The statements of bigActors."""
 
 from __future__ import annotations
 
@@ -49,10 +49,11 @@ class Duration(Node):
 
 @node
 class After(Node):
-    """`after 10 min => statements`: what an agent does that has waited so long at a `react`.
+    """`after 10 min => statements`: the statements of an agent that has waited so long at a `react`.
 
-    It stands behind the cases. `timeout` happens where nothing is there that a case takes; what has come stays. In a
-    live run it happens after that time. A check knows no time: there it may happen at any moment while the agent waits.
+    It stands behind the cases. The step `timeout` is possible while no case takes any received observation or message;
+    those stay in the mailbox. A live run takes it after that time. A check without times takes it at any moment of the
+    wait.
     """
 
     duration: Duration
@@ -107,7 +108,7 @@ class Spawn(Node):
 
 @node
 class Display(Node):
-    """`display(e)`: show a value to the observer of the run. The configuration does not change."""
+    """`display(e)`: show a value to the observer of the run; the configuration stays the same."""
 
     value: Expression
 
@@ -134,8 +135,8 @@ class If(Node):
 
     Attributes:
         condition: The first condition.
-        then: What is done if it is true.
-        otherwise: What is done if not; for `else if`, a single `If`.
+        then: The statements if it is true.
+        otherwise: The statements if not; for `else if`, a single `If`.
     """
 
     condition: Expression
@@ -162,7 +163,7 @@ class While(Node):
 class For(Node):
     """`for x in e { ... }`: repeat for each stop of a route, or each member of a set or an observation.
 
-    A route is gone through in its order, a set and an observation in the order of names.
+    A route is visited in its order, a set and an observation in the order of names.
     """
 
     variable: Name

@@ -1,4 +1,4 @@
-"""The `timing` section: how long everything takes."""
+"""The `timing` section: the durations and dates of steps."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ METRES_PER_SECOND = {"m/s": 1.0, "km/h": 1000 / UNITS["h"], "kn": 1852 / UNITS["
 
 @node
 class Tick(Node):
-    """`tick 100 ms`: the unit of time, of which all durations are whole numbers. Without it, it is a second."""
+    """`tick 100 ms`: the unit of time; all durations are multiples of it. The default is a second."""
 
     duration: Duration
 
@@ -46,9 +46,9 @@ class Speeds(Node):
 class Motion(Node):
     """`UAV flies at 18 m/s to 25 m/s, climbs at 2 m/s to 5 m/s, circles 80 m`.
 
-    How fast the vehicles of a kind are, or one of them (`uav0 flies at ...`); what is said of one counts for it. The
-    speeds over ground give each flight its shortest and its longest time, by the distances on the map. `climbs` is
-    needed where altitudes differ on the way; `circles` gives the radius of the circles of what cannot stand.
+    The speeds of the vehicles of a kind, or of one vehicle (`uav0 flies at ...`), which take precedence. The speeds
+    over ground and the distances on the map give each flight its shortest and its longest time. `climbs` is required if
+    altitudes differ on the way. `circles` gives the radius of circles for vehicles that cannot stand still.
     """
 
     name: Name
@@ -61,8 +61,8 @@ class Motion(Node):
 class Lasting(Node):
     """`uav0 lasts 45 min, restored in airfield0, base0 after 20 min`.
 
-    How long a vehicle, or each one of a kind, may be away from the places in which it is restored, and how long it has
-    to be in one of them to last that long again.
+    The longest time that a vehicle, or each vehicle of a kind, may be away from the places that restore it, and the
+    time in one of them after which it lasts that long again.
     """
 
     name: Name
@@ -75,8 +75,8 @@ class Lasting(Node):
 class Lapse(Node):
     """`within 5 s`, `takes 1 s to 3 s`, `takes 2 s`, `takes at least 2 s`.
 
-    How long something takes: from no time to so long, between two durations, exactly so long, or so long and more.
-    Several things `take`.
+    A duration: at most so long, between two durations, exactly so long, or at least so long. After a plural, the verb
+    is `take`.
     """
 
     least: Duration | None
@@ -87,8 +87,8 @@ class Lapse(Node):
 class ReactionTime(Node):
     """`agents react within 1 s`, or `agents take 1 s to 2 s`.
 
-    How long a bigActor takes for a step of its own: to compute, to ask for something, to take what has come; and how
-    long it takes until a vehicle is sent on its way. Other commands take any time where no line says how long.
+    The duration of a bigActor's own steps: computations, requests, and receptions. It also bounds the time until a
+    vehicle sets out. Other commands without a line of their own take any time.
     """
 
     lapse: Lapse
@@ -96,7 +96,7 @@ class ReactionTime(Node):
 
 @node
 class SensingTime(Node):
-    """`sense within 5 s`: how long an observation takes."""
+    """`sense within 5 s`: the duration of an observation."""
 
     lapse: Lapse
 
@@ -105,7 +105,7 @@ class SensingTime(Node):
 class MessageTime(Node):
     """`messages over wifi take 1 s to 3 s`, `messages on one host within 1 s`.
 
-    How long a message is on its way over a channel, or between two bigActors of one host.
+    The delay of a message over a channel, or between two bigActors of one host.
     """
 
     channel: Name | None
@@ -116,8 +116,8 @@ class MessageTime(Node):
 class StepTime(Node):
     """`HAND within 10 s`, `migrate takes 1 s to 2 s`, `land within 30 s`.
 
-    How long a command takes by its first word, `migrate`, `spawn`, or a rule by its name. How long a flight takes
-    follows from speeds and distances.
+    The duration of a command by its first word, of `migrate`, of `spawn`, or of a rule by its name. The duration of a
+    flight follows from speeds and distances.
     """
 
     word: Name
@@ -126,7 +126,7 @@ class StepTime(Node):
 
 @node
 class DriftTime(Node):
-    """`oilSpill0 drifts at most every 20 min`: at least so long is between two steps of a drift."""
+    """`oilSpill0 drifts at most every 20 min`: the least time between two steps of a drift."""
 
     entity: Name
     every: Duration
@@ -136,7 +136,7 @@ class DriftTime(Node):
 class DropTime(Node):
     """`wifi drops at most every 30 min, returns within 5 min`, `wifi drops and returns within 5 min`.
 
-    How often a channel may drop, and after how long it is back at the latest.
+    The least time between two drops of a channel, and the longest time until its return.
     """
 
     channel: Name
@@ -148,7 +148,7 @@ class DropTime(Node):
 class LeaveTime(Node):
     """`uav0 leaves wifi at most every 30 min, returns within 5 min`, `uav0 leaves wifi and returns within 5 min`.
 
-    How often an entity may leave a channel, and after how long it is back at the latest.
+    The least time between two departures of an entity from a channel, and the longest time until its return.
     """
 
     entity: Name
@@ -161,7 +161,7 @@ class LeaveTime(Node):
 class PresenceTime(Node):
     """`tanker0 appears after 10 min, within 30 min`, `tanker0 vanishes within 1 h`.
 
-    When it comes or goes first, counted from the start.
+    The time of its first appearance or disappearance, counted from the start.
     """
 
     entity: Name
@@ -172,7 +172,7 @@ class PresenceTime(Node):
 
 @node
 class SayTime(Node):
-    """`someone says "handover" to a after 10 min, until 20 min`: when it may be said, counted from the start."""
+    """`someone says "handover" to a after 10 min, until 20 min`: the earliest and latest time of the message."""
 
     message: Expression
     recipient: Agent | None
@@ -198,6 +198,6 @@ Bound: TypeAlias = (
 
 @node
 class Timing(Node):
-    """`timing { ... }`: how long everything takes. Of what is not said, nothing is assumed: it takes any time."""
+    """`timing { ... }`: the durations and dates of steps. A step without a bound takes any time."""
 
     bounds: tuple[Bound, ...]

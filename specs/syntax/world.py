@@ -33,7 +33,7 @@ class Coordinate(Node):
     Attributes:
         latitude: In degrees, positive in the north.
         longitude: In degrees, positive in the east.
-        written: Each of the two, where it is written with its letter.
+        written: The text of each angle that is written with its letter; else empty.
     """
 
     latitude: float
@@ -89,7 +89,7 @@ class AltitudeBand(Node):
 class Placement(Node):
     """`circle (37.00, -8.70) radius 400 m altitude 0 m to 50 m`.
 
-    Where an entity is. The altitude is optional.
+    The place of an entity. The altitude is optional.
     """
 
     geometry: Geometry
@@ -103,9 +103,9 @@ class Placement(Node):
 class Kind(Node):
     """`kind Vessel driven carries Drifter, Station contains Person passive`.
 
-    A kind of node. `contains` lists the kinds that may be inside it, `carries` those that it may carry; `driven` means
-    that control actions can move it; no
-    reaction applies inside a `passive` one. All clauses are optional, in any order.
+    A kind of node. `contains` lists the kinds that may be inside it, `carries` the kinds that it may carry. `driven`
+    means that control actions can move it. No reaction applies inside a `passive` kind. All clauses are optional, in
+    any order.
     """
 
     name: Name
@@ -119,7 +119,7 @@ class Kind(Node):
 class Signature(Node):
     """`signature { kind ... }`, `signature standard` or `signature standard { kind ... }`: the kinds of nodes.
 
-    `standard` declares the kinds of the paper, as shown below; a kind of that name adds to it.
+    `standard` declares the kinds of the paper, as shown below; a further declaration of one of them extends it.
     """
 
     kinds: tuple[Kind, ...]
@@ -133,7 +133,7 @@ class Signature(Node):
 class Entity(Node):
     """`uav0: UAV = point (37.08, -8.55) altitude 90 m to 300 m linked control:gcs0, wifi`.
 
-    Everything after the kind is optional. `drifter0: Drifter carried by vessel0` is on a carrier; `ghost0: UAV absent`
+    Everything after the kind is optional. `drifter0: Drifter carried by vessel0` is on a carrier. `ghost0: UAV absent`
     is not in the world at first.
     """
 
@@ -156,8 +156,8 @@ class ChannelDeclaration(Node):
 class Keep(Node):
     """`BaseStation as Station`, or `Vessel` for `Vessel as Vessel`.
 
-    Keep a kind of the recording, as a kind of the mission. `Waypoint as Location radius 50 m` makes circles of points,
-    so that they are places.
+    Keep a kind of the file, as a kind of the mission. `Waypoint as Location radius 50 m` turns points into circles, so
+    that they are places.
     """
 
     recorded: Name
@@ -169,10 +169,9 @@ class Keep(Node):
 class FromSource(Node):
     """`from "workum.nmea" at "2020-04-07T21:42:00Z" within box (53.1, 5.3) (52.9, 5.5) limit 12`.
 
-    Entities from a file beside the mission: places (GeoJSON, a waypoint file, a plan) or an AIS recording. Everything
-    after the file is optional: what its names begin with (`from "survey.plan" as survey` has `survey_waypoint1`), the
-    time, an area, the kinds (`keep Vessel, BaseStation as Station`, `keep Waypoint as Location radius 50 m`) and a
-    number.
+    Entities from a file beside the mission: places (GeoJSON, a waypoint file, a plan) or an AIS recording. Optional are
+    a prefix of the names (`from "survey.plan" as survey` has `survey_waypoint1`), the time, an area, the kinds (`keep
+    Vessel, BaseStation as Station`, `keep Waypoint as Location radius 50 m`) and the largest number of entities.
     """
 
     file: TextLiteral
@@ -198,7 +197,7 @@ class World(Node):
 
 @node
 class BelievedIn(Node):
-    """`uav0 in searchArea0`, or `uav0 in region` where its place is unknown."""
+    """`uav0 in searchArea0`, or `uav0 in region` if its place is unknown."""
 
     entity: Name
     place: Name | None
@@ -224,6 +223,6 @@ Belief: TypeAlias = BelievedIn | BelievedUnknown | BelievedLinked
 
 @node
 class Believes(Node):
-    """`believes { ... }`: where the initial L differs from A(P)."""
+    """`believes { ... }`: the differences of the initial L from A(P)."""
 
     beliefs: tuple[Belief, ...]

@@ -1,16 +1,9 @@
-"""What live runs cost: strangers come and go as counted, and each part's time is without the parts inside it."""
+"""What live runs cost: the time of each part is without the parts inside it."""
 
 import time
 
 from benchmarks.parts import PARTS, Parts
-from benchmarks.strangers import EVENTS, flown
 from benchmarks.wire import Autopilot
-
-
-def test_each_stranger_comes_moves_twice_and_goes(tmp_path):
-    run = flown(30, tmp_path)
-    assert [run.counts[event] for event in EVENTS] == [30, 60, 30]
-    assert run.known == len(run.plan.first.setting.kinds) + 30
 
 
 def test_the_time_of_a_part_is_without_the_parts_inside_it():

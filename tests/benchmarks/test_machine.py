@@ -3,7 +3,6 @@
 import os
 import signal
 import sys
-import time
 
 import pytest
 from scripts import script
@@ -33,17 +32,3 @@ def test_a_peer_ends_with_its_time():
     ran = machine.run_peer(["sh", "-c", "while :; do :; done"], seconds=1)
     assert ran.status == -signal.SIGXCPU
     assert 0.9 < ran.seconds < 3
-
-
-def test_a_peer_is_told_by_its_number_and_its_output_while_it_runs(tmp_path):
-    printed = tmp_path / "printed"
-
-    def interrupt(number):
-        while not printed.read_text(encoding="utf-8").endswith("\n"):  # it may be interrupted within a line
-            time.sleep(0.01)
-        os.kill(number, signal.SIGINT)
-
-    program = "import time\nprint('begun', flush=True)\ntime.sleep(60)"
-    ran = machine.run_peer([sys.executable, "-c", program], output=printed, while_it_runs=interrupt)
-    assert ran.status in (-signal.SIGINT, 130)
-    assert ran.printed.startswith("begun\n")

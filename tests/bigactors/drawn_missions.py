@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from checker import Trace
-from checker.traces import candidates
+from checker.steps import candidates
 from physical import box, circle, point
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Host, Literal, QueryOf

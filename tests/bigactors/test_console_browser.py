@@ -117,7 +117,7 @@ def stops_it_on_its_way_and_lets_it_go_on(page):
     page.locator("#who-name").fill("Ana")
     page.locator("#who-name").press("Enter")
     hold(page, "[aria-label^='Hold uav0']")
-    has(page, "[data-name=uav0] .fate", "hold by Ana: confirmed by the vehicle")
+    has(page, "[data-name=uav0] .ordered", "to hold, by Ana: confirmed by the vehicle")
     has(page, "[data-name=uav0]", "held by the operator (Ana)")
     hold(page, "[aria-label^='Give uav0 back']")
     has(page, "[data-name=uav0] .fate", "give back by Ana")

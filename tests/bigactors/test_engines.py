@@ -12,10 +12,8 @@ import pytest
             ["--engine", "reference", "--paranoid", "1"],
             "--paranoid is of the fast explorer and of reductions",
         ),
-        (
-            ["--reduce", "por", "--checkpoint", "there"],
-            "--checkpoint and --hash-compact are of the fast explorer",
-        ),
+        (["--reduce", "por", "--checkpoint", "there"], "--checkpoint is of the fast explorer"),
+        (["--hash-compact", "32"], "it is gone, since a configuration takes some 24 bytes: --max-memory"),
         (["--spill", "there"], "--spill is for when memory ends"),
         (
             ["--spill", "there", "--max-memory", "1G", "--engine", "reference"],

@@ -33,6 +33,14 @@ def test_the_schemas_are_schemas(name):
     Draft202012Validator.check_schema(schema(name))
 
 
+def test_the_report_of_a_stale_observation_race_is_valid_and_says_which_steps_make_it(bigactors):
+    report = json.loads(bigactors("check", "look_before_entry_racy", "--json", "-")[1])
+    validator("report").validate(report)
+    trace = report["properties"][1]["trace"]
+    validator("trace").validate(trace)
+    assert [each["role"] for each in trace["steps"] if "role" in each] == ["sensed", "changed", "acted"]
+
+
 @pytest.mark.usefixtures("missions")
 @pytest.mark.parametrize("mission", ["holds", "race", "endless", "mistaken", "nowhere"])
 def test_the_report_of_a_mission_is_valid(bigactors, mission):

@@ -37,6 +37,12 @@ def test_a_configuration_is_a_picture_of_bigraph_and_map(mission):
     assert re.fullmatch(r"width:100%;max-width:[\d.]+pt;height:auto", picture.get("style"))
 
 
+def test_the_steps_of_a_race_carry_their_words(report):
+    race = next(each for each in report.verdicts["race_freedom"].violations if each.trace.race)
+    html = shown(race.trace)["text/html"]
+    assert re.findall(r"\[(sensed|changed|acted)\]", html) == ["sensed", "changed", "acted"]
+
+
 def test_a_bigraph_is_a_picture(mission):
     bigraph = mission.initial.structure.logical.bigraph()
     assert shown(bigraph)["image/svg+xml"] == shown(bigraph)["image/svg+xml"]
@@ -89,16 +95,17 @@ def test_a_trace_is_a_table_with_a_column_for_each_agent(report):
     assert ["".join(cell.itertext()) for cell in table[0]] == ["", "a", "b", "changes"]
     assert len(table) == 1 + 12
     last = ["".join(cell.itertext()) for cell in table[12]]
-    assert last[:3] == ["c12", "", "actuate CTR(b, MOVE_HOST_TO gate0)"]
+    assert last[:3] == ["c12", "", "[acted] actuate CTR(b, MOVE_HOST_TO gate0)"]
     assert "uav1 : south0 ↦ gate0" in last[3]
 
 
-def test_of_a_long_trace_the_first_steps_are_shown(report, monkeypatch):
+def test_of_a_long_trace_the_first_steps_are_shown_and_those_of_a_race(report, monkeypatch):
     monkeypatch.setattr(notebook, "MOST_STEPS", 5)
     trace = report.verdicts["race_freedom"].violations[0].trace
     html = parsed(shown(trace)["text/html"])
-    assert len(html.find("table")) == 1 + 5
-    assert "7 more steps are not shown" in "".join(html.itertext())
+    numbers = [row[0].text for row in html.find("table")[1:]]
+    assert numbers == ["c1", "c2", "c3", "c4", "c5", "c7", "c8", "c12"]
+    assert "4 more steps are not shown" in "".join(html.itertext())
 
 
 def test_a_trace_that_comes_round_says_so():

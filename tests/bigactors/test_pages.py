@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from importlib.resources import files as resources
+from pathlib import Path
 
 import pytest
 from drawn_missions import CHANNELS, KINDS, PLACEMENTS, SIGNATURE, observing, oil_spill, run
@@ -22,13 +23,14 @@ from semantics.state.initial import initial
 from semantics.state.setting import Setting
 from specs.elaboration import load_mission
 
+ROOT = Path(__file__).parents[2]
 HOSTILE = "</script><img src=//evil.example/x onerror=alert(1)>&amp;\"' $x^2$"
 EMPTY = {"meta", "input", "br", "img", "link"}
 DRAWN = {"g", "path", "text", "tspan", "use", "defs", "clippath", "rect", "circle", "ellipse", "line", "svg"}
 WRITTEN = {
     "html", "head", "meta", "title", "style", "noscript", "body", "header", "h1", "h2", "p", "main", "section",
     "table", "thead", "tbody", "tfoot", "tr", "th", "td", "a", "div", "b", "ul", "li", "span", "small", "button",
-    "input", "output", "figure", "details", "summary", "pre", "script", "template",
+    "strong", "input", "output", "figure", "details", "summary", "pre", "script", "template",
 }  # fmt: skip
 
 
@@ -308,3 +310,43 @@ def test_the_page_of_a_run_with_dates_has_gaps_where_time_passes():
     gaps = dict(re.findall(r"--gap: (\d+)px; --lapse: &#x27;\+ ([^&]+)&#x27;", page.replace("'", "&#x27;")))
     assert gaps == {"146": "6:40", "18": "10 s", "150": "6:50"}
     assert "<small>14:20</small>" in page
+
+
+# --- the steps of a race --------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def race():
+    """A stale-observation race, as a trace."""
+    mission = load_mission(ROOT / "tests" / "corpus" / "violated" / "stale_message.mission")
+    found = check(mission.initial, mission.properties).verdicts["race_freedom"].violations
+    return found[0].trace
+
+
+def test_the_three_steps_of_a_race_carry_their_words_and_the_head_leads_to_them(race):
+    page = Reader(trace_page(Story("race", "", True, race)))
+    words = [words["class"] for tag, words in page.elements if tag == "strong"]
+    assert words == ["role"] * 3
+    assert [each for each in page.texts if each in ("sensed", "changed", "acted")] == [
+        "sensed", "changed", "acted",  # the head
+        "sensed", "changed", "acted",  # the rows
+    ]  # fmt: skip
+    linked = [words["href"] for tag, words in page.elements if tag == "a"]
+    assert linked[:3] == [f"#c{number}" for number in race.race]
+
+
+def test_a_page_says_the_word_with_the_label_also_without_scripts(race):
+    page = Reader(trace_page(Story("race", "", True, race)))
+    captions = [words["data-label"] for tag, words in page.elements if "data-label" in words]
+    assert [each.rpartition(" ")[2] for each in captions if each.endswith("]")] == [
+        "[sensed]",
+        "[changed]",
+        "[acted]",
+    ]
+    assert any(each.startswith("c3: ") and each.endswith(" [sensed]") for each in page.texts)
+
+
+def test_a_trace_of_no_race_has_no_such_words(race):
+    page = trace_page(Story("none", "", True, replace(race, race=None)))
+    assert 'class="role"' not in page
+    assert "the race:" not in page

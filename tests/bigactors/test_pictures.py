@@ -18,6 +18,7 @@ from bigactors.pictures.trace import AGENT, AROUND, SERVED, rows_of
 from bigraphs.drawing import LINKS
 from bigraphs.layout import layout
 from bigraphs.link_curves import route
+from checker.properties.race_steps import RaceSteps
 from checker.reports.lanes import lanes_of
 from physical import circle, point
 from physical.map_style import text_width
@@ -235,6 +236,22 @@ def test_a_trace_is_a_picture_a_step_and_an_overview(tmp_path):
     assert [path.name for path in paths] == ["c00.svg", "c01.svg", "c02.svg", "trace.svg"]
     assert all(path.stat().st_size > 1000 for path in paths)
     assert 'href="c01.svg"' in paths[-1].read_text()
+
+
+def test_the_steps_of_a_race_carry_their_words_in_the_overview_and_in_each_picture(tmp_path):
+    configurations, labels = run(oil_spill())
+    race = RaceSteps(1, 2, 3)
+    paths = draw_trace(configurations[:4], labels[:3], tmp_path, title="Oil spill", race=race)
+    found = [text for text in texts_of(paths[-1]) if text in race.roles.values()]
+    assert found == [
+        "changed",
+        "sensed",
+        "changed",
+        "acted",
+    ]  # the head of what each step changed comes first
+    for path, word in zip(paths[:-1], ("", "[sensed]", "[changed]", "[acted]"), strict=True):
+        assert any(word in text for text in texts_of(path))
+    assert not any("[" in text for text in texts_of(paths[0]))
 
 
 def test_steps_stand_in_the_lanes_of_who_takes_them():

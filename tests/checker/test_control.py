@@ -1,6 +1,7 @@
 """Premises of control, each by a mission in which it alone decides."""
 
-from checked_missions import kinds, start, verdict
+import pytest
+from checked_missions import WORLD, kinds, start, verdict
 
 from semantics.control import Obstacle, obstacle
 from semantics.state.requests import FLY
@@ -113,3 +114,10 @@ def test_of_several_matches_the_one_that_comes_furthest_says_what_is_in_the_way(
     c = walked(start(text, world), "req_ctr : a", "fog0 drifts", "wifi drops")
     (request,) = (each.request for each in c.eta.of("a"))
     assert obstacle(c, request) is Obstacle.UNREALISABLE
+
+
+@pytest.mark.parametrize(("place", "found"), [("south0", set()), ("bay0", {"unrealisable"})])
+def test_what_is_put_down_in_a_smaller_place_is_not_put_into_the_one_around_it(place, found):
+    world = WORLD.replace("  vessel0:", "  bay0: Location = box (36.995, -8.66) (36.96, -8.74)\n  vessel0:")
+    text = f"BigActor a hosted_at vessel0 with_behavior {{ control(PUT drifter0 IN {place}) }}"
+    assert set(kinds(verdict(text, "local_consistency", world))) == found

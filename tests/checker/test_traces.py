@@ -13,7 +13,8 @@ from scale import crossed, examples
 from shipped import ALL
 
 from checker import Engine, Limits, ReplayError, Step, Trace, check, explore, print_trace, replay, to_json
-from checker.traces import MOST_STEPS, SCHEMA, alike, candidates, step_of, trace_to
+from checker.steps import alike, candidates, step_of
+from checker.traces import MOST_STEPS, SCHEMA, trace_to
 from semantics.state.configuration import Label
 from semantics.state.setting import Scheduler
 from semantics.strategies import initial_configurations

@@ -6,6 +6,7 @@ import pytest
 
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.reaction_rules import LinkVariable, NodeVariable, Pattern, PlaceVariable
+from semantics.behaviours.values import Text
 from specs.diagnostics import MissionError, Source
 from specs.elaboration import elaborate
 from specs.parser import parse
@@ -129,8 +130,10 @@ def test_an_argument_that_is_no_node_of_its_kind_is_a_fault():
     make = reactions("rule go(b: Area) { HOST || b.$0 -> b.(HOST | $0) }")["go"]
     with pytest.raises(Fault, match="b is of kind Area, and uav0 is of kind UAV"):
         make("uav0", "uav0")
-    with pytest.raises(Fault, match='a node was expected for b, not "nowhere"'):
+    with pytest.raises(Fault, match="a node was expected for b, not nowhere"):
         make("uav0", "nowhere")
+    with pytest.raises(Fault, match='a node was expected for b, not "uav0"'):
+        make("uav0", Text("uav0"))
 
 
 def test_a_control_that_can_be_true_for_one_of_the_hosts_is_left_to_the_run():

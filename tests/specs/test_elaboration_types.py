@@ -10,7 +10,7 @@ from semantics import strategies
 from semantics.behaviours.expressions import OPERATORS, Apply, Fault, Literal, Scope, evaluate
 from semantics.behaviours.observations import Observation
 from semantics.behaviours.program import Program
-from semantics.behaviours.values import Route, Truth, within
+from semantics.behaviours.values import Route, Text, Truth, within
 from semantics.environment import Says
 from semantics.successors import successors
 from specs import syntax as s
@@ -39,26 +39,27 @@ world {
 """
 
 
-def is_of(value, type_, entities, agents):
+def is_of(value, type_, agents):
     """Tell whether a value is of a type, by what types mean."""
-    sort = sort_of(value, entities, agents)
+    sort = sort_of(value, agents)
     if sort not in type_.sorts:
         return False
     if sort in (Sort.SET, Sort.ROUTE):
-        return {sort_of(member, entities, agents) for member in within(value)} <= type_.members
+        return {sort_of(member, agents) for member in within(value)} <= type_.members
     if sort is Sort.TUPLE and type_.tuples is not None:
         return any(
             len(value) == length
             and first in (None, value[0])
-            and all(sort_of(item, entities, agents) in each for item, each in zip(value, sorts, strict=True))
+            and all(sort_of(item, agents) in each for item, each in zip(value, sorts, strict=True))
             for (length, first), sorts in type_.tuples.items()
         )
     return True
 
 
-def sort_of(value, entities, agents):
+def sort_of(value, agents):
     named = {
         int: Sort.NUMBER,
+        Text: Sort.TEXT,
         Truth: Sort.TRUTH,
         tuple: Sort.TUPLE,
         frozenset: Sort.SET,
@@ -66,7 +67,7 @@ def sort_of(value, entities, agents):
         Observation: Sort.OBSERVATION,
     }
     if isinstance(value, str):
-        return Sort.ENTITY if value in entities else Sort.AGENT if value in agents else Sort.TEXT
+        return Sort.AGENT if value in agents else Sort.ENTITY
     return named[type(value)]
 
 
@@ -88,11 +89,7 @@ def wrong(configuration, inference, types):
     """Return the variables whose values are not of the types that were inferred."""
     alpha = configuration.alpha
     stored = [pair for agent in alpha.names() for pair in alpha.store(agent) if pair[0] in types]
-    return [
-        (name, value)
-        for name, value in stored
-        if not is_of(value, types[name], inference.entities, inference.agents)
-    ]
+    return [(name, value) for name, value in stored if not is_of(value, types[name], inference.agents)]
 
 
 @pytest.mark.parametrize("path", EXPLORED, ids=lambda path: path.stem)
@@ -126,10 +123,11 @@ SAMPLES = (
     3,
     -1,
     Truth.TRUE,
-    "loud",
+    Text("loud"),
+    Text("uav0"),
     "uav0",
     "a",
-    ("loud", 3),
+    (Text("loud"), 3),
     (3, 3, "uav0"),
     frozenset(),
     frozenset({"uav0", "place0"}),
@@ -213,7 +211,7 @@ STATIC = [
     (
         "control(go(?))",
         '"x"',
-        "a node was expected",
+        "a name was expected",
         f"rule 'go' {AN_ENTITY} a text that names none is given",
     ),
     (
@@ -272,7 +270,7 @@ DYNAMIC = [
     ("control(MOVE_HOST_TO {r0, uav0})", "one name was expected"),
     ("control(go(HOST))", "p is of kind Location, and uav0 is of kind UAV"),
     ("choose p in {r0} - {r0} { skip }", "there is nothing to choose from"),
-    ('match "x" { case "y" => skip }', "no case of 'match' takes x"),
+    ('match "x" { case "y" => skip }', "no case of 'match' takes \"x\""),
     ("let n = 2 while true { n = n + n observe(HOST) }", "more than 18 digits"),
     ("let s = {0} while true { s = {s, (s, 1)} observe(HOST) }", "more than 1000 parts"),
     ("loop { let n = 1 }", "no command is reached within 10000 internal steps"),

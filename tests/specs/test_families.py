@@ -6,6 +6,7 @@ import pytest
 
 from semantics.behaviours.expressions import Apply, Literal, Variable
 from semantics.behaviours.statements import ControlBy, Send
+from semantics.behaviours.values import Text
 from semantics.environment import Says
 from semantics.properties.propositions import Ended, Exists, HostedAt, Not, Or, Waiting, holds
 from semantics.properties.temporal import Steps
@@ -140,7 +141,7 @@ def test_members_are_named_wherever_bigactors_are():
         "f[uav0]",
     ]
     assert [each.message for each in mission.setting.environment if isinstance(each, Says)] == [
-        "go",
+        Text("go"),
         "f[uav1]",
     ]
     assert [each.agent for each in mission.precautions.limits] == ["f[uav1]"]

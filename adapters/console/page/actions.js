@@ -1,6 +1,6 @@
 /** What may be said and done, and what became of what was. */
 import { Field, html, memo, byName, useSections, useWatched } from "./ui.js";
-import { fateOf } from "./plainly.js";
+import { eachFate, fateOf } from "./plainly.js";
 import { HeldButton } from "./press.js";
 import { utc } from "./units.js";
 import { LONGEST_NAME } from "./who.js";
@@ -37,6 +37,7 @@ const Saying = memo(({ app, saying: { agent, message, left, awaited, vain }, ove
 
 const Fate = memo(({ action }) => html`<li class=${action.state}><time>${utc(action.time)}</time>
     <span><b>${action.what}</b>${action.about ? ` ${action.about}` : ""} · ${action.by || "someone"} · <span class="state">${fateOf(action)}${action.why ? `: ${action.why}` : ""}</span>${action.answered ? html` <time>${utc(action.answered)}</time>` : ""}
+      ${eachFate(action).map((each) => html`<span class="aside" key=${each}>${each}</span>`)}
       ${Object.entries(action.left_out ?? {}).map(([name, why]) => html`<span class="aside" key=${name}>not ${name}: ${why}</span>`)}
       ${(action.notes ?? []).map((note) => html`<span class="aside" key=${note}>${note}</span>`)}</span></li>`);
 

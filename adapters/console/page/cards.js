@@ -2,7 +2,7 @@
 import { html, memo, byName, useEffect, useRef, useSections, useWatched } from "./ui.js";
 import { Age, Ticking, say } from "./clock.js";
 import { distance, distanceToArea } from "./map/geodesy.js";
-import { fallbackWords, fateOf, isAstray, orderWords, requestWords, wayOf, whereabouts } from "./plainly.js";
+import { fallbackWords, fateOf, isAstray, orderedWords, orderWords, requestWords, wayOf, whereabouts } from "./plainly.js";
 import { OnReturn, Orders } from "./orders.js";
 import { useStillness } from "./stillness.js";
 import { angle, age, duration, metres, position, range, speed, system, utc } from "./units.js";
@@ -90,9 +90,9 @@ const Card = memo(({ app, name, card, chosen, stale, small }) => {
       ${status(card) && html`<dt>Mode</dt><dd>${status(card)}</dd>`}
       ${card.authority?.length > 0 && html`<dt>Authority</dt><dd><${Authority} app=${app} card=${card} /></dd>`}
       ${card.said && app.clock.now - card.said.time < STALE && html`<dt>Said</dt><dd><${Said} app=${app} said=${card.said} /></dd>`}
-      ${card.taken && html`<dt>Taken over</dt><dd class="bad">${card.taken}</dd>`}
+      ${card.ordered ? html`<dt>Ordered</dt><dd><${Ordered} app=${app} ordered=${card.ordered} /></dd>` : card.taken && html`<dt>Taken over</dt><dd class="bad">${card.taken}</dd>`}
     </dl>
-    <${LastAction} app=${app} about=${name} />`}
+    <${LastAction} app=${app} about=${name} ordered=${card.ordered} />`}
   </article>`;
 });
 
@@ -205,6 +205,11 @@ function Order({ app, order, returning }) {
   return html`<span class=${order.state === "refused" ? "bad" : ""}>${orderWords(order, returning)} · <${Age} clock=${app.clock} time=${order.since} /> ago</span>`;
 }
 
+/** An operator's order: asked, sent, confirmed or refused; one that is not confirmed is not done. */
+function Ordered({ app, ordered }) {
+  return html`<span class=${`ordered ${ordered.state} ${ordered.why ? "bad" : ""}`}>${orderedWords(ordered)} · <${Age} clock=${app.clock} time=${ordered.since} /> ago</span>`;
+}
+
 /** The stations that a vehicle obeys, and for a minute that this has changed. */
 function Authority({ app, card: { authority, handed } }) {
   const told = handed && ((element, now) => {
@@ -221,11 +226,12 @@ function Said({ app, said }) {
   return html`<${Ticking} clock=${app.clock} apply=${dim} class="said">“${said.text}” <${Age} clock=${app.clock} time=${said.time} class="quiet" /><span class="quiet"> ago</span><//>`;
 }
 
-/** What became of the last action about this vehicle; a finished one is shown for a minute. */
-function LastAction({ app, about }) {
+/** What became of the last action about this vehicle, unless its order says that; one that is done is shown for a minute. */
+function LastAction({ app, about, ordered }) {
   const [actions] = useSections(app.store, ["actions"], 200);
   const last = [...actions.values()].filter((action) => action.about === about).sort((a, b) => b.time - a.time)[0];
-  if (!last || (last.answered && app.clock.now - last.answered > NEW)) return null;
+  if (!last || last.time === ordered?.since) return null;
+  if (last.state !== "refused" && last.answered && app.clock.now - last.answered > NEW) return null;
   return html`<p class=${`fate ${last.state}`}><b>${last.what}</b> by ${last.by || "someone"}: ${fateOf(last)}${last.why ? `: ${last.why}` : ""}</p>`;
 }
 

@@ -3,9 +3,10 @@ import { html, useWatched, Watched } from "./ui.js";
 import { fateOf } from "./plainly.js";
 
 const SHOWN = 6000;
+/** Notices at once: refusals stay until they are closed. */
+const MOST = 5;
 /** Milliseconds after which an action that nobody has confirmed is left to its card. */
 const PATIENCE = 60_000;
-const OVER = ["confirmed", "refused"];
 
 export class Notices {
   list = new Watched([]);
@@ -32,30 +33,37 @@ export class Notices {
   /** Say what the run has answered; what is not recorded as an action is done with it. */
   answered(number, { refusal, left_out: leftOut, notes }, isRecorded) {
     const more = [...Object.entries(leftOut ?? {}).map(([name, why]) => `not ${name}: ${why}`), ...(notes ?? [])];
-    const state = refusal ? "refused" : isRecorded ? "sent" : "confirmed";
+    const state = refusal ? "refused" : isRecorded ? "asked" : "confirmed";
     this.#change(number, (notice) => ({ ...notice, state, more, text: textOf(notice.action, state, refusal, more) }));
-    if (state !== "sent") return this.#fade(number);
-    setTimeout(() => this.close(number), PATIENCE);
+    if (state === "refused") return; // until somebody closes it
+    if (state === "confirmed") return this.#fade(number);
+    this.#change(number, (notice) => ({ ...notice, follows: true }));
+    setTimeout(() => this.#leave(number), PATIENCE);
     this.#follow();
   }
 
   close = (number) => this.list.set(this.list.value.filter((notice) => notice.number !== number));
 
-  /** Take over what the recording says of the actions that were sent. */
+  /** Take over what the recording says of the actions that the run has taken, until nothing more will come of them. */
   #follow() {
-    for (const { number, action, state, known, more } of this.list.value.filter((notice) => notice.known)) {
-      if (state !== "sent") continue;
-      const found = [...this.#actions].find(([key, each]) => !known.has(key) && ["what", "about", "by"].every((part) => each[part] === action[part]));
-      if (!found || !OVER.includes(found[1].state)) continue;
-      for (const other of this.list.value) other.known?.add(found[0]); // two equal actions have a record each
-      this.#change(number, (notice) => ({ ...notice, state: found[1].state, text: textOf({ ...action, vain: found[1].vain }, found[1].state, found[1].why, more) }));
-      this.#fade(number);
+    for (const { number, action, known, more, key: mine } of this.list.value.filter((notice) => notice.follows)) {
+      const key = mine ?? [...this.#actions].find(([each, said]) => !known.has(each) && ["what", "about", "by"].every((part) => said[part] === action[part]))?.[0];
+      const said = this.#actions.get(key);
+      if (!said) continue;
+      for (const other of this.list.value) other.known?.add(key); // two equal actions have a record each
+      this.#change(number, (notice) => ({ ...notice, key, state: said.state, follows: !said.answered, text: textOf(said, said.state, said.why, more) }));
+      if (said.answered && said.state !== "refused") this.#fade(number);
     }
+  }
+
+  /** Leave to its card what nobody has confirmed; a refusal stays until it is closed, or the vehicle obeys. */
+  #leave(number) {
+    if (this.list.value.find((notice) => notice.number === number)?.state !== "refused") this.close(number);
   }
 
   #put(notice) {
     const number = ++this.#number;
-    this.list.set([...this.list.value, { ...notice, number }]);
+    this.list.set([...this.list.value.slice(1 - MOST), { ...notice, number }]);
     return number;
   }
 
@@ -68,8 +76,8 @@ export class Notices {
   }
 }
 
-function textOf({ what, about, vain }, state, why = "", more = []) {
-  return [`${what} ${about}: ${fateOf({ what, state, vain })}${why ? `, ${why}` : ""}`, ...more].join("; ");
+function textOf(action, state, why = "", more = []) {
+  return [`${action.what} ${action.about}: ${fateOf({ ...action, state })}${why ? `: ${why}` : ""}`, ...more].join("; ");
 }
 
 export function NoticeList({ app }) {

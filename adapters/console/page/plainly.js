@@ -56,7 +56,7 @@ const DEEDS = {
   Return: () => "returns home",
   HandOver: (to) => `handed to ${to}`,
 };
-const STATES = { sent: "sent, not confirmed yet", accepted: "accepted", arrived: "arrived", refused: "refused" };
+const STATES = { asked: "asked, not sent yet", sent: "sent, not confirmed yet", accepted: "accepted", arrived: "arrived", refused: "refused" };
 const ENDS = { Hold: "in effect", Return: "is home", HandOver: "done" };
 
 const OVER = ["arrived", "refused"];
@@ -84,8 +84,25 @@ const FALLEN_BACK = { hold: "vehicles were told to hold", return: "vehicles were
 /** What was found, and what the run did of itself then. */
 export const findingWords = ({ message, fallback }) => [message, FALLEN_BACK[fallback]].filter(Boolean).join(" · ");
 
-const FATES = { asked: "asked", sent: "sent, not confirmed yet", confirmed: "confirmed by the vehicle", refused: "refused" };
+const FATES = { asked: "asked, not sent yet", sent: "sent, not confirmed yet", confirmed: "confirmed by the vehicle", refused: "refused" };
 const OURS = /^(say|give back|acknowledge|start)/;
 
-/** What became of an action, in words: what no vehicle has to confirm is done, unless nothing comes of it. */
-export const fateOf = ({ what, state, vain }) => (state === "confirmed" && OURS.test(what) ? (vain ? `heard, but ${vain}` : "done") : FATES[state] ?? state);
+/**
+ * What became of an action, in words: what no vehicle has to confirm is done, unless nothing comes of it. A vehicle is told
+ * again what it has refused; an order that ended before it was confirmed never will be.
+ */
+export function fateOf({ what, state, vain, fates, answered }) {
+  if (state === "confirmed" && OURS.test(what)) return vain ? `heard, but ${vain}` : "done";
+  if (state === "refused" && isOwed({ fates, answered })) return "refused, and told again";
+  if (["asked", "sent"].includes(state) && answered) return `${state}, never confirmed`;
+  return FATES[state] ?? state;
+}
+
+/** Whether vehicles still have to confirm an order. */
+const isOwed = ({ fates, answered }) => !answered && Object.keys(fates ?? {}).length > 0;
+
+/** What became of an order to several vehicles, of each. */
+export const eachFate = ({ fates }) => (Object.keys(fates ?? {}).length > 1 ? Object.entries(fates).map(([name, { state, why }]) => `${name}: ${FATES[state]}${why ? `: ${why}` : ""}`) : []);
+
+/** What an operator has ordered a vehicle to do, and what became of it. */
+export const orderedWords = ({ order, by, state, why }) => `to ${order}, by ${by || "someone"}: ${state === "refused" ? `refused, and told again: ${why}` : FATES[state]}`;

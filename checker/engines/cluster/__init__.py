@@ -1,5 +1,5 @@
-"""The cluster explorer, over several processes and machines: a hash assigns each row to a worker.
+"""The cluster explorer: several processes and machines, with each row assigned to a worker by its hash.
 
-Each worker (`shard`) learns the rules for itself and so has codes of its own; what crosses between workers is rows
-with the values that the other has not been told yet (`transfer`). Only `ray_crew` knows Ray.
+Each worker (`shard`) learns the rules by itself and has its own codes. Rows travel with the values that are new to the
+receiver (`transfer`). Only `ray_crew` imports Ray.
 """

@@ -1,8 +1,8 @@
-"""Checkpoints of a worker, and how it resumes from one.
+"""Checkpoints of a worker, and resuming from them.
 
-Rows are kept as they are, beside a digest of each value of each column; values themselves are not, so nothing in a
-checkpoint is ever evaluated. A worker that has been started anew learns them again from the rows at which it learned
-them. What it had been told by others is told once more: worker by worker, until all know all values of their rows.
+A checkpoint stores rows, and a digest of each value of each column. It stores no values, so nothing in it is ever
+evaluated. A restarted worker learns the values again from the rows at which it learned them first. The workers exchange
+them once more, until all know all values of their rows.
 """
 
 from collections import Counter
@@ -26,7 +26,7 @@ from checker.engines.fast.space import MOST_ROWS
 SCHEMA = "bigactors.shard/2"
 UNKNOWN = -1
 KEPT = (EXPANDED, SIZE, CUT, CROWDS, LIMIT)
-"""What of the loops' state goes on."""
+"""The entries of the loops' state in a checkpoint."""
 
 KINDS: Final[Kinds] = {
     "rows": np.uint64,
@@ -45,7 +45,7 @@ ANOTHER = "this checkpoint is of another mission, variation, limit, version or n
 
 
 def path_of(folder: Path, number: int, worker: int) -> Path:
-    """Return where a worker's checkpoint of that number is."""
+    """Return the path of a worker's checkpoint."""
     return folder / f"shard-{number}-{worker}.checkpoint"
 
 
@@ -55,8 +55,8 @@ class Latest:
 
     Attributes:
         number: Its number.
-        layer: The layer that was expanded.
-        seconds: How long the exploration had taken.
+        layer: The layer in expansion.
+        seconds: The time of the exploration so far.
     """
 
     number: int
@@ -65,23 +65,23 @@ class Latest:
 
     @property
     def is_sound(self) -> bool:
-        """Tell whether its numbers may be those of a checkpoint."""
+        """Whether the numbers may be those of a checkpoint."""
         return all(type(each) is int and each >= 0 for each in (self.number, self.layer)) and is_time(
             self.seconds
         )
 
 
 def write_latest(folder: Path, latest: Latest, digest: str, workers: int) -> None:
-    """Note which checkpoint is to be gone back to."""
+    """Note the checkpoint from which to resume."""
     head = {"schema": SCHEMA, "digest": digest, "workers": workers, **asdict(latest)}
     write_archive(folder / LATEST, head, {}, ())
 
 
 def read_latest(folder: Path, digest: str, workers: int) -> Latest | None:
-    """Return which checkpoint is to be gone back to, None where there is none.
+    """Return the checkpoint from which to resume, None if there is none.
 
     Raises:
-        CheckpointError: It is damaged, or of something else.
+        CheckpointError: It is damaged, or of another exploration.
     """
     path = folder / LATEST
     if not path.exists():
@@ -96,7 +96,7 @@ def read_latest(folder: Path, digest: str, workers: int) -> Latest | None:
 
 
 def save(shard: Shard, folder: Path, number: int, digest: str) -> None:
-    """Write a checkpoint."""
+    """Write a worker's checkpoint."""
     head = {
         "schema": SCHEMA,
         "digest": digest,
@@ -120,22 +120,22 @@ def save(shard: Shard, folder: Path, number: int, digest: str) -> None:
 
 
 def happened(shard: Shard) -> set[str]:
-    """Return the words of what the environment did."""
+    """Return the names of the environment's events that occurred."""
     steps = (shard.learner.steps.get(int(step)) for step in np.flatnonzero(shard.counts.used))
     return {str(label.about) for label in steps if label is not None and label.agent is None}
 
 
 class Loading:
-    """A worker on its way back to a checkpoint.
+    """A worker while it returns to a checkpoint.
 
     Attributes:
-        shard: The worker's rows: none until it has finished.
-        head: Plain data of the checkpoint.
-        rows: Its rows, in the codes that they had.
-        packing: Where their columns stand.
-        learned: The rows at which something was learned that is to be learned again.
-        numbers: For each column of the checkpoint the number of that column now, if it is known.
-        codes: For each value of it the code that it has now, if it is known.
+        shard: The worker's shard, without rows until the end.
+        head: The checkpoint's plain data.
+        rows: Its rows, in the codes of that time.
+        packing: The packing of that time.
+        learned: The rows from which something must still be learned again.
+        numbers: The present number of each column of the checkpoint, if known.
+        codes: The present code of each of its values, if known.
     """
 
     def __init__(self, shard: Shard, folder: Path, number: int, digest: str) -> None:
@@ -160,7 +160,7 @@ class Loading:
         self.begins = np.concatenate(([0], np.cumsum(arrays["sizes"]))).astype(np.int64)
         self.numbers = np.full(len(self.places), UNKNOWN, np.int64)
         self.codes = np.full(len(self.digests), UNKNOWN, np.int64)
-        self.codes[self.begins[:-1]] = 0  # with which every worker begins a column
+        self.codes[self.begins[:-1]] = 0  # every worker's first value of a column
         self.used = np.zeros(len(self.digests), np.bool_)
         if not self._is_sound():
             raise ValueError("its parts don't fit together")
@@ -168,7 +168,7 @@ class Loading:
         self._resolve()
 
     def _is_sound(self) -> bool:
-        """Tell whether rows, columns and values belong together, and mark the values that rows have."""
+        """Return whether rows, columns and values fit together, and mark the values that occur in rows."""
         where, sizes, count = self.packing, self.arrays["sizes"], len(self.arrays["origins"])
         fits = where.is_sound and len(where.mask) == len(sizes) == len(self.places)
         fits = fits and bool(np.all((sizes > 0) & (sizes <= len(self.digests))))
@@ -180,7 +180,7 @@ class Loading:
         return loops.mark_used(self.rows, where.words, where.columns, self.begins, self.used)
 
     def _has_come_so_far(self, count: int) -> bool:
-        """Tell whether state, layers and what was counted are those of some search."""
+        """Return whether state, layers and counts are possible in a search."""
         expanded, size, cut, crowded, limit = map(int, self.arrays["state"])
         layers, rules, happened = (self.head[key] for key in ("layers", "rules", "happened"))
         if not (isinstance(layers, list) and isinstance(rules, dict) and isinstance(happened, list)):
@@ -197,12 +197,12 @@ class Loading:
         )
 
     def missing(self) -> int:
-        """Return how many values of the rows are not known yet."""
+        """Return the number of values in rows that are not known yet."""
         self._resolve()
         return int(np.count_nonzero(self.used & (self.codes == UNKNOWN)))
 
     def _resolve(self) -> None:
-        """Find the codes of what has become known."""
+        """Find the codes of values that have become known."""
         keys = self.shard.keys
         numbers = {place: number for number, place in enumerate(keys.places)}
         for column, place in enumerate(self.places):
@@ -216,7 +216,7 @@ class Loading:
                 self.codes[begin:end] = [known.get(each, UNKNOWN) for each in self.digests[begin:end]]
 
     def recall(self) -> None:
-        """Learn again what can be learned by now, for others too; nothing where all values are known."""
+        """Learn again from all rows whose values are known; do nothing if all values are known."""
         count = len(self.learned) + 1
         while len(self.learned) < count and (self.codes == UNKNOWN).any():
             count = len(self.learned)
@@ -224,7 +224,7 @@ class Loading:
             self._resolve()
 
     def _relearn(self, row: int) -> bool:
-        """Let the rules run on a row once more, if its values are known."""
+        """Run the rules on a row again if its values are known; return whether they are."""
         shard, where = self.shard, self.packing
         words = self.rows[row * where.words : (row + 1) * where.words]
         old = ((words[where.word] >> where.shift) & where.mask).astype(np.int64)
@@ -236,12 +236,12 @@ class Loading:
         own[self.numbers[known]] = codes[known]
         try:
             shard.learn_at(own.tolist())
-        except Exception as error:  # rules may do anything where a row is no configuration
+        except Exception as error:  # on a row that is no configuration, rules may fail in any way
             raise CheckpointError(f"{self.path}: this checkpoint is damaged: {error}") from error
         return True
 
     def finish(self) -> None:
-        """Take in the rows, now that all their values are known."""
+        """Load the rows; all their values must be known."""
         shard, size = self.shard, len(self.arrays["origins"])
         read = spelling(
             self.packing, np.where(self.codes == UNKNOWN, 0, self.codes), self.begins, self.numbers

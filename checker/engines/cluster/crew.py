@@ -1,37 +1,37 @@
-"""A crew: the workers of one exploration, as its leader sees them."""
+"""A crew: the workers of one exploration, as their leader sees them."""
 
 from typing import Any, Protocol
 
 
 class LostError(Exception):
-    """A worker died; it can be started anew, but has forgotten all."""
+    """A worker died; it can be restarted, without its memory."""
 
 
 class ClusterError(Exception):
-    """A cluster that can't be worked with as it is asked for: not installed, not there, of another version."""
+    """A cluster is unusable as requested: not installed, not reachable, or of another version."""
 
 
 class Crew(Protocol):
-    """Workers that are asked together; what they exchange meanwhile is their own affair (see `worker.Worker`).
+    """Workers that are called together; they exchange data among themselves (see `worker.Worker`).
 
-    Each method raises `LostError` where a worker has died.
+    Each method raises `LostError` if a worker has died.
     """
 
     @property
     def size(self) -> int:
-        """How many there are."""
+        """The number of workers."""
 
     def one(self, worker: int, method: str, *arguments: Any) -> Any:
-        """Return what one of them answers."""
+        """Return the result of a method of one worker."""
 
     def every(self, method: str, *arguments: Any) -> list[Any]:
-        """Return what each of them answers."""
+        """Return the results of a method of all workers."""
 
     def revive(self) -> None:
-        """Start anew those who died, and link all with each other.
+        """Restart dead workers, and link all with each other.
 
         Raises:
-            ClusterError: They run something else.
-            MachineError: They can't be started.
+            ClusterError: Some run another version.
+            MachineError: Some can't be started.
             LostError: Some died at once.
         """

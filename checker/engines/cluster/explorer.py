@@ -1,7 +1,7 @@
-"""Explore with a crew of workers, layer by layer, up to the same bounds as one process.
+"""The cluster explorer's leader: a crew of workers explores layer by layer, with the bounds of a single process.
 
-Whoever leads knows how far each worker has come and where checkpoints are, and no configurations. When a worker is
-lost, all go back to the last checkpoint that all have written; the way from there is the same once more.
+The leader knows the progress of each worker and the checkpoints, but no configurations. If a worker is lost, all
+workers return to their last common checkpoint. The search from there is deterministic.
 """
 
 import time
@@ -28,13 +28,13 @@ from checker.limits import Bound, Stop
 from semantics.state.configuration import Configuration
 
 MOST_LOSSES = 5
-"""How often workers may be lost between two checkpoints."""
+"""The greatest number of losses of workers between two checkpoints."""
 
 ROUND = 1 << 14
-"""Rows that each worker expands between two exchanges, for each worker that there is: so parcels stay as large."""
+"""Rows that a worker expands between two exchanges, for each worker: the size of a parcel stays constant."""
 
 LONGEST = 0.25
-"""Seconds for which workers go on by themselves at most: so soon the user's wish for the end is noticed."""
+"""The greatest time in seconds before workers return to the leader: an interruption takes effect within it."""
 
 Answer = TypeVar("Answer")
 
@@ -44,15 +44,15 @@ class Expedition:
 
     Attributes:
         crew: The workers.
-        initial: Where it starts.
-        folder: Where checkpoints are, None for nowhere.
-        is_temporary: Whether that is gone when all ends, so that only a worker that dies meanwhile goes back to them.
-        latest: The last one.
-        layer: How far the rows that are expanded are from the first.
-        standings: How far each worker has come.
-        bounds: What has ended it early.
-        is_lost: Whether a worker has died since all began.
-        is_kept: Whether the last checkpoint is of where they are.
+        initial: The initial configuration.
+        folder: The folder of checkpoints, None for no checkpoints.
+        is_temporary: Whether the folder is deleted at the end; its checkpoints then only serve lost workers.
+        latest: The last common checkpoint.
+        layer: The distance of the layer in expansion.
+        standings: The progress of each worker.
+        bounds: The bounds that ended the exploration early.
+        is_lost: Whether the workers must begin, or return to a checkpoint.
+        is_kept: Whether the last checkpoint has the present state.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class Expedition:
         self.reported = self.kept = time.monotonic()
 
     def _folder(self) -> Path | None:
-        """Return where checkpoints are kept: the search for stale observations has its own."""
+        """Return the folder of checkpoints; the search for stale observations has its own."""
         name = "monitored" if self.initial.setting.monitored else "exploration"
         if self.keeping.folder is None:
             return None
@@ -90,10 +90,10 @@ class Expedition:
             return None
         return read_latest(self.folder, self.digest, self.crew.size)
 
-    # --- all the way ----------------------------------------------------------------------------------------------
+    # --- the whole exploration --------------------------------------------------------------------------------------
 
     def run(self, inspect: tuple[Inspect, ...]) -> Exploration:
-        """Visit everything that is reachable, and let inspections have found what there is."""
+        """Explore all reachable configurations, and collect the findings of inspections."""
         found = Found(self.crew, self.surely, self.initial.setting)
         together = tuple(each for each in inspect if is_mergeable(each))
         parts = self.surely(lambda: self.crew.every("inspect", together))
@@ -122,7 +122,7 @@ class Expedition:
         )
 
     def surely(self, ask: Callable[[], Answer]) -> Answer:
-        """Ask the crew when all is explored; if a worker is lost, explore once more what is lost with it."""
+        """Call the crew after the exploration; if a worker is lost, explore its part again and repeat the call."""
         while True:
             try:
                 self.visit_all()
@@ -135,7 +135,7 @@ class Expedition:
                     raise MachineError(f"{often}: {lost}") from lost
 
     def met(self) -> list[Bound]:
-        """Return the bounds that left something out."""
+        """Return the bounds that left configurations out."""
         limits, standings = self.limits, self.standings
         met = {
             Stop.CONFIGURATIONS: any(each.cut for each in standings) and limits.configurations is not None,
@@ -146,22 +146,22 @@ class Expedition:
     # --- stages ---------------------------------------------------------------------------------------------------
 
     def visit_all(self) -> None:
-        """Go on until all is explored, or a bound is met."""
+        """Explore until the end or until a bound is met."""
         if self.is_lost:
             self.begin()
         if self.is_done():
             return
         while not self.is_done():
             self.go_on()
-        if self.bounds or not self.is_temporary:  # else the last one is not older than it may ever be
+        if self.bounds or not self.is_temporary:  # a complete search needs no temporary one
             self.save()
 
     def is_done(self) -> bool:
-        """Tell whether there is nothing to be expanded, or a bound was met."""
+        """Return whether a bound was met or no row is left to expand."""
         return bool(self.bounds) or all(each.expanded == each.size for each in self.standings)
 
     def begin(self) -> None:
-        """Begin, or go back to the last checkpoint."""
+        """Begin the exploration, or return to the last checkpoint."""
         if self.bounds and not self.is_kept:
             raise MachineError("a worker was lost when a bound was met, and where they were was not kept")
         self.crew.revive()
@@ -173,7 +173,7 @@ class Expedition:
         self.is_lost = False
 
     def go_on(self) -> None:
-        """Let the workers go on until there is something to be looked at, unless a bound is met."""
+        """Let the workers explore until the leader has something to do, unless a bound is met."""
         now = time.monotonic()
         self.look_at_bounds(now - self.began)
         if self.bounds:
@@ -192,7 +192,7 @@ class Expedition:
             self.save()
 
     def seconds_left(self, now: float) -> float:
-        """Return how long there is nothing to be looked at: no report, no checkpoint, and no end of the time."""
+        """Return the seconds until the next report, checkpoint or end of the time limit, at most `LONGEST`."""
         left = [LONGEST]
         if self.options.report is not None:
             left.append(self.reported + self.options.every - now)
@@ -203,7 +203,7 @@ class Expedition:
         return min(left)
 
     def look_at_bounds(self, seconds: float) -> None:
-        """Note whether time, or some worker's memory, has come to its end, or the user wants the end."""
+        """Note a bound if the time limit, a worker's memory limit or the user ends the exploration."""
         limits = self.limits
         if (end := limits.end(seconds)) is not None:
             self.bounds.append(end)
@@ -211,7 +211,7 @@ class Expedition:
             self.bounds.append(limits.bound(Stop.MEMORY))
 
     def progress(self, seconds: float) -> Progress:
-        """Return how far all have come."""
+        """Return the progress of all workers together."""
         size, expanded, transitions = (
             sum(getattr(each, name) for each in self.standings)
             for name in ("size", "expanded", "transitions")
@@ -221,7 +221,7 @@ class Expedition:
     # --- checkpoints ----------------------------------------------------------------------------------------------
 
     def save(self) -> None:
-        """Let all workers write a checkpoint, if one is wanted; the one before is removed when all have."""
+        """Let all workers write a checkpoint if there is a folder, then remove the previous one."""
         if self.folder is None:
             return
         before = self.latest.number if self.latest else 0
@@ -233,5 +233,5 @@ class Expedition:
         self.kept = time.monotonic()
 
     def load(self, number: int) -> list[Standing]:
-        """Let all workers go back to a checkpoint."""
+        """Let all workers return to a checkpoint."""
         return self.crew.every("load", str(self.folder), number, self.digest, self.layer)

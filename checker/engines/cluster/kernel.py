@@ -1,7 +1,7 @@
-"""The compiled loops of a worker: which rows are new, whose they are, and translation of codes."""
+"""The compiled loops of a worker: find new rows, assign rows to workers, and translate codes."""
 
 # mypy: disable-error-code="return-value, no-any-return, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# numba types these functions; mypy would read their integers as Python's
 
 from typing import Any, NamedTuple
 
@@ -17,21 +17,21 @@ _ONE, _TWO, _HALF, _TOP = np.uint64(1), np.uint64(2), np.uint64(32), np.uint64(5
 _PLACE, _WORD = np.uint64(PLACE), np.uint64(WORD)
 
 _DE_BRUIJN = np.uint64(0x03F79D71B4CB0A89)
-"""A number whose 64 windows of six bits all differ: times a power of two, its top six bits tell which power."""
+"""A de Bruijn number: its 64 windows of six bits all differ, so the top six bits of its multiple by 2**k identify k."""
 
 _BITS = np.argsort(_DE_BRUIJN << np.arange(64, dtype=np.uint64) >> _TOP).astype(np.uint64)
 
 
 class Owning(NamedTuple):
-    """What decides whose a row is.
+    """The data that assigns rows to workers.
 
     Attributes:
-        columns: For each column its word, shift and mask.
-        varying: The columns that have more than one value.
+        columns: The word, shift and mask of each column.
+        varying: The columns with several values.
         column_at: The column of each bit of a row.
         keys: The key of each value, column by column.
-        begins: For each column where its values begin, and after the last where they end.
-        workers: How many workers there are.
+        begins: The first value of each column, and the end of the last.
+        workers: The number of workers.
     """
 
     columns: Words
@@ -44,7 +44,7 @@ class Owning(NamedTuple):
 
 @njit(cache=True, inline="always")
 def _key_in(words: Words, at: np.uint64, own: Owning, column: np.uint64) -> np.uint64:
-    """Return the key of the value that a column has in the row that begins there."""
+    """Return the key of a column's value in the row that begins at `at`."""
     where = _PLACE * column
     code = (words[at + own.columns[where]] >> own.columns[where + _ONE]) & own.columns[where + _TWO]
     return own.keys[own.begins[column] + code]
@@ -52,7 +52,7 @@ def _key_in(words: Words, at: np.uint64, own: Owning, column: np.uint64) -> np.u
 
 @inner(cache=True)
 def key_of(words: Words, at: np.uint64, own: Owning) -> np.uint64:
-    """Return the key of the row that begins there."""
+    """Return the key of the row that begins at `at`."""
     key = np.uint64(0)
     for column in own.varying:
         key ^= _key_in(words, at, own, column)
@@ -63,7 +63,7 @@ def key_of(words: Words, at: np.uint64, own: Owning) -> np.uint64:
 def _owner(
     words: Words, at: np.uint64, rows: Words, to: np.uint64, width: int, base: np.uint64, own: Owning
 ) -> int:
-    """Return the worker that a row belongs to, which differs in a few columns from one whose key is known."""
+    """Return the worker of a row, computed from the key of a row that differs in few columns."""
     key = base
     for j in range(np.uint64(width)):
         differing = words[at + j] ^ rows[to + j]
@@ -77,7 +77,7 @@ def _owner(
 
 @njit(cache=True)
 def owners_of(words: Words, origins: State, rows: Words, width: int, own: Owning, owners: Any) -> None:
-    """Note the worker that each row belongs to; `origins` are the rows that they were reached from."""
+    """Note the worker of each row; `origins` are the rows from which they were reached."""
     wide, last, base = np.uint64(width), np.int64(-1), np.uint64(0)
     for k in range(len(owners)):
         at = np.uint64(origins[k]) * wide
@@ -101,11 +101,15 @@ def deal(
     counts: State,
     state: State,
 ) -> int:
-    """Deal out what was gathered: what is new and this worker's becomes one of its rows.
+    """Distribute gathered successors: store the new ones of this worker as rows, and select those of others.
 
-    Note which rows of other workers were not sent to them lately, and whose they are; return how many. Whose a row is,
-    is asked last: most are found among one's own, or among those that were sent. `sent` holds one row, and before it a
-    1, for each hash modulo its size: comparing whole rows, it may forget, but never errs.
+    `chosen` and `owners` get the selected successors, without recently sent ones, and their workers. The worker of a
+    successor is computed last: most successors are known rows or were sent before. `sent` is a direct-mapped cache of
+    sent rows, indexed by hash, with a flag before each row. It compares whole rows, so it may forget a row but never
+    confuses two.
+
+    Returns:
+        The number of selected successors.
     """
     rows, hashes, reached_from = batch.words, batch.hashes, batch.origins
     width, bits = state[WORDS], np.uint32(bits_for(len(table)))
@@ -143,14 +147,14 @@ def deal(
 
 
 class Spelling(NamedTuple):
-    """How another worker's rows are to be read.
+    """The translation from another worker's codes and packing.
 
     Attributes:
-        columns: For each of its columns its word, shift and mask there.
-        varying: Those of its columns that have more than one value.
-        codes: One's own code of each of its codes, column by column.
-        begins: For each of its columns where those begin, and after the last where they end.
-        numbers: For each of its columns the number of one's own.
+        columns: The word, shift and mask of each of its columns.
+        varying: Its columns with several values.
+        codes: The own code for each of its codes, column by column.
+        begins: The first code of each of its columns, and the end of the last.
+        numbers: The own column for each of its columns.
     """
 
     columns: Words
@@ -172,7 +176,7 @@ def translate(
     rows: Words,
     hashes: Words,
 ) -> None:
-    """Put rows of another worker's codes and packing into one's own, and hash them."""
+    """Translate another worker's rows into the own codes and packing, and hash them."""
     wide, their_wide = np.uint64(width), np.uint64(their_width)
     for k in range(np.uint64(count)):
         at, to = (np.uint64(first) + k) * their_wide, k * wide

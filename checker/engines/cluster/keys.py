@@ -1,8 +1,8 @@
-"""Keys of rows: numbers that depend only on the configuration, and so are the same for every worker.
+"""Keys of rows: hashes that depend only on the configuration, hence equal on all workers.
 
-Codes are each worker's own; a key is a digest of the canonical writing of a column's place and its value. A
-configuration's key is the XOR of those of its columns (Zobrist). Every worker begins a column with the same value, so
-that value, of code 0, counts nothing: a column that a worker has not met yet changes no key.
+Each worker has its own codes. The key of a value is a digest of the canonical form of its column's place and of the
+value. The key of a configuration is the XOR of its columns' keys (Zobrist hashing). All workers begin a column with the
+same value, of code 0 and key 0, so a column unknown to a worker changes no key.
 """
 
 from hashlib import sha256
@@ -15,26 +15,26 @@ from checker.engines.fast.columns import Columns
 from semantics.state.canonical import canonical
 
 DIGEST = 16
-"""Bytes of a digest; the first half of them is the key."""
+"""The bytes of a digest; its first half is the key."""
 
 
 def digest_of(value: Any) -> bytes:
-    """Return a digest of a value as it is written canonically."""
+    """Return a digest of a value's canonical form."""
     return sha256(canonical(value).encode("utf-8", "surrogatepass")).digest()[:DIGEST]
 
 
 def digest_in(place: bytes, value: bytes) -> bytes:
-    """Return the digest of a value in a place, of their digests."""
+    """Return the digest of a place and a value, from their digests."""
     return sha256(place + value).digest()[:DIGEST]
 
 
 class Keys:
-    """The digests of all values of all columns, as far as they were asked for.
+    """The digests of all values of all columns.
 
     Attributes:
-        places: For each column the digest of its place.
+        places: The digest of each column's place.
         keys: The key of each value, column by column.
-        begins: For each column where its values begin, and after the last where they end.
+        begins: The first value of each column, and the end of the last.
     """
 
     def __init__(self, columns: Columns) -> None:
@@ -46,7 +46,7 @@ class Keys:
         self.begins = np.zeros(1, np.uint64)
 
     def refresh(self) -> None:
-        """Take in columns and values that are new."""
+        """Add new columns and values."""
         columns = self.columns.all
         self.places += [digest_of(column.place) for column in columns[len(self.places) :]]
         self._digests += [[] for _ in columns[len(self._digests) :]]
@@ -61,7 +61,7 @@ class Keys:
         self.keys[self.begins[:-1]] = 0
 
     def digests(self) -> NDArray[np.uint8]:
-        """Return the digests of all values, column by column, a row each."""
+        """Return the digests of all values, column by column, one in each row."""
         written = b"".join(each for known in self._digests for each in known)
         return np.frombuffer(written, np.uint8).reshape(-1, DIGEST)
 
@@ -70,7 +70,7 @@ class Keys:
         return {digest: code for code, digest in enumerate(self._digests[column])}
 
     def _of_values(self, values: list[Any]) -> list[bytes]:
-        """Return the digests of values; those said of one name are the same list in every column."""
+        """Return the digests of values; columns of facts about one name share their list of values."""
         known = self._values.setdefault(id(values), [])
         known += [digest_of(value) for value in values[len(known) :]]
         return known

@@ -1,7 +1,8 @@
-"""Links of a worker to all others: sockets, between processes of one machine as between machines.
+"""Links of a worker to all others: sockets, within a machine and between machines.
 
-In an exchange each worker gives every other something, and takes what it is given; nobody leads it. It ends for all
-where one is lost: at once where a process ended, after a while (`SILENCE`) where a machine did.
+In an exchange, each worker sends something to every other and receives from every other; there is no leader. If a
+worker is lost, the exchange fails for all. A process that ends is noticed at once, a machine after some time
+(`SILENCE`).
 """
 
 import hmac
@@ -17,33 +18,33 @@ from checker.engines.cluster.crew import LostError
 from checker.engines.cluster.transfer import WORKERS_AT_MOST
 
 PATIENCE = 60.0
-"""Seconds in which all must have met."""
+"""Seconds within which all workers must be connected."""
 
 SILENCE = {"TCP_KEEPIDLE": 10, "TCP_KEEPINTVL": 5, "TCP_KEEPCNT": 4, "TCP_USER_TIMEOUT": 30_000}
-"""How soon a machine that says nothing is given up, as Linux names it: in seconds, and the last in milliseconds."""
+"""When an unresponsive machine counts as lost, by Linux's socket options: seconds, the last in milliseconds."""
 
 PROOF = 32
-"""Bytes of a challenge, and of its answer."""
+"""The bytes of a challenge, and of its answer."""
 
 Address = tuple[str, int]
 
 
 class Links(Protocol):
-    """What a worker exchanges with the others by."""
+    """The interface for exchanges with the other workers."""
 
     def exchange(self, given: Sequence[Any]) -> list[Any]:
-        """Give each worker something, in their order, and return what each has given to this one.
+        """Send one item to each worker, in order, and return the items received from each.
 
         Raises:
-            LostError: Some worker is gone, or has given up.
+            LostError: Some worker is gone, or has closed its links.
         """
 
 
 class Sockets:
-    """Links to workers that may be anywhere: what is said is pickled, so each must first prove that it is of the crew.
+    """Links to workers on any machine; data is pickled, so each peer must first prove its membership.
 
     Attributes:
-        address: Where it is to be met.
+        address: The address at which others connect.
     """
 
     def __init__(self, host: str) -> None:
@@ -56,10 +57,10 @@ class Sockets:
         self._sending = ThreadPoolExecutor(1, "sending")
 
     def meet(self, me: int, addresses: Sequence[Address], secret: bytes) -> None:
-        """Connect with all others, who do the same, as the worker of that number.
+        """Connect with all others, which do the same, as worker number `me`.
 
         Raises:
-            LostError: Some are not there.
+            LostError: Some worker can't be reached.
         """
         self._me = me
         try:
@@ -75,7 +76,7 @@ class Sockets:
         self._server.close()
 
     def _admit(self, link: socket.socket, secret: bytes) -> None:
-        """Let one in who has called; a stranger is left alone."""
+        """Admit a caller that proves its membership; ignore any other."""
         link.settimeout(PATIENCE)
         try:
             peer = int.from_bytes(_received(link, len(_number(0))), "big")
@@ -86,9 +87,9 @@ class Sockets:
             self._peers[peer] = link
 
     def exchange(self, given: Sequence[Any]) -> list[Any]:
-        """Give each worker something, in their order, and return what each has given to this one."""
+        """Send one item to each worker, in order, and return the items received from each."""
         found = list(given)
-        # While this thread listens, another one sends: so no two wait for each other.
+        # Another thread sends while this one receives, so no two workers wait for each other.
         sent = self._sending.submit(self._send, given)
         try:
             for peer in _in_turn(self._me, -1, len(given)):
@@ -108,17 +109,17 @@ class Sockets:
             self._peers[peer].sendall(told)
 
     def close(self) -> None:
-        """End all links: whoever waits at the other end is told."""
+        """Close all links, which wakes the threads at the other ends."""
         self._server.close()
         for link in self._peers.values():
-            with suppress(OSError):  # the other end may have been faster
-                link.shutdown(socket.SHUT_RDWR)  # wakes who waits here, too
+            with suppress(OSError):  # the other end may have closed first
+                link.shutdown(socket.SHUT_RDWR)  # wakes threads that wait here, too
             link.close()
         self._peers = {}
 
 
 def _in_turn(me: int, step: int, size: int) -> list[int]:
-    """Return the others, beginning with the next: each step one sends to whom another step one listens."""
+    """Return the others in cyclic order, so that in each step every worker has one sender and one receiver."""
     return [(me + step * distance) % size for distance in range(1, size)]
 
 
@@ -138,10 +139,10 @@ def _received(link: socket.socket, size: int) -> bytearray:
 
 
 def _prove(link: socket.socket, secret: bytes, me: int, peer: int) -> None:
-    """Let both ends of a link prove that they know the secret, each by its own number; from then on none is in a hurry.
+    """Authenticate both ends of a link by the secret and their numbers; afterwards remove its time limit.
 
     Raises:
-        OSError: The other one does not.
+        OSError: The other end fails.
     """
     challenge = os.urandom(PROOF)
     link.sendall(challenge)

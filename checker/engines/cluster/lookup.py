@@ -1,4 +1,4 @@
-"""Look up what a crew found: configurations, their parents, and the graph, each at its worker."""
+"""Access to the results of a crew: configurations, origins and the graph, each from its worker."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Sequence
@@ -19,21 +19,21 @@ from semantics.state.setting import Setting
 from semantics.successors import expand
 
 BLOCK = 1 << 16
-"""Rows of each worker whose transitions are asked for at once."""
+"""Rows of each worker in one request for transitions."""
 
 Value = TypeVar("Value")
 
 
 class Found:
-    """The rows of a crew that has explored.
+    """The rows of a crew after its exploration.
 
     Attributes:
         crew: The workers.
-        surely: Asks the crew, and once more where a worker was lost.
+        surely: Calls the crew, and again if a worker was lost.
         setting: The mission.
-        places: Which row has which number.
-        expanded: How many rows of each worker were expanded.
-        crowded: Whether some of them were not followed.
+        places: The numbering of rows.
+        expanded: The number of expanded rows of each worker.
+        crowded: Whether some rows were not expanded because an agent is crowded.
     """
 
     def __init__(self, crew: Crew, surely: Callable[[Callable[[], Any]], Any], setting: Setting) -> None:
@@ -45,16 +45,16 @@ class Found:
         self.crowded = False
 
     def one(self, worker: int, method: str, *arguments: Any) -> Any:
-        """Return what a worker answers."""
+        """Return the result of a method of one worker."""
         return self.surely(lambda: self.crew.one(worker, method, *arguments))
 
     def every(self, method: str, *arguments: Any) -> list[Any]:
-        """Return what each worker answers."""
+        """Return the results of a method of all workers."""
         found: list[Any] = self.surely(lambda: self.crew.every(method, *arguments))
         return found
 
     def spread(self, values: Sequence[NDArray[np.bool_]]) -> NDArray[np.bool_]:
-        """Return by number what each worker says of its rows."""
+        """Return the workers' values of rows, ordered by number."""
         found = np.zeros(len(self.places), np.bool_)
         for worker, told in enumerate(values):
             found[self.places.all_of(worker, np.arange(len(told), dtype=np.int64))] = told
@@ -62,7 +62,7 @@ class Found:
 
 
 class Numbered(Sequence[Value]):
-    """Something of each configuration, by its number."""
+    """A sequence of values, one for each configuration, by its number."""
 
     def __init__(self, found: Found) -> None:
         self.found = found
@@ -83,11 +83,11 @@ class Numbered(Sequence[Value]):
 
     @abstractmethod
     def at(self, worker: int, row: int) -> Value:
-        """Return it of a worker's row."""
+        """Return the value for a worker's row."""
 
 
 class Configurations(Numbered[Configuration]):
-    """The configurations, each sent for where it is looked at."""
+    """The configurations, each fetched at its access."""
 
     def at(self, worker: int, row: int) -> Configuration:
         """Return the configuration of a row."""
@@ -96,15 +96,15 @@ class Configurations(Numbered[Configuration]):
 
 
 class Origins(Numbered[int]):
-    """For each configuration the one that it was first reached from."""
+    """The configuration from which each configuration was first reached."""
 
     def at(self, worker: int, row: int) -> int:
-        """Return the number of the row that one was reached from."""
+        """Return the number of a row's origin."""
         return self.found.places.number(*self.found.one(worker, "origin", row))
 
 
 def look_at_each(found: Found, inspections: Iterable[Inspect]) -> None:
-    """Let inspections look at every configuration that was expanded: those that workers can't be asked for."""
+    """Run inspections on every expanded configuration: those that can't be merged from workers."""
     looking = tuple(inspections)
     configurations = Configurations(found)
     for number in range(len(found.places) if looking else 0):
@@ -117,13 +117,13 @@ def look_at_each(found: Found, inspections: Iterable[Inspect]) -> None:
 
 
 class Survey:
-    """What temporal properties ask of an exploration: all of it is gathered where they are decided."""
+    """The survey for temporal properties: the leader gathers all data and decides them."""
 
     def __init__(self, found: Found) -> None:
         self.found = found
 
     def valuation(self, asked: Iterable[Proposition]) -> dict[Proposition, NDArray[np.bool_]]:
-        """Return where each proposition is true."""
+        """Return the configurations in which each proposition is true."""
         formulas = tuple(dict.fromkeys(asked))
         told = self.found.every("truths", formulas)
         return {
@@ -131,11 +131,11 @@ class Survey:
         }
 
     def is_still(self, asked: Iterable[Proposition]) -> bool:
-        """Tell whether nothing that atoms ask of configurations ever changes."""
+        """Return whether everything that the atoms read is constant."""
         return all(self.found.every("is_still", tuple(asked)))
 
     def pending(self) -> dict[Request, NDArray[Any]]:
-        """Return for each request the configurations in which it is pending, in their order."""
+        """Return, for each request, the configurations in which it is pending, in ascending order."""
         gathered: dict[Request, list[NDArray[np.int64]]] = {}
         for worker, told in enumerate(self.found.every("pending")):
             for request, rows in told.items():
@@ -144,7 +144,7 @@ class Survey:
         return {request: np.sort(np.concatenate(parts)) for request, parts in gathered.items()}
 
     def graph(self) -> Graph:
-        """Return every transition of the configurations that were expanded, in the order of the rules."""
+        """Return every transition of the expanded configurations, in the order of the rules."""
         found, size = self.found, len(self.found.places)
         labels: dict[Label, int] = {}
         parts = [(np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int64))]
@@ -167,7 +167,7 @@ class Survey:
         )
 
     def _unfollowed(self, sources: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Return which configurations were not followed; those that are crowded have no transitions."""
+        """Return the configurations that were not expanded; crowded ones are known by their lack of transitions."""
         found = self.found
         rows = zip(found.places.begins, found.expanded, strict=True)
         missing = ~found.spread([np.arange(begins[-1]) < expanded for begins, expanded in rows])
@@ -178,7 +178,7 @@ class Survey:
     def _gathered(
         self, worker: int, edges: Edges, labels: dict[Label, int]
     ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]:
-        """Return a worker's transitions in numbers that are everybody's."""
+        """Return a worker's transitions with global numbers."""
         places = self.found.places
         rows, actions, owners, reached, told = edges
         targets = np.full(len(rows), -1, np.int64)

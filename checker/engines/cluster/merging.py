@@ -1,4 +1,4 @@
-"""Merge the workers' findings: the same as one process finds, each with its nearest configuration."""
+"""Merging the workers' findings: the result equals that of one process, each finding with its nearest configuration."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -12,12 +12,12 @@ from checker.properties.visited import Visited
 
 
 def is_mergeable(inspection: Inspect) -> bool:
-    """Tell whether workers may each have found a part of what an inspection finds."""
+    """Return whether the results of an inspection can be merged from parts, one for each worker."""
     return isinstance(inspection, Visited | Inspection)
 
 
 def merge(into: Inspect, parts: Sequence[Any], places: Places) -> None:
-    """Let an inspection have found what parts of it have found, one for each worker."""
+    """Merge the parts of an inspection, one for each worker."""
     if isinstance(into, Inspection):
         merge_collected(into.collected, [part.collected for part in parts], places)
     for part in parts:
@@ -28,9 +28,9 @@ def merge(into: Inspect, parts: Sequence[Any], places: Places) -> None:
 
 
 def merge_collected(into: Collected, parts: Sequence[Collected], places: Places) -> None:
-    """Collect what workers have collected.
+    """Merge the workers' collections.
 
-    Each keeps the first so many of each kind; those that are first of all are among them, in the same order.
+    Each worker keeps the first findings of each group, in order. The first ones overall are among them.
     """
     into.count = sum(part.count for part in parts)
     into.examined = sum(part.examined for part in parts)

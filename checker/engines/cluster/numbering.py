@@ -1,7 +1,7 @@
-"""The numbering of configurations: layer by layer, and within a layer worker by worker.
+"""The numbering of configurations: by layer, then by worker.
 
-So numbers grow with the distance from the initial configuration, as those of one process do: the smallest number of
-several is a nearest one.
+So numbers grow with the distance from the initial configuration, as with a single process. The smallest of several
+numbers belongs to a nearest configuration.
 """
 
 from bisect import bisect_left, bisect_right
@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """Where the rows of each layer begin.
+    """The first rows and numbers of each layer.
 
     Attributes:
-        begins: For each worker the first of its rows in each layer, and after the last layer how many it has.
-        numbers: For each layer and worker in turn the first number, and at the end how many there are.
+        begins: For each worker, its first row in each layer, and the number of its rows.
+        numbers: The first number for each layer and worker, in this order, and the total.
     """
 
     begins: tuple[tuple[int, ...], ...]
@@ -27,7 +27,7 @@ class Places:
 
     @staticmethod
     def of(begins: Sequence[Sequence[int]]) -> "Places":
-        """Number the rows of workers, of whom each has as many layers."""
+        """Number the rows of workers that all have the same number of layers."""
         layers = range(len(begins[0]) - 1)
         sizes = (each[layer + 1] - each[layer] for layer in layers for each in begins)
         return Places(tuple(map(tuple, begins)), tuple(accumulate(sizes, initial=0)))
@@ -37,11 +37,11 @@ class Places:
 
     @property
     def depth(self) -> int:
-        """How far the farthest configuration is from the first."""
+        """The greatest distance of a configuration from the initial one."""
         return max(0, bisect_left(self.numbers, len(self)) - 1) // len(self.begins)
 
     def find(self, number: int) -> tuple[int, int]:
-        """Return the worker of a configuration, and which of its rows that is."""
+        """Return the worker and the row of a configuration."""
         at = bisect_right(self.numbers, number) - 1
         layer, worker = divmod(at, len(self.begins))
         return worker, self.begins[worker][layer] + number - self.numbers[at]

@@ -1,8 +1,7 @@
-"""A crew of Ray actors: the only file that imports Ray.
+"""A crew of Ray actors: the only module that imports Ray.
 
-Ray places actors, carries questions and answers, and starts an actor anew that dies. It knows nothing then: calls say
-which crew they are meant for, so that none is answered by one that has forgotten. What workers exchange with each other
-goes over `links.Sockets`.
+Ray places actors, carries calls and results, and restarts an actor that died. A restarted actor has lost its memory. So
+each call names its crew, and a restarted actor rejects it. Data between workers goes over `links.Sockets`.
 """
 
 import os
@@ -40,23 +39,23 @@ from physical.messages import install_extra
 from semantics.state.configuration import Configuration
 
 PATIENCE = 120.0
-"""Seconds in which Ray must have started an actor, or started it anew."""
+"""Seconds within which Ray must start or restart an actor."""
 
 STORE = 512 << 20
-"""Bytes of the object store of a cluster of one's own: what is on its way at once."""
+"""The bytes of the object store of a local cluster: all data in transit at a time."""
 
 ROOMS = ("bigraphs", "physical", "semantics", "checker")
 
 
 class ForgottenError(Exception):
-    """An actor was started anew since it joined a crew."""
+    """An actor was restarted since it joined a crew."""
 
 
 class Process:
-    """A Ray actor: it works in any number of crews.
+    """A Ray actor; it can work in any number of crews.
 
     Attributes:
-        joined: By the name of each crew, its worker there, and how often the crew was revived.
+        joined: For each crew, by name, its worker, its links, and the number of the revival.
     """
 
     def __init__(self) -> None:
@@ -65,7 +64,7 @@ class Process:
     def join(
         self, crew: str, revived: int, initial: Configuration, pending: int, me: int, workers: int
     ) -> tuple[str, Address]:
-        """Join a crew as some worker, unless it is one; return which checker runs here, and where it is met."""
+        """Join a crew as a worker, unless it is one already; return the digest of the checker and the own address."""
         links = Sockets(load_ray().util.get_node_ip_address())
         known, before, _ = self.joined.get(crew, (None, None, 0))
         if known is None or before is None:
@@ -77,12 +76,12 @@ class Process:
         return edition(), links.address
 
     def meet(self, crew: str, revived: int, addresses: list[Address], secret: bytes) -> None:
-        """Link the worker of a crew with the others, which do the same."""
+        """Link a crew's worker with the others, which do the same."""
         worker, links = self._of(crew, revived)
         links.meet(worker.shard.me, addresses, secret)
 
     def call(self, crew: str, revived: int, method: str, *arguments: Any) -> Any:
-        """Return what the worker of a crew answers; where it can't, no other waits for it."""
+        """Return the result of a worker's method; on failure close its links, so that no other worker waits for it."""
         worker, links = self._of(crew, revived)
         try:
             return getattr(worker, method)(*arguments)
@@ -102,9 +101,9 @@ class Process:
 
 
 @lru_cache(maxsize=4)
-def processes(node: str, workers: int) -> tuple[Any, ...]:  # noqa: ARG001  # of each Ray cluster there are others
-    """Return so many actors, spread over the machines of the cluster; the same where they were had before."""
-    # Ray doesn't repeat calls: what an actor knew is gone, and only all together can go back.
+def processes(node: str, workers: int) -> tuple[Any, ...]:  # noqa: ARG001  # each Ray cluster has its own actors
+    """Return `workers` actors, spread over the machines of the cluster; a second call returns the same ones."""
+    # Ray must not repeat a call: a restarted actor has lost its memory, and only all together can resume.
     options = {"num_cpus": 0, "max_restarts": -1, "max_task_retries": 0, "scheduling_strategy": "SPREAD"}
     actor = load_ray().remote(Process).options(**options)
     return tuple(actor.remote() for _ in range(workers))
@@ -114,8 +113,8 @@ class RayCrew:
     """Actors that explore one mission together.
 
     Attributes:
-        name: What tells crews apart.
-        revived: How often it was revived.
+        name: A unique name.
+        revived: The number of revivals so far.
     """
 
     def __init__(self, initial: Configuration, pending: int, workers: int) -> None:
@@ -128,15 +127,15 @@ class RayCrew:
 
     @property
     def size(self) -> int:
-        """How many there are."""
+        """The number of workers."""
         return len(self.actors)
 
     def one(self, worker: int, method: str, *arguments: Any) -> Any:
-        """Return what one of them answers."""
+        """Return the result of a method of one worker."""
         return self._got([self.actors[worker].call.remote(self.name, self.revived, method, *arguments)])[0]
 
     def every(self, method: str, *arguments: Any) -> list[Any]:
-        """Return what each of them answers."""
+        """Return the results of a method of all workers."""
         return self._asked("call", method, *arguments)
 
     def _asked(self, question: str, *arguments: Any) -> list[Any]:
@@ -145,7 +144,7 @@ class RayCrew:
         )
 
     def _got(self, references: list[Any]) -> list[Any]:
-        """Return all answers; of failures that counts which is none of a worker that only lost another."""
+        """Return all results; of several failures, raise one that is not the loss of another worker, if any."""
         found, failures = [], []
         for reference in references:
             try:
@@ -166,16 +165,16 @@ class RayCrew:
             if isinstance(error.cause, ForgottenError):
                 raise LostError("a worker was started anew") from None
             if isinstance(error.cause, (CheckpointError, LostError)):
-                raise error.cause from None  # it says all; where in a worker it was raised is of no interest
+                raise error.cause from None  # its message is complete without the worker's traceback
             raise
 
     def revive(self) -> None:
-        """Wait until all actors are there, let them join anew, and link them.
+        """Wait for all actors, let them join again, and link them.
 
         Raises:
-            ClusterError: Some run something else.
-            MachineError: Some are not there in time.
-            LostError: Some died since.
+            ClusterError: Some run another version.
+            MachineError: Some did not start in time.
+            LostError: Some died meanwhile.
         """
         self.revived += 1
         deadline = time.monotonic() + PATIENCE
@@ -214,7 +213,7 @@ def _leave(ray: Any, actors: tuple[Any, ...], crew: str) -> None:
 
 
 def load_ray() -> Any:
-    """Return the Ray library, that tells nobody that it is used.
+    """Return the Ray library, with its usage reports disabled.
 
     Raises:
         ClusterError: It is not installed.
@@ -230,11 +229,11 @@ def load_ray() -> Any:
 
 
 def connect(cluster: Cluster) -> None:
-    """Join the Ray cluster that is meant, unless this process is in one; without an address, start one here alone.
+    """Join a Ray cluster, unless this process is in one; without an address, start a local one.
 
     Raises:
         ClusterError: There is none at the address, or Ray is not installed.
-        MachineError: None could be started here.
+        MachineError: A local one can't be started.
     """
     with _listening_here() if _is_here(cluster.address) else nullcontext():
         _connect(cluster)
@@ -242,13 +241,13 @@ def connect(cluster: Cluster) -> None:
 
 @contextmanager
 def _listening_here() -> Iterator[None]:
-    """Let Ray, where it is loaded or started until left, listen on the loopback address alone."""
+    """Restrict Ray to the loopback address if it is loaded or started within the context."""
     name = "RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER"
     before = os.environ.get(name)
     os.environ[name] = "0"
     try:
         yield
-    finally:  # what this process starts later may be of a cluster of several machines
+    finally:  # later clusters of this process may span machines
         if before is None:
             del os.environ[name]
         else:
@@ -268,12 +267,12 @@ def _connect(cluster: Cluster) -> None:
             ray.init(address="local", num_cpus=cluster.workers, object_store_memory=STORE, **quiet)
         else:
             ray.init(address=cluster.address, log_to_driver=False, logging_level="error")
-    except Exception as error:  # Ray raises plain ones where it is not up in time
+    except Exception as error:  # Ray raises plain exceptions if it does not start in time
         if cluster.address is None:
             raise MachineError(f"no Ray cluster could be started here: {error}") from error
         raise ClusterError(f"there is no Ray cluster at {cluster.address}: {error}") from error
     if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, before)  # Ray has put its own there, which leaves at once
+        signal.signal(signal.SIGTERM, before)  # Ray's handler would exit at once
     if cluster.address is None and not ray.util.get_node_ip_address().startswith("127."):
         ray.shutdown()
         raise ClusterError("Ray was loaded before and would listen to others: let the checker load it")
@@ -284,7 +283,7 @@ def _is_here(address: str | None) -> bool:
 
 
 def _reach(address: str) -> None:
-    """See whether anybody listens at an address: Ray itself would try for minutes."""
+    """Raise ClusterError unless a server listens at an address: Ray itself would try for minutes."""
     host, colon, port = address.rpartition(":")
     if not colon or not host or not port.isdecimal() or int(port) > 65535:
         raise ClusterError(f"'{address:.60}' is no address of a Ray cluster: it should be HOST:PORT, or auto")
@@ -295,14 +294,14 @@ def _reach(address: str) -> None:
 
 
 def explore_with_ray(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
-    """Visit everything that is reachable, with workers in processes of their own.
+    """Explore all reachable configurations with workers in separate processes.
 
-    Where no folder is named for checkpoints, a cluster of one's own keeps them in a temporary one.
+    Without a folder for checkpoints, a local cluster stores them in a temporary one.
 
     Raises:
-        ClusterError: There is no cluster, or it can't be worked with as it is asked for.
+        ClusterError: There is no cluster, or it does not fit the options.
         MachineError: It does not start, or workers are lost again and again.
-        CheckpointError: There is none to go on from, or it is of something else.
+        CheckpointError: The checkpoint is damaged, or of another exploration.
     """
     cluster, keeping = options.cluster, options.keeping
     if not 2 <= cluster.workers <= WORKERS_AT_MOST:
@@ -321,7 +320,7 @@ def explore_with_ray(initial: Configuration, inspect: tuple[Inspect, ...], optio
 
 @lru_cache(maxsize=1)
 def edition() -> str:
-    """Return a digest of all that explores: workers that differ in it may learn different rules."""
+    """Return a digest of the checker's source: workers with different sources may learn different rules."""
     found = sha256()
     for name, path in sorted(modules().items()):
         found.update(name.encode())
@@ -330,6 +329,6 @@ def edition() -> str:
 
 
 def modules() -> dict[str, Path]:
-    """Return the modules that explore, by their paths from where the rooms stand: the repository, or the package."""
+    """Return the checker's source files by their path relative to the repository or the package."""
     root = Path(__file__).parents[3]
     return {path.relative_to(root).as_posix(): path for room in ROOMS for path in (root / room).rglob("*.py")}

@@ -1,4 +1,4 @@
-"""Rounds: what workers tell each other between them, and what follows for all alike."""
+"""Rounds: the progress that workers exchange, and the decisions that all derive from it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,13 +9,13 @@ from checker.limits import memory_taken
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """How far workers go on before they ask whoever leads them.
+    """The limits within which workers continue without their leader.
 
     Attributes:
-        rows: How many rows each expands in a round.
-        seconds: For how long, in whole rounds.
-        configurations: How many there may be in all, None for any number.
-        memory: How many bytes each may take, None for any number.
+        rows: The rows that each expands in a round.
+        seconds: The time, rounded up to whole rounds.
+        configurations: The greatest total number of configurations, None for no limit.
+        memory: The greatest memory of each worker in bytes, None for no limit.
     """
 
     rows: int
@@ -24,19 +24,19 @@ class Stage:
     memory: int | None
 
     def is_over(self, marks: Sequence["Mark"]) -> bool:
-        """Tell whether all stop here: one's time or memory ends, or nothing is left to be expanded."""
+        """Return whether all workers stop: a time or memory limit is met, or no row is left to expand."""
         memory = self.memory is not None and max(each.memory for each in marks) > self.memory
         return memory or any(each.is_late for each in marks) or all(each.is_done for each in marks)
 
 
 class Mark(NamedTuple):
-    """What a worker tells the others after a round.
+    """A worker's progress, which it sends to the others after a round.
 
     Attributes:
-        size: How many rows it has.
-        expanded: How many of them were expanded.
-        end: Where its layer ends.
-        memory: How many bytes its process takes.
+        size: The number of its rows.
+        expanded: The number of expanded rows.
+        end: The end of its layer.
+        memory: The bytes of memory of its process.
         is_late: Whether its time is over.
     """
 
@@ -48,17 +48,17 @@ class Mark(NamedTuple):
 
     @property
     def is_done(self) -> bool:
-        """Whether it has nothing to expand."""
+        """Whether it has no row left to expand."""
         return self.expanded == self.size
 
 
 def mark(size: int, expanded: int, end: int, *, is_late: bool) -> Mark:
-    """Return what a worker tells the others now."""
+    """Return a worker's present progress."""
     return Mark(size, expanded, end, memory_taken(), is_late)
 
 
 def kept(before: Sequence[int], sizes: Sequence[int], most: int) -> list[int]:
-    """Return how many rows each worker keeps, that there are no more than allowed: it gives up what came last.
+    """Return the number of rows that each worker keeps within the limit; the last workers drop their new rows first.
 
     >>> kept([5, 5], [9, 8], 15)
     [9, 6]

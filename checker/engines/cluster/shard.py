@@ -1,7 +1,7 @@
-"""A shard of an exploration: the rows that belong to one worker, and the rules that it has learned.
+"""A shard of an exploration: the rows of one worker, and the rules that it has learned.
 
-Each round it expands some rows of its layer. Successors that belong to others leave in parcels; of those that come, the
-new ones become rows. It knows nothing of how parcels travel.
+In each round it expands some rows of its layer. Successors of other workers leave in parcels; new rows arrive in
+theirs. The transport of parcels is elsewhere.
 """
 
 import sys
@@ -29,24 +29,24 @@ from checker.limits import memory_taken
 from semantics.state.configuration import Configuration
 
 SENT = 1 << 17
-"""How many of the rows that were sent last are remembered, so as not to be sent again."""
+"""The size of the cache of recently sent rows, which are not sent again."""
 
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """How far a worker has come.
+    """A worker's progress.
 
     Attributes:
-        size: How many rows it has.
-        expanded: How many of them were expanded.
-        end: Where its layer ends.
-        transitions: How many transitions the expanded ones have.
-        cut: Whether the limit left some out.
-        crowded: Whether some were not followed.
-        runs: How many times rules were run in Python.
-        memory: How many bytes its process takes.
-        used: How many bytes rows, origins and the visited set take.
-        sent: How many bytes of rows it sent so far.
+        size: The number of its rows.
+        expanded: The number of expanded rows.
+        end: The end of its layer.
+        transitions: The number of transitions of the expanded rows.
+        cut: Whether the limit left configurations out.
+        crowded: Whether some rows were not expanded because an agent is crowded.
+        runs: The number of runs of rules in Python.
+        memory: The bytes of memory of its process.
+        used: The bytes of rows, origins and visited set.
+        sent: The bytes of rows sent so far.
     """
 
     size: int
@@ -71,14 +71,14 @@ def column_at(where: Packing) -> NDArray[np.uint64]:
 
 
 def writable(words: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """Return words that the loops take: what comes from others is read-only, for which they would be compiled anew."""
+    """Return a writable array: received ones are read-only, a type for which the loops would be compiled again."""
     return words if words.flags.writeable else np.array(words)
 
 
 def spelling(
     packing: Packing, codes: NDArray[Any], begins: NDArray[Any], numbers: NDArray[Any]
 ) -> kernel.Spelling:
-    """Return how rows in another packing and other codes are read (see `kernel.Spelling`)."""
+    """Return the translation from another packing and other codes (see `kernel.Spelling`)."""
     varying = np.flatnonzero(packing.mask)
     known = (each.astype(np.uint64) for each in (varying, codes, begins, numbers))
     return kernel.Spelling(writable(packing.columns), *known)
@@ -89,8 +89,8 @@ class Outbox:
 
     Attributes:
         rows: Packed rows.
-        origins: What each was reached from.
-        owners: Whose each is.
+        origins: The origin of each.
+        owners: The worker of each.
     """
 
     def __init__(self) -> None:
@@ -99,13 +99,13 @@ class Outbox:
         self.owners: list[NDArray[np.int32]] = []
 
     def add(self, rows: NDArray[np.uint64], origins: NDArray[np.int64], owners: NDArray[np.int32]) -> None:
-        """Put in rows, one in each line."""
+        """Add rows, one in each line of the array."""
         self.rows.append(rows)
         self.origins.append(origins.astype(np.uint32))
         self.owners.append(owners)
 
     def repack(self, old: Packing, new: Packing) -> None:
-        """Pack what is in it anew."""
+        """Repack the rows in it."""
         packed = [np.zeros((len(rows), new.words), np.uint64) for rows in self.rows]
         for rows, to in zip(self.rows, packed, strict=True):
             flat = to.ravel()
@@ -114,7 +114,7 @@ class Outbox:
         self.rows = packed
 
     def taken_out(self, peer: int, words: int) -> tuple[NDArray[np.uint64], NDArray[np.uint32]]:
-        """Return the rows of one worker, in their order, and what they were reached from."""
+        """Return the rows for one worker, in order, with their origins."""
         which = [np.flatnonzero(owners == peer) for owners in self.owners]
         rows = [np.zeros((0, words), np.uint64)]
         rows += [each[chosen] for each, chosen in zip(self.rows, which, strict=True)]
@@ -124,25 +124,25 @@ class Outbox:
 
 
 class Shard(Space):
-    """One worker's rows.
+    """The rows of one worker.
 
     Attributes:
-        me: Its number.
-        workers: How many there are.
-        begins: Where each layer begins, up to the one that is expanded.
-        end: Where that ends.
-        rules_before: How many transitions each rule had in what was resumed.
-        happened_before: The words of what the environment did in it.
-        told: What each worker was told of this one's codes.
-        dictionaries: What is known of each worker's codes.
-        column_at: The column of each bit of a row, in the packing for which it was made.
-        varying: The columns that have more than one value there.
+        me: The worker's number.
+        workers: The number of workers.
+        begins: The first row of each layer, up to the one in expansion.
+        end: The end of that layer.
+        rules_before: The number of transitions of each rule before the resumed checkpoint.
+        happened_before: The environment's events before it.
+        told: The codes sent so far to each worker.
+        dictionaries: The codes received from each worker.
+        column_at: The column of each bit of a row, in the packing `located_in`.
+        varying: The columns with several values in that packing.
     """
 
     ORIGINS = Elsewhere
-    """Rows of other workers have numbers, too: row · workers + worker."""
+    """An origin may be another worker's row: its number is row · workers + worker."""
 
-    PLAIN = sys.maxsize  # rows go from worker to worker
+    PLAIN = sys.maxsize  # rows travel between workers
 
     def __init__(self, initial: Configuration, pending: int, me: int, workers: int) -> None:
         self.me = me
@@ -155,10 +155,10 @@ class Shard(Space):
         super().__init__(learner, None)
         self.start()
 
-    # --- beginning ------------------------------------------------------------------------------------------------
+    # --- start ------------------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Begin with the initial configuration alone, or with nothing where that is another's."""
+        """Begin with the initial configuration, or without rows if it is another worker's."""
         self.clear()
         first = self.packed(self.learner.columns.codes(self.learner.still))
         self.rows.words[: len(first)] = first
@@ -168,15 +168,16 @@ class Shard(Space):
         self._make_room(len(self.batch.hashes))
 
     def clear(self) -> None:
-        """Forget all rows, what others were told, and what they have told; the values that it knows are kept.
+        """Forget all rows, and all codes sent and received; the columns' values stay.
 
-        What was learned is learned again: rows at which it was learned are gone, and a checkpoint needs to name some.
+        The trees are discarded, too: the rows at which they were learned are gone, and a checkpoint must name such
+        rows.
         """
         self.learner.forget()
         self.state[[AT, EXPANDED, SIZE, CUT, CROWDS, GATHERED]] = 0
         self.state[LIMIT] = MOST_ROWS
         self.rows = Rows(self.packing.words, self.rows.room, self.ORIGINS)
-        self.learner.columns.codes(self.learner.still)  # makes columns that only the first row needs
+        self.learner.columns.codes(self.learner.still)  # creates the columns that only the first row needs
         self._see()
         self.counts.used[:] = 0
         self.begins, self.end = [0], 0
@@ -189,7 +190,7 @@ class Shard(Space):
         self._forget_sent()
 
     def packed(self, codes: list[int]) -> NDArray[np.uint64]:
-        """Return the words of a row."""
+        """Return the packed row of a list of codes."""
         where = self.packing
         words = np.zeros(where.words, np.uint64)
         for word, shift, code in zip(where.word, where.shift, codes, strict=True):
@@ -197,7 +198,7 @@ class Shard(Space):
         return words
 
     def _see(self) -> None:
-        """Let the loops see what is known now."""
+        """Rebuild the loops' tables from everything learned."""
         super()._see()
         self.keys.refresh()
         if self.located_in is not self.packing:
@@ -205,7 +206,7 @@ class Shard(Space):
             self.varying = np.flatnonzero(self.packing.mask).astype(np.uint64)
 
     def _pack(self) -> None:
-        """Pack the rows anew where a column has outgrown its bits, and those that wait to be sent."""
+        """Repack the rows, and those that wait for sending, if a column has outgrown its bits."""
         old = self.packing
         super()._pack()
         new = self.packing
@@ -219,7 +220,7 @@ class Shard(Space):
     # --- rounds ---------------------------------------------------------------------------------------------------
 
     def expand(self, layer: int, most: int) -> tuple[Parcel, ...]:
-        """Expand at most so many rows of a layer, and return a parcel for each worker."""
+        """Expand at most `most` rows of a layer, and return a parcel for each worker."""
         self.enter(layer)
         until = min(self.expanded + most, self.end)
         self.state[AT] = self.expanded
@@ -232,13 +233,13 @@ class Shard(Space):
         return self.parcels()
 
     def enter(self, layer: int) -> None:
-        """Begin a layer, unless it was begun."""
+        """Begin a layer, unless it has begun."""
         if layer == len(self.begins):
             self.begins.append(self.end)
             self.end = self.size
 
     def _deal(self) -> None:
-        """Take in those of the batch that are this worker's, and lay the others out to be sent."""
+        """Store the batch's rows of this worker, and put the others into the outbox."""
         batch, count = self.batch, int(self.state[GATHERED])
         chosen, owners = np.zeros(count, np.int64), np.zeros(count, np.int32)
         found = kernel.deal(
@@ -262,18 +263,18 @@ class Shard(Space):
         self.outbox.add(rows, batch.origins[others], owners[:found])
 
     def owning(self) -> kernel.Owning:
-        """Return what decides whose a row is."""
+        """Return the data that assigns rows to workers."""
         columns, keys = self.packing.columns, self.keys
         return kernel.Owning(columns, self.varying, self.column_at, keys.keys, keys.begins, self.workers)
 
     def owners_of(self, rows: NDArray[np.uint64], origins: NDArray[np.int64]) -> NDArray[np.int32]:
-        """Return the worker that each of some rows belongs to, which were reached from these of its own."""
+        """Return the worker of each row; `origins` are own rows from which they were reached."""
         owners = np.zeros(len(origins), np.int32)
         kernel.owners_of(self.rows.words, origins, rows, self.packing.words, self.owning(), owners)
         return owners
 
     def parcels(self, *, always: bool = False) -> tuple[Parcel, ...]:
-        """Return what waits to be sent, a parcel for each worker; with news in each only if it has rows, or always."""
+        """Return the waiting rows, a parcel for each worker; new values go with the rows, or to all if `always`."""
         found = []
         for peer in range(self.workers):
             rows, origins = self.outbox.taken_out(peer, self.packing.words)
@@ -285,15 +286,15 @@ class Shard(Space):
         return tuple(found)
 
     def take(self, *parcels: Parcel) -> None:
-        """Take in what the others have sent, in their order."""
+        """Store the rows that the others have sent, in the order of the workers."""
         self.hear(parcels)
         for peer, parcel in enumerate(parcels):
             for count in self.translated(peer, parcel):
                 arrays = (self.rows.words, self.rows.origins.loops, self.table.room)
-                loops.store(*arrays, None, None, None, self.batch, 0, count, self.state)
+                loops.store(*arrays, None, None, self.batch, 0, count, self.state)
 
     def hear(self, parcels: Sequence[Parcel]) -> None:
-        """Take in the values that the others have told."""
+        """Add the values that the others have sent."""
         heard = [(peer, entry) for peer, parcel in enumerate(parcels) for entry in parcel.news]
         for peer, entry in heard:
             self._note(self.dictionaries[peer], entry)
@@ -301,7 +302,7 @@ class Shard(Space):
             self._see()
 
     def _note(self, dictionary: Dictionary, entry: Entry) -> None:
-        """Note another worker's values; a cell that varies there is not still here either."""
+        """Add another worker's values; a cell that varies there varies here, too."""
         learner, cell = self.learner, entry.place[0]
         if len(entry.place) == 3 and learner.columns.dig(cell, entry.place[1] + 1):
             learner.relearn(Deeper(cell))
@@ -312,7 +313,7 @@ class Shard(Space):
             learner.relearn(Varies(cell))
 
     def translated(self, peer: int, parcel: Parcel) -> Iterator[int]:
-        """Put the rows of a parcel into the batch, some at a time; yield how many there are."""
+        """Put the rows of a parcel into the batch, some at a time; yield their number."""
         if not len(parcel):
             return
         room, rows = len(self.batch.hashes), writable(parcel.rows)
@@ -337,11 +338,11 @@ class Shard(Space):
     # --- learning ---------------------------------------------------------------------------------------------------
 
     def go_on(self) -> None:
-        """Learn what was not known where the loops stopped."""
+        """Learn the miss at which the loops stopped."""
         self._miss()
 
     def learn_at(self, codes: list[int]) -> None:
-        """Learn what follows from a row of codes, which takes the place of all rows."""
+        """Learn from a row given by its codes, which replaces all rows."""
         self.rows.words[: self.packing.words] = self.packed(codes)
         self.state[SIZE], self.state[AT] = 1, 0
         while not self.state[AT]:
@@ -352,14 +353,14 @@ class Shard(Space):
         self.state[SIZE], self.state[AT] = 0, 0
 
     def look_around(self) -> None:
-        """Find rows again that were put in their place."""
+        """Rebuild the table after rows were loaded in place."""
         self._rebuild(2 * max(self.size, FIRST_ROWS))
         self._make_room(len(self.batch.hashes))
 
     def has_origins_in(self, boundaries: Sequence[tuple[int, ...]]) -> bool:
-        """Tell whether each row was reached from one of the layer before, given where all workers' layers begin.
+        """Return whether each row's origin is in the previous layer, given the boundaries of all workers' layers.
 
-        The first configuration, the only one of its layer, is its own origin.
+        The initial configuration, alone in its layer, is its own origin.
         """
         first = self.rows.origins.room[: self.boundaries[1]]
         if sum(each[1] for each in boundaries) != 1 or np.any(first != self.me):
@@ -374,22 +375,22 @@ class Shard(Space):
     # --- limits, counts -------------------------------------------------------------------------------------------
 
     def keep(self, size: int) -> None:
-        """Keep so many rows, and take in no more: the limit of configurations was met."""
+        """Keep the first `size` rows, and add no more: the limit of configurations is met."""
         self.state[SIZE] = self.state[LIMIT] = size
         self.state[CUT] += 1
         self._rebuild(len(self.table.room))
 
     def rules(self, *, followed: bool = True) -> Counter[str]:
-        """Return how many transitions each rule has."""
+        """Return the number of transitions of each rule."""
         return super().rules(followed=followed) + self.rules_before
 
     @property
     def boundaries(self) -> tuple[int, ...]:
-        """Where each layer begins, and where the last ends: that of what was reached from the one that is expanded."""
+        """The first row of each layer, the end of the layer in expansion, and the end of the next."""
         return (*self.begins, self.end, self.size)
 
     def standing(self) -> Standing:
-        """Return how far it has come."""
+        """Return the worker's progress."""
         return Standing(
             self.size,
             self.expanded,

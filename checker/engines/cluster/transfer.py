@@ -1,7 +1,7 @@
 """Parcels: rows in transit between workers, with the values that are new to the receiver.
 
-Rows travel in their sender's codes and packing. The receiver keeps a dictionary for each sender, so a value travels
-once, and a row is put into other codes by looking up numbers. Values are pickled: between workers of one run only.
+Rows travel in their sender's codes and packing. The receiver keeps a dictionary for each sender. So each value travels
+once, and the translation of a row is a look-up of numbers. Values are pickled: only between workers of one run.
 """
 
 from collections.abc import Iterator
@@ -18,12 +18,12 @@ WORKERS_AT_MOST = 256
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """Values that a column of the sender took since the last parcel.
+    """The values that a sender's column got since the last parcel.
 
     Attributes:
-        column: Its number; one that is new follows the last one.
-        place: What it is of.
-        values: What is new, by code.
+        column: The column's number; a new one follows the last.
+        place: The column's subject.
+        values: The new values, in the order of their codes.
     """
 
     column: int
@@ -33,13 +33,13 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Parcel:
-    """Rows with what they were reached from, in the sender's numbers.
+    """Rows with their origins, in the sender's numbers.
 
     Attributes:
-        news: What the receiver must be told to understand them.
-        packing: Where each of the sender's columns stands.
+        news: The values that are new to the receiver.
+        packing: The sender's packing.
         rows: Packed rows, one after the other.
-        origins: For each row the sender's row that it was reached from.
+        origins: The sender's row from which each was reached.
     """
 
     news: tuple[Entry, ...]
@@ -52,18 +52,18 @@ class Parcel:
 
     @property
     def bytes(self) -> int:
-        """How many bytes the rows take on their way."""
+        """The bytes of the rows in transit."""
         return self.rows.nbytes + self.origins.nbytes
 
 
 @dataclass(slots=True)
 class Told:
-    """What another worker was told of one's values: how many of each column."""
+    """The number of values of each column that another worker knows."""
 
     sizes: list[int] = field(default_factory=list)
 
     def news(self, columns: Columns) -> tuple[Entry, ...]:
-        """Return what is new, and take it for told."""
+        """Return the new values, and note them as sent."""
         found = tuple(self._entries(columns))
         self.sizes = [len(column.values) for column in columns.all]
         return found
@@ -80,11 +80,11 @@ Arrays = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
 
 @dataclass(slots=True)
 class Dictionary:
-    """What is known of another worker's codes.
+    """Another worker's codes.
 
     Attributes:
-        numbers: For each of its columns the number of one's own.
-        codes: For each of its columns one's own code of each of its codes.
+        numbers: The own column for each of its columns.
+        codes: The own code for each of its codes, column by column.
     """
 
     numbers: list[int] = field(default_factory=list)
@@ -92,7 +92,7 @@ class Dictionary:
     _arrays: "Arrays | None" = None
 
     def add(self, column: int, number: int, codes: list[int]) -> None:
-        """Note codes that are new in a column of it, by the number of one's own."""
+        """Add new codes of one of its columns, with the own column and codes."""
         if column == len(self.numbers):
             self.numbers.append(number)
             self.codes.append([])
@@ -100,7 +100,7 @@ class Dictionary:
         self._arrays = None
 
     def arrays(self) -> "Arrays":
-        """Return all codes, where those of each column begin, and the numbers of one's own columns."""
+        """Return all codes, the first of each column, and the own columns."""
         if self._arrays is None:
             begins = np.concatenate(([0], np.cumsum([len(each) for each in self.codes])))
             codes = np.array([code for each in self.codes for code in each], np.int64)

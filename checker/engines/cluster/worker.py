@@ -1,4 +1,4 @@
-"""A worker: explores with the others; answers surveys, edges and checkpoints for its rows, which it numbers itself."""
+"""A worker: explores with the others, and answers surveys, edges and checkpoints for its own rows."""
 
 import time
 from collections.abc import Iterable, Sequence
@@ -28,15 +28,17 @@ from semantics.state.configuration import Configuration, Label
 from semantics.state.requests import Request
 
 Edges = tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int64], tuple[Label, ...]]
-"""Of some transitions the rows they leave, the numbers of their labels, whose rows they lead to, and to which of those
-(less than 0: to none); and the labels."""
+"""Transitions: their rows, the numbers of their labels, the workers and rows of their targets (less than 0: none), and
+the labels."""
 
 
 class Worker:
-    """One of the processes that explore together; what has `links` in it is asked of all at once.
+    """One of the processes that explore together.
+
+    A method that uses `links` must be called on all workers at once.
 
     Attributes:
-        shard: Its rows, and what it learned.
+        shard: Its rows, and the rules that it has learned.
         links: Its links to the others.
     """
 
@@ -46,21 +48,21 @@ class Worker:
         self.shard = Shard(initial, pending, me, workers)
 
     def told(self, news: Any) -> list[Any]:
-        """Tell all the same, and return what each tells."""
+        """Send the same to all workers, and return the items received from each."""
         return self.links.exchange([news] * self.shard.workers)
 
     # --- rounds ---------------------------------------------------------------------------------------------------
 
     def start(self) -> Standing:
-        """Begin anew with the initial configuration."""
+        """Begin with the initial configuration."""
         self.shard.start()
         return self.shard.standing()
 
     def explore(self, layer: int, stage: Stage) -> tuple[int, Standing]:
-        """Go on from a layer for a round at least; return the layer, and how far it has come.
+        """Explore from a layer for at least one round; return the layer and the worker's progress.
 
-        In a round some rows of the layer are expanded, and what the others have reached is taken in. The next layer
-        begins when nobody has rows of this one, so distances are those of a breadth-first search.
+        In a round each worker expands rows of the layer and stores the successors that the others send. The next layer
+        begins when no worker has rows of this one left. So distances are those of a breadth-first search.
         """
         shard, end = self.shard, time.monotonic() + stage.seconds
         marks = self._marks()
@@ -93,10 +95,10 @@ class Worker:
         checkpoints.path_of(Path(folder), number, self.shard.me).unlink(missing_ok=True)
 
     def load(self, folder: str, number: int, digest: str, layer: int) -> Standing:
-        """Go back to a checkpoint, in which some layer was expanded; all tell each other what they have forgotten.
+        """Return to a checkpoint with a layer in expansion; the workers exchange the values of their rows again.
 
         Raises:
-            CheckpointError: It is damaged, or of something else.
+            CheckpointError: It is damaged, or of another exploration.
         """
         loading, shard = checkpoints.Loading(self.shard, Path(folder), number, digest), self.shard
         recalled: list[tuple[int, int]] = []
@@ -116,33 +118,33 @@ class Worker:
         return shard.standing()
 
     def _fits(self, layer: int, boundaries: list[tuple[int, ...]]) -> bool:
-        """Tell whether what it went back to fits to a layer, and to where all workers' layers begin."""
+        """Return whether the loaded rows fit the layer, and the boundaries of all workers' layers."""
         whole = all(
             len(each) == layer + 3 for each in boundaries
-        )  # layers as far as that, its end, and the next's
+        )  # the layers so far, the end of this one, and that of the next
         return whole and self.shard.has_origins_in(boundaries)
 
-    # --- what was found -------------------------------------------------------------------------------------------
+    # --- results ----------------------------------------------------------------------------------------------------
 
     def standing(self) -> Standing:
-        """Return how far it has come."""
+        """Return the worker's progress."""
         return self.shard.standing()
 
     def summary(self) -> tuple[tuple[int, ...], dict[str, int]]:
-        """Return where its layers begin and end, and how many transitions each rule has."""
+        """Return the boundaries of its layers, and the number of transitions of each rule."""
         return self.shard.boundaries, dict(self.shard.rules())
 
     def rows(self, numbers: list[int]) -> list[Row]:
-        """Return some of its configurations' cells."""
+        """Return the cells of some configurations."""
         return [self.shard.row(number) for number in numbers]
 
     def origin(self, row: int) -> tuple[int, int]:
-        """Return the worker and the row that a row was first reached from."""
+        """Return the worker and the row from which a row was first reached."""
         row, worker = divmod(self.shard.rows.origins.origin(row, self.shard.size), self.shard.workers)
         return worker, row
 
     def inspect(self, inspections: tuple[Inspect, ...]) -> tuple[Inspect, ...]:
-        """Return inspections that have looked at its rows."""
+        """Return the inspections, with the findings in its rows."""
         shard = self.shard
         inspect_fast(Survey(shard), inspections)
         for each in inspections:
@@ -155,25 +157,25 @@ class Worker:
     def _answers_as_first(self, atoms: tuple[Atom, ...]) -> bool:
         return asked(atoms, self.initial) == asked(atoms, self.shard.configuration(0))
 
-    # --- what temporal properties ask -----------------------------------------------------------------------------
+    # --- temporal properties ----------------------------------------------------------------------------------------
 
     def truths(self, formulas: Iterable[Proposition]) -> list[NDArray[np.bool_]]:
-        """Return where propositions are true."""
+        """Return the truth of propositions in each row."""
         survey = Survey(self.shard)
         return [truths(survey, each, self.shard.size) for each in formulas]
 
     def is_still(self, atoms: tuple[Atom, ...]) -> bool:
-        """Tell whether atoms ask all its configurations what the first one answers alike."""
+        """Return whether everything that the atoms read equals its value in the initial configuration, in all rows."""
         if not self.shard.expanded:
             return True
         return is_still(Survey(self.shard), atoms) and self._answers_as_first(atoms)
 
     def pending(self) -> dict[Request, NDArray[Any]]:
-        """Return where each request is pending."""
+        """Return the rows in which each request is pending."""
         return pending_in_space(Survey(self.shard))
 
     def edges(self, first: int, most: int) -> Edges:
-        """Return the transitions of some of its rows."""
+        """Return the transitions of a range of rows."""
         shard = self.shard
         until = min(first + most, shard.expanded)
         shard.state[AT], found = min(first, until), []
@@ -193,7 +195,7 @@ class Worker:
         return edges
 
     def _point(self) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
-        """Return the transitions of a batch; lay out those of their targets to be sent that are others' rows."""
+        """Return the transitions of a batch; put their targets on other workers into the outbox."""
         shard, count = self.shard, int(self.shard.state[GATHERED])
         shard.state[GATHERED] = 0
         batch, width = shard.batch, shard.packing.words
@@ -204,7 +206,7 @@ class Worker:
         return batch.origins[:count].copy(), batch.steps[:count].copy(), owners, targets
 
     def _found(self, count: int) -> NDArray[np.int64]:
-        """Return which of its rows each of the batch is, less than 0 where it is none."""
+        """Return the row number of each successor in the batch, less than 0 for none."""
         shard, found = self.shard, np.zeros(count, np.int64)
         loops.look_up(shard.rows.words, shard.table.room, None, None, shard.batch, found, shard.state)
         return found
@@ -220,7 +222,7 @@ class Worker:
         return rows, action_of[steps], owners, targets, tuple(numbers)
 
     def _find(self, parcels: Sequence[Parcel]) -> list[NDArray[np.int64]]:
-        """Return for each worker which of one's own rows those in its parcel are, less than 0 where they are none."""
+        """Return, for each worker, the own row numbers of the rows in its parcel, less than 0 for none."""
         self.shard.hear(parcels)
         found = []
         for peer, parcel in enumerate(parcels):

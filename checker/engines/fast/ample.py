@@ -1,11 +1,12 @@
-"""The compiled loop over ample sets: `checker.reduction.ample` on rows and footprints as words.
+"""Partial-order reduction in compiled loops: `checker.reduction.ample` on packed rows and footprints.
 
-Row by row, it is chosen first which transitions are followed; only these are made, and those that a choice looks at.
-Which actors there are is told by trees of their own; what may disturb what is worked out where it is first asked for.
+Each row first chooses its ample set. The loop makes the successors in that set, and those that the visibility check
+needs. Separate decision trees list the actors of a row. Disturbance between two footprints is computed at its first
+use.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# numba types these functions; mypy would read their integers as Python's
 
 from typing import Any
 
@@ -51,7 +52,7 @@ from checker.engines.fast.trails import Trails, begin_row, end_of, lead_on
 
 @inner(cache=True)
 def is_seen(m: Model, r: Members, here: Words, target: Words, to: int, width: int) -> bool:
-    """Tell whether properties see a difference between a row and a successor."""
+    """Return whether a proposition may differ between a row and its successor."""
     asked = False
     for j in range(width):
         changed = here[j] ^ target[to + j]
@@ -69,7 +70,7 @@ def is_seen(m: Model, r: Members, here: Words, target: Words, to: int, width: in
 
 @inner(cache=True)
 def attribute(r: Members, batch: Batch, count: int, wide: int) -> None:
-    """Note whose each transition of a row is, as a number among its actors."""
+    """Note the actor of each transition of a row, by its position among the row's actors."""
     for word in range(wide):
         r.owners[word] = r.inside[word] = r.whole[word] = np.uint64(0)
     for k in range(count):
@@ -81,13 +82,13 @@ def attribute(r: Members, batch: Batch, count: int, wide: int) -> None:
 def is_ample(
     m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, count: int, at: int, state: State
 ) -> int:
-    """Tell whether no property sees a step, and one must be taken some time: 0 or 1, or UNKNOWN."""
+    """Return 1 if the set is ample: its steps are invisible and one of them is fair; 0 if not, or UNKNOWN."""
     width, fair = state[WORDS], np.int64(0)
     for k in range(count):
         if has(r.sets, at, r.whose[k]):
             if not make(m, r, f, here, batch, k, state):
                 return UNKNOWN
-            if r.visible[k] == 0:  # of what is made, not of what represents it
+            if r.visible[k] == 0:  # visibility concerns the successor, not its representative
                 seen = is_seen(m, r, here, batch.words, k * width, width)
                 r.visible[k] = 2 if seen else 1
             if r.visible[k] == 2:
@@ -98,13 +99,13 @@ def is_ample(
 
 @njit(cache=True, inline="always")
 def part_at(r: Members, k: int) -> int:
-    """Return the part that an actor of a row belongs to."""
+    """Return the part to which an actor of a row belongs."""
     return np.int64(r.part[r.actors[RECORD * r.here[k] + MEMBER]])
 
 
 @inner(cache=True)
 def ignores(r: Members, sets: Words, at: int, wide: int) -> bool:
-    """Tell whether someone in a set may take a step who has not joined, and of whose part none is taken on the way."""
+    """Return whether a set has an enabled actor that was not chosen and whose part no step of the path takes."""
     for word in range(wide):
         left = sets[at + word] & r.owners[word] & ~r.inside[word]
         for bit in range(WORD if left else 0):
@@ -115,7 +116,7 @@ def ignores(r: Members, sets: Words, at: int, wide: int) -> bool:
 
 @inner(cache=True)
 def let_join(r: Members, actors: int, wide: int, at: int) -> None:
-    """Let a set join: the parts of which all are inside are taken."""
+    """Add a set to the chosen actors; mark a part as taken if the set has all its actors."""
     r.more[:] = np.uint64(0)
     for j in range(actors):
         if has(r.sets, at, j):
@@ -147,7 +148,12 @@ def join(
     at: int,
     state: State,
 ) -> int:
-    """Let a set join that is ample and has someone who is ignored; return which transition leads on, or what is so."""
+    """Add a set if it is ample and has an ignored actor (cycle proviso).
+
+    Returns:
+        A transition of the set whose successor's path does not return to this row. If there is none: NOBODY_LEFT if no
+        enabled actor is ignored any more, else GOING_ON. UNKNOWN if something is not learned yet.
+    """
     kept, row, wide = state[KEPT], state[AT], (actors + WORD - 1) // WORD
     if not ignores(r, r.sets, at, wide):
         return GOING_ON
@@ -166,7 +172,7 @@ def join(
             r.more[:] = np.uint64(0)
             if end_of(trails, number, r.more) != row:
                 return k
-            if x is None:  # an exchange gives actors other names on the way
+            if x is None:  # an exchange renames actors along the path
                 for word in range(len(r.taken)):
                     r.taken[word] |= r.more[word]
     return GOING_ON if ignores(r, r.owners, 0, wide) else NOBODY_LEFT
@@ -187,9 +193,13 @@ def choose(
     count: int,
     state: State,
 ) -> int:
-    """Return which transition leads on of those that are followed, or what is said in its place; note who is inside.
+    """Choose the actors to follow, and return a transition on which the path continues (cycle proviso).
 
-    The sets around who moved last come first, then the others', the smallest first: one with one step at once.
+    Candidates are the persistent sets around actors of the agent that moved last, then those around the others. Within
+    each group, sets with one step are tried at once, the others by increasing size.
+
+    Returns:
+        The transition, or a code: EVERYBODY, NOBODY_LEFT or UNKNOWN.
     """
     if count < 2:
         return EVERYBODY
@@ -262,12 +272,13 @@ def expand_reduced(
     counts: State,
     state: State,
 ) -> bool:
-    """Expand rows up to a number, or until so many new ones came, by ample sets where there are any.
+    """Expand rows with ample sets, until row `until` or until `room` rows might be exceeded.
 
-    Where members are interchangeable (`x` and `d` of `sorting`, else None), what represents a target is visited for it.
+    With symmetry reduction (`x` and `d` of `sorting`, else None), each successor is replaced by its canonical
+    representative. `met` counts every transition, `counts` those that are followed.
 
-    It is counted how often each transition was met, and how often it was followed. False where something is not known
-    of the row that comes next: of that, nothing was stored.
+    Returns:
+        False if the next row needs something not learned yet, or more room; nothing of that row is then stored.
     """
     kept = state[KEPT]
     bits = np.uint32(bits_for(len(table)))
@@ -294,7 +305,7 @@ def expand_reduced(
                 known = False
         for k in range(count if known else 0):
             if onward == EVERYBODY or has(r.inside, 0, r.whose[k]):
-                if x is None:  # a call hands over all of `Members`
+                if x is None:  # a call would pass all of `Members`
                     known = known and make(m, r, f, here, batch, k, state)
                 else:
                     known = known and make_representative(m, r, x, d, f, here, batch, k, state)
@@ -311,7 +322,7 @@ def expand_reduced(
                 slot, number = -number - 1, np.int64(state[SIZE])
                 entry = entry_of(batch.hashes[k], number, bits)
                 add_row(words, origins, table, slot, entry, batch.kept, k, row, state)
-                if number == state[SIZE]:  # it was left out
+                if number == state[SIZE]:  # the limit left it out
                     continue
                 agent = np.int64(r.part[r.step_actor[step]]) // KINDS
                 trails.movers[number] = agent + 1 if agent < r.agents else 0

@@ -1,4 +1,4 @@
-"""Growing arrays, as the compiled loops see them."""
+"""Growing arrays for the compiled loops."""
 
 from typing import Any
 
@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 
 class Growing:
-    """A one-dimensional array with room to spare.
+    """A one-dimensional array with spare capacity.
 
     Attributes:
-        room: The array with its room; what lies beyond `size` means nothing.
-        size: How much of it is used.
-        shared: Whether other threads may read it while it grows: then it grows by being copied.
+        room: The array with its spare capacity; elements from `size` on are meaningless.
+        size: The number of elements in use.
+        shared: Whether other threads read it while it grows. Then growing copies it.
     """
 
     __slots__ = ("room", "shared", "size")
@@ -24,7 +24,7 @@ class Growing:
 
     @property
     def used(self) -> NDArray[Any]:
-        """What is used of it, as a view."""
+        """The elements in use, as a view."""
         return self.room[: self.size]
 
     def append(self, *values: int) -> int:
@@ -36,7 +36,7 @@ class Growing:
         return first
 
     def extend(self, count: int, value: int = 0) -> int:
-        """Append a number so many times and return the first index."""
+        """Append a value `count` times and return the index of the first."""
         self.reserve(count)
         first = self.size
         self.room[first : first + count] = value
@@ -44,7 +44,7 @@ class Growing:
         return first
 
     def reserve(self, count: int) -> None:
-        """Make room for so many more; a large array grows in place where the system can move its pages."""
+        """Reserve capacity for `count` more; a large array grows in place where the system can move its pages."""
         wanted = self.size + count
         if wanted > len(self.room):
             more = len(self.room) // (2 if len(self.room) < 1 << 20 else 8)

@@ -1,7 +1,7 @@
-"""The bits of words, as loops ask for them."""
+"""Bit operations on words, for the compiled loops."""
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# numba types these functions; mypy would read their integers as Python's
 
 import numpy as np
 
@@ -20,7 +20,7 @@ _PAIRS, _FOURS, _BYTES, _SUM = (
 
 @njit(cache=True, inline="always")
 def ones_in(word: np.uint64) -> int:
-    """Return how many bits of a word are set."""
+    """Return the number of set bits in a word."""
     word -= (word >> _ONE) & _PAIRS
     word = (word & _FOURS) + ((word >> np.uint64(2)) & _FOURS)
     word = (word + (word >> np.uint64(4))) & _BYTES
@@ -29,23 +29,23 @@ def ones_in(word: np.uint64) -> int:
 
 @njit(cache=True, inline="always")
 def lowest(word: np.uint64) -> int:
-    """Return which of the bits of a word that are set is the lowest."""
+    """Return the position of the lowest set bit of a word."""
     return ones_in((word & (~word + _ONE)) - _ONE)
 
 
 @njit(cache=True, inline="always")
 def has(words: Words, begin: int, bit: int) -> bool:
-    """Tell whether a bit is set of the words that begin there."""
+    """Return whether a bit is set in the bit set that begins at `begin`."""
     return bool((words[begin + (bit >> 6)] >> np.uint64(bit & 63)) & _ONE)
 
 
 @njit(cache=True, inline="always")
 def add(words: Words, begin: int, bit: int) -> None:
-    """Set a bit of the words that begin there."""
+    """Set a bit in the bit set that begins at `begin`."""
     words[begin + (bit >> 6)] |= _ONE << np.uint64(bit & 63)
 
 
 @njit(cache=True, inline="always")
 def remove(words: Words, begin: int, bit: int) -> None:
-    """Clear a bit of the words that begin there."""
+    """Clear a bit in the bit set that begins at `begin`."""
     words[begin + (bit >> 6)] &= ~(_ONE << np.uint64(bit & 63))

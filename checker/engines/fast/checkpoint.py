@@ -1,8 +1,7 @@
 """Checkpoints: the state from which an exploration continues after its process was killed.
 
-Rows, origins and counts are saved as they are. What was learned is not: it is learned again from the rows at which it
-was learned, in the same order, so that nothing in a checkpoint is ever evaluated. A digest of all columns tells whether
-that came to the same.
+A checkpoint stores rows, origins and counts. It stores no decision tree: the trees are learned again from the same rows
+in the same order, so nothing in a checkpoint is ever evaluated. A digest of all columns verifies the result.
 """
 
 import math
@@ -26,10 +25,10 @@ from semantics.state.canonical import canonical
 
 SCHEMA = "bigactors.checkpoint/5"
 KEPT = (EXPANDED, SIZE, CUT, CROWDS)
-"""What of the loops' state goes on; the rest follows from the mission."""
+"""The entries of the loops' state in a checkpoint; the others follow from the mission."""
 
 RECOUNTED = 1 << 22
-"""Of how many rows the transitions are taken once more: some seconds' work."""
+"""The number of rows for which a resumed exploration recomputes transitions: some seconds' work."""
 
 KINDS: Final[Kinds] = {
     "rows": np.uint64,
@@ -45,13 +44,13 @@ KINDS: Final[Kinds] = {
 
 @dataclass(frozen=True, slots=True)
 class Journey:
-    """How far the exploration had come.
+    """The progress of an exploration.
 
     Attributes:
-        depth: The distance of what is being expanded.
-        layer_end: Where that layer ends.
-        seconds: How long it took.
-        layers: How large each layer is, up to that one.
+        depth: The distance of the layer that is being expanded.
+        layer_end: The first row after that layer.
+        seconds: The time taken so far.
+        layers: The size of each layer, up to that one.
     """
 
     depth: int
@@ -61,22 +60,22 @@ class Journey:
 
     @property
     def is_sound(self) -> bool:
-        """Tell whether its numbers fit together."""
+        """Whether the numbers are consistent."""
         sizes = (*self.layers, self.depth, self.layer_end)
         whole = all(type(each) is int and each >= 0 for each in sizes) and is_time(self.seconds)
         return whole and len(self.layers) == self.depth + 1 and sum(self.layers) == self.layer_end
 
 
 def is_time(seconds: object) -> bool:
-    """Tell whether something is a number of seconds."""
+    """Return whether a value is a number of seconds."""
     return type(seconds) in {int, float} and 0 <= seconds < math.inf  # type: ignore[operator]  # a number
 
 
 def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
-    """Write a checkpoint in the place of the one before: what is there is always whole.
+    """Write a checkpoint; it replaces the previous one atomically.
 
     Raises:
-        OSError: It can't be written there.
+        OSError: The file can't be written.
     """
     columns = space.learner.columns.all
     head = {
@@ -103,7 +102,7 @@ def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
 
 
 def resume(space: Space, digest: str, path: Path) -> Journey:
-    """Let a new space go on where a checkpoint was written.
+    """Continue in a new space from a checkpoint.
 
     Raises:
         CheckpointError: It is damaged, or of another mission, variation, limit or version.
@@ -125,7 +124,7 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
             raise ValueError("some row was reached from a later one")
         space.restore(where, rows, size, learned)
         _check_counts(space, arrays["counts"], arrays["state"])
-        if space.choosing is None and space.compact is None:
+        if space.choosing is None:
             _recount(space, arrays["counts"], arrays["state"])
         space.counts.used[: len(arrays["counts"])] = arrays["counts"]
         space.state[list(KEPT)] = arrays["state"]
@@ -137,7 +136,7 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
 
 
 def _check(arrays: dict[str, NDArray[Any]], journey: Journey, limit: int) -> None:
-    """Hold what is read of a search to what any search keeps; raises ValueError."""
+    """Raise ValueError unless state and layers satisfy the invariants of a search."""
     expanded, size, cut, crowded = map(int, arrays["state"])
     if not journey.is_sound:
         raise ValueError("its layers and rows do not fit together")
@@ -149,7 +148,7 @@ def _check(arrays: dict[str, NDArray[Any]], journey: Journey, limit: int) -> Non
 
 
 def _check_counts(space: Space, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
-    """Hold counts to what they may be: each row takes a transition once at the most; raises ValueError."""
+    """Raise ValueError unless the counts are possible: a row takes each transition at most once."""
     expanded, size = int(state[0]), int(state[1])
     if len(counts) != len(space.learner.leaves.rule) or np.any(counts < 0) or np.any(counts > expanded):
         raise ValueError("its transitions were not taken so often")
@@ -158,10 +157,10 @@ def _check_counts(space: Space, counts: NDArray[np.int64], state: NDArray[np.int
 
 
 def _recount(space: Space, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
-    """Take the transitions of rows that were expanded once more, and hold counts and rows to them; raises ValueError.
+    """Recompute the transitions of expanded rows; raise ValueError if counts or rows differ.
 
-    What was learned of them may have been forgotten since, so transitions are compared by what they are called. Of many
-    rows the first and the last are taken: transitions were taken at least as often.
+    A transition may have been forgotten and learned again under another number, so transitions are compared by label.
+    In a large space only the first and the last rows are recomputed; the counts must then be at least as large.
     """
     expanded, size, cut = map(int, state[:3])
     half = RECOUNTED // 2
@@ -183,7 +182,7 @@ def _recount(space: Space, counts: NDArray[np.int64], state: NDArray[np.int64]) 
 
 
 def _by_label(space: Space, counts: Mapping[int, int]) -> Counter[tuple[int, str]]:
-    """Return how often transitions were taken, by their rules and labels."""
+    """Return the number of times that transitions were taken, by rule and label."""
     rules, steps = space.learner.leaves.rule.room, space.learner.steps
     found = Counter[tuple[int, str]]()
     for step, count in counts.items():

@@ -1,8 +1,8 @@
 """Columns: the cells of configurations as small integers, packed into words of 64 bits.
 
-Each cell has a column, and each observation that a cell's value holds has one more for each mobile name. The values
-that a column was found to take are interned in the order in which they were met; as many bits are set apart for it as
-they need. Growing beyond them asks for a new packing.
+Each cell has a column. Each observation within a cell's value has one more column for each mobile name. The values of a
+column are interned in the order of their first occurrence, and the column gets as many bits as their codes need. A
+column that outgrows its bits requires a new packing.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
@@ -23,28 +23,28 @@ WORD = 64
 
 class _Absent:
     def __reduce__(self) -> str:
-        return "ABSENT"  # there is one in each process
+        return "ABSENT"  # one instance in each process
 
     def __repr__(self) -> str:
         return "absent"
 
 
 ABSENT = _Absent()
-"""What a column holds where the configuration has no such cell (an agent that was not spawned yet)."""
+"""The value of a column where the configuration lacks the cell (an agent not spawned yet)."""
 
 Place = tuple[Cell, int, Name] | tuple[Cell]
-"""What a column is of: a cell's skeleton, or what the hole of that number says of a name."""
+"""The subject of a column: the skeleton of a cell, or the fact about a name in one of its holes."""
 
 
 @dataclass(slots=True)
 class Growth:
-    """Counts how many times columns were made, or took a bit more."""
+    """A counter of new columns and of columns that need one more bit."""
 
     times: int = 0
 
 
 class Column:
-    """The values that a column takes, by code; what is said of one name has the same codes in every column."""
+    """The values of a column, by code; all columns of facts about one name share their codes."""
 
     __slots__ = ("codes", "growth", "place", "values")
 
@@ -55,36 +55,32 @@ class Column:
         self.codes: dict[Any, int] = {first: 0} if alike is None else alike.codes
 
     def value(self, code: int) -> Any:
-        """Return what a rule reads, None where there is no such cell."""
+        """Return the value that a rule reads; None if there is no such cell."""
         value = self.values[code]
         return None if value is ABSENT else value
 
-    def code_of(self, value: Any) -> int | None:
-        """Return the code of what a rule reads, None where it was never met."""
-        return self.codes.get(ABSENT if value is None else value)
-
     def code(self, value: Any) -> int:
-        """Return the code of a value, a new one where it was never met."""
+        """Return the code of a value, adding it if it is new."""
         known = self.codes.get(value)
         if known is None:
             known = self.codes[value] = len(self.values)
             self.values.append(value)
-            if known & (known - 1) == 0:  # the codes before it had a bit less
+            if known & (known - 1) == 0:  # the previous codes need one bit fewer
                 self.growth.times += 1
         return known
 
 
 Writes = list[tuple[int, int]]
-"""Columns with the codes that they get."""
+"""Columns with their new codes."""
 
 
 class Columns:
     """All columns of an exploration.
 
     Attributes:
-        mobile: The names that an observation has columns for.
-        apart: The names about which a rule's conclusion is worked out apart: those, and agents.
-        growth: How many times it grew; what depends on the columns' bits alone stays as it is until then.
+        mobile: The names for which an observation has columns.
+        apart: The names for which the parts of a conclusion are learned separately: the mobile names and agents.
+        growth: The number of changes to the columns' widths.
     """
 
     def __init__(self, mobile: frozenset[Name], agents: frozenset[Name] = frozenset()) -> None:
@@ -101,14 +97,14 @@ class Columns:
         return len(self.all)
 
     def number(self, place: Place) -> int:
-        """Return the number of a column; one that is new holds *absent*, or nothing seen, everywhere so far."""
+        """Return the number of a column; a new column holds *absent*, or nothing seen, in all rows so far."""
         found = self.numbers.get(place)
         if found is None:
             found = self._add(place, ABSENT)
         return found
 
     def asked(self, ask: Ask) -> int:
-        """Return the number of the column that a question is put to."""
+        """Return the number of the column that a question reads."""
         return self.number((ask.cell,) if ask.hole is None else (ask.cell, *ask.hole))
 
     def _add(self, place: Place, first: Any) -> int:
@@ -120,11 +116,14 @@ class Columns:
 
     @property
     def sizes(self) -> list[int]:
-        """How many values each column takes so far."""
+        """The number of values of each column so far."""
         return [len(column.values) for column in self.all]
 
     def room(self, varying: Set[Cell]) -> list[int]:
-        """Return for how many values each column is given bits: what varies for as many as the widest of its kind."""
+        """Return the number of values for which each column gets bits.
+
+        A varying column gets as many as the widest column of its kind.
+        """
         kinds = [(column.place[0][0], len(column.place)) for column in self.all]
         widest: dict[tuple[str, int], int] = {}
         for kind, size in zip(kinds, self.sizes, strict=True):
@@ -135,13 +134,13 @@ class Columns:
         ]
 
     def start(self, cell: Cell, value: Any) -> None:
-        """Make the columns of a cell that every configuration has, beginning with its first value."""
+        """Create the columns of a cell that every configuration has, with its initial value."""
         skeleton, families = taken_apart(value, self.mobile)
         self._add((cell,), skeleton)
         self.dig(cell, len(families))
 
     def dig(self, cell: Cell, count: int) -> bool:
-        """Make the columns of a cell's first holes; tell whether there were fewer before."""
+        """Create the columns of a cell's first `count` holes; return whether some were missing."""
         before = self.holes.get(cell, 0)
         for number in range(before, count):
             for name in self.names:
@@ -150,7 +149,7 @@ class Columns:
         return before < count
 
     def of_hole(self, cell: Cell, number: int) -> list[tuple[Name, int]]:
-        """Return the column of each mobile name in one hole of a cell."""
+        """Return each mobile name with its column, for one hole of a cell."""
         return [(name, self.numbers[cell, number, name]) for name in self.names]
 
     def cells(self) -> Iterator[tuple[Cell, int]]:
@@ -160,7 +159,7 @@ class Columns:
     # --- whole configurations -----------------------------------------------------------------------------------
 
     def codes(self, row: Row) -> list[int]:
-        """Return the code of each column for a row; columns and codes are made where they are missing."""
+        """Return the code of each column for a row, creating missing columns and codes."""
         found: dict[int, int] = {}
         for cell, value in row.items():
             skeleton, families = taken_apart(value, self.mobile)
@@ -175,14 +174,14 @@ class Columns:
         return [found.get(number, 0) for number in range(len(self.all))]
 
     def row(self, codes: Iterable[int]) -> Row:
-        """Return the row that codes stand for."""
+        """Return the row of a sequence of codes."""
         given = list(codes)
         cells = ((cell, self.all[number].values[given[number]]) for cell, number in self.cells())
         found = dict(enumerate(given))
         return Row.of({c: self.whole(c, value, found) for c, value in cells if value is not ABSENT})
 
     def whole(self, cell: Cell, skeleton: Any, codes: Mapping[int, int]) -> Any:
-        """Return the value of a cell by the codes of its holes' columns; those that are not given are the first."""
+        """Return the value of a cell from its skeleton and the codes of its holes' columns; a missing code is 0."""
         if not self.holes.get(cell):
             return skeleton
 
@@ -194,17 +193,17 @@ class Columns:
         return put_together(skeleton, family_at)
 
     def holes_of(self, number: int, code: int) -> tuple[Hole, ...]:
-        """Return the holes of a skeleton by its column and code."""
+        """Return the holes of a skeleton, given its column and code."""
         return tuple(holes(self.all[number].values[code]))
 
 
 @dataclass(frozen=True, slots=True)
 class Packing:
-    """Where each column stands in a row of so many words.
+    """The positions of all columns in a row of `words` words.
 
     Attributes:
-        words: How many words a row has.
-        columns: For each column three numbers: its word, its shift there, and the mask of its unshifted code.
+        words: The number of words of a row.
+        columns: Three numbers for each column: its word, its shift within the word, and the mask of its unshifted code.
     """
 
     words: int
@@ -222,11 +221,11 @@ class Packing:
 
     @property
     def mask(self) -> NDArray[np.uint64]:
-        """The mask of each column's code, unshifted."""
+        """The mask of each column's unshifted code."""
         return self.columns[2::3]
 
     def code(self, words: Sequence[int], column: int) -> int:
-        """Return the code of one column in a row; of one that was made since, its first."""
+        """Return the code of a column in a row; 0 for a column newer than the packing."""
         word, shift, mask = self.columns[3 * column : 3 * column + 3].tolist() or (0, 0, 0)
         return words[word] >> shift & mask
 
@@ -236,12 +235,12 @@ class Packing:
         return found
 
     def holds(self, sizes: Sequence[int]) -> bool:
-        """Tell whether every column has bits for as many values."""
+        """Return whether every column has enough bits for `sizes` values."""
         return bool(np.all(np.array(sizes, np.uint64) - np.uint64(1) <= self.mask))
 
     @property
     def is_sound(self) -> bool:
-        """Tell whether columns stand within words, and no two in each other's bits."""
+        """Whether the columns lie within the words and no two overlap."""
         if type(self.words) is not int or self.words < 1 or len(self.columns) % 3:
             return False
         taken = [0] * min(self.words, len(self.mask) or 1)
@@ -255,7 +254,7 @@ class Packing:
         return len(taken) == self.words
 
     def extended(self, sizes: Sequence[int]) -> "Packing":
-        """Return the packing with the columns that are new: as long as they have one value, they take no bits."""
+        """Return the packing with the new columns added; they have one value so far, hence no bits."""
         missing = len(sizes) - len(self.mask)
         if not missing:
             return self
@@ -263,14 +262,14 @@ class Packing:
 
 
 def packing(sizes: Sequence[int], words: int = 1) -> Packing:
-    """Pack columns of so many values each: the widest first, each into the first word that has room for it.
+    """Pack columns of the given sizes: the widest first, each into the first word with enough free bits.
 
-    A row takes at least so many words. What is left of a word is spread over its columns, so that they may grow.
+    A row has at least `words` words. The spare bits of a word are distributed among its columns, so that they may grow.
     """
     bits = bits_of(sizes)
     rows: list[list[int]] = [[] for _ in range(words)]
     room = [WORD] * words
-    full = 0  # how many of the first words are
+    full = 0  # the number of leading words that are full
     for number in sorted(np.flatnonzero(bits).tolist(), key=lambda n: -bits[n]):
         at = next((word for word in range(full, len(room)) if room[word] >= bits[number]), len(room))
         if at == len(room):
@@ -284,7 +283,7 @@ def packing(sizes: Sequence[int], words: int = 1) -> Packing:
 
 
 def packing_in_order(sizes: Sequence[int], order: Iterable[int], words: int = 1) -> Packing:
-    """Pack columns in some order, one behind another; the rest is as in `packing`."""
+    """Pack columns one after another in a given order; otherwise as in `packing`."""
     bits = bits_of(sizes)
     rows: list[list[int]] = [[]]
     room = WORD
@@ -299,12 +298,12 @@ def packing_in_order(sizes: Sequence[int], order: Iterable[int], words: int = 1)
 
 
 def bits_of(sizes: Sequence[int]) -> list[int]:
-    """Return how many bits each column takes that has so many values."""
+    """Return the number of bits of a column of each size."""
     return [max(size - 1, 0).bit_length() for size in sizes]
 
 
 def spread(rows: Sequence[Sequence[int]], bits: Sequence[int]) -> Packing:
-    """Return the packing of columns with so many bits, given which stand in each word, with its spare bits spread."""
+    """Return the packing for a list of columns per word, with the spare bits of each word distributed among them."""
     columns = [(0, 0, 0)] * len(bits)
     for word, numbers in enumerate(rows):
         free, shift = WORD - sum(bits[number] for number in numbers), 0
@@ -317,12 +316,12 @@ def spread(rows: Sequence[Sequence[int]], bits: Sequence[int]) -> Packing:
 
 
 def shifts(old: Packing, new: Packing) -> NDArray[np.uint64]:
-    """Return how the bits of a row move from one packing to another: five numbers for all that move alike.
+    """Return the moves of bits from one packing to another: five numbers for all columns that move alike.
 
-    These are the old word, the new word, the mask of the bits in the old word, and how far they are shifted left, then
-    right.
+    The numbers are the old word, the new word, the mask of the bits in the old word, the left shift and the right
+    shift.
     """
-    moved = np.flatnonzero(old.mask)  # columns that were made since have no bits to move
+    moved = np.flatnonzero(old.mask)  # columns newer than the old packing have no bits to move
     far = new.shift[moved].astype(np.int64) - old.shift[moved].astype(np.int64)
     ways = np.stack([old.word[moved], new.word[moved], far], axis=1)
     each, way = np.unique(ways, axis=0, return_inverse=True)

@@ -1,4 +1,4 @@
-"""What is told while numba compiles: once after an installation, since what is compiled is kept."""
+"""Progress reports during numba's compilation, which happens once after an installation: its results are cached."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,7 +14,7 @@ KIND = "numba:compile"
 
 
 class _Compiling(Listener):
-    """Counts functions and seconds; one function may be compiled while another one is."""
+    """A counter of compiled functions and of compile time; the compilation of one function may nest in another's."""
 
     def __init__(self, report: Reporter | None, uncounted: Uncounted) -> None:
         self.report, self.uncounted = report, uncounted
@@ -30,7 +30,7 @@ class _Compiling(Listener):
             self.report(Progress(0, 0, 0, 0, 0.0, compiling=self.functions))
 
     def on_end(self, event: Event) -> None:  # noqa: ARG002 - as numba calls it
-        """Nothing is told of the end: the next progress says that it goes on."""
+        """Report nothing at the end: the next progress report implies it."""
         self.depth -= 1
         if self.depth == 0:
             self.uncounted.seconds += monotonic() - self.began
@@ -38,9 +38,9 @@ class _Compiling(Listener):
 
 @contextmanager
 def compilation_uncounted(options: Options) -> Iterator[Options]:
-    """Report each function that numba compiles, and count its time to no limit of the options that are given back.
+    """Report each function that numba compiles, and exclude compile time from the limits of the returned options.
 
-    What numba has kept is loaded, and not reported.
+    Functions loaded from numba's cache are not reported.
     """
     uncounted = Uncounted()
     listener = _Compiling(options.report, uncounted)

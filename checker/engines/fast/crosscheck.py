@@ -12,15 +12,15 @@ from semantics.state.printing import print_configuration
 from semantics.successors import expand
 
 
-class Disagreement(Exception):  # what it is
-    """What was learned does not lead where the rules lead: a bug of ours."""
+class Disagreement(Exception):
+    """The learned successors differ from the interpreter's: a bug of this program."""
 
 
 def crosscheck(space: Space, count: int, reduce: Reduced | None = None) -> None:
-    """Compare what was learned with the rules on some configurations, and what is said of the rules with what they do.
+    """Compare learned successors, and the assumptions of reductions and race monitor, with the interpreter on a sample.
 
     Raises:
-        Disagreement: There is a difference; it says where.
+        Disagreement: The successors of some configuration differ; the message names it.
     """
     for number in sample(space.expanded, count):
         look()
@@ -31,14 +31,17 @@ def crosscheck(space: Space, count: int, reduce: Reduced | None = None) -> None:
 
 
 def compare(space: Space, number: int, reduce: Reduced | None = None) -> None:
-    """Compare the successors of one configuration, or what represents them, with how often and by which rule."""
+    """Compare the learned successors of one configuration with the interpreter's, by rule and number.
+
+    Under symmetry reduction, the interpreter's successors are first replaced by their representatives.
+    """
     c = space.configuration(number)
     learned: Counter[tuple[str, Configuration]] = Counter()
     left_out = 0
     for _, steps, targets in space.edges(range(number, number + 1)):
         for step, target in zip(steps, targets, strict=True):
             if target < 0:
-                left_out += 1  # beyond the limit of configurations, or put off
+                left_out += 1  # beyond the limit of configurations, or deferred by partial-order reduction
             else:
                 learned[space.learner.steps[int(step)].rule, space.configuration(int(target))] += 1
     represent = (lambda target: target) if reduce is None else reduce.representative

@@ -1,8 +1,8 @@
-"""Symmetry for the compiled loops: what columns say of interchangeable members, and where that is moved by an exchange.
+"""Symmetry tables for the compiled loops: the items of interchangeable members, and their images under exchanges.
 
-An *entry* is an item: the code of a column, or the codes of all columns of a cell whose observations an exchange may
-put into another order. Its *shape* is the item about the first members of their classes: alike entries have one shape,
-so a *move* (a shape and the members that it is to be about) is worked out once for all of them.
+An *entry* is an item: the code of one column, or the codes of all columns of a cell if an exchange may reorder its
+observations. The *shape* of an entry is the item with its members replaced by the first ones of their classes. Entries
+of one shape share their *moves*: a move is a shape with the members that replace those, and is learned once.
 """
 
 from collections.abc import Sequence
@@ -35,10 +35,10 @@ from semantics.state.cells import AGENTS, NAMES
 
 
 class Exchanging:
-    """What the loops know of a mission's interchangeable members; it grows as more is learned.
+    """The symmetry tables of a mission; they grow with learning.
 
     Attributes:
-        exchanges: That, as the loops see it.
+        exchanges: The tables in the form that the loops read.
     """
 
     exchanges: Exchanges
@@ -55,7 +55,7 @@ class Exchanging:
         self.shape, self.mentions_from = Growing(np.int32), Growing(np.int32)
         self.who, self.roles, self.own = Growing(np.int32), Growing(np.uint64), Growing(np.uint64)
         self.writes_from, self.writes, self.numbers = Growing(np.int32), Growing(np.int32), Growing(np.uint64)
-        self.shape.append(UNKNOWN, UNKNOWN)  # of UNKNOWN and FIXED
+        self.shape.append(UNKNOWN, UNKNOWN)  # for UNKNOWN and FIXED
         self.mentions_from.append(0, 0, 0)
         self.own.append(0, 0)
         self.writes_from.append(0, 0)
@@ -65,7 +65,7 @@ class Exchanging:
         self.keys, self.values = np.zeros(1024, np.uint64), np.zeros(1024, np.int32)
 
     def represent(self, batch: Batch, state: State) -> bool:
-        """Put representatives in the place of successors; False at what is not known, as if no more were gathered."""
+        """Replace successors by representatives; at one still unknown, drop its row's successors and return False."""
         assert self.where is not None
         gathered = int(state[GATHERED])
         done = represent_all(self.exchanges, self.desk, batch, gathered, self.where.columns, self.where.words)
@@ -78,10 +78,10 @@ class Exchanging:
             )
         return bool(done == gathered)
 
-    # --- what the loops see ---------------------------------------------------------------------------------------
+    # --- tables for the loops -----------------------------------------------------------------------------------------
 
     def see(self, where: Packing) -> None:
-        """Take in what was learned since."""
+        """Rebuild the loops' tables from everything learned so far."""
         if where is not self.where:
             self._take_columns(where)
         self._enter_ways()
@@ -104,7 +104,7 @@ class Exchanging:
         )
 
     def _take_columns(self, where: Packing) -> None:
-        """Note which columns have bits, and make room for the entries of their codes."""
+        """Collect the columns that have bits, and allocate the entries of their codes."""
         self.where, columns = where, self.learner.columns
         self.entries += [{} for _ in range(len(columns) - len(self.entries))]
         places = [column.place for column in columns.all]
@@ -149,10 +149,10 @@ class Exchanging:
         if code < widths[number]:
             entries[begins[number] + code] = entry
         else:
-            self.where = None  # there is no room for it
+            self.where = None  # the table of entries is too small
 
     def _enter_ways(self) -> None:
-        """Let the loops know the ways that are new; a table twice as large is filled anew."""
+        """Add new edges of the trie to the loops' hash table; a table that grows is filled from scratch."""
         new = list(self.ways.items())[self.entered :] if self.entered < len(self.ways) else []
         if 2 * len(self.ways) > len(self.keys):
             room = 4 * len(self.keys)
@@ -170,7 +170,7 @@ class Exchanging:
     # --- learning -------------------------------------------------------------------------------------------------
 
     def learn(self) -> None:
-        """Learn what was not known where the loop stopped."""
+        """Learn the entry or move at which the loop stopped."""
         unknown = self.desk.unknown.tolist()
         what, listed = unknown[WHAT], unknown[LISTED : LISTED + unknown[COUNT]]
         if unknown[KIND] == ENTRY:
@@ -181,7 +181,7 @@ class Exchanging:
             self._move(int(self.shape.room[what]), listed)
 
     def _learn_codes(self, number: int, code: int) -> None:
-        """Learn what a code says, and with it all new codes of skeletons: few, of which most are met."""
+        """Learn the entry of a code and of all new codes of skeletons: these are few, and most of them occur."""
         self._learn_code(number, code)
         for other, column in enumerate(self.learner.columns.all[: len(self.entries)]):
             if len(column.place) == 1:
@@ -212,7 +212,7 @@ class Exchanging:
         self.payload.room[node] = self._entry(place, value, self.items.roles(place, value))
 
     def _entry(self, place: Place, value: Any, roles: Roles) -> int:
-        """Return the number of a new entry; where it is about one member, all its moves are learned at once."""
+        """Return the number of a new entry; if it mentions at most one member, learn all its moves."""
         first, met = self.items.begins, [0] * len(self.items.classes)
         homes = []
         for member, _ in roles:
@@ -240,7 +240,7 @@ class Exchanging:
         return self.shape.append(shape)
 
     def _move(self, shape: int, members: Sequence[Member]) -> None:
-        """Learn what a shape is about other members."""
+        """Learn the image of a shape for other members."""
         (place, value), homes = self.homes[shape]
         exchange = self.items.exchanging(dict(zip(homes, members, strict=True)))
         place, value = self.items.renamed(exchange, place, value)
@@ -253,7 +253,7 @@ class Exchanging:
         self.writes_from.append(len(self.writes))
 
     def _codes(self, place: Place, value: Any) -> Writes:
-        """Return the codes of an item; cells that no rule has written so far vary from now on."""
+        """Return the columns and codes of an item; a cell that no rule has written so far becomes varying."""
         learner, cell = self.learner, place[0]
         columns = learner.columns
         if cell not in learner.varying:

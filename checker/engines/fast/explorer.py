@@ -1,4 +1,4 @@
-"""Explore with learned trees, up to the same bounds as the reference explorer."""
+"""The fast explorer's search: breadth-first over learned trees, with the reference explorer's bounds."""
 
 import errno
 import gc
@@ -28,20 +28,20 @@ if TYPE_CHECKING:
     from checker.engines.fast.partial_order import Choosing
 
 CHUNK = 1 << 15
-"""Configurations that are expanded between two looks at the clock."""
+"""Rows expanded between two checks of the clock."""
 
 OBJECTS_BETWEEN_COLLECTIONS = 200_000
-"""What is learned stays: Python's 700 make it look through all of that again and again, for a quarter of learning."""
+"""The threshold of garbage collection: scanning all learned data every 700 objects takes a quarter of learning time."""
 
 HOLDING = 0.0005
-"""Seconds after which a thread that runs rules lets another begin its next loop; Python's 5 ms are ten loops long."""
+"""The thread switch interval in seconds while rules run; Python's 5 ms are as long as ten loops."""
 
 EXPLORING = 0.5
-"""What part of the time is for exploring: to look at what was explored takes as long again."""
+"""The share of the time limit for exploration; inspecting the result takes as long again."""
 
 
 class Origins(Sequence[int]):
-    """For each configuration the one that it was first reached from."""
+    """The configuration from which each configuration was first reached."""
 
     def __init__(self, space: Space) -> None:
         self.space = space
@@ -62,7 +62,7 @@ class Origins(Sequence[int]):
 
 
 class Configurations(Sequence[Configuration]):
-    """The configurations of a space, each made anew where it is looked at."""
+    """The configurations of a space, each decoded at its access."""
 
     def __init__(self, space: Space) -> None:
         self.space = space
@@ -83,10 +83,10 @@ class Configurations(Sequence[Configuration]):
 
 
 def explore_fast(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
-    """Visit everything that is reachable, running the rules once for each way in which they look at cells.
+    """Explore all reachable configurations, running the rules once for each distinct sequence of answers.
 
     Raises:
-        CheckpointError: There is none to go on from, or it is of something else.
+        CheckpointError: The checkpoint to resume from is damaged, or of another mission or limit.
     """
     with compilation_uncounted(options) as counted, seldom_disturbed():
         found = _Explorer(initial, counted).run(inspect)
@@ -96,9 +96,9 @@ def explore_fast(initial: Configuration, inspect: tuple[Inspect, ...], options: 
 
 @contextmanager
 def seldom_disturbed() -> Iterator[None]:
-    """Let Python look for garbage, and let it change threads, as suits an exploration; after it as before."""
+    """Adapt garbage collection and thread switching to an exploration; restore them afterwards."""
     thresholds, interval = gc.get_threshold(), sys.getswitchinterval()
-    if thresholds[0]:  # else it never looks
+    if thresholds[0]:  # 0 disables collection
         gc.set_threshold(max(thresholds[0], OBJECTS_BETWEEN_COLLECTIONS), *thresholds[1:])
     sys.setswitchinterval(min(interval, HOLDING))
     try:
@@ -121,7 +121,6 @@ class _Explorer:
             limits.configurations,
             self.choosing(),
             self.exchanging(),
-            options.keeping.compact,
             options.threads or cores(),
         )
         self.space.left = self.left
@@ -132,26 +131,26 @@ class _Explorer:
         self.is_kept = False
 
     def choosing(self) -> "Choosing | None":
-        """Return what chooses the transitions that are followed, None where all are."""
+        """Return the chooser of ample sets; None without partial-order reduction."""
         ample = None if self.reduce is None else self.reduce.ample
         if ample is None:
             return None
-        from checker.engines.fast.partial_order import Choosing  # noqa: PLC0415  # compiled where something is reduced
+        from checker.engines.fast.partial_order import Choosing  # noqa: PLC0415  # compiled only for a reduction
 
         return Choosing(self.learner, ample)
 
     def exchanging(self) -> "Exchanging | None":
-        """Return what puts representatives in the place of configurations, None where all are visited."""
+        """Return the symmetry tables; None without symmetry reduction."""
         symmetry = None if self.reduce is None else self.reduce.symmetry
         if symmetry is None:
             return None
-        from checker.engines.fast.exchanging import Exchanging  # noqa: PLC0415  # compiled where something is exchanged
+        from checker.engines.fast.exchanging import Exchanging  # noqa: PLC0415  # compiled only for symmetry
 
         return Exchanging(self.learner, symmetry.items)
 
     @property
     def checkpoint(self) -> Path | None:
-        """Where the checkpoint is, if one is kept: the search for stale observations has one of its own."""
+        """The path of the checkpoint, None without a folder; the search for stale observations has its own file."""
         name = "monitored.checkpoint" if self.learner.setting.monitored else "exploration.checkpoint"
         return None if self.keeping.folder is None else Path(self.keeping.folder) / name
 
@@ -188,7 +187,7 @@ class _Explorer:
         )
 
     def visit(self, began: float) -> None:
-        """Explore until the end, or until a bound is met."""
+        """Explore until the end or until a bound is met."""
         try:
             self.visit_all(began)
         except BoundMet as met:
@@ -197,7 +196,7 @@ class _Explorer:
             self.bounds.append(self.end_of_room(error))
 
     def look_at(self, survey: GraphSurvey, inspect: tuple[Inspect, ...]) -> None:
-        """Look at what was explored, as long as there is time: what was not looked at to the end has found nothing."""
+        """Inspect the explored configurations within the time limit; an unfinished inspection yields no findings."""
         try:
             if self.keeping.doubted:
                 from checker.engines.fast.crosscheck import crosscheck  # noqa: PLC0415  # for --paranoid only
@@ -210,18 +209,18 @@ class _Explorer:
             self.bounds.append(self.end_of_room(error).met_in(Part.LOOKING))
 
     def end_of_room(self, error: OSError | MemoryError) -> Bound:
-        """Return which room has come to its end: the memory that the system gives, or that in files."""
+        """Return the bound for exhausted memory, or for exhausted room in files."""
         if isinstance(error, MemoryError) or error.errno == errno.ENOMEM:
             return Bound(Stop.NO_MEMORY)
         return Bound(Stop.NO_ROOM, (self.limits.spill or "memory", error.strerror))
 
     def limits_of_looking(self) -> Limits:
-        """Return the limits; memory that came to its end, with files or without, is enough to look at what is there."""
+        """Return the limits of inspection: without the memory limit if exploration met it or spilled to files."""
         full = self.limits.bound(Stop.MEMORY) in self.bounds or self.space.spilled
         return replace(self.limits, memory=None) if full else self.limits
 
     def keep(self, seconds: float) -> None:
-        """Write a checkpoint, if one is wanted; where it can't be written, the exploration ends with what it has."""
+        """Write a checkpoint if one is due; a write that fails ends the exploration with a bound."""
         path = self.checkpoint
         if path is None or self.is_kept:
             return
@@ -234,23 +233,13 @@ class _Explorer:
         self.is_kept = self.limits.interruption.is_due()
 
     def met(self) -> list[Bound]:
-        """Return the bounds that left something out."""
+        """Return the bounds that left configurations out."""
         limits, space = self.limits, self.space
         met = {
             Stop.CONFIGURATIONS: space.was_cut and limits.configurations is not None,
             Stop.PENDING: space.is_crowded,
         }
-        return [limits.bound(stop) for stop, is_met in met.items() if is_met] + self.omitted()
-
-    def omitted(self) -> list[Bound]:
-        """Return how likely something was left out by hash compaction."""
-        bits = self.space.compact
-        if bits is None:
-            return []
-        from checker.engines.fast.compacting import omission  # noqa: PLC0415  # compiled where it is wanted
-
-        chance = omission(self.space.probed, self.space.size, bits)
-        return [Bound(Stop.COMPACTION, (bits, chance))]
+        return [limits.bound(stop) for stop, is_met in met.items() if is_met]
 
     def visit_all(self, started: float) -> None:
         reported = kept = time.monotonic()
@@ -267,7 +256,7 @@ class _Explorer:
                 kept = time.monotonic()
 
     def advance(self) -> None:
-        """Expand some rows of a layer; begin the next one where it ends."""
+        """Expand some rows of a layer; begin the next layer at its end."""
         space, end = self.space, self.journey.layer_end
         space.advance(min(space.expanded + CHUNK, end), end)
         if space.expanded == end and space.size > end:
@@ -275,7 +264,7 @@ class _Explorer:
             self.journey = Journey(self.journey.depth + 1, space.size, self.journey.seconds)
 
     def is_over(self, seconds: float) -> bool:
-        """Tell whether time or memory has come to its end, or the user wants the end, and note it."""
+        """Return whether time, memory or the user ends the exploration, and record the bound."""
         if (end := self.limits.end(seconds, self.exploring)) is not None:
             self.bounds.append(end)
         elif is_full(self.limits) and not self.makes_room():
@@ -283,12 +272,12 @@ class _Explorer:
         return bool(self.bounds)
 
     def left(self) -> float:
-        """Return how many bytes of memory may be taken yet: any number, as long as rows may go over to files."""
+        """Return the bytes of memory that are left; infinity as long as rows may still spill to files."""
         may_spill = self.limits.spill is not None and not self.space.spilled
         return math.inf if may_spill else memory_left(self.limits)
 
     def makes_room(self) -> bool:
-        """Let rows go over to files, if that is wanted and not done yet; tell whether it made room."""
+        """Spill rows to files if that is enabled and not done yet; return whether memory is free again."""
         if self.limits.spill is None or self.space.spilled:
             return False
         self.space.spill(Path(self.limits.spill))

@@ -1,16 +1,18 @@
-"""Wide rows folded: of each row two words are kept, however many words it has.
+"""Tree compression: a row of any width is stored in two words.
 
-A row is cut into pieces of as many words each, and pieces are interned: what two rows have in common they share. A row
-of up to four pieces is kept as their numbers; of one with up to sixteen pieces four numbers are interned again, as a
-node, and the row is kept as the numbers of its nodes. Each node has every fourth piece of the row: what varies much
-stands side by side, and is so divided among all nodes. Rows are equal exactly if these numbers are. A successor differs
-from its origin in a piece or two, so only these are looked up, and the nodes above them. This is the collapse of
-Holzmann (1997) in a tree, as Laarman, van de Pol and Weber (2011) fold rows, but four at a time: two look-ups instead
-of one for each level of a binary tree.
+A row is cut into pieces of equal width, and equal pieces are stored once. A row of four pieces is stored as their four
+numbers. A row of sixteen pieces has four nodes of four piece numbers each; nodes are interned too, and the row is
+stored as its four node numbers. Two rows are equal exactly if their numbers are.
+
+A node holds every fourth piece. Columns that change often are adjacent in a row, so they are spread over all nodes. A
+successor differs from its origin in one or two pieces, so only these and their nodes are looked up.
+
+The collapse compression is Holzmann's (1997); trees are from Laarman, van de Pol and Weber (2011), who build them
+binary. Nodes of four need two look-ups instead of one for each level of a binary tree.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# numba types these functions; mypy would read their integers as Python's
 
 from threading import local
 from typing import Any, NamedTuple
@@ -30,43 +32,42 @@ from checker.engines.fast.table import (
     most_in,
     rebuild,
     slots_for,
-    write_numbers,
 )
 
 Numbers = NDArray[np.int64]
 
 FOUR = 4
-"""Numbers of a node or of a row."""
+"""Numbers in a node or a compressed row."""
 
 PAIR = 2
-"""Words in which these are kept."""
+"""Words that hold these four numbers."""
 
 SHALLOW = 8
-"""How many words rows have at most that are cut into four pieces instead of sixteen."""
+"""The greatest width in words of a row that has four pieces; wider rows have sixteen."""
 
 COUNT, MOST, BITS, WIDE = range(4)
 FIRST = 1 << 10
 
 UNMET, NO_ROOM = -1, -2
-"""What stands for the number of a piece or node that was never met, where none is added, and where no room is left."""
+"""Codes instead of a number: unknown piece or node that was not added; no room left for a new one."""
 
 MEMORY = 1 << 15
-"""What a transition made of a piece is remembered for so many of both at the most."""
+"""The number of entries in the cache of changed pieces, keyed by transition and piece."""
 
 NOWHERE = np.uint64(0xFFFFFFFFFFFFFFFF)
-"""What is kept of a row of which some piece was never met, where none is added: of no row it is kept."""
+"""The stored word of a row with an unknown piece or node; no visited row has it."""
 
 _HALF, _LOW = np.uint64(32), np.uint64(0xFFFFFFFF)
 _NONE = np.zeros(0, np.uint64)
 
 
 class Interned(NamedTuple):
-    """Pieces or nodes by number, as the loops see them.
+    """Interned pieces or nodes by number, for the compiled loops.
 
     Attributes:
         words: Their words.
-        index: Finds them, as the visited set finds rows.
-        counts: How many there are and may be, how many bits a number takes in the index, and how many words each has.
+        index: An open-addressing hash table from words to numbers, like the visited set.
+        counts: Their number, the greatest number, the bits of a number in the index, and the words of each.
     """
 
     words: Words
@@ -75,21 +76,21 @@ class Interned(NamedTuple):
 
 
 class Folded(NamedTuple):
-    """Pieces and nodes, and the row that one thread unfolded last, as the loops see them.
+    """The interned pieces and nodes, and the row that one thread unfolded last, for the compiled loops.
 
-    While a successor is made of it, the numbers of its own pieces stand in the place of the row's.
+    While a successor is built, `below` holds the successor's pieces instead of the row's.
 
     Attributes:
-        pieces, nodes: What is interned. A thread that only looks up has counts of its own: what was added since, and
-            may not be written to its end, it has never met.
-        deep: Whether there are nodes between pieces and rows: a number for a flag.
-        piece_of: For each word of a row in which piece it is.
-        begins: For each piece with which word it begins.
+        pieces, nodes: The interned values. A reading thread has its own counts, so it ignores later additions, which
+            may be incomplete.
+        deep: 1 if nodes stand between pieces and rows, else 0.
+        piece_of: The piece of each word of a row.
+        begins: The first word of each piece.
         whole: The words of the row.
         below, above: The numbers of its pieces, and of its nodes.
-        before, fresh: Room for numbers of pieces, and of nodes.
-        sought: Room for a piece or node that is looked up.
-        memory, results: What some transitions made of some pieces lately.
+        before, fresh: Scratch space for numbers of pieces, and of nodes.
+        sought: Scratch space for the piece or node of a look-up.
+        memory, results: A cache of changed pieces: its keys (transition and piece) and the resulting pieces.
     """
 
     pieces: Interned
@@ -109,11 +110,11 @@ class Folded(NamedTuple):
 
 @njit(cache=True, inline="always")
 def intern(i: Interned, words: Words, adding: bool) -> np.int64:
-    """Return the number of a piece or node; of one that was never met a new one, or less than 0 (see `UNMET`)."""
+    """Return the number of a piece or node, adding a new one if `adding`; a code below 0 on failure (see `UNMET`)."""
     width = i.counts[WIDE]
     mixed, bits = hashed(words, 0, width), np.uint32(i.counts[BITS])
     found = find(i.words, i.index, words, 0, mixed, width, bits)
-    if found >= i.counts[COUNT] or (found < 0 and not adding):  # another thread adds it just now
+    if found >= i.counts[COUNT] or (found < 0 and not adding):  # another thread is adding it
         found = np.int64(UNMET)
     elif found < 0 and i.counts[COUNT] == i.counts[MOST]:
         found = np.int64(NO_ROOM)
@@ -128,14 +129,14 @@ def intern(i: Interned, words: Words, adding: bool) -> np.int64:
 
 @njit(cache=True, inline="always")
 def number_in(words: Words, at: int, k: int) -> np.int64:
-    """Return one of the four numbers in the two words that begin there."""
+    """Return number `k` of the four in the two words that begin at `at`."""
     word = words[at + (k >> 1)]
     return np.int64(word & _LOW) if k & 1 else np.int64(word >> _HALF)
 
 
 @njit(cache=True, inline="always")
 def put_numbers(numbers: Numbers, begin: int, words: Words, at: int) -> None:
-    """Put four numbers, from one on, into two words."""
+    """Pack four numbers, from `begin` on, into two words."""
     for k in range(PAIR):
         high, low = np.uint64(numbers[begin + 2 * k]), np.uint64(numbers[begin + 2 * k + 1])
         words[at + k] = (high << _HALF) | low
@@ -143,7 +144,7 @@ def put_numbers(numbers: Numbers, begin: int, words: Words, at: int) -> None:
 
 @njit(cache=True, inline="always")
 def unfold_piece(f: Folded, piece: int, number: int) -> None:
-    """Write the words of a piece, if they are not there already."""
+    """Write the words of a piece, unless they are there already."""
     if f.below[piece] != number:
         f.below[piece] = number
         width, begin = f.pieces.counts[WIDE], f.begins[piece]
@@ -153,7 +154,7 @@ def unfold_piece(f: Folded, piece: int, number: int) -> None:
 
 @inner(cache=True)
 def unfold(f: Folded, rows: Words, row: int) -> None:
-    """Write the words of a row; what it shares with the row before stands there already."""
+    """Write the words of a row; the words that it shares with the previous row are there already."""
     for k in range(FOUR):
         number = number_in(rows, PAIR * row, k)
         if not f.deep:
@@ -166,7 +167,7 @@ def unfold(f: Folded, rows: Words, row: int) -> None:
 
 @njit(cache=True, inline="always")
 def put_piece(f: Folded, piece: int, number: int, touched: int) -> int:
-    """Let a piece of the successor be another; return which are its own, as bits."""
+    """Set a piece of the successor; return the set of pieces that it does not share with the row, as bits."""
     if not (touched >> piece) & 1:
         f.before[piece] = f.below[piece]
     f.below[piece] = number
@@ -175,7 +176,7 @@ def put_piece(f: Folded, piece: int, number: int, touched: int) -> int:
 
 @njit(cache=True, inline="always")
 def fold(f: Folded, touched: int, adding: bool, kept: Words, at: int) -> int:
-    """Write what is kept of the successor; return less than 0 where some piece or node of it is not there."""
+    """Write the compressed successor and restore the row's pieces; return less than 0 if a piece or node is unknown."""
     least = np.int64(0)
     for k in range(FOUR):
         group = (touched >> (FOUR * k)) & 15 if f.deep else np.int64(0)
@@ -197,13 +198,13 @@ def fold(f: Folded, touched: int, adding: bool, kept: Words, at: int) -> int:
 
 @njit(cache=True, inline="always")
 def leave_open(kept: Words, at: int, row: int, step: int) -> None:
-    """Note in the place of a successor of which something was never met how it is made: by which step of which row."""
+    """Mark a successor as incomplete: store its row and transition instead of its pieces."""
     kept[at], kept[at + 1] = NOWHERE, (np.uint64(step) << _HALF) | np.uint64(row)
 
 
 @njit(cache=True, inline="always")
 def step_left_open(kept: Words, at: int) -> int:
-    """Return the step by which a successor is yet to be made; less than 0 where it is made."""
+    """Return the transition of an incomplete successor; less than 0 for a complete one."""
     if kept[at] != NOWHERE or kept[at + 1] == NOWHERE:
         return np.int64(-1)
     return np.int64(kept[at + 1] >> _HALF)
@@ -211,7 +212,7 @@ def step_left_open(kept: Words, at: int) -> int:
 
 @inner(cache=True)
 def take(f: Folded, words: Words, begin: int, width: int, adding: bool) -> int:
-    """Take a successor whose words stand elsewhere; return which of its pieces differ from the row's, as bits."""
+    """Set the pieces of a successor given in plain words; return the pieces that differ from the row's, as bits."""
     touched, wide = np.int64(0), f.pieces.counts[WIDE]
     for first in range(0, width, wide):
         differs = False
@@ -225,7 +226,7 @@ def take(f: Folded, words: Words, begin: int, width: int, adding: bool) -> int:
 
 @njit(cache=True, inline="always")
 def seek_piece(f: Folded, piece: int) -> None:
-    """Copy the words of a piece of the successor to where what is looked up stands."""
+    """Copy the words of a piece of the successor to `sought`."""
     wide = f.pieces.counts[WIDE]
     begin = f.below[piece] * wide
     for k in range(wide):
@@ -234,7 +235,7 @@ def seek_piece(f: Folded, piece: int) -> None:
 
 @njit(cache=True, inline="always")
 def seek_piece_of_row(f: Folded, piece: int) -> None:
-    """Copy the words of a piece of the row that was unfolded to where what is looked up stands."""
+    """Copy the words of a piece of the unfolded row to `sought`."""
     begin = f.begins[piece]
     for k in range(f.pieces.counts[WIDE]):
         f.sought[k] = f.whole[begin + k]
@@ -242,7 +243,7 @@ def seek_piece_of_row(f: Folded, piece: int) -> None:
 
 @njit(cache=True, inline="always")
 def put_sought(f: Folded, piece: int, touched: int) -> int:
-    """Let a piece of the successor be what was sought, where that is not the row's; return which are its own."""
+    """Set a piece of the successor to `sought` unless it is the row's; return the successor's own pieces."""
     differs, begin = False, f.begins[piece]
     for k in range(f.pieces.counts[WIDE]):
         differs = differs or f.sought[k] != f.whole[begin + k]
@@ -251,7 +252,7 @@ def put_sought(f: Folded, piece: int, touched: int) -> int:
 
 @njit(cache=True)
 def fold_rows(f: Folded, words: Words, width: int, kept: Words, begin: int) -> int:
-    """Fold rows, from one on, and write what is kept of them; return up to which there was room."""
+    """Compress rows from number `begin` on; return the first one without room, or the number of rows."""
     count = len(kept) // PAIR
     for k in range(begin, count):
         if fold(f, take(f, words, k * width, width, True), True, kept, PAIR * k) == NO_ROOM:
@@ -262,7 +263,7 @@ def fold_rows(f: Folded, words: Words, width: int, kept: Words, begin: int) -> i
 
 @njit(cache=True)
 def unfold_rows(f: Folded, kept: Words, width: int, words: Words) -> None:
-    """Write the words of rows one after another."""
+    """Write the words of compressed rows one after another."""
     for k in range(len(kept) // PAIR):
         unfold(f, kept, k)
         for word in range(width):
@@ -271,7 +272,7 @@ def unfold_rows(f: Folded, kept: Words, width: int, words: Words) -> None:
 
 @njit(cache=True)
 def begin_with_zeros(f: Folded) -> None:
-    """Let the row that was unfolded last be one of zeros: its pieces have the number 0, and its nodes."""
+    """Let the row unfolded last be all zeros: all its pieces, and all its nodes, have number 0."""
     f.below[:] = intern(f.pieces, f.whole, True)
     put_numbers(f.below, 0, f.sought, 0)
     f.above[:] = intern(f.nodes, f.sought, True)
@@ -279,7 +280,7 @@ def begin_with_zeros(f: Folded) -> None:
 
 @njit(cache=True)
 def are_there(words: Words, count: int) -> bool:
-    """Tell whether all numbers in words are less than a count."""
+    """Return whether all numbers in the words are less than a count."""
     there = True
     for word in words:
         there = there and np.int64(word >> _HALF) < count and np.int64(word & _LOW) < count
@@ -287,10 +288,10 @@ def are_there(words: Words, count: int) -> bool:
 
 
 class Pool:
-    """Pieces, or nodes, of so many words each: those that are known, and room for more.
+    """A growing set of interned pieces, or of nodes.
 
     Attributes:
-        interned: As the loops see them; growing makes another one: don't keep it.
+        interned: The set in the form that the loops read. Growing replaces it: don't keep it.
     """
 
     __slots__ = ("_index", "_words", "interned")
@@ -309,28 +310,28 @@ class Pool:
 
     @property
     def width(self) -> int:
-        """How many words each has."""
+        """The number of words of each."""
         return int(self.interned.counts[WIDE])
 
     @property
     def words(self) -> Words:
-        """Their words."""
+        """The words of all."""
         return self.interned.words[: len(self) * self.width]
 
     @property
     def held(self) -> int:
-        """How many bytes they take."""
+        """The memory that they take, in bytes."""
         return self._words.held(len(self) * self.width) + self._index.room.nbytes
 
     def has_room(self, count: int) -> bool:
-        """Tell whether there is room for so many more."""
+        """Return whether there is room for `count` more."""
         return bool(len(self) + count <= self.interned.counts[MOST])
 
     def reserve(self, count: int) -> None:
-        """Make room for so many more.
+        """Make room for `count` more.
 
         Raises:
-            OSError: There is none.
+            OSError: Memory or the file has no room.
         """
         if not self.has_room(count):
             room = more(len(self._words.room) // self.width)
@@ -341,17 +342,15 @@ class Pool:
     def _rebuild(self, room: int) -> None:
         self._index = Pages(np.uint32, 1)
         self._index = Pages(np.uint32, slots_for(room))
-        bits = bits_for(len(self._index.room))
-        rebuild(self._words.room, len(self), self.width, self._index.room, write_numbers, bits, alone)
-        self.interned.counts[MOST], self.interned.counts[BITS] = (
-            min(room, most_in(len(self._index.room))),
-            bits,
-        )
+        rebuild(self._words.room, len(self), self.width, self._index.room, alone)
+        slots = len(self._index.room)
+        self.interned.counts[MOST] = min(room, most_in(slots))
+        self.interned.counts[BITS] = bits_for(slots)
         self.interned = self.interned._replace(words=self._words.room, index=self._index.room)
 
 
 class Desk(local):
-    """The room in which one thread folds and unfolds rows (see `Folded`); each has its own, in which no row is yet."""
+    """One thread's scratch space for unfolding and compressing rows (see `Folded`); no row is unfolded at first."""
 
     def __init__(self, count: int, width: int) -> None:
         super().__init__()
@@ -368,10 +367,10 @@ class Desk(local):
 
 
 class Folding:
-    """The pieces and nodes of all rows of so many words.
+    """The pieces and nodes of all rows of one width.
 
     Attributes:
-        width: How many words a row has.
+        width: The number of words of a row.
     """
 
     __slots__ = ("_begins", "_deep", "_desk", "_piece_of", "_shown", "nodes", "pieces", "width")
@@ -381,7 +380,7 @@ class Folding:
         count = FOUR * FOUR if self._deep else FOUR
         self.width = width
         wide = -(-width // count)
-        order = np.arange(count).reshape(-1, count // FOUR).T.ravel()  # which piece of the row each is
+        order = np.arange(count).reshape(-1, count // FOUR).T.ravel()  # the piece of the row at each position
         self._begins = wide * order
         self._piece_of = np.repeat(np.argsort(order), wide)
         self.pieces = Pool(wide, pieces)
@@ -392,40 +391,40 @@ class Folding:
 
     @property
     def folded(self) -> Folded:
-        """Both as the loops see them in the thread that adds; making room makes others: don't keep it."""
+        """The tables and scratch space of the thread that adds. Growing replaces them: don't keep them."""
         return self._at_desk(self.pieces.interned, self.nodes.interned)
 
     @property
     def shown(self) -> Folded:
-        """Both as they were shown last to the threads that only look up; making room makes others: don't keep it."""
+        """The tables last published to reading threads. Growing replaces them: don't keep them."""
         return self._at_desk(*self._shown)
 
     def _at_desk(self, pieces: Interned, nodes: Interned) -> Folded:
         return Folded(pieces, nodes, int(self._deep), self._piece_of, self._begins, *self._desk.rooms)
 
     def show(self) -> None:
-        """Let all threads look up what is there now."""
+        """Publish the present pieces and nodes to reading threads."""
         self._shown = tuple(
             each._replace(counts=each.counts.copy()) for each in (self.pieces.interned, self.nodes.interned)
         )
 
     @property
     def held(self) -> int:
-        """How many bytes they take."""
+        """The memory that they take, in bytes."""
         return self.pieces.held + self.nodes.held
 
     @property
     def has_room(self) -> bool:
-        """Whether there is room for what a row is folded into."""
+        """Whether there is room for the pieces and nodes of one more row."""
         return self.pieces.has_room(FOUR * FOUR) and self.nodes.has_room(FOUR)
 
     def reserve(self) -> None:
-        """Make room for one more row, and for more; meanwhile nobody looks up anything.
+        """Make room for the pieces and nodes of at least one more row; no thread may look anything up meanwhile.
 
         Raises:
-            OSError: There is none.
+            OSError: Memory or the file has no room.
         """
-        self._shown = ()  # arrays hold their pages where they are
+        self._shown = ()  # an array keeps its pages from moving
         try:
             self.pieces.reserve(FOUR * FOUR)
             self.nodes.reserve(FOUR)
@@ -433,7 +432,7 @@ class Folding:
             self.show()
 
     def are_rows(self, kept: Words) -> bool:
-        """Tell whether every piece and node of some rows is there, and each but once."""
+        """Return whether all pieces and nodes of some rows exist, and all of them are distinct."""
         once = all(
             len(np.unique(pool.words.reshape(-1, pool.width), axis=0)) == len(pool)
             for pool in (self.pieces, self.nodes)

@@ -1,4 +1,4 @@
-"""The data of a fast exploration for temporal properties: graph, true propositions, pending requests."""
+"""The graph, propositions and pending requests of a fast exploration, for temporal properties."""
 
 from collections.abc import Hashable, Iterable
 from functools import partial
@@ -15,29 +15,29 @@ from semantics.state.signature import Name
 
 
 class GraphSurvey(Survey):
-    """A survey that can be asked for the graph."""
+    """A survey that also builds the graph."""
 
     def graph(self) -> Graph:
-        """Return every transition of the configurations that were expanded."""
+        """Return every transition of the expanded configurations."""
         return graph_of_space(self)
 
     def valuation(self, asked: Iterable[Proposition]) -> dict[Proposition, np.ndarray]:
-        """Return where each proposition is true."""
+        """Return the configurations in which each proposition is true."""
         return {each: truths(self, each, self.space.size) for each in dict.fromkeys(asked)}
 
     def is_still(self, asked: Iterable[Proposition]) -> bool:
-        """Tell whether nothing that atoms ask of configurations ever changes."""
+        """Return whether everything that the atoms read is constant."""
         return is_still(self, asked)
 
     def pending(self) -> dict[Request, np.ndarray]:
-        """Return for each request the configurations in which it is pending, in their order."""
+        """Return, for each request, the configurations in which it is pending, in ascending order."""
         return pending_in_space(self)
 
 
 def graph_of_space(survey: Survey) -> Graph:
-    """Return every transition of the configurations that were expanded, in the order of the rules.
+    """Return every transition of the expanded configurations, in the order of the rules.
 
-    A `rcv_obs` is labelled without what it receives: that is known only where somebody looks.
+    The label of a `rcv_obs` omits the received observation, which only a decoded configuration has.
     """
     space, size = survey.space, survey.space.size
     found = [(np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int64))]
@@ -63,12 +63,12 @@ def graph_of_space(survey: Survey) -> Graph:
 
 
 def _without_steps(origins: np.ndarray, size: int) -> np.ndarray:
-    """Return the configurations without a transition: what is crowded isn't told apart from what is at its end."""
+    """Return the configurations without a transition; among these, crowded ones and deadlocks are not distinguished."""
     return np.asarray(np.bincount(origins, minlength=size) == 0)
 
 
 def pending_in_space(survey: Survey) -> dict[Request, np.ndarray]:
-    """Return for each request the configurations in which it is pending, in their order."""
+    """Return, for each request, the configurations in which it is pending, in ascending order."""
     space = survey.space
     found: dict[Request, list[np.ndarray]] = {}
     for a in survey.agents():

@@ -1,6 +1,6 @@
-"""The findings of inspections, by surveys of all rows instead of single configurations.
+"""The findings of inspections, computed for all rows together.
 
-A survey says of each finding how often it occurs, and where first; there the inspection itself is asked what to say.
+A survey counts each finding and gives its first configuration. Only there the inspection itself runs, for its report.
 """
 
 from collections.abc import Callable, Hashable, Iterable, Iterator
@@ -31,14 +31,14 @@ from semantics.successors import Expansion, served
 
 Bools = NDArray[np.bool_]
 Tally = tuple[Key | None, int, int]
-"""What was found (None: nothing wrong), how often, and in which configuration first."""
+"""A finding (None: nothing wrong), its number of occurrences, and its first configuration."""
 
 ALL = 1 << 62
-"""More different findings than there are."""
+"""An unreachable limit on the number of different findings."""
 
 
 def inspect_fast(survey: Survey, inspections: Iterable[Inspect]) -> None:
-    """Let each inspection have found what it would have found by looking at every configuration that was expanded."""
+    """Give each inspection the findings that it would have after visiting every expanded configuration."""
     setting = survey.space.learner.setting
     takes_turns = setting.scheduler is Scheduler.FCFS
     for each in inspections if survey.size else ():
@@ -60,7 +60,7 @@ def inspect_fast(survey: Survey, inspections: Iterable[Inspect]) -> None:
 
 
 def look_at_each(survey: Survey, inspection: Inspect) -> None:
-    """Let an inspection look at every configuration."""
+    """Run an inspection on every configuration."""
     for number in range(survey.size):
         look()
         for c, steps in survey.shown(number):
@@ -70,7 +70,7 @@ def look_at_each(survey: Survey, inspection: Inspect) -> None:
 def collect(
     survey: Survey, inspection: Inspection, tallies: Iterable[Tally], make: Callable[[], Inspection]
 ) -> None:
-    """Let an inspection have found what there is; a new one looks once more where each was met first."""
+    """Give an inspection its findings from tallies; a fresh copy inspects the first configuration of each."""
 
     @cache
     def again(number: int) -> Collected:
@@ -92,21 +92,21 @@ def collect(
         before = found.get(key, (0, first))
         found[key] = (before[0] + count, before[1])
     for key in _by_discovery(found, again):
-        collected.count -= 1  # adding it counts it
+        collected.count -= 1  # `add` counts it
         collected.add(again(found[key][1]).first[key])
 
 
 def _by_discovery(found: dict[Key, tuple[int, int]], again: Callable[[int], Collected]) -> Iterator[Key]:
-    """Yield findings in the order in which they were met; those of one configuration as the inspection tells them."""
+    """Yield findings in the order of first occurrence; within one configuration, in the inspection's order."""
     for first in sorted({first for _, first in found.values()}):
         yield from (key for key in again(first).first if found.get(key, (0, -1))[1] == first)
 
 
-# --- what is asked of agents ----------------------------------------------------------------------------------
+# --- agents ---------------------------------------------------------------------------------------------------
 
 
 def look_at_agents(survey: Survey, inspection: Inspection) -> None:
-    """Collect what an inspection finds of agents, each by itself and all together."""
+    """Collect the findings of an inspection about single agents, and about all agents together."""
     tallies = [*_alone(survey, inspection), *together(survey, inspection)]
     collect(survey, inspection, tallies, lambda: type(inspection)(ALL))
 
@@ -122,16 +122,17 @@ def _seen(inspection: Inspection, a: Name, c: Configuration) -> tuple[Key | None
 
 
 def as_it_is(c: Configuration) -> Configuration:
-    """Return a configuration."""
+    """Return the configuration."""
     return c
 
 
 def together(
     survey: Survey, inspection: Inspection, view: Callable[[Configuration], Configuration] = as_it_is
 ) -> Iterator[Tally]:
-    """Yield what is found where no agent must move: asked agent by agent, of those that are left each time.
+    """Yield the findings in configurations in which no agent must move.
 
-    Asked is what a configuration is seen as.
+    Each agent's question is answered only for the rows that all previous agents left. `view` maps a configuration to
+    the one inspected.
     """
     agents = survey.agents() if inspection.together else ()
     trees = [survey.space.learner.question(partial(_still, inspection, a, view)) for a in agents]
@@ -157,7 +158,7 @@ def _still(
 
 
 def excerpt(c: Configuration, rules: Iterable[Rules], agents: Iterable[Name]) -> Excerpt:
-    """Return some agents of a configuration, as far as they are there, and what some rules allow them."""
+    """Return an excerpt of a configuration: some of its agents, and the steps that some rules allow them."""
     there = tuple(a for a in dict.fromkeys(agents) if a in c.alpha)
     found = list(dict.fromkeys(step for a in there for rule in rules for step in rule(c, a)))
     faults = tuple(each for each in found if isinstance(each, Fault))
@@ -168,7 +169,7 @@ def excerpt(c: Configuration, rules: Iterable[Rules], agents: Iterable[Name]) ->
 
 
 def look_at_races(survey: Survey, inspection: ControlRaces) -> None:
-    """Collect control races: of pairs that touch nothing of each other's nothing need be asked."""
+    """Collect control races; a pair of agents with independent steps has none and is not examined."""
     space = survey.space
     tallies: list[Tally] = []
     agents = survey.agents()
@@ -198,7 +199,10 @@ def of_pairs(
     leaves: tuple[NDArray[np.int32], NDArray[np.int32]],
     are_fine: Callable[[int, int], bool | None],
 ) -> Iterator[Tally]:
-    """Yield what a question finds where two leaves say neither that all is fine nor (None) that nothing is there."""
+    """Yield the findings for a pair of agents.
+
+    `are_fine` classifies a pair of leaves: True (no race), None (nothing to examine) or False (ask the question).
+    """
     both = leaves[0].astype(np.int64) << 32 | leaves[1]
     kinds, firsts, which, counts = np.unique(both, return_index=True, return_inverse=True, return_counts=True)
     asked = np.zeros(len(kinds), np.bool_)
@@ -215,7 +219,7 @@ def _between(inspection: ControlRaces, pair: tuple[Name, Name], c: Configuration
 
 
 def of_rows(survey: Survey, tree: int, rows: NDArray[np.int64]) -> Iterator[Tally]:
-    """Yield what a question finds in some rows."""
+    """Yield the findings of a question in some rows."""
     if len(rows):
         leaves = survey.classify(tree, rows)
         for leaf, first, count in distinct(leaves):
@@ -224,13 +228,13 @@ def of_rows(survey: Survey, tree: int, rows: NDArray[np.int64]) -> Iterator[Tall
 
 
 def has_control(survey: Survey, leaf: int) -> bool:
-    """Tell whether a leaf serves a control."""
+    """Return whether a leaf has a transition that serves a control."""
     learner = survey.space.learner
     return any(learner.steps[step].rule in CONTROLS for step in learner.leaves.steps_of(leaf))
 
 
 def are_independent(survey: Survey, one: int, other: int) -> bool:
-    """Tell whether neither of two leaves writes what the other writes, or what changes an answer it was found by."""
+    """Return whether two leaves write disjoint columns, and neither changes an answer on the path to the other."""
     writes = [written(survey, leaf) for leaf in (one, other)]
     if writes[0] is None or writes[1] is None or not writes[0].keys().isdisjoint(writes[1]):
         return False
@@ -238,7 +242,7 @@ def are_independent(survey: Survey, one: int, other: int) -> bool:
 
 
 def leaves_alone(survey: Survey, writes: dict[int, list[int]], leaf: int) -> bool:
-    """Tell whether some writes change no answer that a leaf was found by."""
+    """Return whether writes change no answer on the path to a leaf."""
     columns = survey.space.learner.columns.all
     for column, ask, said in survey.space.learner.reads[leaf]:
         for code in writes.get(column, ()):
@@ -248,7 +252,7 @@ def leaves_alone(survey: Survey, writes: dict[int, list[int]], leaf: int) -> boo
 
 
 def written(survey: Survey, leaf: int) -> dict[int, list[int]] | None:
-    """Return the columns that a leaf's transitions write, with the codes; None where that is worked out elsewhere."""
+    """Return the columns that a leaf's transitions write, with the codes; None if copies or parts write others."""
     leaves = survey.space.learner.leaves
     found: dict[int, list[int]] = {}
     for step in leaves.steps_of(leaf):
@@ -265,18 +269,18 @@ def written(survey: Survey, leaf: int) -> dict[int, list[int]] | None:
 
 
 def truths(survey: Survey, formula: Proposition, size: int) -> Bools:
-    """Return for each of the first configurations whether a proposition is true of it."""
+    """Return whether a proposition is true, for each of the first `size` configurations."""
     return Profiles(survey, formula).truths(size)
 
 
 def is_still(survey: Survey, atoms: Iterable[Proposition]) -> bool:
-    """Tell whether nothing that atoms ask of configurations ever changes."""
+    """Return whether everything that the atoms read is constant."""
     asked = tuple(dict.fromkeys(atoms))
     return not any(survey.where_with_change(partial(holds, each))[1] for each in (*asked, *bindings(asked)))
 
 
 def look_at_invariant(survey: Survey, inspection: Invariant) -> None:
-    """Collect where an invariant is violated, and which valuations of its atoms there are."""
+    """Collect the violations of an invariant, and the valuations of its atoms that occur."""
     valuations, size = inspection.valuations, survey.size
     found = np.zeros(size, np.uint64)
     changing = False
@@ -304,17 +308,17 @@ def look_at_invariant(survey: Survey, inspection: Invariant) -> None:
 
 
 def look_at_reachability(survey: Survey, inspection: Reachability) -> None:
-    """Collect where a proposition is true."""
+    """Collect the configurations in which a proposition is true."""
     true = np.flatnonzero(truths(survey, inspection.formula, survey.size))
     if len(true):
         inspection.collected.examined, inspection.collected.example = len(true), int(true[0])
 
 
-# --- what was visited -----------------------------------------------------------------------------------------
+# --- visited places and events --------------------------------------------------------------------------------
 
 
 def look_at_visited(survey: Survey, inspection: Visited) -> None:
-    """Collect where agents stood, what they passed over, and what the environment did."""
+    """Collect the places where agents stood or passed, and the events of the environment."""
     for a in survey.agents():
         for answer in survey.answers(partial(where_it_stands, a)):
             if answer.value is not None:

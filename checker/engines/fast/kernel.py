@@ -1,18 +1,17 @@
-"""The compiled loops: evaluate the trees on the frontier, and maintain the exact visited set.
+"""The compiled loops: evaluate the decision trees on the frontier, and maintain the exact visited set.
 
-Rows are packed words (see `columns.Packing`), and found again by a table (see `table`). Successors are gathered, and
-then looked up one after another, while memory is asked for what those some places behind will be compared with.
+Rows are packed words (see `columns.Packing`); a hash table finds them (see `table`). Successors are first gathered in a
+batch, then looked up in order, while the memory for later ones is prefetched.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# numba types these functions; mypy would read their integers as Python's
 
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.compacting import find_tag, places_behind, tag_of
 from checker.engines.fast.folding import (
     MEMORY,
     NO_ROOM,
@@ -48,7 +47,7 @@ from checker.engines.fast.leaves import (
 )
 from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.origins import most_origins, note_origin
-from checker.engines.fast.table import Words, bits_for, entry_of, fetch, fetch_slot, find, hashed, most_in
+from checker.engines.fast.table import Words, bits_for, entry_of, fetch, find, hashed, most_in
 from checker.engines.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
 
 Ints = NDArray[np.int32]
@@ -56,15 +55,16 @@ State = NDArray[np.int64]
 
 
 class Model(NamedTuple):
-    """Everything learned, as the loops see it.
+    """The learned trees and leaves in the form that the loops read.
 
     Attributes:
         root, nodes, next: See `Trees`.
         leaves, steps, copies, writes, part: See `Leaves`.
-        masks: For each transition and word the bits that it keeps, then those that it sets; where rows are folded, for
-            each transition the pieces that it writes into.
-        columns: For each column its word, shift and mask.
-        agents_from, agents, clauses: Trees, the agents' in groups: one for each value of the cell that names them.
+        masks: For each transition and word, the bits that it keeps, then those that it sets. With tree compression, for
+            each transition the set of pieces that it writes.
+        columns: The word, shift and mask of each column.
+        agents_from, agents, clauses: Trees. Those of agents are in groups, one for each value of the cell that names
+            the agents.
     """
 
     root: Ints
@@ -83,16 +83,16 @@ class Model(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """Successors that were not looked up yet.
+    """Gathered successors that are not looked up yet.
 
     Attributes:
         words: Their words.
-        kept: What is kept of them: their words, or what these are folded into.
-        hashes: The hashes of what is kept.
-        origins, steps: From where each was reached, and the transitions that led there.
-        leaves: Room for those of one row.
-        later: Rows that were put off: for each its number, and how many transitions and successors came before it.
-        lately: For some of the bits of a hash the last successor that had them.
+        kept: Their stored form: the words, or the compressed rows.
+        hashes: The hashes of the stored form.
+        origins, steps: The row and the transition that led to each.
+        leaves: Scratch space for the leaves of one row.
+        later: Deferred rows: the number of each, and the numbers of transitions and successors before it.
+        lately: A small cache: the last successor for some bits of a hash.
     """
 
     words: Words
@@ -105,31 +105,31 @@ class Batch(NamedTuple):
     lately: Ints
 
 
-STATE = 18
-AT, SIZE, LIMIT, WORDS, KEPT, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED, PROBED = range(
-    15
-)
-SIFTED, PUT_OFF, SEEN = range(15, STATE)
-"""What stands where in the loops' state: the row that comes next, how many rows there are and may be, words a row and
-how many are kept of it, whether requests wait for their turn, the column that says which agents there are (-1: always
-the same), how many successors are gathered, what was not known, whether rows were left out or not followed, up to which
-row all successors are stored, how many tags were compared, how many successors were not found, how many rows were put
-off, and below which number rows may be looked up."""
+STATE = 17
+AT, SIZE, LIMIT, WORDS, KEPT, TURNS, ALPHA, GATHERED, TREE, NODE, CODE, CUT, CROWDS, EXPANDED = range(14)
+SIFTED, PUT_OFF, SEEN = range(14, STATE)
+"""The entries of the loops' state.
+
+AT: the next row. SIZE, LIMIT: the number of rows, and its limit. WORDS, KEPT: the words of a row, and of its stored
+form. TURNS: whether requests wait for their turn. ALPHA: the column of the agents, -1 if constant. GATHERED: the number
+of gathered successors. TREE, NODE, CODE: the place where a tree ended. CUT: whether the limit left rows out. CROWDS:
+the number of crowded rows. EXPANDED: the number of rows with all successors stored. SIFTED: the number of successors
+that may be new. PUT_OFF: the number of deferred rows. SEEN: the number of rows that may be looked up.
+"""
 
 WIDE, UNSORTED, FULL = -2, -3, -4
-"""What stands in the place of a node where one row has more successors than a batch holds, where it is not known what
-represents one of them, and where there is no room for what one is folded into."""
+"""Codes in NODE: the batch is too small for one row; a successor's representative is unknown; no room for a piece."""
 
 PLACE, MOVE, LATER = 3, 5, 3
 UNKNOWN = -3
-"""What stands for what is not known."""
+"""The code for something not learned yet."""
 
 _QUARTER = np.uint64(40)
 
 _ONE, _PIECE, _STEP, _MEMORY = map(np.uint64, (1, 32, 36, 65 - MEMORY.bit_length()))
 _MULTIPLIER = np.uint64(0x9E3779B97F4A7C15)
 
-# Indices are unsigned in the inner loops: of signed ones numba asks whether they count from the end.
+# Indices are unsigned in the inner loops: numba tests a signed index for a negative value.
 _RECORD, _LOW, _WIDTH, _BASE, _WORD, _SHIFT, _MASK = map(
     np.uint64, (RECORD, LOW, WIDTH, BASE, WORD, SHIFT, MASK)
 )
@@ -137,14 +137,14 @@ _RECORD, _LOW, _WIDTH, _BASE, _WORD, _SHIFT, _MASK = map(
 
 @njit(cache=True, inline="always")
 def code_at(words: Words, at: int, columns: Words, column: int) -> int:
-    """Return the code of a column in the row that begins there."""
+    """Return the code of a column in the row that begins at `at`."""
     where = PLACE * column
     return np.int64((words[at + np.int64(columns[where])] >> columns[where + 1]) & columns[where + 2])
 
 
 @njit(cache=True, inline="always")
 def walk(words: Words, at: int, start: int, nodes: Words, leads: Ints, state: State) -> int:
-    """Return the reference to the leaf that a row leads to from some reference on, 0 where it is not known."""
+    """Return the reference to the leaf of a row in a tree, from some node on; 0 if the tree ends before."""
     begin = np.uint64(at)
     reference = np.int64(start)
     record, code = np.uint64(0), np.uint64(0)
@@ -163,7 +163,7 @@ def walk(words: Words, at: int, start: int, nodes: Words, leads: Ints, state: St
 
 @njit(cache=True, inline="always")
 def conclude(words: Words, at: int, masks: Words, step: int, target: Words, to: int, width: int) -> None:
-    """Write what a transition writes over what stands in the target."""
+    """Write a row with a transition's writes to the target."""
     wide, source, goal = np.uint64(width), np.uint64(at), np.uint64(to)
     keep = wide * np.uint64(2 * step)
     put = keep + wide
@@ -175,7 +175,7 @@ def conclude(words: Words, at: int, masks: Words, step: int, target: Words, to: 
 def copy_columns(
     words: Words, at: int, columns: Words, copies: Ints, begin: int, end: int, target: Words, to: int
 ) -> None:
-    """Copy what a transition copies from column to column."""
+    """Apply a transition's copies from column to column."""
     for k in range(begin, end):
         code = np.uint64(code_at(words, at, columns, copies[PAIR * k + 1]))
         where = PLACE * copies[PAIR * k]
@@ -185,7 +185,7 @@ def copy_columns(
 
 @njit(cache=True, inline="always")
 def write_part(columns: Words, writes: Ints, steps: Ints, step: int, target: Words, to: int) -> None:
-    """Write what a part of a transition writes, column by column: that is little of a wide row."""
+    """Apply the writes of a part of a transition column by column: they are few compared with a row."""
     record = STEP * step
     for k in range(steps[record + WRITES], steps[record + WRITES_END]):
         where = PLACE * writes[PAIR * k]
@@ -195,7 +195,7 @@ def write_part(columns: Words, writes: Ints, steps: Ints, step: int, target: Wor
 
 @njit(cache=True, inline="always")
 def write_piece(columns: Words, writes: Ints, steps: Ints, step: int, f: Folded, piece: int) -> None:
-    """Write what a transition, or a part of one, writes into a piece whose words are being sought."""
+    """Apply the writes of a transition, or of a part, to a piece in `sought`."""
     record = STEP * step
     for k in range(steps[record + WRITES], steps[record + WRITES_END]):
         where = PLACE * writes[PAIR * k]
@@ -209,7 +209,7 @@ def write_piece(columns: Words, writes: Ints, steps: Ints, step: int, f: Folded,
 def change_piece(
     columns: Words, writes: Ints, steps: Ints, step: int, f: Folded, piece: int, adding: bool
 ) -> int:
-    """Return what a transition, or a part of one, makes of a piece of the successor."""
+    """Return the number of a piece of the successor after the writes of a transition or part."""
     seek_piece(f, piece)
     write_piece(columns, writes, steps, step, f, piece)
     return np.int64(intern(f.pieces, f.sought, adding))
@@ -226,9 +226,9 @@ def change_pieces(
     touched: int,
     adding: bool,
 ) -> int:
-    """Write what a transition, or a part of one, writes into the successor, piece by piece; return its own pieces.
+    """Apply the writes of a transition or part to the successor, piece by piece; return the successor's own pieces.
 
-    What a transition makes of a piece is looked up where it was made lately.
+    A cache keeps recent results by transition and piece.
     """
     left, piece = touches[step], np.int64(0)
     while left:
@@ -250,7 +250,7 @@ def change_pieces(
 def copy_pieces(
     columns: Words, copies: Ints, begin: int, end: int, f: Folded, touched: int, adding: bool
 ) -> int:
-    """Copy what a transition copies from column to column into the successor; return its own pieces."""
+    """Apply a transition's copies to the successor; return the successor's own pieces."""
     for k in range(begin, end):
         code = np.uint64(code_at(f.whole, 0, columns, copies[PAIR * k + 1]))
         where = PLACE * copies[PAIR * k]
@@ -266,7 +266,7 @@ def copy_pieces(
 
 @njit(cache=True)
 def first_turn(all_leaves: Ints, steps: Ints, leaves: Ints, actors: int) -> int:
-    """Return the first turn of the queue that is enabled, -1 where none is."""
+    """Return the first enabled turn in the queue; -1 if there is none."""
     found = np.int64(-1)
     for k in range(actors):
         leaf = LEAF * leaves[k]
@@ -279,7 +279,7 @@ def first_turn(all_leaves: Ints, steps: Ints, leaves: Ints, actors: int) -> int:
 
 @inner(cache=True)
 def is_repeated(target: Words, taken: Ints, steps: Ints, began: int, end: int, step: int, width: int) -> bool:
-    """Tell whether a row leads to the same under the same label already."""
+    """Return whether a row has an earlier transition with the same label and successor."""
     for other in range(began, end):
         if steps[STEP * taken[other] + ALIKE] == steps[STEP * step + ALIKE]:
             same = True
@@ -292,7 +292,7 @@ def is_repeated(target: Words, taken: Ints, steps: Ints, began: int, end: int, s
 
 @njit(cache=True, inline="always")
 def find_leaves(m: Model, source: Words, at: int, first: int, last: int, leaves: Ints, state: State) -> int:
-    """Note the leaf of each actor of a row, its agents' first; return their flags, less than 0 if one is unknown."""
+    """Note the leaf of each actor of a row, agents first; return the union of their flags, or UNKNOWN."""
     flags = np.int64(0)
     for k in range(last - first + len(m.clauses)):
         tree = m.agents[first + k] if first + k < last else m.clauses[first + k - last]
@@ -308,7 +308,7 @@ def find_leaves(m: Model, source: Words, at: int, first: int, last: int, leaves:
 
 @njit(cache=True, inline="always")
 def part_step(m: Model, source: Words, at: int, part: int, state: State) -> int:
-    """Return what a part of a transition writes, as a transition of its own; less than 0 where that is not known."""
+    """Return the transition that holds the writes of a part; less than 0 if it is not learned yet."""
     tree = m.part[part]
     reference = walk(source, at, m.root[tree], m.nodes, m.next, state)
     if reference == 0:
@@ -321,7 +321,7 @@ def part_step(m: Model, source: Words, at: int, part: int, state: State) -> int:
 def make_plain(
     m: Model, source: Words, at: int, step: int, target: Words, to: int, width: int, state: State
 ) -> int:
-    """Write what a transition of a row leads to; return less than 0 where something is not known."""
+    """Write the successor of a row by a transition; return less than 0 if something is not learned yet."""
     record, own = STEP * step, np.int64(0)
     conclude(source, at, m.masks, step, target, to, width)
     begin, stop = m.steps[record + COPIES], m.steps[record + COPIES_END]
@@ -337,7 +337,7 @@ def make_plain(
 
 @njit(cache=True, inline="always")
 def make_folded(m: Model, f: Folded, step: int, adding: bool, kept: Words, to: int, state: State) -> int:
-    """Fold what a transition of the row that was unfolded leads to; return less than 0 where something is not there."""
+    """Write the compressed successor of the unfolded row; return less than 0 if a part or piece is unknown."""
     record, own = STEP * step, np.int64(0)
     touched = change_pieces(m.columns, m.writes, m.steps, m.masks, step, f, np.int64(0), adding)
     begin, stop = m.steps[record + COPIES], m.steps[record + COPIES_END]
@@ -354,10 +354,10 @@ def make_folded(m: Model, f: Folded, step: int, adding: bool, kept: Words, to: i
 
 @inner(cache=True)
 def make_whole(m: Model, f: Folded, step: int, kept: Words, to: int, state: State) -> int:
-    """Fold as `make_folded` does, but look up each piece once all is written into it; return less than 0 likewise.
+    """Write the compressed successor like `make_folded`, but look up only its final pieces.
 
-    What a transition makes of a piece before its parts write there too may be a piece of no row: it is forgotten where
-    rows are packed anew. Then a successor has pieces that were met though something on the way to them was not.
+    `make_folded` also looks up intermediate pieces, before parts write to them. Such a piece may occur in no row and
+    vanish at a repacking, although the final pieces exist. Returns less than 0 as `make_folded` does.
     """
     record, touched = STEP * step, np.int64(0)
     for piece in range(len(f.below)):
@@ -373,7 +373,7 @@ def make_whole(m: Model, f: Folded, step: int, kept: Words, to: int, state: Stat
         for part in range(m.steps[record + PARTS], m.steps[record + PARTS_END]):
             own = part_step(m, f.whole, 0, part, state)
             if own < 0:
-                return own  # at the first piece, before any is put
+                return own  # at the first piece, before any is set
             write_piece(m.columns, m.writes, m.steps, own, f, piece)
         touched = put_sought(f, piece, touched)
     return fold(f, touched, False, kept, to)
@@ -381,21 +381,20 @@ def make_whole(m: Model, f: Folded, step: int, kept: Words, to: int, state: Stat
 
 @njit(cache=True, nogil=True)
 def gather(m: Model, words: Words, f: Folded | None, batch: Batch, state: State, until: int) -> bool:
-    """Gather the successors of rows up to a number, or until half of the batch is full; False at what is not known.
+    """Gather the successors of rows until row `until` or until half of the batch is full; False at something unknown.
 
-    A row's successors are gathered each once: first what its agents are served, then what they do themselves, then what
-    the environment does. As long as there is room to note it, a row of which something is not known, or too much is
-    pending, is put off.
+    The successors of a row are distinct: first those of served requests, then the agents' own steps, then the
+    environment's. A row that is crowded or not fully learned is deferred if `later` has room.
 
-    Successors are folded at once where rows are (`f`): that is compiled apart. One of which some piece or node was
-    never met is left open, and made where it is stored: so pieces are numbered in the order of successors, whoever
-    gathers them. One that is to be compared with others is made at once, so its row is put off where rows can be.
+    With tree compression (`f`, compiled separately), successors are compressed at once. A successor with an unknown
+    piece or node is completed by `store`. So pieces are numbered in the order of successors, whichever thread gathers
+    them. A successor that must be compared with others can't wait; its row is deferred where possible.
     """
     made, hashes, origins, taken, leaves, later = (
         batch.kept, batch.hashes, batch.origins, batch.steps, batch.leaves, batch.later,
     )  # fmt: skip
     width, kept, known = state[WORDS], state[KEPT], True
-    is_full = state[SIZE] >= state[LIMIT]  # then what was never met is of no row
+    is_full = state[SIZE] >= state[LIMIT]  # then a successor with an unknown piece is no row
     while known and state[AT] < until and state[GATHERED] <= len(hashes) // 2:
         row = state[AT]
         source, at = words, row * width
@@ -411,7 +410,7 @@ def gather(m: Model, words: Words, f: Folded | None, batch: Batch, state: State,
         known = flags >= 0
         if known and flags & CROWDED:
             if len(later):
-                known = False  # it is counted where it is expanded at last
+                known = False  # counted at its final expansion
             else:
                 state[CROWDS] += 1
         elif known:
@@ -462,7 +461,7 @@ def gather(m: Model, words: Words, f: Folded | None, batch: Batch, state: State,
 
 @njit(cache=True, inline="always")
 def room_for(words: Words, origins: Any, table: Any, width: int) -> int:
-    """Return how many rows there may be before something must grow."""
+    """Return the number of rows for which all arrays have room."""
     return min(len(words) // width, most_origins(origins), most_in(len(table)))
 
 
@@ -478,7 +477,7 @@ def add_row(
     origin: Any,
     state: State,
 ) -> None:
-    """Let a successor be a row from now on, for which there is room; beyond the limit, note that it was left out."""
+    """Store a successor as a new row, for which there must be room; beyond the limit, note that it was left out."""
     size, width = state[SIZE], state[KEPT]
     if size >= state[LIMIT]:
         state[CUT] = 1
@@ -495,7 +494,6 @@ def store(
     words: Words,
     origins: Any,
     table: Any,
-    compact: int | None,
     m: Model | None,
     f: Folded | None,
     batch: Batch,
@@ -503,11 +501,13 @@ def store(
     end: int,
     state: State,
 ) -> int:
-    """Look up some of what was gathered: what is new becomes a row, with where it was reached from.
+    """Look up a range of gathered successors; store the new ones as rows, with their origins.
 
-    Return the first for which there is no room, the end where there is room for all. Others may look up rows that were
-    there before. Where the table has tags of so many bits (`compact`), they alone are compared; where rows are folded
-    (`f`, by the model `m`), successors that were left open are made first: both is compiled apart.
+    Other threads may look up older rows meanwhile. With tree compression (`f`, and the model `m`),
+    incomplete successors are made first; that variant is compiled separately.
+
+    Returns:
+        The first successor for which there is no room, else `end`.
     """
     target, hashes, reached_from = batch.kept, batch.hashes, batch.origins
     width, limit = state[KEPT], state[LIMIT]
@@ -523,37 +523,28 @@ def store(
                     end = k
                     break
                 hashes[k] = hashed(target, width * k, width)
-        if compact is None:
-            fetch(words, table, hashes, k, end, width, bits)
-            found = find(words, table, target, k, hashes[k], width, bits)
-        else:
-            fetch_slot(table, hashes, k, end)
-            found = find_tag(table, hashes[k], compact)
+        fetch(words, table, hashes, k, end, width, bits)
+        found = find(words, table, target, k, hashes[k], width, bits)
         if found >= 0:
             continue
         if room <= state[SIZE] < limit:
             end = k
             break
-        slot = -found - 1
-        if compact is None:
-            entry = entry_of(hashes[k], state[SIZE], bits)
-        else:
-            entry = table.dtype.type(tag_of(hashes[k], compact))
-            state[PROBED] += places_behind(table, hashes[k], slot) if state[SIZE] < limit else 0
-        add_row(words, origins, table, slot, entry, target, k, reached_from[k], state)
+        entry = entry_of(hashes[k], state[SIZE], bits)
+        add_row(words, origins, table, -found - 1, entry, target, k, reached_from[k], state)
     return end
 
 
 @njit(cache=True, nogil=True)
 def count(steps: Ints, begin: int, end: int, counts: State) -> None:
-    """Count transitions that were followed."""
+    """Count followed transitions."""
     for k in range(begin, end):
         counts[steps[k]] += 1
 
 
 @njit(cache=True, inline="always")
 def keep(batch: Batch, k: int, left: int, width: int) -> None:
-    """Move a successor to the end of those that are left."""
+    """Move a successor behind those that remain."""
     for j in range(width):
         batch.kept[left * width + j] = batch.kept[k * width + j]
     batch.hashes[left], batch.origins[left] = batch.hashes[k], batch.origins[k]
@@ -561,7 +552,7 @@ def keep(batch: Batch, k: int, left: int, width: int) -> None:
 
 @njit(cache=True, inline="always")
 def note_later(later: State, put_off: int, k: int, left: int) -> int:
-    """Note for rows put off before a successor how many are left before it; return how many rows have it noted."""
+    """Update the number of successors before each deferred row up to a successor; return the number of rows updated."""
     while LATER * put_off < len(later) and later[LATER * put_off + 2] <= k:
         later[LATER * put_off + 2] = left
         put_off += 1
@@ -570,7 +561,7 @@ def note_later(later: State, put_off: int, k: int, left: int) -> int:
 
 @njit(cache=True, nogil=True)
 def drop_repeated(batch: Batch, state: State) -> None:
-    """Leave of what was gathered only successors that were not gathered just before: most of those that come again."""
+    """Drop successors that a small cache of recent ones holds: most duplicates within a batch."""
     target, hashes, lately = batch.kept, batch.hashes, batch.lately
     later = batch.later[: LATER * state[PUT_OFF]]
     width, gathered = state[KEPT], state[GATHERED]
@@ -595,10 +586,10 @@ def drop_repeated(batch: Batch, state: State) -> None:
 
 @njit(cache=True, nogil=True)
 def sift(words: Words, table: Any, batch: Batch, state: State) -> None:
-    """Leave of what is left only successors that are none of the rows below some number.
+    """Drop successors that are rows below number `SEEN`.
 
-    Meanwhile others may store rows from that number on: such a row is never taken for found, since its words may not
-    all be seen here yet.
+    Other threads may store rows from that number on. Such a row never counts as found: its words may not be visible
+    here yet.
     """
     target, hashes, later = batch.kept, batch.hashes, batch.later[: LATER * state[PUT_OFF]]
     width, seen, several = state[KEPT], state[SEEN], state[SIFTED]
@@ -619,7 +610,7 @@ def sift(words: Words, table: Any, batch: Batch, state: State) -> None:
 def classify(
     m: Model, words: Words, f: Folded | None, rows: State, tree: int, found: Ints, state: State
 ) -> int:
-    """Note the leaf that each of some rows leads to in a tree; return how many were led, all where it knows all."""
+    """Note the leaf of each row in a tree; return the number of rows classified before the first unknown one."""
     root, nodes, leads = m.root, m.nodes, m.next
     done = np.int64(0)
     for k in range(len(rows)):
@@ -640,7 +631,7 @@ def classify(
 def look_up(
     words: Words, table: Any, m: Model | None, f: Folded | None, batch: Batch, targets: Any, state: State
 ) -> None:
-    """Note the row that each successor of the batch is; adds no piece where rows are folded (`f`, by the model)."""
+    """Note the row number of each successor in the batch; with tree compression (`f`, and the model), add no piece."""
     target, hashes = batch.kept, batch.hashes
     width = state[KEPT]
     bits = np.uint32(bits_for(len(table)))
@@ -657,9 +648,9 @@ def look_up(
 
 @njit(cache=True, _nrt=True)
 def repack(words: Words, size: int, moves: Words, old_width: int, new_width: int) -> None:
-    """Pack rows anew in their place, from the last to the first: a row of the new packing is not shorter.
+    """Repack rows in place, from the last to the first; a row of the new packing is at least as long.
 
-    What moves is told by `columns.shifts`.
+    `moves` come from `columns.shifts`.
     """
     packed = np.zeros(new_width, np.uint64)
     for row in range(size - 1, -1, -1):
@@ -673,7 +664,7 @@ def repack(words: Words, size: int, moves: Words, old_width: int, new_width: int
 
 @njit(cache=True)
 def locate(nodes: Words, columns: Words, first: int) -> None:
-    """Note where the columns stand that inner nodes ask, from a first node on."""
+    """Write the position of its column into each inner node, from node `first` on."""
     for record in range(RECORD * first, len(nodes), RECORD):
         where = PLACE * np.int64(nodes[record + COLUMN])
         nodes[record + WORD] = columns[where]
@@ -683,7 +674,7 @@ def locate(nodes: Words, columns: Words, first: int) -> None:
 
 @njit(cache=True)
 def make_masks(masks: Words, steps: Ints, writes: Ints, columns: Words, width: int, first: int) -> None:
-    """Work out for each transition, from a first one on, which bits of each word it keeps, and which it sets."""
+    """Compute the bits of each word that a transition keeps and sets, from transition `first` on."""
     for step in range(first, len(masks) // (2 * width)):
         at = 2 * width * step
         for k in range(width):
@@ -701,7 +692,7 @@ def make_masks(masks: Words, steps: Ints, writes: Ints, columns: Words, width: i
 def note_pieces(
     touches: Words, steps: Ints, writes: Ints, columns: Words, piece_of: State, first: int
 ) -> None:
-    """Note for each transition, from a first one on, which pieces of a folded row it writes into, as bits."""
+    """Compute the set of pieces that each transition writes, as bits, from transition `first` on."""
     for step in range(first, len(touches)):
         touches[step] = 0
         for k in range(steps[STEP * step + WRITES], steps[STEP * step + WRITES_END]):
@@ -710,7 +701,7 @@ def note_pieces(
 
 @njit(cache=True)
 def mark_used(words: Words, width: int, columns: Words, begins: State, used: Any) -> bool:
-    """Mark the values that some row has, column by column; False where a code is none of its column."""
+    """Mark the values that occur in rows, column by column; return False if a code exceeds its column's values."""
     for row in range(len(words) // width):
         for column in range(len(begins) - 1):
             mask = columns[PLACE * column + 2]

@@ -1,8 +1,8 @@
-"""The learner: runs a rule once for each way in which it reads cells, and adds the result to the trees.
+"""The learner: runs a rule once for each distinct sequence of answers to its reads, and stores the result in a tree.
 
-An actor is what serves an agent's requests, or what the agent does itself, or a clause of the environment. Each has a
-tree whose leaves hold its transitions. What a transition writes name by name (a pointwise definition) is learned in a
-tree for each mobile name, walked by itself: the answers of one observation do not multiply.
+An actor is the server of an agent's requests, an agent's own steps, or a clause of the environment. Each actor has a
+decision tree with its transitions at the leaves. A pointwise definition has one part for each mobile name, and each
+part has a tree of its own. So the answers of an observation for different names do not multiply.
 """
 
 from collections import defaultdict
@@ -33,29 +33,29 @@ from semantics.successors import remembered, served, turn_of
 
 
 class Actor(NamedTuple):
-    """Some rules, and whom they are about."""
+    """Some rules, and the agent or clause to which they apply."""
 
     rules: Callable[[Configuration, Any], Iterable[Transition | Fault]]
     about: Name | Clause
 
 
 Question = Callable[[Configuration], Hashable]
-"""A pure function of a configuration: its tree tells rows apart by the answer."""
+"""A pure function of a configuration; its tree classifies rows by the answer."""
 
 NOTHING_RECEIVED = Received(Observation.of())
 
 PREDICTED = ("code", "store", "line")
-"""What varies in every mission; that other cells do is found out when something is written there."""
+"""Cells that vary in every mission; other cells are marked as varying at their first write."""
 
 
 @dataclass(slots=True, eq=False)
 class Run:
-    """One run of an actor's rules; what was learned without it is run where a part of it is not known.
+    """One run of an actor's rules; after a shared lesson it happens only when one of its parts is unknown.
 
     Attributes:
-        actor: Whose rules.
-        recorder: What they were recorded with; it may look at any configuration that comes to the same leaf.
-        concluded: Their transitions.
+        actor: The actor.
+        recorder: The recorder of the run; its source may be any configuration of the same leaf.
+        concluded: The transitions.
     """
 
     actor: Actor
@@ -65,13 +65,13 @@ class Run:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PartOf:
-    """What the tree of a part is about.
+    """The owner of a part's tree.
 
     Attributes:
         run: The run of the rules.
-        step: Which of its transitions.
-        name: About whom the part is.
-        kin: What is known of those that are like it; None where nobody is.
+        step: The index of its transition.
+        name: The name that the part is about.
+        kin: The lessons of interchangeable parts; None if there are none.
     """
 
     run: Run
@@ -82,7 +82,7 @@ class PartOf:
 
 @dataclass(slots=True)
 class Known:
-    """A label that was met: its number, the actor that had it first, and the transitions that have it."""
+    """A label: its number, the first actor with it, and all transitions with it."""
 
     number: int
     first: Actor
@@ -91,18 +91,18 @@ class Known:
 
 @dataclass(slots=True)
 class CodedSource(Source):
-    """A configuration given by a packed row: of its many columns only those are read that are asked for."""
+    """A configuration as a packed row; only the requested columns are decoded."""
 
     columns: Columns
     packing: Packing
     words: list[int]
 
     def skeleton(self, cell: Cell) -> Any:
-        """Return the skeleton of a cell's value, None where there is no such cell."""
+        """Return the skeleton of a cell's value, None if there is no such cell."""
         return self._value((cell,))
 
     def fact(self, cell: Cell, number: int, name: Name) -> Fact:
-        """Return what a hole of a cell says of a mobile name."""
+        """Return the fact about a mobile name in a hole of a cell."""
         fact: Fact = self._value((cell, number, name))
         return fact
 
@@ -117,20 +117,21 @@ class CodedSource(Source):
 
 @dataclass(slots=True)
 class Learner:
-    """What is known of a mission's rules.
+    """Everything learned about a mission's rules.
 
     Attributes:
         setting: The mission.
-        still: The initial configuration's cells: what never varies has its value there.
-        pending: How many requests or messages an agent may have before it is not followed further.
-        runs: How many times an actor's rules were run in Python.
-        owners: What each tree is about.
-        taken: For each cell that was taken to be never written, the trees that did so.
-        writers: For each cell the trees that write it.
-        homes: For each cell, and for each name, which actor was met first that writes it, or cells about it.
-        answers: What a question is answered with, leaf by leaf.
-        reads: For each leaf of an actor what was asked of which column to come there, with the answer.
-        steps: The label of each transition, as it was when it was learned.
+        still: The initial configuration, with the value of every constant cell.
+        pending: The number of requests or messages beyond which an agent is crowded, and its row not expanded.
+        runs: The number of runs of an actor's rules in Python.
+        owners: The owner of each tree.
+        taken: For each cell, the trees that assume it to be constant.
+        writers: For each cell, the trees that write it.
+        homes: For each cell and each name, the first tree of the first actor that writes the cell, or a cell of the
+            name.
+        answers: The answer of each leaf of a question.
+        reads: For each leaf of an actor, the columns and questions on its path, with the answers.
+        steps: The label of each transition.
         whose: The actor of each transition.
     """
 
@@ -169,7 +170,7 @@ class Learner:
                 self.varying.add(cell)
 
     def tree(self, actor: Actor | Edited) -> int:
-        """Return the number of the tree of an actor, or of an edit, which whoever makes it shares."""
+        """Return the number of the tree of an actor, or of an edit; all transitions with that edit share its tree."""
         if actor not in self.planted:
             self.planted[actor] = self._plant(actor)
         return self.planted[actor]
@@ -183,12 +184,12 @@ class Learner:
         return self.trees.plant()
 
     def learn(self, tree: int, source: CodedSource) -> None:
-        """Run the rules of a tree's actor on a configuration, and let the tree know what they asked and wrote."""
+        """Run the rules of a tree's actor on a configuration, and add their reads and writes to the tree."""
         while not self._learned(tree, source):
             pass
 
     def _learned(self, tree: int, source: CodedSource) -> bool:
-        """Learn a tree's way for a configuration; False where something was not what it was taken for till now."""
+        """Learn the path of a configuration in a tree; return False if an assumption about a cell proved wrong."""
         owner = self.owners[tree]
         try:
             if isinstance(owner, PartOf):
@@ -206,7 +207,7 @@ class Learner:
         return True
 
     def relearn(self, news: Relearn) -> None:
-        """Forget what rests on what a cell was taken for, of all whose cells are alike."""
+        """Discard the trees that assumed this cell to be constant or shallower, for all interchangeable cells."""
         self.sharing.forgotten += 1
         for cell in dict.fromkeys((news.cell, *self.likeness.alike(news.cell))):
             if isinstance(news, Varies):
@@ -217,12 +218,12 @@ class Learner:
                 self.forget_those(self.writers, cell)
 
     def forget(self) -> None:
-        """Forget everything."""
+        """Discard all trees."""
         for tree in range(len(self.owners)):
             self.trees.forget(tree)
 
     def forget_those(self, trees: dict[Cell, set[int]], cell: Cell) -> None:
-        """Forget what some trees know: those that took a cell for something that it is not."""
+        """Discard the trees recorded for a cell."""
         for tree in trees.pop(cell, ()):
             self.trees.forget(tree)
 
@@ -249,7 +250,7 @@ class Learner:
             self.learn(part, source)
 
     def _run(self, run: Run, source: CodedSource, exchange: Exchange) -> Learned:
-        """Run an actor's rules on a configuration; which parts are alike is said under an exchange."""
+        """Run an actor's rules on a configuration; `exchange` renames interchangeable parts as in the shared lesson."""
         self.runs += 1
         actor, recorder = run.actor, self._recorder(source)
         c = Configuration(self.setting, recorder)
@@ -314,7 +315,7 @@ class Learner:
             self.runs += 1
             recorder, concluded = run.recorder, run.concluded[part.step]
             assert recorder is not None
-            recorder.source = source  # it agrees on all that the rules themselves asked
+            recorder.source = source  # it gives the same answers to the rules' own questions
             writes, scope = recorder.apart(lambda: self.writing.part(concluded, part.name))
             found = self._found(scope, source, [Outcome(writes=self._written(writes))])
             self.sharing.teach(part.kin, found)
@@ -342,7 +343,7 @@ class Learner:
                 self.homes.setdefault(cell[-1], home)
 
     def _home(self, actor: Actor) -> int:
-        """Return the number of whom an actor is about: its first tree."""
+        """Return the first tree of the agent or clause of an actor."""
         return min(
             tree
             for each, tree in self.planted.items()
@@ -350,7 +351,7 @@ class Learner:
         )
 
     def by_home(self) -> list[int]:
-        """Return the numbers of all columns, those together that one actor writes."""
+        """Return all column numbers, grouped by the actor that writes the column."""
         last = len(self.owners)
 
         def home(number: int) -> tuple[int, int]:
@@ -360,12 +361,12 @@ class Learner:
         return sorted(range(len(self.columns)), key=home)
 
     def _grow_one(self, tree: int, found: Learned, writes: Writes) -> None:
-        """Let a tree know that what was asked leads to some writes."""
+        """Add a path with a single effect to a tree."""
         self._note_writer(tree, writes)
         self._grow(tree, found, self.leaves.add([Step(Effect(writes))]))
 
     def _grow(self, tree: int, found: Learned, leaf: int) -> None:
-        """Let a tree know that what was asked leads to a leaf."""
+        """Add a path to a leaf to a tree."""
         for cell in found.taken:
             self.taken[cell].add(tree)
         path: list[tuple[Ask, Any]] = []
@@ -387,9 +388,12 @@ class Learner:
         return steps
 
     def _alike(self, actor: Actor, key: Hashable, beside: Sequence[Hashable], number: int) -> int:
-        """Number a label that two transitions of one configuration may have: of one leaf, or of two clauses."""
+        """Return the number of a label that two transitions of one configuration may share, else `UNLIKE`.
+
+        They share it within one leaf, or in two clauses.
+        """
         known = self.labels.setdefault(key, Known(len(self.labels), actor))
-        if known.first != actor:  # whatever has it already must be compared, too
+        if known.first != actor:  # earlier transitions with the label must be compared, too
             for other in known.steps:
                 self.leaves.steps.room[STEP * other + ALIKE] = known.number
         known.steps.append(number)
@@ -402,15 +406,15 @@ def _turn(step: Transition) -> int:
 
 
 def general(label: Label) -> Label:
-    """Return a label without what is received: receiving equal observations ends alike."""
+    """Return a label without the received observation: receiving equal observations ends alike."""
     return replace(label, about=NOTHING_RECEIVED) if isinstance(label.about, Received) else label
 
 
 def is_crowded(c: Configuration, a: Name, most: int) -> bool:
-    """Tell whether an agent has more pending requests or messages than are explored."""
+    """Return whether an agent has more pending requests or messages than the exploration follows."""
     return c.eta.count(a) > most or c.test(mailbox_cell(a), is_longer, most)
 
 
 def is_longer(value: tuple[object, ...] | None, most: int) -> bool:
-    """Ask whether a cell holds more than so many."""
+    """Return whether a cell holds more than `most` elements."""
     return value is not None and len(value) > most

@@ -10,16 +10,16 @@ from checker.engines.fast.arrays import Growing
 from checker.engines.fast.columns import Writes
 
 CROWDED = 1
-"""A leaf of an agent that has more pending than is explored."""
+"""The flag of a leaf with a crowded agent: it has more requests or messages than the exploration follows."""
 
 NO_TURN = -1
 UNLIKE = -1
 
 LEAF, STEP, PAIR = 4, 8, 2
-"""Numbers that a leaf has: its first transition, the end of them, its flags, and one to spare.
+"""The numbers of a leaf: its first transition, the end of its transitions, its flags, and a spare one.
 
-A transition has: its turn, the number of its label, where its copies, its parts and its writes begin and end.
-A write has a column and its code; a copy has the column that gets and the one that gives.
+A transition has its turn, the number of its label, and the bounds of its copies, parts and writes. A write has a column
+and its code. A copy has its target column and its source column.
 """
 
 FIRST, END, FLAGS, _SPARE = range(LEAF)
@@ -28,12 +28,12 @@ TURN, ALIKE, COPIES, COPIES_END, PARTS, PARTS_END, WRITES, WRITES_END = range(ST
 
 @dataclass(slots=True)
 class Effect:
-    """What one transition, or one part of it, writes.
+    """The writes of one transition, or of one part of it.
 
     Attributes:
-        writes: Columns with the codes that they get.
-        copies: Columns with those that they get their codes from.
-        parts: The trees whose leaves write the rest, each by itself.
+        writes: Columns with their new codes.
+        copies: Target columns with their source columns.
+        parts: The trees with the remaining writes at their leaves, part by part.
     """
 
     writes: Writes
@@ -45,10 +45,10 @@ class Step(NamedTuple):
     """One transition of a leaf.
 
     Attributes:
-        effect: What it writes.
+        effect: Its writes.
         rule: The number of its rule.
-        turn: Where that stands in the queue, `NO_TURN` where it waits for none.
-        alike: The number of its label, where another transition of the same configuration may have it too.
+        turn: The position in the queue of the request that it serves; `NO_TURN` if it waits for none.
+        alike: The number of its label if another transition of the configuration may share it, else `UNLIKE`.
     """
 
     effect: Effect
@@ -61,8 +61,8 @@ class Leaves:
     """All leaves of an exploration: `LEAF` numbers a leaf, `STEP` a transition, `PAIR` a write or copy.
 
     Attributes:
-        rule: For each transition the number of its rule.
-        part: Trees of parts.
+        rule: The number of each transition's rule.
+        part: The trees of parts.
     """
 
     __slots__ = ("copies", "leaves", "part", "rule", "steps", "writes")
@@ -80,7 +80,7 @@ class Leaves:
         return self.leaves.append(first, len(self.rule), flags, 0) // LEAF
 
     def rank_of(self, step: int) -> int:
-        """Return which a transition is among those of its leaf."""
+        """Return the index of a transition within its leaf."""
         firsts = self.leaves.used[FIRST::LEAF]
         return step - int(firsts[np.searchsorted(firsts, step, side="right") - 1])
 
@@ -101,27 +101,8 @@ class Leaves:
             step.turn, step.alike, begins[0], ends[0], parts, len(self.part), begins[1], ends[1]
         )
 
-    def columns_of(self, step: int) -> frozenset[int]:
-        """Return the columns that a transition writes, or copies, or copies from."""
-        record = self.steps.room[STEP * step : STEP * (step + 1)]
-        copied = self.copies.room[PAIR * record[COPIES] : PAIR * record[COPIES_END]]
-        written = self.writes.room[PAIR * record[WRITES] : PAIR * record[WRITES_END] : PAIR]
-        return frozenset((*copied.tolist(), *written.tolist()))
-
     def parts_of(self, step: int) -> list[int]:
         """Return the trees of a transition's parts."""
         record = self.steps.room[STEP * step : STEP * (step + 1)]
         parts: list[int] = self.part.room[record[PARTS] : record[PARTS_END]].tolist()
         return parts
-
-    def codes_of(self, step: int) -> dict[int, int]:
-        """Return the codes that a transition writes at once, by column."""
-        record = self.steps.room[STEP * step : STEP * (step + 1)]
-        room = self.writes.room[PAIR * record[WRITES] : PAIR * record[WRITES_END]].tolist()
-        return dict(zip(room[::2], room[1::2], strict=True))
-
-    def copies_of(self, step: int) -> dict[int, int]:
-        """Return the columns that a transition copies, by the column that gets them."""
-        record = self.steps.room[STEP * step : STEP * (step + 1)]
-        room = self.copies.room[PAIR * record[COPIES] : PAIR * record[COPIES_END]].tolist()
-        return dict(zip(room[::2], room[1::2], strict=True))

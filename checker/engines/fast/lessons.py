@@ -1,10 +1,12 @@
-"""Lessons: what was learned of one agent, or of one part of a transition, is known of all that are like it.
+"""Shared lessons: a recorded run of one agent, or of one part, holds for all interchangeable ones.
 
-The rules of a mission are the same under an exchange of names that its text, its environment and their kinds do not
-distinguish. So what was recorded of one of fifty agents holds, renamed, for each whose cells answer the renamed
-questions alike. A lesson is kept in the names of the first of them, and in values: each has columns of its own.
+The rules of a mission are invariant under an exchange of names that its text, its environment and their kinds don't
+distinguish. A run recorded for one of fifty agents holds, renamed, for each agent whose cells give the renamed answers.
+A lesson is stored in the names of the first of them, and in values instead of codes, since each agent has its own
+columns.
 """
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
@@ -20,14 +22,17 @@ from semantics.state.configuration import Label
 from semantics.state.requests import REQUESTS
 from semantics.state.signature import Name
 
+_QUOTED = re.compile(r'("(?:[^"\\]|\\.)*")')
+"""A text as it is printed."""
+
 
 class NoImage(Exception):
-    """Something has no image under an exchange, or it can't be told."""
+    """Something has no image under an exchange, or the image can't be determined."""
 
 
 @lru_cache(maxsize=1 << 16)
 def names_in(value: Any) -> frozenset[Any]:
-    """Return the names that a value mentions; raises NoImage where that can't be told."""
+    """Return the names that a value mentions; raises NoImage if they can't be determined."""
     try:
         found = asked(lambda renaming: renaming.value(value))
     except TypeError:
@@ -37,12 +42,12 @@ def names_in(value: Any) -> frozenset[Any]:
 
 @dataclass(frozen=True)
 class Exchange:
-    """An exchange of names under which the rules are the same, as it changes what a rule reads and writes.
+    """An exchange of names under which the rules are invariant, applied to everything that a rule reads or writes.
 
     Attributes:
-        mobile: The names that observations are taken apart by.
-        unordered: Whether requests in line have an order of their own.
-        renaming: The names, and the statements and variables that go with them.
+        mobile: The names with columns for their facts in observations.
+        unordered: Whether the requests in line are unordered, hence stored in a canonical order.
+        renaming: The names, with their statements and variables.
     """
 
     mobile: frozenset[Name]
@@ -51,11 +56,11 @@ class Exchange:
 
     @cached_property
     def inverse(self) -> "Exchange":
-        """The exchange that undoes it."""
+        """The inverse exchange."""
         return self._of(self.renaming.inverse)
 
     def then(self, one: Name, other: Name) -> "Exchange":
-        """Return this exchange, and then that of two names."""
+        """Return this exchange followed by the swap of two names."""
         swap = Renaming({one: other, other: one})
         return self if one == other else self._of(swap.after(self.renaming))
 
@@ -64,7 +69,7 @@ class Exchange:
 
     @cached_property
     def moved(self) -> frozenset[Any]:
-        """The names, statements, variables and cells that are exchanged."""
+        """The names, statements, variables and cells that the exchange moves."""
         return frozenset(each for part in self.renaming.parts for each in part)
 
     def cell(self, cell: Cell) -> Cell:
@@ -72,12 +77,12 @@ class Exchange:
         return cell if self.moved.isdisjoint((cell, *cell)) else self.renaming.cell(cell)
 
     def name(self, name: Name) -> Name:
-        """Return the image of whom a hole is about; an agent stands under another name there."""
+        """Return the image of the name of a fact; for an agent, the name has a prefix."""
         bare = name.removeprefix(AGENT)
         return name if bare not in self.moved else name.removesuffix(bare) + self.renaming.name(bare)
 
     def place(self, place: Place) -> Place:
-        """Return the image of what a column is of."""
+        """Return the image of the subject of a column."""
         cell = self.cell(place[0])
         return (cell,) if len(place) == 1 else (cell, place[1], self.name(place[2]))
 
@@ -87,12 +92,12 @@ class Exchange:
         return Ask(self.cell(ask.cell), hole, ask.question, self.constant(ask.constants))
 
     def answer(self, ask: Ask, answer: Any) -> Any:
-        """Return the image of what a question is answered with."""
+        """Return the image of the answer to a question."""
         is_skeleton = ask.hole is None and ask.question is None
         return self.value(ask.cell, answer) if is_skeleton else self.constant(answer)
 
     def constant(self, value: Any) -> Any:
-        """Return the image of a value that no cell holds."""
+        """Return the image of a value that is no cell's content."""
         if isinstance(value, bool) or names_in(value).isdisjoint(self.moved):
             return value
         return self._renamed(lambda: self.renaming.value(value))
@@ -106,7 +111,7 @@ class Exchange:
             return skeleton
         is_sorted = not {"sends", "mailbox", *(["line"] if self.unordered else ())}.isdisjoint(cell)
         if is_sorted and len(skeleton) > 1:
-            raise NoImage  # members, and what goes with each, might have another order
+            raise NoImage  # the elements of the image, and their attachments, may be in another order
         whole = put_together(skeleton, lambda hole: dict(hole.still))
         image = self._renamed(lambda: self.renaming.content(cell, whole, unordered=self.unordered))
         return taken_apart(image, self.mobile)[0]
@@ -116,20 +121,26 @@ class Exchange:
         return replace(edited, cell=self.cell(edited.cell), constants=self.constant(edited.constants))
 
     def label(self, label: Label) -> Label:
-        """Return the image of a label: of a request, of what is received, or words of the mission's text."""
+        """Return the image of a label about a request, a received observation, or words of the mission."""
         about = self.constant(label.about) if isinstance(label.about, REQUESTS) else label.about
         if isinstance(about, str):
-            about = self.shown(about) if '"' in about else self.renaming.text(about)
+            about = self.printed(about)
         return Label(label.rule, None if label.agent is None else self.renaming.name(label.agent), about)
 
+    def printed(self, text: str) -> str:
+        """Return the image of words in the notation of the language: texts, in quotes, stay."""
+        pieces = _QUOTED.split(text)
+        pieces[::2] = map(self.renaming.text, pieces[::2])
+        return "".join(pieces)
+
     def shown(self, text: str) -> str:
-        """Return a text that mentions nobody who is exchanged: whether a word of it is a name can't be told."""
+        """Return a text that mentions no moved name; raise NoImage otherwise: its words may or may not be names."""
         if self.renaming.text(text) != text:
             raise NoImage
         return text
 
     def keeps_order(self, names: Iterable[Name]) -> bool:
-        """Tell whether names have images in the same order: rules go through names in theirs."""
+        """Return whether the images of names have the same order: rules iterate over names in their order."""
         images = [self.name(name) for name in sorted(names)]
         return images == sorted(images)
 
@@ -141,17 +152,17 @@ class Exchange:
 
 
 class Outcome(NamedTuple):
-    """One transition, or what a part of one writes.
+    """One transition, or the writes of a part.
 
     Attributes:
-        label: What it is called, without what is received.
-        shown: What it displays.
-        turn: Where what it serves stands in the queue.
-        writes: What is written, by place.
-        copies: The places that get what others hold.
-        edits: What is made of cells, whatever they hold.
-        apart: About whom there are parts.
-        parts: What is known of those.
+        label: Its label, without a received observation.
+        shown: The texts that it displays.
+        turn: The position in the queue of the request that it serves.
+        writes: The values written, by place.
+        copies: Target places with their source places.
+        edits: The edits of cells, independent of their values.
+        apart: The names that have parts.
+        parts: The lessons of these parts.
     """
 
     label: Label | None = None
@@ -164,7 +175,7 @@ class Outcome(NamedTuple):
     parts: "Parts | None" = None
 
     def image(self, under: Exchange) -> "Outcome":
-        """Return it under other names; raises NoImage where it has no image. What is known of parts is the same."""
+        """Return the outcome under other names; raises NoImage if it has no image. The lessons of parts are shared."""
         return Outcome(
             None if self.label is None else under.label(self.label),
             tuple(map(under.shown, self.shown)),
@@ -183,22 +194,22 @@ def _held(under: Exchange, place: Place, value: Any) -> Any:
 
 @dataclass(slots=True)
 class Parts:
-    """What is known of the parts of one transition, and which of them are alike.
+    """The lessons of the parts of one transition, and which parts are interchangeable.
 
     Attributes:
-        firsts: For each about whom a part is the first that is like that, unless it is that itself.
-        known: By that first what is known.
+        firsts: For each name, the first name with an interchangeable part; the first itself is not a key.
+        known: The lessons of each first name.
     """
 
     firsts: Mapping[Name, Name]
     known: dict[Name, "Lessons"] = field(default_factory=dict)
 
     def has_like(self, name: Name) -> bool:
-        """Tell whether another part is like that about somebody."""
+        """Return whether another part is interchangeable with that of a name."""
         return name in self.firsts or name in self.firsts.values()
 
     def of(self, name: Name, under: Exchange) -> "Kin":
-        """Return what is known of a part, and the exchange that makes it that of the first."""
+        """Return the lessons for a part, with the exchange that maps it to its first."""
         image = under.name(name)
         first = self.firsts.get(image, image)
         return Kin(self.known.setdefault(first, Lessons()), under.then(image, first))
@@ -206,14 +217,14 @@ class Parts:
 
 @dataclass(frozen=True, slots=True)
 class Lesson:
-    """What follows from some answers.
+    """The conclusion of a sequence of answers.
 
     Attributes:
-        flags: Of the leaf.
+        flags: The flags of the leaf.
         outcomes: The transitions.
-        still: The cells that were taken to be never written and mention nobody who may be exchanged.
-        taken: The others, with what they hold.
-        depths: How many observations each cell that is written has columns for.
+        still: The cells assumed constant that mention no exchangeable name.
+        taken: The other cells assumed constant, with their values.
+        depths: The number of observations with columns, for each cell that is written.
         names: The names that questions and values mention.
     """
 
@@ -225,7 +236,7 @@ class Lesson:
     names: frozenset[Name]
 
     def image(self, under: Exchange) -> "Lesson":
-        """Return it under other names; raises NoImage where it has no image."""
+        """Return the lesson under other names; raises NoImage if it has no image."""
         if not under.keeps_order(self.names):
             raise NoImage
         return Lesson(
@@ -239,14 +250,14 @@ class Lesson:
 
 
 Taken = tuple[tuple[Cell, Any], ...]
-"""Cells that were taken to be never written, with what they hold, sorted."""
+"""Cells assumed constant, with their values, sorted."""
 
 
 class Stage(NamedTuple):
-    """One stage of a run: what was taken to be never written, then one question with its answer; none at the end.
+    """One stage of a run: assumptions about constant cells, then one question with its answer; none at the end.
 
     Attributes:
-        taken: The cells that mention somebody who may be exchanged.
+        taken: The cells assumed constant that mention an exchangeable name, with their values.
         ask: The question.
         answer: Its answer.
     """
@@ -258,12 +269,12 @@ class Stage(NamedTuple):
 
 @dataclass(slots=True)
 class Branch:
-    """What is known where some cells that are never written hold this.
+    """The knowledge for one set of values of constant cells.
 
     Attributes:
-        ask: What is asked next.
-        after: By the answer what is known then.
-        lesson: What follows where nothing more is asked.
+        ask: The next question.
+        after: The lessons by its answer.
+        lesson: The conclusion, if there is no further question.
     """
 
     ask: Ask | None = None
@@ -273,25 +284,25 @@ class Branch:
 
 @dataclass(slots=True)
 class Lessons:
-    """All lessons of those that are alike, in the names of the first: a decision tree by values.
+    """A decision tree over values, in the names of the first of several interchangeable agents or parts.
 
-    A run depends on all that it reads: on what is never written, too, which may differ between two that are alike.
+    A run also depends on constant cells, which may differ between interchangeable agents.
 
     Attributes:
-        branches: By what is taken to be never written what is known then.
-        since: How often what was taken for known had been forgotten when it began.
+        branches: The branches by the values of constant cells.
+        since: The value of `Sharing.forgotten` when the tree began.
     """
 
     branches: dict[Taken, Branch] = field(default_factory=dict)
     since: int = 0
 
     def begin(self, since: int) -> None:
-        """Know nothing, if something was forgotten since."""
+        """Clear the tree if assumptions were discarded after it began."""
         if since != self.since:
             self.branches, self.since = {}, since
 
     def find(self, answer: Callable[[Ask], Any], holds: Callable[[Cell], Any]) -> Lesson | None:
-        """Return what follows where questions are answered so and cells hold this, None where it isn't known."""
+        """Return the lesson for the given answers and cell values, None if it is unknown."""
         node = self
         while True:
             branch = next((each for taken, each in node.branches.items() if _agree(taken, holds)), None)
@@ -303,9 +314,9 @@ class Lessons:
             node = found
 
     def learn(self, stages: Iterable[Stage], lesson: Lesson) -> None:
-        """Know what follows from some answers; nothing where something else was asked after the same ones.
+        """Add a lesson to the tree, unless another question was asked after the same answers.
 
-        Rules may go through names in their order, and stop: two that are alike may then ask in another order.
+        Rules may iterate over names in order and stop; interchangeable agents may then ask in different orders.
         """
         node = self
         for taken, ask, answer in stages:
@@ -323,14 +334,14 @@ def _agree(taken: Taken, holds: Callable[[Cell], Any]) -> bool:
 
 
 class Kin(NamedTuple):
-    """What is known of those that are like somebody, and the exchange that makes somebody the first of them."""
+    """The lessons shared by interchangeable agents or parts, and the exchange that maps this one to the first."""
 
     lessons: Lessons
     exchange: Exchange
 
 
 def mentioned(asked: Iterable[Ask], outcomes: Iterable[Outcome]) -> frozenset[Name]:
-    """Return the names that questions and values mention; raises NoImage where that can't be told."""
+    """Return the names that questions and outcomes mention; raises NoImage if they can't be determined."""
     found: set[Any] = set()
     for ask in asked:
         found.update(ask.cell[1:], names_in(ask.constants), () if ask.hole is None else (ask.hole[1],))

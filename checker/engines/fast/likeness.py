@@ -1,4 +1,4 @@
-"""Likeness: which names a mission does not tell apart, so that what is learned of one is known of the others."""
+"""Interchangeability: the names that a mission does not distinguish, so that their lessons are shared."""
 
 from collections import Counter
 from collections.abc import Hashable, Iterator, Sequence
@@ -19,13 +19,13 @@ from semantics.state.signature import Name
 
 @dataclass
 class Likeness:
-    """Which names a mission does not tell apart.
+    """The names that a mission does not distinguish.
 
     Attributes:
         setting: The mission.
-        still: Its first configuration.
-        mobile: The names that observations are taken apart by.
-        apart: Of whom parts may be.
+        still: Its initial configuration.
+        mobile: The names with columns for their facts in observations.
+        apart: The names that may have parts.
     """
 
     setting: Setting
@@ -42,12 +42,12 @@ class Likeness:
 
     @cached_property
     def nobody(self) -> Exchange:
-        """The exchange of nobody."""
+        """The identity exchange."""
         return Exchange(self.mobile, self.setting.scheduler is Scheduler.UNORDERED)
 
     @cached_property
     def _firsts(self) -> dict[Name, tuple[Name, Exchange]]:
-        """For each agent the first that is like it, with the exchange of both and of their hosts."""
+        """For each agent, the first interchangeable one, with the exchange of both and of their hosts."""
         found: dict[Name, tuple[Name, Exchange]] = {}
         for agent in self._automorphisms.c.alpha.names():
             firsts = dict.fromkeys(first for first, _ in found.values())
@@ -59,26 +59,26 @@ class Likeness:
 
     @cached_property
     def agents(self) -> dict[Name, tuple[Name, Exchange]]:
-        """For each agent that others are like the first of them, and the exchange that makes it that."""
-        if self.setting.timing is not None:  # that says of vehicles, by name, how fast they are
+        """For each agent that is interchangeable with another, the first one and the exchange to it."""
+        if self.setting.timing is not None:  # it gives speeds of vehicles by name
             return {}
         many = Counter(first for first, _ in self._firsts.values())
         return {agent: found for agent, found in self._firsts.items() if many[found[0]] > 1}
 
     @cached_property
     def _movable(self) -> frozenset[Any]:
-        """Who may be exchanged."""
+        """The names that may be exchanged."""
         return self.apart.union(*(exchange.moved for _, exchange in self.agents.values()))
 
     def mentions_any(self, cell: Cell) -> bool:
-        """Tell whether a cell that is never written, or what it holds, mentions who may be exchanged."""
+        """Return whether a constant cell, or its value, mentions an exchangeable name."""
         if cell not in self.mentioning:
             names = names_in(self.still.read(cell)).union(cell[1:])
             self.mentioning[cell] = cell in self._movable or not names.isdisjoint(self._movable)
         return self.mentioning[cell]
 
     def alike(self, cell: Cell) -> Iterator[Cell]:
-        """Yield the cells that are to agents, or to their hosts, what a cell is to one that is like them."""
+        """Yield the cells that correspond to a cell under exchanges of agents and their hosts."""
         alpha = self._automorphisms.c.alpha
         for one, (first, exchange) in self.agents.items():
             if one in cell or alpha.host(one) in cell:
@@ -96,11 +96,11 @@ class Likeness:
             return None
 
     def models(self, names: Sequence[Name], scope: Scope) -> dict[Name, Name]:
-        """Return for names that parts of a conclusion are about the first that is like each, unless it is that itself.
+        """Return the first interchangeable name for each name with a part, unless it is the name itself.
 
-        Whom the transition itself asked about, as `scope` tells, is like nobody.
+        A name that the transition's own questions in `scope` mention is interchangeable with none.
         """
-        if self.setting.timing is not None:  # that says of vehicles, by name, how fast they are
+        if self.setting.timing is not None:  # it gives speeds of vehicles by name
             return {}
         try:
             mentioned, taken = _mentioned(scope), self._taken(scope)
@@ -115,7 +115,7 @@ class Likeness:
         return {name: model for name, model in models.items() if name != model}
 
     def _taken(self, scope: Scope) -> dict[Name, list[Hashable]]:
-        """Return for each name what the cells that were taken to be never written hold of it, without its name."""
+        """Return, for each name, the contents of constant cells that mention it, with the name removed."""
         found: dict[Name, list[Hashable]] = {}
         for cell in scope.taken:
             if cell not in self.held:
@@ -125,7 +125,7 @@ class Likeness:
         return found
 
     def _held(self, cell: Cell) -> tuple[tuple[Name, Hashable], ...]:
-        """Return of whom parts may be that a cell mentions, each with what it holds of it, without its name."""
+        """Return the names with parts that a cell mentions, each with the cell and its value without the name."""
         value = self.still.read(cell)
         return tuple(
             (name, (tuple(None if each == name else each for each in cell), value if name in cell else None))
@@ -133,7 +133,7 @@ class Likeness:
         )
 
     def _first(self, name: Name) -> Name:
-        """Return the first name that was met of those that are like one."""
+        """Return the first name seen that is interchangeable with a name."""
         if name not in self.firsts:
             others = dict.fromkeys(self.firsts.values())
             self.firsts[name] = next((each for each in others if self._are_like(each, name)), name)
@@ -150,7 +150,7 @@ class Likeness:
 
 
 def _mentioned(scope: Scope) -> frozenset[Any]:
-    """Return the names that questions with their answers mention."""
+    """Return the names that questions and answers mention."""
     found: set[Any] = set()
     for ask, answer in scope.asked.items():
         found.update(ask.cell[1:], names_in(ask.constants), names_in(answer))

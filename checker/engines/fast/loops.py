@@ -1,4 +1,4 @@
-"""How the loops are compiled."""
+"""Decorators that compile the loops."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -9,20 +9,20 @@ Loop = TypeVar("Loop", bound=Callable[..., Any])
 
 
 def njit(**options: Any) -> Callable[[Loop], Loop]:
-    """Return numba's decorator that compiles a loop, which borrows the arrays that it is given: its caller holds them.
+    """Return numba's decorator for a loop that borrows its arrays: the caller holds them.
 
-    It counts no references to them. Counting took two thirds of the time where arrays stand in named tuples, for each
-    look into one counts. A loop that makes arrays itself says `_nrt=True`: numba refuses it otherwise. No C code calls
-    loops, so there is no wrapper for it.
+    The loop counts no references. Counting took two thirds of the time for arrays in named tuples, since each access
+    counts. A loop that creates arrays needs `_nrt=True`; numba refuses it otherwise. There is no wrapper for C code,
+    which never calls loops.
     """
     decorator: Any = numba.njit(**{"_nrt": False, "no_cfunc_wrapper": True} | options)
-    return decorator  # type: ignore[no-any-return]  # what it makes is called as the loop is
+    return decorator  # type: ignore[no-any-return]  # its result has the loop's signature
 
 
 def inner(**options: Any) -> Callable[[Loop], Loop]:
     """Return the decorator of a loop that only other loops call: a call from Python crashes.
 
-    What Python calls has a wrapper that takes each argument apart; those of all inner loops took a fifth of the time
-    in which loops are compiled. `tests/checker/engines/fast/test_loops.py` says who calls what.
+    A loop callable from Python has a wrapper that unpacks each argument. The wrappers of all inner loops took a fifth
+    of the compile time. `tests/checker/engines/fast/test_loops.py` lists the callers of each.
     """
     return njit(no_cpython_wrapper=True, **options)

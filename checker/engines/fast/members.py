@@ -1,7 +1,7 @@
-"""Who may move in a row, and what that may disturb, as the loops of partial-order reduction see it."""
+"""The actors of a row and their footprints, for the loops of partial-order reduction."""
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# numba types these functions; mypy would read their integers as Python's
 
 from typing import Any, NamedTuple
 
@@ -13,59 +13,60 @@ from checker.engines.fast.loops import inner
 from checker.engines.fast.table import Words
 
 MOST_HERE = 8 * WORD
-"""A configuration with more actors than these is expanded in full."""
+"""The greatest number of actors for which a row is reduced; with more, it is expanded fully."""
 
 EVERYBODY, UNKNOWN, NOBODY_LEFT, GOING_ON = -1, -2, -3, -4
-"""What is said in the place of the transition that leads on: that all are followed, that not all is known, that none
-need lead on, or that another set joins."""
+"""Codes instead of the transition on which a path continues: all transitions are followed; something is unknown; no
+ignored actor remains; another set is needed."""
 
 MADE, REPRESENTED = 1, 2
-"""What is so of a transition: its target is made, and its representative stands in its place."""
+"""The states of a successor: made, and replaced by its representative."""
 
 TRIED = -1
-"""The size of a set that was found not to be ample, or that joined."""
+"""The size of a set that is not ample, or that was added."""
 
 FAIR, AGENTS_OWN = 1, 2
-"""Flags of a transition: an agent's, and one that must be taken some time; an agent's."""
+"""The flags of a transition: an agent's that must eventually be taken; an agent's."""
 
 MEMBER, NOW, EVER, ASIDE, FOLLOWER = range(5)
 RECORD = 5
-"""Numbers of an actor in a configuration: which it is, its footprints, and which comes behind it (-1: none)."""
+"""The numbers of an actor: its index, three footprints, and the program whose requests queue behind it (-1: none)."""
 
 PARTS = 3
-"""A footprint has reads, writes and merges, each as words of bits."""
+"""The bit sets of a footprint: reads, writes and merges."""
 
 KINDS = 3
-"""Parts of an agent (see `checker.reduction.paths.Part`): program, line, requests. Clauses come after all of these."""
+"""The parts of an agent (see `checker.reduction.paths.Part`): program, line, requests. Clauses follow all agents."""
 
 
 class Members(NamedTuple):
-    """Who may move, and what that may disturb, as the loop sees it.
+    """The tables of actors and disturbances, with scratch space for one row, in the form that the loops read.
 
     Attributes:
-        trees_from, trees: Trees that tell the actors, in groups: one for each value of the cell that names agents.
-        begins: For each leaf of these where its actors begin in `actors`, and where they end.
+        trees_from, trees: Trees that list the actors, in groups: one for each value of the cell that names agents.
+        begins: For each leaf of these trees, the bounds of its actors in `actors`.
         actors: `RECORD` numbers an actor.
-        part: For each actor the part that it belongs to.
-        footprints: For each footprint the words of its parts.
-        disturbed: For each two footprints whether one disturbs the other: 0 where it was not asked, 1 no, 2 yes.
-        step_actor, step_flags: For each transition whose it is, and its flags.
-        seen_masks: For each word of a row the bits that properties look at.
-        seen_whole: For each word of a row the bits that properties look at as they are.
-        seen: Columns that properties look at through a question, each with where its answers begin.
-        answers: What that question makes of each code.
-        agents: How many agents there may ever be.
-        count: For how many footprints `disturbed` has room.
-        here, ever, place: Room for one row: its actors, the footprints of what they may ever do, and where each
-            actor is among them.
-        whose, made, visible: Whose each of its transitions is, what of that was made (see `MADE`), and whether
-            properties see it: 0 where that was not asked, 1 no, 2 yes.
-        disturbers, sets: Sets of its actors, each in as many words as they need: who may disturb each (where that was
-            asked it is one itself), and those that were found.
-        sizes: How many transitions each set that was found has.
-        inside, owners, whole: Who has joined, who may take a step, and around whom the least set omits nobody's.
-        waiting, tried: Room for the actors whose disturbers are asked next; whose sets were found.
-        taken, more: Parts that are taken on the way.
+        part: The part of each actor.
+        footprints: The words of each footprint.
+        disturbed: For each pair of footprints, whether one disturbs the other: 0 not computed, 1 no, 2 yes.
+        step_actor, step_flags: The actor and the flags of each transition.
+        seen_masks: For each word of a row, the bits that properties read.
+        seen_whole: For each word of a row, the bits that properties read directly, without a question.
+        seen: Columns that properties read through a question, each with the first of its answers in `answers`.
+        answers: The answer of that question for each code.
+        agents: The greatest number of agents.
+        count: The number of footprints for which `disturbed` has room.
+        here, ever, place: Scratch space: the actors of a row, the footprints of all they may ever do, and the position
+            of each actor among them.
+        whose, made, visible: For each transition of the row, its actor, the state of its successor (see `MADE`), and
+            its visibility: 0 not computed, 1 no, 2 yes.
+        disturbers, sets: Sets of the row's actors as bits: the disturbers of each actor, and the persistent sets found.
+            An actor among its own disturbers marks them as computed.
+        sizes: The number of transitions of each set.
+        inside, owners, whole: The chosen actors, the enabled actors, and those whose persistent set contains all
+            enabled ones.
+        waiting, tried: Scratch space: a stack of actors in the closure, and the actors that have their set.
+        taken, more: The parts taken along the path.
     """
 
     trees_from: Ints
@@ -103,7 +104,7 @@ class Members(NamedTuple):
 
 @inner(cache=True)
 def meet(m: Model, r: Members, here: Words, state: State) -> int:
-    """Note the actors of a row; return how many there are, -1 where something is not known."""
+    """Note the actors of a row; return their number, or -1 if something is not learned yet."""
     group = np.int64(0)
     if state[ALPHA] >= 0:
         group = code_at(here, 0, m.columns, state[ALPHA])

@@ -1,12 +1,12 @@
-"""From which row each row was first reached.
+"""The row from which each row was first reached.
 
-Breadth-first search reaches rows in the order of these, so a bit for each row and one for each origin say it all: the
-bit number + origin of each row is set (Elias, Efficient storage and retrieval by content and address of static files,
-1974). Where rows come from elsewhere, as between workers, each has a number of its own.
+Breadth-first search reaches rows in the order of their origins. So a bit for each row and one for each origin encode
+all: for each row, bit number + origin is set (Elias, Efficient storage and retrieval by content and address of static
+files, 1974). If rows come in another order, as between workers, each stores its origin as a number.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# numba types these functions; mypy would read their integers as Python's
 
 from collections.abc import Callable
 from pathlib import Path
@@ -23,24 +23,24 @@ from checker.engines.fast.pages import Pages
 from checker.engines.fast.table import Words
 
 BLOCK = 64
-"""Words of bits whose ones are counted once."""
+"""The number of words that share one stored count of set bits."""
 
 _ONE = np.uint64(1)
 
 
 class Bits(NamedTuple):
-    """Origins that never decrease, as the loops see them."""
+    """Origins that never decrease, for the compiled loops."""
 
     words: Words
 
 
 def note_origin(origins: Any, number: Any, origin: Any) -> None:
-    """Note from which row a new row was reached, in `Bits` or in an array of numbers: in loops only."""
+    """Note the origin of a new row, in `Bits` or in an array of numbers. Only for compiled loops."""
     raise NotImplementedError
 
 
 def most_origins(origins: Any) -> int:
-    """Return of how many rows it can be noted: in loops only."""
+    """Return the number of rows for which origins have room. Only for compiled loops."""
     raise NotImplementedError
 
 
@@ -69,7 +69,7 @@ def _most_origins(origins: Any) -> Callable[..., int]:
 
 @njit(cache=True)
 def count_ones(words: Words, before: NDArray[np.int64]) -> int:
-    """Note how many bits are set before each block of words, and return how many are set in all."""
+    """Note the number of set bits before each block of words; return their total."""
     found = np.int64(0)
     for at in range(len(words)):
         if at % BLOCK == 0:
@@ -80,7 +80,7 @@ def count_ones(words: Words, before: NDArray[np.int64]) -> int:
 
 @njit(cache=True)
 def place_of(words: Words, before: NDArray[np.int64], number: int) -> int:
-    """Return where the bit is set before which so many are set, which there must be."""
+    """Return the position of the set bit before which exactly `number` bits are set; it must exist."""
     block = np.searchsorted(before, number, side="right") - 1
     left, at = number - before[block], block * BLOCK
     while left >= ones_in(words[at]):
@@ -94,7 +94,7 @@ def place_of(words: Words, before: NDArray[np.int64], number: int) -> int:
 
 @njit(cache=True)
 def write_origins(words: Words, origins: NDArray[np.int64]) -> None:
-    """Write the origins of all rows, of which there is one for each bit that is set."""
+    """Write the origins of all rows, one for each set bit."""
     number = np.int64(0)
     for at in range(len(words)):
         word = words[at]
@@ -112,7 +112,7 @@ def origins_in(bits: Words) -> NDArray[np.int64]:
 
 
 class OriginPages(Pages):
-    """Origins that are numbers, in any order."""
+    """Origins as numbers, in any order."""
 
     __slots__ = ()
 
@@ -123,38 +123,38 @@ class OriginPages(Pages):
 
     @property
     def rows(self) -> int:
-        """Of how many rows they can be noted."""
+        """The number of rows that have room."""
         return len(self.room)
 
     @property
     def loops(self) -> Any:
-        """What the loops note them in; growing and spilling make another: don't keep it."""
+        """The form that the loops write. Growing and spilling replace it: don't keep it."""
         return self.room
 
     @property
     def bytes_each(self) -> float:
-        """How many bytes that of one row takes."""
+        """The bytes for one row."""
         return self.room.itemsize
 
-    def origin(self, number: int, size: int) -> int:  # noqa: ARG002 - as others need it
-        """Return the origin of one of so many rows, of all that there are."""
+    def origin(self, number: int, size: int) -> int:  # noqa: ARG002 - part of the interface
+        """Return the origin of one of `size` rows."""
         return int(self.room[number])
 
     def kept(self, size: int) -> NDArray[Any]:
-        """Return those of so many rows, of all that there are, as they are kept."""
+        """Return the stored form of the origins of `size` rows."""
         return self.room[:size]
 
     def restore(self, kept: NDArray[Any], size: int) -> None:
-        """Take those of so many rows as they were kept elsewhere; there is room for them.
+        """Load the stored origins of `size` rows, for which there is room.
 
         Raises:
-            ValueError: They are not those of a search that has so many rows.
+            ValueError: No search of that size has them.
         """
         self.room[:size] = kept
 
 
 class Elsewhere(OriginPages):
-    """Those of rows that may have been reached from another worker's."""
+    """Origins of rows that may have been reached from another worker's row."""
 
     __slots__ = ()
 
@@ -162,7 +162,7 @@ class Elsewhere(OriginPages):
 
 
 class Rising(OriginPages):
-    """Origins that never decrease, of rows of which the first is its own; counts are those of rows, not of words."""
+    """Origins that never decrease, as bits; the first row is its own origin. Counts are of rows, not of words."""
 
     __slots__ = ("_before", "_counted")
 
@@ -175,33 +175,33 @@ class Rising(OriginPages):
 
     @property
     def rows(self) -> int:
-        """Of how many rows they can be noted."""
+        """The number of rows that have room."""
         return len(self.room) * (WORD // 2)
 
     @property
     def bytes_each(self) -> float:
-        """How many bytes that of one row takes, with what it adds to an expanded one."""
+        """The bytes for one row, including the bit of an origin."""
         return 2 / 8
 
     @property
     def loops(self) -> Bits:
-        """What the loops note them in; growing and spilling make another: don't keep it."""
+        """The form that the loops write. Growing and spilling replace it: don't keep it."""
         return Bits(self.room)
 
     def held(self, used: int) -> int:
-        """Return how many bytes those of so many first rows take."""
+        """Return the bytes for the first `used` rows."""
         return super().held(_words_for(used))
 
     def grow(self, count: int) -> None:
-        """Make room for those of so many rows in all; OSError as for all pages."""
+        """Make room for `count` rows in all; raises OSError as `Pages.grow`."""
         super().grow(_words_for(count))
 
     def spill(self, folder: Path, used: int) -> None:
-        """Go over to a file with those of so many first rows; OSError as for all pages."""
+        """Move to a file, with the first `used` rows; raises OSError as `Pages.spill`."""
         super().spill(folder, _words_for(used))
 
     def origin(self, number: int, size: int) -> int:
-        """Return the origin of one of so many rows, of all that there are."""
+        """Return the origin of one of `size` rows."""
         if self._counted != size:
             words = self.kept(size)
             self._before, self._counted = np.zeros(-(-len(words) // BLOCK), np.int64), size
@@ -209,18 +209,18 @@ class Rising(OriginPages):
         return int(place_of(self.room, self._before, number)) - number
 
     def kept(self, size: int) -> Words:
-        """Return those of so many rows, of all that there are, as they are kept: a bit for each and its origin."""
+        """Return the stored form of the origins of `size` rows: a bit for each row and each origin."""
         return self.room[: _words_for(size)]
 
     def restore(self, kept: Words, size: int) -> None:
-        """Take those of so many rows as they were kept elsewhere; there is room for them.
+        """Load the stored origins of `size` rows, for which there is room.
 
         Raises:
-            ValueError: They are not those of a search that has so many rows.
+            ValueError: No search of that size has them.
         """
         told = origins_in(
             kept[: _words_for(size)]
-        )  # a file may have more, each bit of which would take a number
+        )  # a longer file may have more bits, each of which would yield a number
         known = len(kept) == _words_for(size) and len(told) == size
         if not known or told[0] or np.any(told[1:] >= np.arange(1, size)):
             raise ValueError("some row was reached from a later one")
@@ -228,5 +228,5 @@ class Rising(OriginPages):
 
 
 def _words_for(rows: int) -> int:
-    """Return how many words have a bit for each of so many rows and for each origin of one."""
+    """Return the number of words with a bit for each of `rows` rows and of their origins."""
     return 2 * rows // WORD + 1

@@ -1,7 +1,7 @@
-"""Arrays in memory pages of their own: huge ones where they are large and there are any, grown without copying.
+"""Arrays in memory pages of their own, which grow without copying; large ones use huge pages where available.
 
-They can go over to a file. Then the system writes them out and reads them again as it needs memory; the file has no
-name, so that nothing is left of it however the process ends.
+They can move to a file, which the system then writes and reads as it needs memory. The file has no name, so nothing of
+it remains, however the process ends.
 """
 
 import mmap
@@ -15,20 +15,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 PIECE = 1 << 20
-"""Numbers that are copied at once."""
+"""The number of elements copied at once."""
 
 HUGE = 1 << 21
-"""Bytes of a huge page: large arrays take memory in such pieces at most."""
+"""The bytes of a huge page, the largest unit of allocation."""
 
 LARGE = 8 * HUGE
-"""Bytes of room from which on an array has huge pages: where smaller ones end, the rest of a page would lie idle."""
+"""The least size in bytes for huge pages: a smaller array would leave too much of its last page unused."""
 
 
 class Pages:
-    """A one-dimensional array that grows in place; what was never written takes no memory.
+    """A one-dimensional array that grows in place; unwritten elements take no memory.
 
     Attributes:
-        room: The whole array, zeros where nothing was written. `grow` and `spill` make another: don't keep it.
+        room: The whole array, zero where unwritten. `grow` and `spill` replace it: don't keep it.
     """
 
     __slots__ = ("__weakref__", "_file", "_kind", "_pages", "room")
@@ -45,22 +45,22 @@ class Pages:
         return self._file is not None
 
     def held(self, used: int) -> int:
-        """Return how many bytes it takes if only so many first numbers were written; a file takes all of its room."""
+        """Return the bytes taken if only the first `used` elements were written; a file takes its full size."""
         if self.spilled:
             return self.room.nbytes
         page = HUGE if self._is_large else mmap.PAGESIZE
         return min(-(-used * self._kind.itemsize // page) * page, self.room.nbytes)
 
     def grow(self, count: int) -> None:
-        """Make room for so many in all.
+        """Make room for `count` elements in all.
 
         Raises:
-            OSError: There is no room for them in the file, or in memory; what there was stands.
+            OSError: The file or memory has no room; the array is unchanged.
         """
         if count > len(self.room):
             if self._file is not None:
                 reserve(self._file, self._bytes(count))
-            self.room = np.zeros(0, self._kind)  # the pages can't move while an array stands on them
+            self.room = np.zeros(0, self._kind)  # pages can't move while an array refers to them
             try:
                 self._resize(count)
             finally:
@@ -68,13 +68,13 @@ class Pages:
 
     def _resize(self, count: int) -> None:
         if self._file is not None:
-            # Whoever has the old pages has the same file.
+            # A holder of the old pages has the same file.
             self._pages = mmap.mmap(self._file, self._bytes(count))
             return
         try:
             self._pages.resize(self._bytes(count))
             self._advise()
-        except BufferError:  # a traceback or the compiler still holds the array: leave it the old pages
+        except BufferError:  # a traceback or the compiler still holds the array, which keeps the old pages
             held = np.frombuffer(self._pages, np.uint8)
             self._map(count)
             np.frombuffer(self._pages, np.uint8)[: len(held)] = held
@@ -84,7 +84,7 @@ class Pages:
         self._advise()
 
     def spill(self, folder: Path, used: int) -> None:
-        """Go over to a file without a name in a folder, with the first so many numbers.
+        """Move to an unnamed file in a folder, with the first `used` elements.
 
         Raises:
             OSError: There is no such folder, or no room in it.
@@ -113,7 +113,7 @@ class Pages:
 
 
 def reserve(file: int, size: int) -> None:
-    """Take all the room that a file is to have: writing to a hole that can't be filled would end the process."""
+    """Allocate the full size of a file: a write to a hole that can't be filled would kill the process."""
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(file, 0, size)
     else:
@@ -121,5 +121,5 @@ def reserve(file: int, size: int) -> None:
 
 
 def more(room: int) -> int:
-    """Return how much room comes after so much: the more there is, the less is added."""
+    """Return the next capacity after `room`: twice as much, or half as much again for large arrays."""
     return room * 2 if room < 1 << 22 else room * 3 // 2

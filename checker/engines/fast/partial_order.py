@@ -1,6 +1,6 @@
-"""Partial-order reduction for the compiled loops: footprints as words, actors as numbers, learned as trees.
+"""The tables of partial-order reduction for the compiled loops: footprints as bit sets, actors as numbers.
 
-What is chosen is what `checker.reduction.ample` chooses, configuration for configuration.
+The loops choose the same ample sets as `checker.reduction.ample`, configuration by configuration.
 """
 
 from collections.abc import Callable
@@ -40,17 +40,17 @@ AGENT_PARTS = ("program", "line", "request")
 
 
 class Here(NamedTuple):
-    """What a tree tells: actors of one agent, or of one clause, with what they may do."""
+    """An answer of a tree: the actors of one agent or clause, with their footprints."""
 
     actors: tuple[tuple[Actor, Acting], ...]
 
 
 class Choosing:
-    """What the loops know of a mission's actors; it grows as more is learned.
+    """The tables of a mission's actors; they grow with learning.
 
     Attributes:
-        members: That, as the loops see it.
-        paths: The paths so far.
+        members: The tables in the form that the loops read.
+        paths: The paths of the search so far.
     """
 
     members: Members
@@ -81,11 +81,11 @@ class Choosing:
 
     @property
     def wide(self) -> int:
-        """How many words have a bit for each part of each agent, and for each clause."""
+        """The number of words for a bit set of the parts of all agents and clauses."""
         return -(-(KINDS * len(self.everyone) + len(self.clauses)) // WORD) or 1
 
     def see(self, groups: list[tuple[Name, ...]], where: Packing, successors: int) -> None:
-        """Take in what was learned since; groups are the agents that there are, for each value of their cell."""
+        """Rebuild the tables from everything learned; `groups` has the agents for each value of their cell."""
         if groups != self.groups:
             self.groups = list(groups)
             trees = [[*map(self._agent, group), *self.clauses] for group in groups]
@@ -117,7 +117,7 @@ class Choosing:
         self.members = Members._make((*learned, *self._room(successors)))
 
     def _room(self, successors: int) -> tuple[Any, ...]:
-        """Return the room for one row; what it held means nothing."""
+        """Return the scratch space for one row; its contents are meaningless."""
         size = (len(self.part.room), successors)
         if size == self.roomy:
             return self.room
@@ -210,17 +210,17 @@ class Choosing:
             ]
         self.written = count
 
-    # --- what properties see ----------------------------------------------------------------------------------------
+    # --- visible bits ----------------------------------------------------------------------------------------------
 
     def _look(self, where: Packing) -> None:
-        """Work out which bits of a row properties look at, and what questions make of codes."""
+        """Compute the bits of a row that properties read, and the answers of their questions for each code."""
         columns = self.learner.columns
         looks = [(seen, number) for seen in self.ample.eyes.seen for number in self._columns(seen)]
         looked = (id(where), *((number, len(columns.all[number].values)) for _, number in looks))
         if looked == self.looked:
             return
         self.looked = looked
-        self.kept = where  # so that no other has its identity
+        self.kept = where  # keeps its id from being reused
         self.seen_masks = np.zeros(where.words, np.uint64)
         self.seen_whole = np.zeros(where.words, np.uint64)
         asked: list[int] = []
@@ -238,7 +238,7 @@ class Choosing:
         self.seen_answers = np.array(answers, np.uint8)
 
     def _columns(self, seen: Seen) -> list[int]:
-        """Return the columns of a cell: of its skeleton, and where the value counts, of what its holes say."""
+        """Return the columns of a cell: its skeleton, and the facts in its holes if its value counts."""
         columns = self.learner.columns
         number = columns.numbers.get((seen.cell,))
         holes = range(columns.holes.get(seen.cell, 0) if seen.question is None else 0)

@@ -1,7 +1,7 @@
-"""The compiled loops over persistent sets: who disturbs what somebody may do now, and the least set around an actor."""
+"""Persistent sets in compiled loops: the disturbers of an actor, and the least persistent set around it."""
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# numba types these functions; mypy would read their integers as Python's
 
 from typing import Any
 
@@ -43,12 +43,12 @@ def compare(footprints: Words, disturbed: Any, count: int, one: int, other: int)
 
 @njit(cache=True, inline="always")
 def note_disturbers(r: Members, actors: int, wide: int, k: int) -> None:
-    """Note who may ever disturb what an actor of a row may do now, and that it was asked: it is in its own set."""
+    """Note the actors that may ever disturb the current steps of actor `k`; add `k` itself to mark them as computed."""
     disturbed, ever = r.disturbed, r.ever
     actor = RECORD * r.here[k]
     now, follower = np.int64(r.actors[actor + NOW]), r.actors[actor + FOLLOWER]
     begin = now * r.count
-    row = np.uint64(begin)  # indices are unsigned where there are most
+    row = np.uint64(begin)  # indices are unsigned in the hot loop
     for word in range(wide):
         first, last = WORD * word, min(WORD * word + WORD, actors)
         found, asked = np.uint64(0), True
@@ -64,7 +64,7 @@ def note_disturbers(r: Members, actors: int, wide: int, k: int) -> None:
                     found |= (known >> np.uint64(1)) << np.uint64(j - first)
         r.disturbers[k * wide + word] = found
     if follower >= 0:
-        j = np.int64(r.place[follower])  # where it was last, in whichever row
+        j = np.int64(r.place[follower])  # its last position, in whichever row
         if j < actors and r.actors[RECORD * r.here[j] + MEMBER] == follower:
             aside = np.int64(r.actors[RECORD * r.here[j] + ASIDE])
             known = np.uint64(disturbed[begin + aside])
@@ -78,9 +78,9 @@ def note_disturbers(r: Members, actors: int, wide: int, k: int) -> None:
 
 @njit(cache=True, inline="always")
 def persistent(r: Members, actors: int, wide: int, seed: int, at: int) -> bool:
-    """Write the least set around an actor such that nothing outside ever disturbs what those inside may do now.
+    """Write the least set around an actor whose current steps no actor outside ever disturbs.
 
-    False where everyone who may take a step is inside, as around somebody inside: it is not written to its end then.
+    Return False if it contains all enabled actors, or one whose set does; the set is then incomplete.
     """
     inside, waiting = r.sets, r.waiting
     for word in range(wide):
@@ -113,9 +113,9 @@ def persistent(r: Members, actors: int, wide: int, seed: int, at: int) -> bool:
 
 @njit(cache=True, inline="always")
 def find_set(r: Members, count: int, actors: int, wide: int, seed: int, found: int) -> int:
-    """Note the persistent set around an actor after those found; return how many transitions it has.
+    """Note the persistent set around an actor, after the sets found before; return its number of transitions.
 
-    A set that was found already, or that omits nothing, counts as tried.
+    A repeated set, or one with all enabled actors, counts as tried.
     """
     at = found * wide
     if not persistent(r, actors, wide, seed, at):

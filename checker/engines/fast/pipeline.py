@@ -1,7 +1,7 @@
-"""Slices of rows that are expanded ahead of what is stored, by several threads.
+"""Slices of rows that several threads expand ahead of the thread that stores them.
 
-Slices are taken in their order by the thread that stores them, so that rows get the numbers that one thread alone would
-give them. Where no slice is ready, that thread expands one, too: so no thread waits while there is something to do.
+One thread stores the slices in order, so rows get the same numbers as with a single thread. If no slice is ready, this
+thread expands one itself, so no thread idles while there is work.
 """
 
 from collections import deque
@@ -14,26 +14,26 @@ from typing import Any
 from checker.engines.fast.kernel import AT, GATHERED, LATER, PUT_OFF, SIFTED, Batch, Model, State
 
 EACH = 4
-"""Slices for each thread that are ahead of what is stored: one that is expanded, some that wait."""
+"""The number of slices ahead for each thread: one in expansion, the others waiting."""
 
 SHARE = 2
-"""Into how many slices for each thread what is to be expanded is divided at least."""
+"""The least number of slices for each thread into which the pending rows are divided."""
 
 WORTH = 1 << 8
-"""From how many rows on a slice is expanded by another thread: handing over takes time, too."""
+"""The least number of rows for which another thread pays off: handing over takes time."""
 
 
 @dataclass(slots=True, eq=False)
 class Slice:
-    """Rows that are expanded by one thread.
+    """Rows that one thread expands.
 
     Attributes:
-        begin, end: Which rows.
-        epoch: What was known when it was begun: what it finds is worth nothing once some of that was wrong.
-        model: What was known then.
-        batch: What it finds.
-        state: That of the loops that expand it.
-        expanding: What it is waited for by, None while nobody has begun it.
+        begin, end: The range of rows.
+        epoch: The epoch at its start; its results are void if the epoch has changed since.
+        model: The trees at its start.
+        batch: Its results.
+        state: Its copy of the loops' state.
+        expanding: The future of its expansion; None if no thread has begun it.
     """
 
     begin: int
@@ -46,35 +46,35 @@ class Slice:
 
     @property
     def at(self) -> int:
-        """The first row that it did not come to: its end, unless its batch was full before."""
+        """The first row not expanded: the end, unless the batch was full before."""
         return int(self.state[AT])
 
     @property
     def gathered(self) -> int:
-        """How many transitions it found."""
+        """The number of transitions found."""
         return int(self.state[GATHERED])
 
     @property
     def sifted(self) -> int:
-        """How many of their successors were not found among the rows."""
+        """The number of their successors that are not known rows."""
         return int(self.state[SIFTED])
 
     def put_off(self) -> Iterator[tuple[int, int, int]]:
-        """Yield the rows that were put off: how many transitions and successors came before each."""
+        """Yield the deferred rows: the number of each, and the numbers of transitions and successors before it."""
         rows = self.batch.later[: LATER * int(self.state[PUT_OFF])].reshape(-1, LATER)
         return ((row, steps, found) for row, steps, found in rows.tolist())
 
 
 class Pipeline:
-    """The slices that are ahead.
+    """The slices ahead of the stored rows.
 
     Attributes:
-        threads: How many threads there are, with the one that stores.
+        threads: The number of threads, including the one that stores.
         expand: Expands a slice, in any thread.
-        sift: Looks up what a slice found, which else is done where it is stored.
-        ahead: The slices, in their order.
-        awaited: The slice that is to be stored next, if it is waited for.
-        is_far_ahead: Whether there were more slices ready, when one was taken last, than could be stored just then.
+        sift: Drops the known successors of a slice; otherwise storing drops them.
+        ahead: The slices, in order.
+        awaited: The slice that the storing thread waits for, if any.
+        is_far_ahead: Whether more slices were ready at the last `take` than can be stored at once.
     """
 
     def __init__(self, threads: int, expand: Callable[[Slice], None], sift: Callable[[Slice], None]) -> None:
@@ -88,40 +88,40 @@ class Pipeline:
 
     @property
     def begin(self) -> int | None:
-        """Where the first slice that is ahead begins; None where there is none."""
+        """The first row of the first slice ahead; None if there is none."""
         return self.ahead[0].begin if self.ahead else None
 
     @property
     def end(self) -> int | None:
-        """Where the last slice that is ahead ends; None where there is none."""
+        """The end of the last slice ahead; None if there is none."""
         return self.ahead[-1].end if self.ahead else None
 
     @property
     def is_full(self) -> bool:
-        """Whether as many slices are ahead as there should be."""
+        """Whether enough slices are ahead."""
         return len(self.ahead) >= (1 if self.beside is None else EACH * self.threads)
 
     def fair(self, rows: int) -> int:
-        """Return how many rows a slice should have at most, so that all threads have some of so many."""
+        """Return the greatest size of a slice such that all threads get some of `rows` rows."""
         return rows if self.beside is None else max(rows // (SHARE * self.threads), WORTH)
 
     def add(self, part: Slice) -> None:
-        """Add a slice behind the others, which is expanded by other threads, or by this one when its turn comes."""
+        """Add a slice behind the others; another thread expands it, or this one at its turn."""
         self.ahead.append(part)
         if self.beside is not None and part.end - part.begin >= WORTH:
             part.expanding = self.beside.submit(self._expand_beside, part)
 
     def _expand_beside(self, part: Slice) -> None:
-        """Expand a slice in another thread, and sift it, too, if there are more ready than can be stored just now."""
+        """Expand a slice in another thread, and sift it if storing lags behind."""
         self.expand(part)
         if self.is_far_ahead and part is not self.awaited:
             self.sift(part)
 
     def take(self) -> Slice:
-        """Return the first slice when it is expanded; meanwhile this thread expands those that nobody has begun."""
+        """Return the first slice once it is expanded; meanwhile expand slices that no thread has begun."""
         self.awaited = first = self.ahead.popleft()
         ready = sum(each.expanding is not None and each.expanding.done() for each in self.ahead)
-        # Told here: only this thread may look through what is ahead.
+        # Decided here, since only this thread may iterate over `ahead`.
         self.is_far_ahead = ready >= self.threads
         for part in (first, *self.ahead):
             if part.expanding is None or part.expanding.cancel():
@@ -136,7 +136,7 @@ class Pipeline:
         return first
 
     def rest(self) -> None:
-        """Let no thread expand anything any more; what was begun is finished, and stands."""
+        """Stop the other threads: cancel slices not begun, and await those in expansion; their results stay valid."""
         for part in self.ahead:
             if part.expanding is not None and part.expanding.cancel():
                 part.expanding = None
@@ -145,12 +145,12 @@ class Pipeline:
                 part.expanding.result()
 
     def drop(self) -> None:
-        """Forget the slices that are ahead."""
+        """Discard the slices ahead."""
         self.rest()
         self.ahead.clear()
 
     def divide(self, work: Callable[[range], Any], parts: int) -> list[Any]:
-        """Do some work with ranges of so many parts, in all threads; nothing else is done meanwhile."""
+        """Run some work on ranges of `parts` parts in all threads, after stopping all expansion."""
         self.rest()
         bounds = [parts * k // self.threads for k in range(self.threads + 1)]
         ranges = [range(begin, end) for begin, end in pairwise(bounds) if begin < end]

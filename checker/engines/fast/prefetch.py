@@ -1,4 +1,4 @@
-"""Prefetching: memory is asked for what will be read soon, and nobody waits for it."""
+"""Prefetching: start loading memory that will be read soon, without waiting for it."""
 
 from collections.abc import Callable
 from typing import Any, Final, cast
@@ -8,7 +8,7 @@ from numba import types
 from numba.extending import intrinsic
 
 READ, KEEP, DATA = 0, 3, 1
-"""What LLVM's `prefetch` is told: to read, to keep it in all caches, data."""
+"""Arguments of LLVM's `prefetch`: read access, keep in all caches, data."""
 
 _BYTES, _INT = ir.IntType(8).as_pointer(), ir.IntType(32)
 
@@ -27,4 +27,4 @@ def _prefetch(_context: Any, array: Any, index: Any) -> Any:
 
 
 prefetch: Final[Callable[[Any, Any], None]] = cast("Callable[[Any, Any], None]", _prefetch)
-"""Ask for the cache line in which an element of a contiguous array stands; its index is not checked."""
+"""Prefetch the cache line of an element of a contiguous array; the index is not checked."""

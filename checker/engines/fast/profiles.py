@@ -1,8 +1,8 @@
-"""Where propositions of many atoms are true: each name is asked once for all that is said of it.
+"""Truth of propositions with many atoms: the atoms about one name are evaluated together.
 
-A fleet of fifty on two hundred places has ten thousand atoms `x in c`, and each row answers them by fifty profiles:
-which of the atoms about x are true. What is said of one or two names is looked up by their profiles, once for each
-pair of profiles that there is; what quantifiers say of more is taken apart, instance by instance.
+A fleet of fifty vehicles on two hundred places has ten thousand atoms `x in c`. A row needs only fifty profiles: the
+sets of true atoms about each x. A subformula about one or two names is evaluated once for each pair of profiles that
+occurs. Quantifiers over more names are expanded, instance by instance.
 """
 
 from collections.abc import Iterable, Iterator
@@ -43,19 +43,19 @@ Bools = NDArray[np.bool_]
 Numbers = NDArray[np.int64]
 
 Subject = tuple[Name, ...]
-"""Of whom an atom is: what it reads is read for all atoms of its subject."""
+"""The names of an atom; the atoms of one subject share their reads."""
 
 Subjects = tuple[Subject, ...]
 
 MOST_TOGETHER = 2
-"""So many subjects' profiles are looked up together."""
+"""The greatest number of subjects with combined profiles."""
 
 MOST_PAIRS = 1 << 22
-"""So many pairs of profiles are told apart by a table; more are sorted."""
+"""The greatest number of profile pairs in a table; more are sorted."""
 
 
 def subject(atom: Atom) -> Subject:
-    """Return of whom an atom is: of both its names where it reads as much of the one as of the other."""
+    """Return the subject of an atom: both names if it reads equally much about each."""
     match atom:
         case (
             Inside(name)
@@ -74,10 +74,10 @@ def subject(atom: Atom) -> Subject:
 
 
 class Profiles:
-    """The truth of a proposition in the rows that were expanded, by the profiles of its subjects.
+    """The truth of a proposition in expanded rows, by the profiles of its subjects.
 
     Attributes:
-        changing: Whether what was asked is not the same everywhere, as far as was looked.
+        changing: Whether a read value differs between rows; set by `truths`.
     """
 
     def __init__(self, survey: Survey, formula: Proposition) -> None:
@@ -97,7 +97,7 @@ class Profiles:
         self.met: dict[Subject, set[int]] = {one: set() for one in self.atoms}
 
     def truths(self, size: int | None = None) -> Bools:
-        """Return for each of the first configurations whether the proposition is true of it."""
+        """Return whether the proposition is true, for each of the first `size` configurations."""
         found = [np.zeros(0, np.bool_)]
         found += (self._block(rows) for rows in self.survey.blocks(size))
         self.changing = any(len(leaves) > 1 for leaves in self.met.values())
@@ -113,14 +113,14 @@ class Profiles:
         return self.survey.numbered(leaves, self.numbers[one])
 
     def ranks_of(self, anchor: Inside, parts: Instances) -> list[int]:
-        """Return for each instance the rank of its anchor among the atoms of its subject."""
+        """Return the rank of each instance's anchor among the atoms of its subject."""
         if anchor not in self.anchors:
             each = (replace(anchor, place=name) for name in parts.range.names)
             self.anchors[anchor] = [self.ranks[atom] for atom in each]
         return self.anchors[anchor]
 
     def table(self, one: Subject) -> Bools:
-        """Return which atoms of a subject are true in each of its profiles: a row for each profile."""
+        """Return the true atoms of each profile of a subject: one row for each profile."""
         width = len(self.atoms[one])
         bits = [
             np.unpackbits(np.frombuffer(each, np.uint8), count=width, bitorder="little")  # type: ignore[call-overload]  # profiles are bytes
@@ -130,7 +130,7 @@ class Profiles:
 
 
 def profile(atoms: tuple[Atom, ...], c: Configuration) -> bytes:
-    """Return which of some atoms are true of a configuration, a bit for each."""
+    """Return the truth of atoms in a configuration, one bit each."""
     around: dict[tuple[Name, bool], tuple[Name, ...]] = {}
 
     def is_true(atom: Atom) -> bool:
@@ -145,7 +145,7 @@ def profile(atoms: tuple[Atom, ...], c: Configuration) -> bytes:
 
 
 class _Block:
-    """Some rows, each with the number of its profile for each subject."""
+    """Some rows, with the number of each subject's profile in each row."""
 
     def __init__(self, profiles: Profiles, codes: dict[Subject, Numbers], size: int) -> None:
         self.profiles = profiles
@@ -154,7 +154,7 @@ class _Block:
         self.tables = {one: profiles.table(one) for one in codes}
 
     def true(self, formula: Proposition) -> Bools:
-        """Return for each row whether a proposition is true."""
+        """Return whether a proposition is true, for each row."""
         subjects = _subjects_of(formula)
         if subjects is not None and len(subjects) <= MOST_TOGETHER:
             return self._by_profiles(formula, subjects)
@@ -180,7 +180,7 @@ class _Block:
         return said[together]
 
     def _said(self, formula: Proposition, subjects: Subjects, there: Numbers) -> Bools:
-        """Return what a proposition says where its subjects have some profiles: their numbers, as one number."""
+        """Return the truth of a proposition for combined profile numbers of its subjects."""
         tables, rest = dict[Subject, Bools](), there
         for one in reversed(subjects):
             rest, code = np.divmod(rest, len(self.tables[one]))
@@ -201,7 +201,7 @@ class _Block:
         return tables[subject(formula)][:, self.profiles.ranks[formula]]
 
     def _worth_asking(self, parts: Instances, tables: dict[Subject, Bools]) -> Iterator[Proposition]:
-        """Yield the instances whose anchor is true in some profile; all where there is no anchor."""
+        """Yield the instances with an anchor that is true in some profile; without anchors, yield all."""
         anchor = parts.anchor
         if anchor is None:
             yield from parts
@@ -211,7 +211,7 @@ class _Block:
 
 
 def _by_subjects(make: type[And | Or], parts: Iterable[Proposition]) -> list[Proposition]:
-    """Return the operands of a connective, those that are about the same few subjects together."""
+    """Return the operands of a connective, with those about the same few subjects grouped."""
     together: dict[Subjects, list[Proposition]] = {}
     rest: list[Proposition] = []
     for part in parts:
@@ -222,7 +222,7 @@ def _by_subjects(make: type[And | Or], parts: Iterable[Proposition]) -> list[Pro
 
 
 def _subjects_of(formula: Proposition) -> Subjects | None:
-    """Return the subjects of a proposition, sorted; None where one is quantified in it."""
+    """Return the subjects of a proposition, sorted; None if one contains a variable."""
     found = sorted(set(_subjects(formula)))
     return None if any(is_variable(name) for one in found for name in one) else tuple(found)
 

@@ -1,7 +1,7 @@
-"""Recording: the cells that a rule reads, in order, and those it writes; pointwise parts apart.
+"""Recording: the cells that a rule reads, in order, and those it writes; pointwise parts separately.
 
-A rule is pure and sees cells through `read`, `test` and `each` alone, so one recorded run holds for every
-configuration that answers the same questions alike. What is never written is not asked: it is the same everywhere.
+A rule is pure and reads cells only through `read`, `test`, `ask` and `each`. So one recorded run holds for every
+configuration that gives the same answers. Constant cells are not recorded as questions: they are equal everywhere.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
@@ -16,13 +16,13 @@ from semantics.state.signature import Name
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """What is asked of a column: its value, or (with a question) what a question makes of it, mostly a yes or no.
+    """A question to a column: its value, or a function of its value, mostly a truth value.
 
     Attributes:
         cell: The cell.
-        hole: The number of an observation within its value, with whom it is asked about; None for its skeleton.
-        question: None where the value itself is asked.
-        constants: What the question is asked with.
+        hole: The number of an observation in the cell's value, with a name; None for the skeleton.
+        question: The function; None for the value itself.
+        constants: Further arguments of the function.
     """
 
     cell: Cell
@@ -32,40 +32,40 @@ class Ask:
 
 
 Asked = dict[Ask, Any]
-"""Questions with their answers, in the order in which they were asked first."""
+"""Questions with their answers, in the order of their first occurrence."""
 
 
 class Source(Protocol):
-    """One configuration taken apart: what `Recorder` reads."""
+    """The cells of one configuration, split into skeletons and facts, as `Recorder` reads them."""
 
     def skeleton(self, cell: Cell) -> Any:
-        """Return the skeleton of a cell's value, None where there is no such cell."""
+        """Return the skeleton of a cell's value, None if there is no such cell."""
 
     def fact(self, cell: Cell, number: int, name: Name) -> Fact:
-        """Return what a hole of a cell says of a mobile name."""
+        """Return the fact about a mobile name in a hole of a cell."""
 
 
 @dataclass(frozen=True, slots=True)
 class Edited:
-    """Stands for what an edit makes of a cell's value, as long as nobody looks at it."""
+    """A placeholder for an edited cell value that no rule has read yet."""
 
     cell: Cell
     edit: Edit
     constants: tuple[Any, ...]
 
     def of(self, value: Any) -> Any:
-        """Return what it makes of a value."""
+        """Return the edited value."""
         return self.edit(value, *self.constants)
 
 
 @dataclass(slots=True)
 class Scope:
-    """What the rule itself asked, or a part of its conclusion beyond that.
+    """The questions of a rule, or the further questions of one part of its conclusion.
 
     Attributes:
         asked: The questions with their answers.
-        taken: The cells that were taken to be never written, each with how many questions had been asked then.
-        known: What was worked out already.
+        taken: The cells assumed constant, each with the number of questions asked before.
+        known: Intermediate results.
     """
 
     asked: Asked = field(default_factory=dict)
@@ -73,21 +73,21 @@ class Scope:
     known: dict[Any, Any] = field(default_factory=dict)
 
     def take(self, cell: Cell) -> None:
-        """Note that a cell was taken to be never written."""
+        """Note that a cell was assumed constant."""
         self.taken.setdefault(cell, len(self.asked))
 
 
 @dataclass(slots=True)
 class Recorder:
-    """Cells that note what is asked of them.
+    """Cells that record the questions put to them.
 
     Attributes:
         source: The configuration.
-        still: The value of each cell that is never written, None for no such cell; cells not here are asked.
-        varies: Tells whether a cell is ever written.
-        mobile: The names that parts are recorded apart for.
-        scopes: That of the rule itself, and then that of the part that is being recorded.
-        families: The pointwise definitions that were made.
+        still: The values of constant cells, None for a cell that does not exist.
+        varies: Returns whether a cell is ever written.
+        mobile: The names with separately recorded parts.
+        scopes: The scope of the rule, and behind it that of the part that is being recorded.
+        families: The pointwise definitions created.
     """
 
     source: Source
@@ -98,7 +98,7 @@ class Recorder:
     families: list[Any] = field(default_factory=list)
 
     def read(self, cell: Cell) -> Any:
-        """Return the value of a cell, and note its skeleton; what its observations say is noted as it is asked."""
+        """Return the value of a cell and record its skeleton; its observations' facts are recorded at their access."""
         if not self.varies(cell):
             self.scopes[-1].take(cell)
             return self.still.read(cell)
@@ -106,7 +106,7 @@ class Recorder:
         return put_together(skeleton, lambda hole: Heard(self, cell, hole))
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
-        """Ask a cell, and note the yes or no."""
+        """Return the truth of a predicate of a cell, and record it."""
         if not self.varies(cell):
             self.scopes[-1].take(cell)
             return bool(question(self.still.read(cell), *constants))
@@ -115,7 +115,7 @@ class Recorder:
         return answer
 
     def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
-        """Ask a cell, and note the answer."""
+        """Return a function of a cell's value, and record it."""
         if not self.varies(cell):
             self.scopes[-1].take(cell)
             return question(self.still.read(cell), *constants)
@@ -125,37 +125,37 @@ class Recorder:
         return put_together(answer, lambda hole: Heard(self, cell, hole))
 
     def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
-        """Return what an edit makes of a cell's value, unread where no observation stands in either."""
+        """Return the edited value of a cell: a placeholder, with the cell unread, if neither contains observations."""
         is_plain = not taken_apart(constants, self.mobile)[1]
         if is_plain and self.varies(cell) and self.test(cell, has_no_holes):
             return Edited(cell, edit, constants)
         return edit(self.read(cell), *constants)
 
     def hear(self, cell: Cell, number: int, name: Name) -> Fact:
-        """Return what an observation says of a mobile name, and note it."""
+        """Return an observation's fact about a mobile name, and record it."""
         fact: Fact = self._note(Ask(cell, (number, name)), lambda: self.source.fact(cell, number, name))
         return fact
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
-        """Return a pointwise definition whose parts wait until somebody asks for them."""
+        """Return a pointwise definition that evaluates each part at its access."""
         family = Pointwise(self, tuple(names), part)
-        self.families.append(family)  # what is known of it is kept by its identity
+        self.families.append(family)  # its cached parts are keyed by its id, which must not be reused
         return family
 
     def with_(self, changes: Mapping[Cell, Any]) -> "Conclusion":
-        """Return the cells with a rule's conclusion over them."""
+        """Return the cells with a rule's changes applied."""
         return Conclusion(self, dict(changes))
 
     def with_each(self, parts: Mapping[str, Changes]) -> "Conclusion":
-        """Return the cells with the parts of a conclusion over them."""
+        """Return the cells with the parts of a conclusion applied."""
         return Conclusion(self, {}, (parts,))
 
-    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # it is where everything begins
-        """Return that nothing was written."""
+    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # the recorder is the initial state
+        """Return the empty set: nothing was written."""
         return frozenset()
 
     def apart(self, part: Callable[[], Part]) -> tuple[Part, Scope]:
-        """Return a part with what it asked beyond the rule itself."""
+        """Return a part, with the questions that it asked in addition to the rule's."""
         self.scopes.append(Scope())
         try:
             return part(), self.scopes[-1]
@@ -163,7 +163,7 @@ class Recorder:
             self.scopes.pop()
 
     def once(self, what: Any, work: Callable[[], Any]) -> Any:
-        """Work something out once where it is wanted: what it asks belongs to whoever wanted it."""
+        """Evaluate something at its first use; its questions belong to the scope that first used it."""
         for scope in self.scopes:
             if what in scope.known:
                 return scope.known[what]
@@ -179,7 +179,7 @@ class Recorder:
 
 
 class Pointwise(Mapping[str, Part]):
-    """A pointwise definition: each part is worked out where it is asked for."""
+    """A pointwise definition; each part is evaluated at its access."""
 
     def __init__(self, recorder: Recorder, names: tuple[str, ...], part: Callable[[str], Part]) -> None:
         self.recorder = recorder
@@ -200,7 +200,7 @@ class Pointwise(Mapping[str, Part]):
 
 
 class Heard(Mapping[Name, Fact]):
-    """What an observation in a cell says: of whoever is mobile it is asked only where somebody wants to know."""
+    """The facts of an observation in a cell; a fact about a mobile name is recorded at its access."""
 
     def __init__(self, recorder: Recorder, cell: Cell, hole: Hole) -> None:
         self.recorder = recorder
@@ -221,7 +221,7 @@ class Heard(Mapping[Name, Fact]):
 
 
 class Conclusion:
-    """Cells with what a rule writes: changes, and families of parts that are worked out where they are asked for."""
+    """Cells with a rule's writes: changes, and families of parts that are evaluated at their access."""
 
     __slots__ = ("changes", "families", "recorder")
 
@@ -233,49 +233,49 @@ class Conclusion:
         self.families = families
 
     def read(self, cell: Cell) -> Any:
-        """Return what was written, else what was there."""
+        """Return the written value of a cell, else the original one."""
         written = self.written(cell)
         value = written[cell] if cell in written else self.recorder.read(cell)
         return value.of(self.recorder.read(cell)) if isinstance(value, Edited) else value
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
-        """Ask what was written, else what was there."""
+        """Return the truth of a predicate of the written value, else of the original one."""
         if cell in self.written(cell):
             return bool(question(self.read(cell), *constants))
         return self.recorder.test(cell, question, *constants)
 
     def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
-        """Ask what was written, else what was there."""
+        """Return a function of the written value, else of the original one."""
         if cell in self.written(cell):
             return question(self.read(cell), *constants)
         return self.recorder.ask(cell, question, *constants)
 
     def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
-        """Return what an edit makes of what was written, else of what was there."""
+        """Return the edited value, from the written value if there is one, else from the original."""
         if cell in self.written(cell):
             return edit(self.read(cell), *constants)
         return self.recorder.edited(cell, edit, *constants)
 
     def written(self, cell: Cell) -> Changes:
-        """Return what was written, as far as a cell may be among it."""
+        """Return the written changes; parts are evaluated only if the cell may be among them."""
         if cell in self.changes or not self.families:
             return self.changes
         return merged(each for family in self.families for each in family.values()) | self.changes
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
-        """Return a pointwise definition."""
+        """Return a pointwise definition that evaluates each part at its access."""
         return self.recorder.each(names, part)
 
     def with_(self, changes: Mapping[Cell, Any]) -> "Conclusion":
-        """Return the cells with more written over them."""
+        """Return the cells with more changes applied."""
         return Conclusion(self.recorder, {**self.changes, **changes}, self.families)
 
     def with_each(self, parts: Mapping[str, Changes]) -> "Conclusion":
-        """Return the cells with the parts of a pointwise definition written over them, and nothing else after."""
+        """Return the cells with a pointwise definition applied; no changes may follow it."""
         return Conclusion(self.recorder, self.changes, (*self.families, parts))
 
     def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # all that was written is known
-        """Return the cells that were written."""
+        """Return the written cells."""
         return (
             merged(each for family in self.families for each in family.values()).keys() | self.changes.keys()
         )
@@ -286,9 +286,9 @@ class Conclusion:
         return all(self._agrees(other, cell) for cell in sorted(self.changed(self) | other.changed(other)))
 
     def _agrees(self, other: "Conclusion", cell: Cell) -> bool:
-        """Tell whether a cell has one value in both: the same edit has, whatever it is made of."""
+        """Return whether a cell has the same value in both; equal edits suffice."""
         one, two = (each.written(cell).get(cell) for each in (self, other))
         return (isinstance(one, Edited) and one == two) or bool(self.read(cell) == other.read(cell))
 
     def __hash__(self) -> int:
-        return hash(id(self.recorder))  # what is written may be what was there
+        return hash(id(self.recorder))  # a written value may equal the original

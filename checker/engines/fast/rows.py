@@ -1,4 +1,4 @@
-"""The rows of a space with their parents, as one value: both have the same capacity. Wide rows are folded."""
+"""The rows of a space with their origins, growing together; wide rows are tree-compressed."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,16 +12,16 @@ from checker.engines.fast.origins import OriginPages, Rising
 from checker.engines.fast.pages import Pages, more
 
 BLOCK = 1 << 12
-"""Rows that are unfolded at once."""
+"""The number of rows that are decompressed at once."""
 
 
 class Rows:
-    """Rows one after another, so many words each, and their origins.
+    """Rows one after another, of equal width, and their origins.
 
     Attributes:
-        width: How many words a row has.
-        kept: How many words are kept of each: of rows that are folded two.
-        origins: From which row each was first reached.
+        width: The number of words of a row.
+        kept: The number of words of its stored form: two for compressed rows.
+        origins: The row from which each was first reached.
     """
 
     __slots__ = ("_folding", "_words", "kept", "origins", "width")
@@ -34,48 +34,48 @@ class Rows:
 
     @property
     def words(self) -> NDArray[np.uint64]:
-        """What is kept of all rows, with their room; growing makes another array: don't keep it."""
+        """The stored form of all rows, with spare capacity. Growing replaces it: don't keep it."""
         return self._words.room
 
     @property
     def folded(self) -> folding.Folded | None:
-        """What folds and unfolds rows, None where they are not folded; making room makes another: don't keep it."""
+        """The tables of tree compression, None for plain rows. Growing replaces them: don't keep them."""
         return None if self._folding is None else self._folding.folded
 
     @property
     def shown(self) -> folding.Folded | None:
-        """The same for threads that only look up, as it was shown last."""
+        """The same tables for reading threads, as last published."""
         return None if self._folding is None else self._folding.shown
 
     def show(self) -> None:
-        """Let all threads look up what rows are folded into by now."""
+        """Publish the present tables to all threads."""
         if self._folding is not None:
             self._folding.show()
 
     @property
     def interned(self) -> tuple[NDArray[np.uint64], NDArray[np.uint64]]:
-        """The pieces and nodes of rows that are folded, none of others."""
+        """The pieces and nodes of compressed rows; empty for plain rows."""
         none = np.zeros(0, np.uint64)
         into = self._folding
         return (none, none) if into is None else (into.pieces.words, into.nodes.words)
 
     @property
     def room(self) -> int:
-        """How many rows it has room for."""
+        """The number of rows for which there is room."""
         return min(len(self.words) // self.kept, self.origins.rows)
 
     @property
     def spilled(self) -> bool:
-        """Whether both are in files."""
+        """Whether rows and origins are in files."""
         return self._words.spilled and self.origins.spilled
 
     @property
     def bytes_each(self) -> float:
-        """How many bytes of memory a row more takes, if all that it is folded into is there."""
+        """The bytes of memory for one more row, apart from new pieces."""
         return 0.0 if self.spilled else self.words.itemsize * self.kept + self.origins.bytes_each
 
     def held(self, used: int) -> int:
-        """Return how many bytes it takes if only so many first rows were written."""
+        """Return the bytes taken if only the first `used` rows were written."""
         folded = 0 if self._folding is None else self._folding.held
         return self._words.held(used * self.kept) + self.origins.held(used) + folded
 
@@ -85,7 +85,7 @@ class Rows:
         return self._whole(kept)
 
     def blocks(self, size: int) -> Iterator[tuple[int, NDArray[np.uint64]]]:
-        """Yield the words of so many first rows, some at a time, with the number of the first of them."""
+        """Yield the words of the first `size` rows, block by block, with the number of the first row of each."""
         for begin in range(0, size, BLOCK):
             kept = self.words[begin * self.kept : min(begin + BLOCK, size) * self.kept]
             yield begin, self._whole(kept)
@@ -100,14 +100,14 @@ class Rows:
     # --- room -----------------------------------------------------------------------------------------------------
 
     def has_room(self, rows: int) -> bool:
-        """Tell whether there is room for so many rows in all, and for what one more is folded into."""
+        """Return whether there is room for `rows` rows in all, and for the pieces of one more."""
         return rows <= self.room and (self._folding is None or self._folding.has_room)
 
     def reserve(self, rows: int) -> None:
-        """Make that room, and more than that where some must be made; meanwhile no other thread looks at rows.
+        """Make room for `rows` rows in all, or for more; no other thread may read rows meanwhile.
 
         Raises:
-            OSError: There is no room for them.
+            OSError: Memory or the files have no room.
         """
         if rows > self.room:
             self._grow(max(rows, more(self.room)), self.kept)
@@ -115,10 +115,10 @@ class Rows:
             self._folding.reserve()
 
     def widen(self, width: int) -> None:
-        """Give each row so many words, no fewer than it has; the caller moves what stands in them.
+        """Give each row at least as many words as before; the caller moves the contents.
 
         Raises:
-            OSError: There is no room for them; rows are as wide as before.
+            OSError: There is no room; rows are as wide as before.
         """
         self._grow(self.room, width)
         self.width = self.kept = width
@@ -128,7 +128,7 @@ class Rows:
         self.origins.grow(rows)
 
     def spill(self, folder: Path, used: int) -> None:
-        """Go over to files in a folder, with the first so many rows; what they are folded into stays in memory.
+        """Move rows and origins to files in a folder; the pieces and nodes of compressed rows stay in memory.
 
         Raises:
             OSError: There is no such folder, or no room in it.
@@ -139,12 +139,12 @@ class Rows:
     # --- another packing ------------------------------------------------------------------------------------------
 
     def repack(self, size: int, moves: NDArray[np.uint64], width: int, *, fold: bool) -> None:
-        """Pack so many rows anew, each into so many words, no fewer than it has.
+        """Repack `size` rows into `width` words each, at least as many as before, and compress them if `fold`.
 
-        What moves is told by `columns.shifts`.
+        `moves` come from `columns.shifts`.
 
         Raises:
-            OSError: There is no room for them.
+            OSError: There is no room.
         """
         if not fold:
             before = self.width
@@ -174,11 +174,11 @@ class Rows:
         origins: NDArray[np.uint64],
         *interned: NDArray[np.uint64],
     ) -> "Rows":
-        """Return so many rows as they were kept elsewhere, with what they are folded into (see `interned`).
+        """Return the rows of their stored form, with the pieces and nodes of compressed rows (see `interned`).
 
         Raises:
-            ValueError: They have not so many words each, what they are folded into is not there, or is there twice, or
-                their origins are not those of any search.
+            ValueError: The rows have another width, pieces or nodes are missing or repeated, or no search has these
+                origins.
         """
         into = folding.Folding(width, *interned) if any(map(len, interned)) else None
         found = cls(

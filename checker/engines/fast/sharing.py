@@ -1,4 +1,4 @@
-"""Sharing: what was learned of one agent, or of one part of a transition, as it is known of those that are like it."""
+"""Sharing: the use and the recording of lessons among interchangeable agents and parts."""
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
@@ -12,24 +12,24 @@ from semantics.state.cells import Cell, Row
 from semantics.state.signature import Name
 
 WRITTEN: Final = object()
-"""Stands for what a cell holds that is written somewhere."""
+"""The stand-in for the value of a varying cell."""
 
 
 class Source(Protocol):
-    """One configuration."""
+    """One configuration, given by its codes."""
 
     def code(self, number: int) -> int:
         """Return the code of a column."""
 
 
 class Learned(NamedTuple):
-    """What a run of rules says, or what is known of it without one.
+    """The result of a run of rules, or of a shared lesson in its place.
 
     Attributes:
-        asked: What was asked, with the answers.
-        codes: For each value that was read its code.
-        taken: The cells that were taken to be never written, each with how many questions had been asked then.
-        flags: Of the leaf.
+        asked: The questions with their answers.
+        codes: The code of each value read.
+        taken: The cells assumed constant, each with the number of questions asked before.
+        flags: The flags of the leaf.
         outcomes: The transitions.
     """
 
@@ -42,13 +42,13 @@ class Learned(NamedTuple):
 
 @dataclass(slots=True)
 class Sharing:
-    """What those that are alike have learned.
+    """The lessons of all classes of interchangeable agents.
 
     Attributes:
-        likeness: Who is alike.
+        likeness: The interchangeable agents and parts.
         columns, varying, still: Those of the learner.
-        lessons: By some rules, and the first of those that are alike, what is known of these.
-        forgotten: How many times something was not what it had been taken for: then all that is shared is.
+        lessons: The lessons by rules and the first agent of a class.
+        forgotten: The number of wrong assumptions so far; each of them voids all lessons.
     """
 
     likeness: Likeness
@@ -59,7 +59,7 @@ class Sharing:
     forgotten: int = 0
 
     def kin_of(self, rules: Any, agent: object) -> Kin | None:
-        """Return what some rules are known to do for those that are like an agent; None where nobody is."""
+        """Return the lessons of some rules for the class of an agent; None if the agent is not interchangeable."""
         found = self.likeness.agents.get(agent) if isinstance(agent, str) else None
         if found is None:
             return None
@@ -67,7 +67,7 @@ class Sharing:
         return Kin(self.lessons.setdefault((rules, first), Lessons()), exchange)
 
     def known(self, kin: Kin | None, source: Source) -> Learned | None:
-        """Return what those that are alike found where their cells gave the same answers, under one's own names."""
+        """Return the result of a shared lesson for a configuration, in the agent's own names; None if there is none."""
         if kin is None:
             return None
         exchange, back = kin.exchange, kin.exchange.inverse
@@ -100,7 +100,7 @@ class Sharing:
             return None
 
     def _still(self, lesson: Lesson) -> dict[Cell, int]:
-        """Return what a lesson takes to be never written; raises NoImage where anything is not as it takes it to be."""
+        """Return the cells that a lesson assumes constant; raises NoImage if one of its assumptions is wrong."""
         for cell, value in lesson.taken.items():
             if cell in self.varying or self.still.read(cell) != value:
                 raise NoImage
@@ -110,7 +110,7 @@ class Sharing:
         return dict.fromkeys((*lesson.still, *lesson.taken), 0)
 
     def teach(self, kin: Kin | None, found: Learned) -> None:
-        """Let those that are alike know what one of them found, where it has an image."""
+        """Record the result of a run for its class, if it has an image."""
         if kin is None:
             return
         try:
@@ -140,13 +140,13 @@ class Sharing:
             return
         asked = (each.ask.cell for each in stages if each.ask is not None)
         if not self.varying.isdisjoint(lesson.taken) or any(cell not in self.varying for cell in asked):
-            return  # the first of them would ask otherwise
+            return  # the first agent of the class would ask other questions
         kin.lessons.begin(self.forgotten)
         kin.lessons.learn(stages, lesson)
 
 
 def _stages(found: Learned, about: Set[Cell]) -> Iterator[tuple[list[Cell], Ask | None, Any]]:
-    """Yield before each question, and at the end, the cells of some that had been taken since the one before."""
+    """Yield each question with the relevant cells assumed constant since the previous one; at the end, None."""
     taken: list[list[Cell]] = [[] for _ in range(len(found.asked) + 1)]
     for cell, asked in found.taken.items():
         taken[asked] += [cell] if cell in about else []

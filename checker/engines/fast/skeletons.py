@@ -1,8 +1,8 @@
-"""Values split in columns: an observation's part for each mover apart from its skeleton.
+"""Values split into columns: a skeleton, and one fact for each mobile name and observation.
 
-A cell's value becomes a *skeleton*, in which each observation is a numbered hole that still holds what it says of
-those who never move, and a fact for each mobile name. Which names are mobile is settled once for a mission, so equal
-values come apart alike. So an observation over twelve vehicles is twelve small values, not one of thousands.
+In the *skeleton* of a cell's value, each observation is a numbered hole. A hole still holds the facts about names that
+never move. The set of mobile names is fixed for a mission, so equal values have equal skeletons. An observation of
+twelve vehicles thus takes twelve small values instead of one of thousands.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -21,12 +21,12 @@ from semantics.state.signature import Name
 
 @dataclass(frozen=True, slots=True)
 class Hole:
-    """Where an observation stands in a skeleton.
+    """The position of an observation in a skeleton.
 
     Attributes:
-        number: Which observation of the value, from 0.
-        still: What it says of names that are not mobile, sorted.
-        swept: What it looked through to the end.
+        number: The index of the observation within the value, from 0.
+        still: Its facts about names that are not mobile, sorted.
+        swept: The places that it searched completely.
     """
 
     number: int
@@ -38,7 +38,7 @@ Family = Mapping[Name, Fact]
 
 
 def mobile_names(setting: Setting, first: Row) -> frozenset[Name]:
-    """Return who may move, come or go: of whom an observation says something else from time to time."""
+    """Return the names that may move, appear or disappear: observations of them change."""
     driven = {name for name, kind in setting.kinds.items() if setting.signature[kind].driven}
     around = {clause.entity for clause in setting.environment if hasattr(clause, "entity")}
     aboard = {cell[-1] for cell, value in first.items() if isinstance(value, Carried)}
@@ -49,13 +49,13 @@ def mobile_names(setting: Setting, first: Row) -> frozenset[Name]:
 
 
 def agents_of(setting: Setting, first: Row) -> frozenset[Name]:
-    """Return every agent that there may ever be."""
+    """Return every agent that may ever exist."""
     spawned = (each.name for each in setting.program.statements if isinstance(each, Spawn))
     return frozenset((*(cell[-1] for cell, _ in first.items() if cell[0] == "host"), *spawned))
 
 
 def taken_apart(value: Any, mobile: frozenset[Name]) -> tuple[Any, tuple[Family, ...]]:
-    """Return the skeleton of a value, and for each hole the family of what was said there."""
+    """Return the skeleton of a value, and the facts by name for each of its holes."""
     families: list[Family] = []
 
     def dig(seen: Observation) -> Hole:
@@ -68,12 +68,12 @@ def taken_apart(value: Any, mobile: frozenset[Name]) -> tuple[Any, tuple[Family,
 
 
 def put_together(skeleton: Any, family_at: Callable[[Hole], Family]) -> Any:
-    """Return the value of a skeleton; `family_at` gives what is said in a hole."""
+    """Return the value of a skeleton, with the facts that `family_at` gives for each hole."""
     return _mapped(skeleton, Hole, lambda hole: Observation(family_at(hole), hole.swept))
 
 
 def settled(value: Any) -> Any:
-    """Return a value in which every observation says what it says, whoever it had to ask."""
+    """Return a value with all facts of its observations evaluated."""
     return _mapped(value, Observation, lambda seen: Observation(dict(seen.facts), seen.swept), sets=True)
 
 
@@ -94,14 +94,14 @@ def holes(skeleton: Any) -> Iterator[Hole]:
 
 
 def has_no_holes(skeleton: Any) -> bool:
-    """Ask of a skeleton whether no observation stands in it."""
+    """Return whether a skeleton contains no observation."""
     return next(holes(skeleton), None) is None
 
 
 def _mapped(value: Any, kind: type, change: Callable[[Any], Any], *, sets: bool = False) -> Any:
-    """Return a value with its parts of a kind changed, the same object where there are none.
+    """Return a value with its parts of one type changed; the same object if it has none.
 
-    Members of sets have no place of their own: they are left alone unless `sets` is said.
+    Elements of sets have no position: they are changed only if `sets`.
     """
     if isinstance(value, kind):
         return change(value)

@@ -1,4 +1,4 @@
-"""Slices of a space's rows that are expanded ahead of what is stored, by what was known when each was begun."""
+"""Slices of a space's rows, expanded ahead of the stored rows with the trees known at their start."""
 
 from typing import Protocol
 
@@ -9,60 +9,59 @@ from checker.engines.fast.pipeline import Pipeline, Slice
 from checker.engines.fast.rows import Rows
 
 FEW = 1 << 6
-"""Rows of the first slice, and of the next one where what was found ahead turned out to be worth nothing."""
+"""The number of rows of the first slice, and of the next one after results ahead were void."""
 
 LATER_ROWS = 1 << 10
-"""How many rows of a slice may be put off."""
+"""The greatest number of deferred rows in a slice."""
 
 
 class Storing(Protocol):
-    """What stores what slices find, and learns what is not known: a `Space`, whose attributes these are."""
+    """The interface of the space that stores the results of slices and learns missing rules."""
 
     rows: Rows
     table: Pages
     batch: kernel.Batch
     state: kernel.State
-    compact: int | None
     actors: int
     stored: int
 
     @property
     def size(self) -> int:
-        """How many rows there are."""
+        """The number of rows."""
 
     @property
     def expanded(self) -> int:
-        """How many of them were expanded."""
+        """The number of expanded rows."""
 
     @property
     def epoch(self) -> int:
-        """A number that changes whenever what was found ahead may be worth nothing."""
+        """A number that changes when results found ahead become void."""
 
     def known(self) -> kernel.Model:
-        """Return what is known, as other threads may read it while more is learned."""
+        """Return a snapshot of the trees that other threads may read during learning."""
 
     def show(self) -> None:
-        """Let other threads look up what is stored by now."""
+        """Publish the stored rows to other threads."""
 
     def new_batch(self, successors: int = 0, later: int = 0) -> kernel.Batch:
-        """Return an empty batch that may put off so many rows."""
+        """Return an empty batch with room for `later` deferred rows."""
 
     def store(self, batch: kernel.Batch, steps: tuple[int, int], found: tuple[int, int], at: int) -> None:
-        """Store some transitions of the rows before one, and successors that may be new."""
+        """Store transitions and possibly new successors of the rows before row `at`."""
 
     def expand_here(self, until: int) -> None:
-        """Expand rows up to a number in this thread, learning on the way."""
+        """Expand rows until row `until` in this thread, learning on the way."""
 
 
 class Slices:
-    """The slices of a space that are ahead: they are begun, expanded and sifted in any thread, and stored in this one.
+    """The slices of a space that are ahead: any thread expands and sifts them, this thread stores them.
 
     Attributes:
-        space: Stores what they find, and learns what is not known.
+        space: Stores their results and learns missing rules.
         pipeline: Runs them.
-        pace: How many rows the next slice has, if one has not too many successors.
-        breadth: How many successors a row of the last slice had.
-        spare: Batches of slices that were stored.
+        pace: The number of rows of the next slice, if their successors fit its batch.
+        breadth: The number of successors for each row of the last slice.
+        spare: Reusable batches of stored slices.
     """
 
     def __init__(self, space: Storing, threads: int) -> None:
@@ -72,11 +71,11 @@ class Slices:
         self.spare: list[kernel.Batch] = []
 
     def advance(self, end: int) -> None:
-        """Store what the next slice found, and let others go ahead; no slice lies on both sides of some end."""
+        """Store the results of the next slice, while others go ahead; no slice crosses `end`."""
         self._commit(self._next(end))
 
     def _next(self, end: int) -> Slice:
-        """Return the slice that comes next, expanded; let others go ahead, as far as rows are stored."""
+        """Return the next slice, expanded; let other slices go ahead up to the stored rows."""
         pipeline, space = self.pipeline, self.space
         if pipeline.begin is not None and pipeline.begin > space.expanded:  # a batch was full before its end
             pipeline.ahead.appendleft(self._slice(space.expanded, pipeline.begin))
@@ -93,7 +92,7 @@ class Slices:
         return pipeline.take()
 
     def _slice(self, begin: int, end: int) -> Slice:
-        """Return rows as a slice, to be expanded by what is known now."""
+        """Return rows as a slice, with the trees known now."""
         space = self.space
         known = space.known()
         space.show()
@@ -109,18 +108,17 @@ class Slices:
         kernel.gather(part.model, rows.words, folded, part.batch, part.state, part.end)
         if folded is None:
             kernel.drop_repeated(part.batch, part.state)
-        else:  # looking them up takes no longer
+        else:  # a look-up takes no longer than this check
             part.state[SIFTED] = part.state[GATHERED]
 
     def _sift(self, part: Slice) -> None:
-        """Leave of a slice only what is none of the rows that are stored; tags are compared where they are stored."""
+        """Drop the successors of a slice that are stored rows."""
         space = self.space
-        if space.compact is None:
-            part.state[SEEN] = space.stored
-            kernel.sift(space.rows.words, space.table.room, part.batch, part.state)
+        part.state[SEEN] = space.stored
+        kernel.sift(space.rows.words, space.table.room, part.batch, part.state)
 
     def _commit(self, part: Slice) -> None:
-        """Store what was found in a slice; rows that were put off are expanded when their turn comes."""
+        """Store the results of a slice; deferred rows are expanded at their turn."""
         space, steps, found = self.space, 0, 0
         for row, steps_before, found_before in part.put_off():
             space.store(part.batch, (steps, steps_before), (found, found_before), row)

@@ -1,10 +1,10 @@
-"""The compiled loop of symmetry: puts gathered rows' representatives in their place.
+"""Symmetry reduction in a compiled loop: replaces gathered rows by their canonical representatives.
 
-It does what `checker.reduction.representatives` does, on numbers that `exchanging` has learned.
+It computes the same as `checker.reduction.representatives`, from the tables of `exchanging`.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# numba types these functions; mypy would read their integers as Python's
 
 from typing import NamedTuple
 
@@ -15,35 +15,36 @@ from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.table import Words, hashed
 
 UNKNOWN, FIXED = 0, 1
-"""What stands in the place of an entry: nothing is known; it mentions no member."""
+"""Codes instead of an entry: not learned yet; mentions no member."""
 
 ENTRY, WHOLE, TARGET = range(3)
-"""What is not known: the entry of a column's code, that of the codes of all columns of a cell, or a move."""
+"""Kinds of missing knowledge: the entry of a code, the entry of a whole cell, or a move."""
 
 UNSETTLED = -1
 
 KIND, WHAT, COUNT, LISTED = range(4)
-"""Where that stands: which of these, what it is about, how many numbers follow, and where."""
+"""The layout of a miss: its kind, its subject, the number of its arguments, and the arguments."""
 
 MULTIPLIER, FINISHER = np.uint64(0x9E3779B97F4A7C15), np.uint64(0xBF58476D1CE4E5B9)
 
 
 class Exchanges(NamedTuple):
-    """What is known of members, entries and moves.
+    """The learned tables of members, entries and moves.
 
     Attributes:
-        active: The columns that have bits: those of skeletons first.
-        skeleton: For each column that of its cell's skeleton.
-        holes_from, holes: For each column of a skeleton those of its holes.
-        begins, widths, entries: For each column where the entries of its codes begin, and how many there are; an entry
-            less than nothing is a node from which the codes of the cell's holes lead on.
-        shapes, mentions_from, who, roles: For each entry the node of its shape, and the members that it mentions.
-        own: For each entry the number of its item.
-        keys, values: What leads from a node by a number to another: a hash table.
-        payload: For each node the entry, or the move, at its end.
-        writes_from, writes, numbers: For each move the columns with the codes that they get, and the item's number.
+        active: The columns that have bits, skeletons first.
+        skeleton: The column of the skeleton for each column.
+        holes_from, holes: The columns of the holes for each skeleton column.
+        begins, widths, entries: The entries of each column's codes: the first, and their number. A negative entry is a
+            node; from it, the codes of the cell's holes lead to the entry.
+        shapes, mentions_from, who, roles: For each entry, the node of its shape, and the members that it mentions with
+            their roles.
+        own: The number of the item of each entry.
+        keys, values: The edges from node and number to node, as a hash table.
+        payload: The entry or move at each node.
+        writes_from, writes, numbers: For each move, its columns with their codes, and the number of the item.
         classes: The class of each member.
-        most: How many orders are tried.
+        most: The greatest number of orders to try.
     """
 
     active: Ints
@@ -69,16 +70,16 @@ class Exchanges(NamedTuple):
 
 
 class Desk(NamedTuple):
-    """The room for one row.
+    """Scratch space for one row.
 
     Attributes:
-        here: Its columns that are not as at first, with their codes and entries.
-        whole: For each column of a skeleton the row, counted from 1, of which its cell was last one item.
+        here: Its columns with a code other than 0, with their codes and entries.
+        whole: For each skeleton column, the last row, counted from 1, that read its cell as one item.
         colours, met: Two numbers for each member.
-        order, place: The members in order, and the place of each.
-        beside: Whether a member is mentioned with others.
-        best: The places of the order that was the best so far.
-        unknown: What is not known.
+        order, place: The members in order, and the position of each.
+        beside: Whether an item mentions the member together with others.
+        best: The positions in the best order so far.
+        unknown: The missing entry or move.
     """
 
     here: Ints
@@ -94,7 +95,7 @@ class Desk(NamedTuple):
 
 @njit(cache=True, inline="always")
 def mix(one: np.uint64, other: np.uint64) -> np.uint64:
-    """Return what `items.mix` does."""
+    """Return the same as `items.mix`."""
     mixed = (one ^ (one >> np.uint64(32))) * MULTIPLIER + other
     mixed = (mixed ^ (mixed >> np.uint64(29))) * FINISHER
     return mixed ^ (mixed >> np.uint64(32))
@@ -102,7 +103,7 @@ def mix(one: np.uint64, other: np.uint64) -> np.uint64:
 
 @njit(cache=True, inline="always")
 def slot_for(keys: Words, key: np.uint64) -> np.uint64:
-    """Return where a key is in a table whose size is a power of two, or where it belongs."""
+    """Return the slot of a key in an open-addressing table whose size is a power of two, or the slot for it."""
     last = np.uint64(len(keys) - 1)
     slot = (key * MULTIPLIER) >> np.uint64(20) & last
     while keys[slot] != 0 and keys[slot] != key:
@@ -112,14 +113,14 @@ def slot_for(keys: Words, key: np.uint64) -> np.uint64:
 
 @njit(cache=True, inline="always")
 def led(keys: Words, values: Ints, node: int, number: int) -> int:
-    """Return where a number leads from a node, 0 where that is not known."""
+    """Return the target of an edge from a node, 0 if there is none."""
     slot = slot_for(keys, (np.uint64(node) << np.uint64(32)) | np.uint64(number))
     return np.int64(values[slot]) if keys[slot] != 0 else np.int64(0)
 
 
 @njit(cache=True)
 def enter_all(keys: Words, values: Ints, new: Words, to: Ints) -> None:
-    """Enter keys with their values."""
+    """Insert keys with their values."""
     for k in range(len(new)):
         slot = slot_for(keys, new[k])
         keys[slot], values[slot] = new[k], to[k]
@@ -127,7 +128,7 @@ def enter_all(keys: Words, values: Ints, new: Words, to: Ints) -> None:
 
 @inner(cache=True)
 def read_whole(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, column: int, node: int) -> int:
-    """Return the entry of a whole cell, UNKNOWN where it is not known."""
+    """Return the entry of a whole cell, UNKNOWN if it is not learned yet."""
     d.unknown[KIND], d.unknown[WHAT], count = WHOLE, column, 0
     for k in range(x.holes_from[column], x.holes_from[column + 1]):
         code = code_at(words, at, columns, x.holes[k])
@@ -144,7 +145,7 @@ def read_whole(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, col
 
 @inner(cache=True)
 def read_row(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, stamp: int) -> int:
-    """Note the entries of a row, and colour its members; return how many they are, -1 where one is not known."""
+    """Note the entries of a row and colour its members; return the number of entries, -1 if one is unknown."""
     count = np.int64(0)
     d.colours[:] = np.uint64(0)
     d.beside[:] = 0
@@ -179,7 +180,7 @@ def read_row(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, stamp
 
 @inner(cache=True)
 def sort_members(x: Exchanges, d: Desk) -> int:
-    """Sort the members of each class by colour, equal ones by number; return how many colours there are."""
+    """Sort the members of each class by colour, then by number; return the number of colours."""
     groups = np.int64(0)
     for k in range(len(d.order)):
         j = k
@@ -198,7 +199,7 @@ def sort_members(x: Exchanges, d: Desk) -> int:
 
 @inner(cache=True)
 def end_of_group(x: Exchanges, d: Desk, begin: int) -> int:
-    """Return where the group of equal members ends that begins there."""
+    """Return the end of the group of equal members that begins at `begin`."""
     first = d.order[begin]
     end = begin + 1
     while (
@@ -212,7 +213,7 @@ def end_of_group(x: Exchanges, d: Desk, begin: int) -> int:
 
 @inner(cache=True)
 def is_tied(d: Desk, begin: int, end: int) -> bool:
-    """Tell whether the order of a group matters."""
+    """Return whether a group is tied: its order matters."""
     if end - begin > 1:
         for k in range(begin, end):
             if d.beside[d.order[k]]:
@@ -222,7 +223,7 @@ def is_tied(d: Desk, begin: int, end: int) -> bool:
 
 @inner(cache=True)
 def first_tied(x: Exchanges, d: Desk, begin: int) -> int:
-    """Return where the first group begins, from some member on, whose order matters; -1 where there is none."""
+    """Return the begin of the first tied group from `begin` on; -1 if there is none."""
     while begin < len(d.order):
         end = end_of_group(x, d, begin)
         if is_tied(d, begin, end):
@@ -233,7 +234,7 @@ def first_tied(x: Exchanges, d: Desk, begin: int) -> int:
 
 @inner(cache=True)
 def refine(x: Exchanges, d: Desk, count: int) -> None:
-    """Tell apart members that are mentioned with members of different colours."""
+    """Refine the colours of members by the colours of members in the same items."""
     d.met[:] = np.uint64(0)
     for h in range(count):
         entry = np.int64(d.here[3 * h + 2])
@@ -252,7 +253,7 @@ def refine(x: Exchanges, d: Desk, count: int) -> None:
 
 @inner(cache=True)
 def orders_left(x: Exchanges, d: Desk) -> int:
-    """Return how many orders of tied members there are, more than `most` where they are more."""
+    """Return the number of orders of tied members, at most `most` + 1."""
     found = np.int64(1)
     begin = first_tied(x, d, 0)
     while begin >= 0 and found <= x.most:
@@ -265,7 +266,7 @@ def orders_left(x: Exchanges, d: Desk) -> int:
 
 @njit(cache=True, inline="always")
 def move(x: Exchanges, d: Desk, entry: int) -> int:
-    """Return the move of an entry by the present order, UNKNOWN where it is not known."""
+    """Return the move of an entry under the present order, UNKNOWN if it is not learned yet."""
     node = np.int64(x.shapes[entry])
     begin, end = x.mentions_from[entry], x.mentions_from[entry + 1]
     for k in range(begin, end):
@@ -282,7 +283,7 @@ def move(x: Exchanges, d: Desk, entry: int) -> int:
 
 @inner(cache=True)
 def is_about(x: Exchanges, entry: int, one: int, other: int) -> bool:
-    """Tell whether an entry mentions one of two members."""
+    """Return whether an entry mentions one of two members."""
     found = False
     for k in range(x.mentions_from[entry], x.mentions_from[entry + 1]):
         found = found or x.who[k] == one or x.who[k] == other
@@ -291,7 +292,7 @@ def is_about(x: Exchanges, entry: int, one: int, other: int) -> bool:
 
 @inner(cache=True)
 def may_change(x: Exchanges, d: Desk, count: int, one: int, other: int) -> int:
-    """Tell whether a row is the same with two members exchanged: 0 or 1, UNSETTLED where something is not known."""
+    """Return 1 if the row is invariant under the swap of two members, 0 if not, UNSETTLED if a move is unknown."""
     difference = np.uint64(0)
     for k in range(len(d.place)):
         d.place[k] = k
@@ -308,7 +309,7 @@ def may_change(x: Exchanges, d: Desk, count: int, one: int, other: int) -> int:
 
 @inner(cache=True)
 def free_groups(x: Exchanges, d: Desk, count: int) -> bool:
-    """Note the tied groups whose order does not matter; False where something is not known."""
+    """Mark tied groups as free if their order does not matter; return False if a move is unknown."""
     begin = first_tied(x, d, 0)
     while begin >= 0:
         end, free = end_of_group(x, d, begin), np.int64(1)
@@ -326,7 +327,7 @@ def free_groups(x: Exchanges, d: Desk, count: int) -> bool:
 
 @inner(cache=True)
 def settle(x: Exchanges, d: Desk, count: int) -> int:
-    """Bring the members into an order; return how many orders remain, UNSETTLED where something is not known."""
+    """Sort the members; return the number of orders that remain, UNSETTLED if a move is unknown."""
     while True:
         groups, before = sort_members(x, d), np.int64(0)
         while groups > before and first_tied(x, d, 0) >= 0:
@@ -344,7 +345,7 @@ def settle(x: Exchanges, d: Desk, count: int) -> int:
 
 @inner(cache=True)
 def next_order(x: Exchanges, d: Desk) -> bool:
-    """Go on to the next order of tied members; False after the last."""
+    """Advance to the next order of tied members; False after the last."""
     begin = first_tied(x, d, 0)
     while begin >= 0:
         end = end_of_group(x, d, begin)
@@ -369,7 +370,7 @@ def next_order(x: Exchanges, d: Desk) -> bool:
 
 @inner(cache=True)
 def note_places(d: Desk) -> bool:
-    """Note the place of each member; tell whether some member has another's."""
+    """Note the position of each member; return whether some member has moved."""
     moved = False
     for k in range(len(d.order)):
         d.place[d.order[k]] = k
@@ -379,14 +380,14 @@ def note_places(d: Desk) -> bool:
 
 @njit(cache=True, inline="always")
 def copy(source: Ints, target: Ints) -> None:
-    """Copy numbers one by one: an assignment to a slice would make an array."""
+    """Copy numbers one by one: a slice assignment would allocate an array."""
     for k in range(len(source)):
         target[k] = source[k]
 
 
 @inner(cache=True)
 def choose_order(x: Exchanges, d: Desk, count: int) -> bool:
-    """Find the best of all orders that remain; False where something is not known."""
+    """Find the best of all remaining orders; return False if a move is unknown."""
     best, found = np.uint64(0), False
     while True:
         note_places(d)
@@ -409,14 +410,14 @@ def choose_order(x: Exchanges, d: Desk, count: int) -> bool:
 
 @njit(cache=True, inline="always")
 def put(words: Words, at: int, columns: Words, column: int, code: int) -> None:
-    """Write the code of a column where nothing is written yet."""
+    """Write the code of a column into bits that are zero."""
     where = PLACE * column
     words[at + np.int64(columns[where])] |= np.uint64(code) << columns[where + 1]
 
 
 @inner(cache=True)
 def order_members(x: Exchanges, d: Desk, count: int) -> int:
-    """Note the place of each member: 1 where some member has another's, 0 where none has, UNSETTLED as elsewhere."""
+    """Note the position of each member; return 1 if some member has moved, 0 if none, UNSETTLED if unknown."""
     left = settle(x, d, count)
     if left == UNSETTLED or (left > 1 and not choose_order(x, d, count)):
         return UNSETTLED
@@ -425,7 +426,7 @@ def order_members(x: Exchanges, d: Desk, count: int) -> int:
 
 @inner(cache=True)
 def represent(x: Exchanges, d: Desk, words: Words, at: int, width: int, columns: Words, stamp: int) -> bool:
-    """Put a row's representative in its place; False where something is not known."""
+    """Replace a row by its canonical representative; return False if an entry or move is unknown."""
     count = read_row(x, d, words, at, columns, stamp)
     moved = order_members(x, d, count) if count >= 0 else np.int64(UNSETTLED)
     if moved != 1:
@@ -451,7 +452,7 @@ def represent(x: Exchanges, d: Desk, words: Words, at: int, width: int, columns:
 
 @njit(cache=True, nogil=True)
 def represent_all(x: Exchanges, d: Desk, batch: Batch, gathered: int, columns: Words, width: int) -> int:
-    """Put representatives in the place of what was gathered; return how many were, all where everything is known."""
+    """Replace gathered rows by their representatives; return the number done before the first unknown entry or move."""
     d.whole[:] = 0
     for k in range(gathered):
         if not represent(x, d, batch.words, k * width, width, columns, k + 1):

@@ -1,6 +1,6 @@
-"""The fast explorer: breadth-first like the reference, over packed rows and learned trees.
+"""The state space of the fast explorer: breadth-first search over packed rows with learned trees.
 
-It visits the same configurations in the same order and stops at the same bounds.
+It visits the same configurations in the same order as the reference explorer, and stops at the same bounds.
 """
 
 import math
@@ -29,7 +29,6 @@ from checker.engines.fast.kernel import (
     KEPT,
     LIMIT,
     NODE,
-    PROBED,
     SIZE,
     TREE,
     TURNS,
@@ -40,7 +39,7 @@ from checker.engines.fast.origins import OriginPages, Rising
 from checker.engines.fast.pages import Pages
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.slices import Slices
-from checker.engines.fast.table import bits_for, most_in, rebuild, slots_for, slots_within, write_numbers
+from checker.engines.fast.table import most_in, rebuild, slots_for, slots_within
 from checker.engines.fast.trees import RECORD
 from checker.limits import look
 from semantics.state.cells import AGENTS, Row
@@ -50,12 +49,12 @@ from semantics.state.signature import Name
 from semantics.successors import by_clause, moves, served
 
 BATCH = 1 << 15
-"""Successors that a batch has room for; rows are expanded until half of that is gathered."""
+"""The number of successors in a batch; rows are expanded until half of it is full."""
 
 FIRST_ROWS = 1 << 15
 MOST_ROWS = (1 << 31) - 1
 UNPLANTED = -1
-"""What stands for a node where a tree had none."""
+"""The stand-in for a node of a tree that had none."""
 
 
 if TYPE_CHECKING:
@@ -64,27 +63,27 @@ if TYPE_CHECKING:
 
 
 class Space:
-    """The configurations reached so far, as rows, and how far their expansion has come.
+    """The configurations reached so far, as rows, and the progress of their expansion.
 
     Attributes:
-        learner: What is known of the rules.
-        packing: Where each column stands in a row.
-        rows: The configurations, packed, each with the one that it was first reached from; the first is its own.
-        counts, met: How often each transition was followed, and how often met: the same where nothing is left out.
-        learned: What was not known on the way: the row, and in which tree, at which node and for which code.
-        compact: How many bits a tag has, where the table has tags instead of numbers (see `compacting`).
-        actors: How many actors a configuration may have, as far as is known: agents' two each, and the environment's.
-        left: Says how many bytes of memory may be taken besides: the table grows by less where they end.
-        slices: Rows that are expanded ahead of what is stored.
-        pipeline: The threads that do so.
-        stored: How many rows other threads may look up.
-        changes: How many times rows were packed anew.
-        shown: What is known, as other threads may read it while more is learned; None where it is out of date.
+        learner: The learned rules.
+        packing: The position of each column in a row.
+        rows: The packed configurations with their origins; the first is its own origin.
+        counts, met: How often each transition was followed, and how often enabled; equal without partial-order
+            reduction.
+        learned: The misses so far: row, tree, node and code.
+        actors: The greatest number of actors of a configuration so far: two for each agent, one for each clause.
+        left: Returns the bytes of memory still available; the table grows less when they run out.
+        slices: Rows expanded ahead of the stored ones.
+        pipeline: The threads that expand them.
+        stored: The number of rows that other threads may look up.
+        changes: The number of repackings.
+        shown: A snapshot of the trees for other threads; None if it is out of date.
     """
 
     ORIGINS: type[OriginPages] = Rising
     PLAIN = 2
-    """How many words rows have at most that are not folded."""
+    """The greatest width in words of rows that are not tree-compressed."""
 
     def __init__(
         self,
@@ -92,7 +91,6 @@ class Space:
         limit: int | None,
         choosing: "Choosing | None" = None,
         exchanging: "Exchanging | None" = None,
-        compact: int | None = None,
         threads: int = 1,
     ) -> None:
         self.learner = learner
@@ -100,8 +98,7 @@ class Space:
         self.choosing = choosing
         self.exchanging = exchanging
         if exchanging is not None and choosing is None:
-            self.PLAIN = sys.maxsize  # representatives are found in whole batches
-        self.compact = compact
+            self.PLAIN = sys.maxsize  # representatives are computed for whole batches
         self.state = np.zeros(kernel.STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
         self.slices = Slices(self, threads)
@@ -129,18 +126,13 @@ class Space:
 
     @property
     def size(self) -> int:
-        """How many configurations there are."""
+        """The number of configurations."""
         return int(self.state[SIZE])
 
     @property
     def expanded(self) -> int:
-        """How many of them were expanded."""
+        """The number of expanded configurations."""
         return int(self.state[EXPANDED])
-
-    @property
-    def probed(self) -> int:
-        """How many tags were compared with those of rows that were new."""
-        return int(self.state[PROBED])
 
     @property
     def was_cut(self) -> bool:
@@ -149,7 +141,7 @@ class Space:
 
     @property
     def is_crowded(self) -> bool:
-        """Whether some were not followed, because an agent has too much pending."""
+        """Whether some configurations were not expanded because an agent is crowded."""
         return bool(self.state[CROWDS])
 
     @property
@@ -159,12 +151,12 @@ class Space:
 
     @property
     def bytes_used(self) -> int:
-        """How many bytes rows, origins and the visited set take; of room that was never written, nothing."""
+        """The bytes of rows, origins, visited set and paths; unwritten capacity takes none."""
         paths = 0 if self.choosing is None else self.choosing.paths.held(self.size)
         return self.rows.held(self.size) + self.table.room.nbytes + paths
 
     def rules(self, *, followed: bool = True) -> Counter[str]:
-        """Return how many transitions each rule has: those that were followed, or all."""
+        """Return the number of transitions of each rule: the followed ones, or all."""
         names = {number: name for name, number in self.learner.rules.items()}
         found: Counter[str] = Counter()
         counts = self.counts.used if followed else self.met.used
@@ -187,7 +179,7 @@ class Space:
     # --- expanding ------------------------------------------------------------------------------------------------
 
     def advance(self, until: int, end: int | None = None) -> None:
-        """Expand rows up to a number or somewhat farther, but never beyond an end, learning what is not known."""
+        """Expand rows to row `until` or somewhat beyond, but never beyond `end`, learning on the way."""
         if self.choosing is not None:
             self._advance_by(self.choosing, until)
             return
@@ -198,7 +190,7 @@ class Space:
                 self.expand_here(until)
 
     def expand_here(self, until: int) -> None:
-        """Expand rows up to a number, or until a batch is full, learning what is not known on the way."""
+        """Expand rows until row `until` or until the batch is full, learning on the way."""
         self.state[AT], self.state[GATHERED] = self.expanded, 0
         known = self._gather(until)
         gathered = int(self.state[GATHERED])
@@ -208,7 +200,7 @@ class Space:
             self._miss()
 
     def _advance_by(self, choosing: "Choosing", until: int) -> None:
-        """Expand rows up to a number, following what is chosen."""
+        """Expand rows until row `until`, following ample sets."""
         while self.state[AT] < until:
             new = 2 * len(self.batch.steps)
             self._make_room(new)
@@ -217,8 +209,8 @@ class Space:
                 self._miss()
 
     def _expand(self, choosing: "Choosing", until: int, room: int) -> bool:
-        """Expand rows up to a number, or until there are so many; False at what is not known."""
-        from checker.engines.fast.ample import expand_reduced  # noqa: PLC0415  # compiled where something is reduced
+        """Expand rows until row `until` or until there are `room` rows; return False at something not learned yet."""
+        from checker.engines.fast.ample import expand_reduced  # noqa: PLC0415  # compiled only for a reduction
 
         loop: Callable[..., bool] = expand_reduced
         swaps = self.exchanging
@@ -228,7 +220,7 @@ class Space:
         return loop(*known, *arrays, until, room, self.met.room, self.counts.room, self.state)
 
     def _gather(self, until: int) -> bool:
-        """Gather the successors of rows up to a number, or what represents them; False at what is not known."""
+        """Gather the successors of rows, or their representatives; return False at something not learned yet."""
         rows = self.rows
         known: bool = kernel.gather(self.model, rows.words, rows.folded, self.batch, self.state, until)
         return (
@@ -236,10 +228,10 @@ class Space:
         )
 
     def store(self, batch: kernel.Batch, steps: tuple[int, int], found: tuple[int, int], at: int) -> None:
-        """Store what was gathered of the rows before one: some transitions, and successors that may be new."""
+        """Store part of a batch: transitions and possibly new successors of the rows before row `at`."""
         kernel.count(batch.steps, *steps, self.counts.room)
         begin, end = found
-        while begin < end:  # the table grows just when it is full, whatever is stored at once
+        while begin < end:  # so the time of growth does not depend on the batch
             self._make_room(1)
             begin = self._store_some(batch, begin, end)
         self.state[EXPANDED] = at
@@ -247,11 +239,11 @@ class Space:
 
     @property
     def epoch(self) -> int:
-        """A number that changes whenever what was found ahead may be worth nothing."""
+        """A number that changes when results found ahead become void."""
         return self.changes + self.learner.trees.forgotten
 
     def known(self) -> kernel.Model:
-        """Return what is known, as other threads may read it while more is learned."""
+        """Return a snapshot of the trees that other threads may read during learning."""
         if self.shown is None:
             trees = self.learner.trees
             copies = [each.used.copy() for each in (trees.root, trees.nodes, trees.next)]
@@ -259,19 +251,19 @@ class Space:
         return self.shown
 
     def show(self) -> None:
-        """Let other threads look up what is stored by now."""
+        """Publish the stored rows to other threads."""
         self.rows.show()
         self.stored = self.size
 
     def _store_some(self, batch: kernel.Batch, begin: int, end: int) -> int:
-        """Store some of the successors of a batch, as far as there is room, and return how far."""
+        """Store successors of a batch until there is no room; return the first one not stored."""
         arrays = (self.rows.words, self.rows.origins.loops, self.table.room)
         folded = self.rows.folded
         model = None if folded is None else self.model
-        return int(kernel.store(*arrays, self.compact, model, folded, batch, begin, end, self.state))
+        return int(kernel.store(*arrays, model, folded, batch, begin, end, self.state))
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
-        """Return the leaf that each row leads to in a tree, learning what is not known on the way."""
+        """Return the leaf of each row in a tree, learning on the way."""
         found = np.zeros(len(rows), np.int32)
         done = 0
         while done < len(rows):
@@ -283,7 +275,7 @@ class Space:
         return found
 
     def edges(self, rows: range) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]]:
-        """Yield the transitions of rows that were expanded, some at a time: origins, steps, and targets (< 0: none)."""
+        """Yield the transitions of expanded rows, batch by batch: origins, steps, and targets (< 0: none)."""
         self.state[AT] = rows.start
         while self.state[AT] < rows.stop:
             look()
@@ -310,7 +302,7 @@ class Space:
             self._learn(int(self.state[AT]))
 
     def _learn(self, row: int) -> None:
-        """Learn what was not known of a row, as it was noted where a walk ended."""
+        """Learn the entry at which the walk of a row ended."""
         unknown = (row, int(self.state[TREE]), int(self.state[NODE]), int(self.state[CODE]))
         self.learned.append(unknown)
         if self._settles(*unknown[2:]):
@@ -320,15 +312,15 @@ class Space:
         self._see()
 
     def _settles(self, node: int, code: int) -> bool:
-        """Answer what is asked at a node for a code that was not met there; False where a rule must be run.
+        """Answer the question of a node for a new code; return False if a rule must run.
 
-        Then a node leads further than before, and nothing else is new: the loops see that as it is.
+        Then only the windows of nodes change, which the loops read in place.
         """
         trees = self.learner.trees
         return node >= 0 and trees.settle(node, code, self.learner.columns.all[trees.column_of(node)])
 
     def _learn_from(self, where: Packing, words: NDArray[np.uint64], tree: int) -> None:
-        """Learn what a tree does not know, from a row that came to its end."""
+        """Learn the path of a row in a tree."""
         self.learner.learn(tree, CodedSource(self.learner.columns, where, words.tolist()))
 
     def restore(
@@ -338,10 +330,10 @@ class Space:
         size: int,
         learned: list[list[int]],
     ) -> None:
-        """Go on from so many rows of another space of the same mission, learning again what that had learned.
+        """Continue from the rows of another space of the same mission, learning again everything that it had learned.
 
         Raises:
-            ValueError, IndexError: They are not rows of such a space.
+            ValueError, IndexError: The rows can't be of such a space.
         """
         first = self.codes(0)
         for row, tree, node, code in learned:
@@ -349,7 +341,7 @@ class Space:
                 raise ValueError("it learned from no row")
             self.learned.append((row, tree, node, code))
             self._learn_again(where, rows.row(row), tree, node, code)
-            self._agents(self._groups())  # plants the trees of agents that are new, in the same order
+            self._agents(self._groups())  # plants the trees of new agents, in the same order
         sizes = np.array(self.learner.columns.sizes, np.int64)
         begins = np.concatenate(([0], np.cumsum(sizes)))
         used = np.zeros(begins[-1], np.bool_)
@@ -371,18 +363,18 @@ class Space:
     def _learn_again(
         self, where: Packing, words: NDArray[np.uint64], tree: int, node: int, code: int
     ) -> None:
-        """Learn from a row of another space what that had learned there; raises ValueError where it can't have."""
+        """Learn again from a row of another space; raise ValueError if that space can't have learned there."""
         trees = self.learner.trees
         if not (0 <= tree < len(trees.root) and UNPLANTED <= node < len(trees.asks)):
             raise ValueError("it learned of what no rule asks")
         try:
             if not self._settles(node, code):
                 self._learn_from(where, words, tree)
-        except Exception as error:  # rules may do anything where a row is no configuration
+        except Exception as error:  # on a row that is no configuration, rules may fail in any way
             raise ValueError(f"a rule does not run on its rows: {type(error).__name__}: {error}") from error
 
     def _see(self) -> None:
-        """Let the loops see what is known now."""
+        """Rebuild the loops' tables from everything learned."""
         self._pack()
         groups = self._groups()
         if groups != self.groups:
@@ -413,13 +405,13 @@ class Space:
             self.exchanging.see(self.packing)
 
     def _locate(self) -> None:
-        """Let inner nodes that are new know where their columns stand; all of them where the packing is."""
+        """Write the column positions into new inner nodes, or into all of them after a repacking."""
         nodes = self.learner.trees.nodes
         kernel.locate(nodes.used, self.packing.columns, self.located)
         self.located = len(nodes) // RECORD
 
     def _make_masks(self) -> None:
-        """Work out what the transitions that are new keep and set; all of them where the packing is."""
+        """Compute the masks of new transitions, or of all of them after a repacking."""
         leaves, folded = self.learner.leaves, self.rows.folded
         width = 2 * self.packing.words if folded is None else 1
         known = self.masks.size // width
@@ -433,7 +425,7 @@ class Space:
             kernel.note_pieces(*arrays, folded.piece_of, known)
 
     def _groups(self) -> list[tuple[Name, ...]]:
-        """Return the agents that there are, for each value of the cell that says so."""
+        """Return the agents for each value of the cell that names them."""
         learner = self.learner
         self.state[ALPHA] = -1
         if AGENTS not in learner.varying:
@@ -442,7 +434,7 @@ class Space:
         return learner.columns.all[number].values
 
     def _agents(self, groups: list[tuple[Name, ...]]) -> tuple[list[int], list[int]]:
-        """Return the trees of the agents, group by group, and where each group begins."""
+        """Return the trees of all agents, group by group, and the bounds of the groups."""
         learner = self.learner
         trees = [
             [learner.tree(Actor(rules, a)) for rules in (served, moves) for a in group] for group in groups
@@ -450,7 +442,7 @@ class Space:
         return [tree for group in trees for tree in group], [0, *accumulate(map(len, trees))]
 
     def _pack(self) -> None:
-        """Pack the rows anew where a column has outgrown its bits; the batch is empty of rows that matter."""
+        """Repack the rows if a column has outgrown its bits; the batch must hold no gathered rows."""
         columns = self.learner.columns
         if self.grown == columns.growth.times:
             return
@@ -466,7 +458,7 @@ class Space:
         self._rebuild(len(self.table.room))
 
     def _packed(self, room: Sequence[int], words: int) -> Packing:
-        """Return the packing for so many values a column, in at least so many words."""
+        """Return a packing with room for `room` values in each column, in at least `words` words."""
         if -(-sum(bits_of(room)) // WORD) <= self.PLAIN:
             new = packing(room, words)
             if new.words <= self.PLAIN:
@@ -476,7 +468,7 @@ class Space:
         )  # so a transition changes few pieces of a row
 
     def _pack_as(self, where: Packing, successors: int) -> None:
-        """Let all that looks at rows, and batches for so many successors, be of the packing that rows have."""
+        """Adopt a packing that the rows already have; make batches for `successors` successors."""
         self.pipeline.drop()
         self.changes += 1
         self.packing, self.state[WORDS], self.state[KEPT] = where, where.words, self.rows.kept
@@ -496,19 +488,19 @@ class Space:
         self.state[SIZE] = 1
 
     def _make_batches(self, successors: int) -> None:
-        """Make an empty batch; what it held must have been stored."""
+        """Replace the batch by an empty one; its contents must be stored."""
         self.batch = self.new_batch(successors)
         self.slices.spare.clear()
         self.state[GATHERED] = 0
 
     def _take_turns(self, actors: int) -> None:
-        """Let batches have a leaf for each of so many actors; what they held must have been stored."""
+        """Give batches a leaf for each of `actors` actors; their contents must be stored."""
         if actors > self.actors:
             self.actors = actors
             self._make_batches(len(self.batch.hashes))
 
     def new_batch(self, successors: int = 0, later: int = 0) -> kernel.Batch:
-        """Return an empty batch for so many successors, or as many as usual, that may put off so many rows."""
+        """Return an empty batch for `successors` successors (default: `BATCH`), with room for `later` deferred rows."""
         successors = successors or BATCH
         folded = self.rows.folded is not None
         whole = 0 if folded and self.choosing is None else successors
@@ -525,7 +517,7 @@ class Space:
         )
 
     def _make_room(self, rows: int) -> None:
-        """Make room for so many new rows."""
+        """Make room for `rows` new rows."""
         wanted = min(self.size + rows, int(self.state[LIMIT]))
         if not self.rows.has_room(wanted):
             self.pipeline.rest()
@@ -534,14 +526,14 @@ class Space:
             self._rebuild(self._slots(wanted))
 
     def _slots(self, rows: int) -> int:
-        """Return how many slots the next table has: for half as many rows more, or for a few where memory ends."""
+        """Return the size of the next table: for half as many rows more, or for fewer when memory runs out."""
         table = self.table.room
         left = self.left() + table.nbytes
         within = min(slots_for(rows), slots_within(left, self.size, self.rows.bytes_each, table.itemsize))
         return max(int(within), slots_for(rows) * 3 // 4)
 
     def spill(self, folder: Path) -> None:
-        """Let rows and origins go over to files in a folder; the table, which is looked up at random, stays in memory.
+        """Move rows and origins to files in a folder; the table, with its random accesses, stays in memory.
 
         Raises:
             OSError: There is no such folder, or no room in it.
@@ -552,14 +544,5 @@ class Space:
     def _rebuild(self, slots: int) -> None:
         self.pipeline.rest()
         self.table = Pages(np.uint32, 1)  # give the old one back before the next is taken
-        rows = (self.rows.words, self.size, self.rows.kept)
-        if self.compact is None:
-            self.table = Pages(np.uint32, slots)
-            rebuild(
-                *rows, self.table.room, write_numbers, bits_for(len(self.table.room)), self.pipeline.divide
-            )
-            return
-        from checker.engines.fast.compacting import write_tags  # noqa: PLC0415  # compiled where it is wanted
-
-        self.table = Pages(np.uint32 if self.compact <= 32 else np.uint64, slots)
-        rebuild(*rows, self.table.room, write_tags, self.compact, self.pipeline.divide)
+        self.table = Pages(np.uint32, slots)
+        rebuild(self.rows.words, self.size, self.rows.kept, self.table.room, self.pipeline.divide)

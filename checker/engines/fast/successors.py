@@ -1,7 +1,7 @@
-"""The compiled loops that list the transitions of one row, and make only those that are followed or looked at."""
+"""Compiled loops that list the transitions of one row, and make only the successors that are needed."""
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# numba types these functions; mypy would read their integers as Python's
 
 from typing import Any
 
@@ -51,7 +51,7 @@ from checker.engines.fast.table import Words, hashed
 
 @inner(cache=True)
 def list_steps(m: Model, here: Words, batch: Batch, state: State) -> int:
-    """Note the transitions that a row allows, not made yet; return how many, UNKNOWN where something is not known."""
+    """Note the enabled transitions of a row without their successors; return their number, or UNKNOWN."""
     first, last = np.int64(0), np.int64(len(m.agents))
     if state[ALPHA] >= 0:
         group = code_at(here, 0, m.columns, state[ALPHA])
@@ -79,7 +79,7 @@ def list_steps(m: Model, here: Words, batch: Batch, state: State) -> int:
 
 @inner(cache=True)
 def make(m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, k: int, state: State) -> bool:
-    """Make what a transition of a row leads to, if it was not made yet; False where something is not known."""
+    """Make the successor of a transition unless it is made; return False at something not learned yet."""
     if r.made[k]:
         return True
     width = state[WORDS]
@@ -106,10 +106,10 @@ def make(m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, k: i
 
 @inner(cache=True)
 def keep(f: Folded | None, batch: Batch, k: int, state: State) -> bool:
-    """Fold what a transition leads to, where rows are folded, and hash what is kept; False where there is no room."""
+    """Compress a successor if rows are compressed, and hash its stored form; return False if there is no room."""
     width, kept = state[WORDS], state[KEPT]
     if f is not None:
-        adding = state[SIZE] < state[LIMIT]  # of what can't become a row, nothing is added
+        adding = state[SIZE] < state[LIMIT]  # a successor beyond the limit adds no piece
         touched = take(f, batch.words, k * width, width, adding)
         if fold(f, touched, adding, batch.kept, k * kept) == NO_ROOM:
             state[NODE] = FULL
@@ -122,9 +122,9 @@ def keep(f: Folded | None, batch: Batch, k: int, state: State) -> bool:
 def make_representative(
     m: Model, r: Members, x: Any, d: Any, f: Folded | None, here: Words, batch: Batch, k: int, state: State
 ) -> bool:
-    """Make what a transition of a row leads to, and put what represents that in its place, as far as it was not done.
+    """Make the canonical representative of a transition's successor, unless it is made.
 
-    False where something is not known.
+    Return False at something not learned yet.
     """
     if not make(m, r, f, here, batch, k, state):
         return False
@@ -143,7 +143,7 @@ def make_representative(
 def without_repetitions(
     m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, count: int, state: State
 ) -> int:
-    """Leave out what leads under the same label to the same; return how many are left, UNKNOWN as elsewhere."""
+    """Drop transitions with the same label and successor as an earlier one; return the number left, or UNKNOWN."""
     width, alike = state[WORDS], False
     for k in range(count):
         r.made[k] = r.visible[k] = 0

@@ -15,17 +15,17 @@ from semantics.state.signature import Name
 from semantics.successors import Expansion, expand
 
 BLOCK = 1 << 18
-"""Rows that are classified at once: what is worked out of them takes some fifty bytes each."""
+"""The number of rows classified together: the results take some fifty bytes for each."""
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """One answer.
+    """One answer to a question.
 
     Attributes:
-        value: What was answered.
-        count: By how many configurations.
-        first: By which first.
+        value: The answer.
+        count: The number of configurations that give it.
+        first: The first of them.
     """
 
     value: Any
@@ -34,14 +34,14 @@ class Answer:
 
 
 class Survey:
-    """Puts questions to the configurations that were expanded."""
+    """Evaluates questions on the expanded configurations."""
 
     def __init__(self, space: Space) -> None:
         self.space = space
         self.size = space.expanded
 
     def agents(self) -> tuple[Name, ...]:
-        """Return every agent that there ever is, sorted."""
+        """Return every agent of some configuration, sorted."""
         learner = self.space.learner
         groups = [learner.still.read(AGENTS)]
         if AGENTS in learner.varying:
@@ -54,16 +54,16 @@ class Survey:
         return self.space.configuration(number)
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
-        """Return the leaf that each configuration leads to in a tree."""
+        """Return the leaf of each row in a tree."""
         return self.space.classify(tree, rows)
 
     def shown(self, number: int) -> Iterator[tuple[Configuration, Expansion]]:
-        """Yield what an inspection is shown of a configuration."""
+        """Yield a configuration with its expansion, as input for an inspection."""
         c = self.configuration(number)
         yield c, expand(c)
 
     def answers(self, question: Callable[[Configuration], Hashable]) -> list[Answer]:
-        """Return each answer once, in the order in which they were first given."""
+        """Return each distinct answer once, in the order of first occurrence."""
         found: dict[Hashable, Answer] = {}
         tree = self.space.learner.question(question)
         for rows, leaves in self.leaves(tree):
@@ -75,23 +75,23 @@ class Survey:
         return sorted(found.values(), key=lambda answer: answer.first)
 
     def blocks(self, size: int | None = None) -> Iterator[NDArray[np.int64]]:
-        """Yield the numbers of the expanded configurations, or of the first so many, block by block."""
+        """Yield the numbers of the expanded configurations, or of the first `size`, block by block."""
         end = self.size if size is None else size
         for begin in range(0, end, BLOCK):
             yield np.arange(begin, min(begin + BLOCK, end), dtype=np.int64)
 
     def leaves(self, tree: int) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int32]]]:
-        """Yield rows with the leaf that each leads to in a tree, block by block."""
+        """Yield rows with their leaves in a tree, block by block."""
         return ((rows, self.classify(tree, rows)) for rows in self.blocks())
 
     def where(self, question: Callable[[Configuration], bool], size: int | None = None) -> NDArray[np.bool_]:
-        """Return for each expanded configuration, or for the first so many, whether it answers yes."""
+        """Return the truth of a question for each expanded configuration, or for the first `size`."""
         return self.where_with_change(question, size)[0]
 
     def where_with_change(
         self, question: Callable[[Configuration], bool], size: int | None = None
     ) -> tuple[NDArray[np.bool_], bool]:
-        """Return where the answer is yes, and whether what was asked for it is not the same everywhere."""
+        """Return where the answer is yes, and whether some value that it read differs between rows."""
         tree = self.space.learner.question(question)
         found = [np.zeros(0, np.bool_)]
         met: set[int] = set()
@@ -103,7 +103,7 @@ class Survey:
         return np.concatenate(found), len(met) > 1
 
     def numbered(self, leaves: NDArray[np.int32], numbers: dict[Hashable, int]) -> NDArray[np.int64]:
-        """Return for each leaf of a question the number of its answer; answers that are new get the next ones."""
+        """Return the number of each leaf's answer; new answers get the next numbers."""
         there = known(leaves)
         found = np.zeros(there[-1] + 1 if there else 0, np.int64)
         found[there] = [numbers.setdefault(self.space.learner.answers[leaf], len(numbers)) for leaf in there]
@@ -115,13 +115,13 @@ class Survey:
 
 
 def known(leaves: NDArray[np.int32]) -> list[int]:
-    """Return each leaf once, in order."""
+    """Return each leaf once, in ascending order."""
     found: list[int] = np.flatnonzero(np.bincount(leaves)).tolist()
     return found
 
 
 def distinct(leaves: NDArray[np.int32]) -> Iterator[tuple[int, int, int]]:
-    """Yield each leaf with where it stands first and how often."""
+    """Yield each leaf with its first position and its number of occurrences."""
     values, firsts, counts = np.unique(leaves, return_index=True, return_counts=True)
     for value, first, count in zip(values, firsts, counts, strict=True):
         yield int(value), int(first), int(count)

@@ -1,11 +1,11 @@
-"""The visited set: an open hash table of row numbers, each with as many bits of its hash as fit 32 bits.
+"""The visited set: an open-addressing hash table of row numbers, each with as many hash bits as fit into 32 bits.
 
-Equality is decided on whole rows. A hash belongs into the slot that lies as far in the table as the hash among all
-hashes; where that is taken, into the next one that is free.
+Two rows are compared in full. The home slot of a hash is proportional to the hash, so the table is ordered by it.
+Collisions take the next free slot (linear probing).
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# numba types these functions; mypy would read their integers as Python's
 
 from collections.abc import Callable
 from typing import Any
@@ -17,17 +17,16 @@ from checker.engines.fast.loops import njit
 from checker.engines.fast.prefetch import prefetch
 
 Words = NDArray[np.uint64]
-Write = Callable[[Words, Any, Any, int], None]
 Share = Callable[[Callable[[range], Any], int], list[Any]]
 
 PARTS = 16
-"""Parts of a table that may be filled by different threads."""
+"""The number of parts of a table that different threads may fill."""
 
 ENTERED = 1 << 14
-"""Rows that are looked at at once when a table is filled."""
+"""The number of rows in one step of filling a table."""
 
 AHEAD = 32
-"""How many places ahead memory is asked for a row, and twice as far for the slot that names it."""
+"""The prefetch distance of rows; slots are prefetched twice as far ahead."""
 
 _MULTIPLIER = np.uint64(0x9E3779B97F4A7C15)
 _HALF, _ONE = np.uint64(32), np.uint64(1)
@@ -46,13 +45,13 @@ def hashed(words: Words, at: int, count: int) -> np.uint64:
 
 @njit(cache=True, inline="always")
 def slot_of(mixed: np.uint64, slots: int) -> np.uint64:
-    """Return where a hash belongs in a table of so many slots."""
+    """Return the home slot of a hash in a table of `slots` slots."""
     return ((mixed >> _HALF) * np.uint64(slots)) >> _HALF
 
 
 @njit(cache=True)
 def bits_for(slots: int) -> int:
-    """Return how many bits a row's number takes in a table of so many slots; the others hold bits of its hash."""
+    """Return the number of bits for a row number in a table of `slots` slots; the others hold bits of the hash."""
     bits = 1
     while (1 << bits) <= slots:
         bits += 1
@@ -61,27 +60,27 @@ def bits_for(slots: int) -> int:
 
 @njit(cache=True)
 def most_in(slots: int) -> int:
-    """Return how many rows a table of so many slots may hold."""
+    """Return the greatest number of rows in a table of `slots` slots."""
     return slots * 2 // 3
 
 
 def slots_for(rows: int) -> int:
-    """Return how many slots a table has at first that is to hold so many rows, and half as many more later.
+    """Return the initial size of a table for `rows` rows, with room for half as many more.
 
-    So it takes 6 to 9 bytes a row, less than if it were doubled; fuller ones take less still, but looking up longer.
+    It takes 6 to 9 bytes a row, less than with doubling. A fuller table takes less memory, but longer look-ups.
     """
     return rows * 9 // 4
 
 
 def slots_within(left: float, rows: int, row: float, entry: int) -> float:
-    """Return how many slots a table has that is full just when memory is, as rows come.
+    """Return the size of a table that fills up just when memory does.
 
-    So that memory is not spent on slots whose rows would find none.
+    A larger table would take memory from the rows that fill its slots.
 
     Args:
-        left: Bytes for the table and for rows that come.
-        rows: How many there are.
-        row: Bytes of one, with its origin.
+        left: Bytes for the table and for new rows.
+        rows: The number of present rows.
+        row: Bytes of a row with its origin.
         entry: Bytes of a slot.
 
     >>> slots_within(1_000 * 6 + 500 * 20, 500, 20, 4)
@@ -92,7 +91,7 @@ def slots_within(left: float, rows: int, row: float, entry: int) -> float:
 
 @njit(cache=True, inline="always")
 def entry_of(mixed: np.uint64, row: int, bits: np.uint32) -> np.uint32:
-    """Return what a table holds of a row: bits of its hash, and its number; 0 stands for none."""
+    """Return the table entry of a row: bits of its hash, and its number plus 1; 0 marks a free slot."""
     return ((np.uint32(mixed) >> bits) << bits) | np.uint32(row + 1)
 
 
@@ -100,7 +99,7 @@ def entry_of(mixed: np.uint64, row: int, bits: np.uint32) -> np.uint32:
 def find(
     words: Words, table: Any, target: Words, k: int, mixed: np.uint64, width: int, bits: np.uint32
 ) -> int:
-    """Return the number of the row that a successor is; -slot - 1 where it is new, with where it belongs."""
+    """Return the number of a row equal to the target; -slot - 1 with its free slot if there is none."""
     slots, wide = np.uint64(len(table)), np.uint64(width)
     numbers = np.uint32((np.int64(1) << np.int64(bits)) - 1)
     tag = np.uint32(mixed) >> bits
@@ -126,15 +125,8 @@ def find(
 
 
 @njit(cache=True, inline="always")
-def fetch_slot(table: Any, hashes: Words, k: int, end: int) -> None:
-    """Ask for the slot in which the search for a successor some places behind one, up to an end, will begin."""
-    if k + AHEAD < end:
-        prefetch(table, slot_of(hashes[k + AHEAD], len(table)))
-
-
-@njit(cache=True, inline="always")
 def fetch(words: Words, table: Any, hashes: Words, k: int, end: int, width: int, bits: np.uint32) -> None:
-    """Ask for what successors some places behind one, up to an end, will be compared with: a slot, then its row."""
+    """Prefetch the slots and rows with which later successors will be compared."""
     far, near = k + 2 * AHEAD, k + AHEAD
     if far < end:
         prefetch(table, slot_of(hashes[far], len(table)))
@@ -145,29 +137,28 @@ def fetch(words: Words, table: Any, hashes: Words, k: int, end: int, width: int,
             prefetch(words, (np.uint64(entry & numbers) - _ONE) * np.uint64(width))
 
 
-# --- entering all rows anew -------------------------------------------------------------------------------------------
+# --- rebuilding -------------------------------------------------------------------------------------------------------
 
 
 def alone(work: Callable[[range], Any], parts: int) -> list[Any]:
-    """Do some work with so many parts, all of them in this thread."""
+    """Do some work on all parts in this thread."""
     return [work(range(parts))]
 
 
-def rebuild(words: Words, size: int, width: int, table: Any, write: Write, bits: int, share: Share) -> None:
-    """Fill an empty table with the rows, all of them different.
+def rebuild(words: Words, size: int, width: int, table: Any, share: Share) -> None:
+    """Fill an empty table with rows, all of them different.
 
-    Each part of the table is filled by one thread, in the order of the rows. The few that have no room in their part
-    come last, so that what stands where does not depend on how many threads there are.
+    Each part of the table is filled by one thread, in the order of the rows. The few rows without room in their part
+    come last. So the contents do not depend on the number of threads.
 
     Args:
         words: The rows.
-        size: How many there are.
-        width: Words of each.
+        size: The number of rows.
+        width: The words of a row.
         table: The table.
-        write: Writes entries for the hashes and numbers of rows: `write_numbers`, or `compacting.write_tags`.
-        bits: What it is given besides.
-        share: Does some work with ranges of parts, in several threads, and returns what comes of each.
+        share: Runs some work on ranges of parts, in several threads, and returns the results.
     """
+    bits = bits_for(len(table))
 
     def fill(parts: range) -> list[tuple[Words, Any]]:
         hashes, rows = np.zeros(ENTERED, np.uint64), np.zeros(ENTERED, np.int64)
@@ -176,7 +167,7 @@ def rebuild(words: Words, size: int, width: int, table: Any, write: Write, bits:
         for begin in range(0, size, ENTERED):
             end = min(begin + ENTERED, size)
             count = choose(words, begin, end, width, parts.start, parts.stop, hashes, rows)
-            write(hashes[:count], rows[:count], entries[:count], bits)
+            write_entries(hashes[:count], rows[:count], entries[:count], bits)
             over = enter(table, hashes[:count], entries[:count], PARTS)
             left.append((hashes[:over].copy(), entries[:over].copy()))
         return left
@@ -191,7 +182,7 @@ def rebuild(words: Words, size: int, width: int, table: Any, write: Write, bits:
 def choose(
     words: Words, begin: int, end: int, width: int, first: int, last: int, hashes: Words, rows: Any
 ) -> int:
-    """Note the hashes and numbers of those of some rows that belong into some parts; return how many they are."""
+    """Note the hashes and numbers of the rows that belong to some parts; return their number."""
     low, wide = np.uint64(first) << _PART, (np.uint64(last - first) << _PART) - _ONE
     count = np.int64(0)
     for row in range(begin, end):
@@ -202,17 +193,17 @@ def choose(
 
 
 @njit(cache=True)
-def write_numbers(hashes: Words, rows: Any, entries: Any, bits: int) -> None:
-    """Write what a table holds of rows whose numbers take so many bits."""
+def write_entries(hashes: Words, rows: Any, entries: Any, bits: int) -> None:
+    """Write the table entries of rows, with `bits` bits for each number."""
     for k in range(len(hashes)):
         entries[k] = entry_of(hashes[k], rows[k], np.uint32(bits))
 
 
 @njit(cache=True, nogil=True)
 def enter(table: Any, hashes: Words, entries: Any, parts: int) -> int:
-    """Enter what no slot holds yet, in the part that it belongs into; move what finds no room there to the front.
+    """Insert entries into free slots of their part of the table; move those without room to the front.
 
-    Return how many those are. Of one part there is no end: there is room, if only from its beginning on.
+    Return the number of entries without room. With a single part the search wraps around, so there is always room.
     """
     slots, left = np.uint64(len(table)), np.int64(0)
     for k in range(len(hashes)):

@@ -1,11 +1,11 @@
-"""The paths of `checker.reduction.paths`, as the loops of partial-order reduction keep them.
+"""Paths for the cycle proviso (see `checker.reduction.paths`), in arrays for the compiled loops.
 
-Rows are expanded in order, so where paths lead on is kept only of rows from which one does, one after another: a bit of
-each row says whether it is one of these, and how many are before it says which.
+Rows are expanded in order, and the next row of a path is stored only for rows that have one, consecutively. A bit for
+each row marks these; the number of set bits before it is the index into the stored ones.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# numba types these functions; mypy would read their integers as Python's
 
 from typing import Any, NamedTuple
 
@@ -19,25 +19,25 @@ from checker.engines.fast.pages import Pages
 from checker.engines.fast.table import Words
 
 BLOCK = 8
-"""Words of bits that are counted together."""
+"""Words of bits that share one stored count."""
 
 SETS = 1 << 8
-"""For how many sets more there is room at least where rows begin to be expanded."""
+"""Free room for sets that exists at least when the expansion of rows begins."""
 
 _HALF, _LOW = np.uint64(32), np.uint64(0xFFFFFFFF)
 
 
 class Trails(NamedTuple):
-    """The paths, as the loops see them.
+    """The paths in the form that the loops read.
 
     Attributes:
-        movers: For each row that is yet to be expanded whose step led there: the agent's number and 1, 0 for nobody's.
-        led: A bit for each row from which a path leads on.
-        before: How many of these there are before each block of rows.
-        leads: For each of them to which row, and the number of the set of parts that are taken on the way there.
-        count: How many of them there are.
-        sets: Those sets by number, as words of bits: they are few.
-        sought: Room for one that is looked up.
+        movers: For each row not yet expanded, the number of the agent whose step led there, plus 1; 0 for a clause.
+        led: A bit for each row from which a path continues.
+        before: The number of set bits before each block.
+        leads: For each of these rows, the next row and the number of the set of parts taken on the way.
+        count: The number of these rows.
+        sets: The sets of parts by number, as words of bits: there are few.
+        sought: Scratch space for a set to look up.
     """
 
     movers: Any
@@ -51,14 +51,14 @@ class Trails(NamedTuple):
 
 @njit(cache=True, inline="always")
 def begin_row(trails: Trails, row: int) -> None:
-    """Note how many paths lead on before a row, where it begins a block; no later row was begun."""
+    """Note the number of leads before a row that begins a block; rows must begin in order."""
     if row % (BLOCK * WORD) == 0:
         trails.before[row // (BLOCK * WORD)] = trails.count[0]
 
 
 @njit(cache=True, inline="always")
 def lead_on(trails: Trails, row: int, to: int, taken: int) -> None:
-    """Let a path lead on from the row that was begun last, with the number of the set that is taken on the way."""
+    """Let the path of the last begun row continue at row `to`, taking set number `taken`."""
     add(trails.led, 0, row)
     trails.leads[trails.count[0]] = (np.uint64(to) << _HALF) | np.uint64(taken)
     trails.count[0] += 1
@@ -66,7 +66,7 @@ def lead_on(trails: Trails, row: int, to: int, taken: int) -> None:
 
 @njit(cache=True, inline="always")
 def lead_of(trails: Trails, row: int) -> int:
-    """Return which of all leads is a row's, -1 where its path ends there."""
+    """Return the index of a row's lead, -1 if its path ends there."""
     if not has(trails.led, 0, row):
         return np.int64(-1)
     found, last = np.int64(trails.before[row // (BLOCK * WORD)]), row // WORD
@@ -77,7 +77,7 @@ def lead_of(trails: Trails, row: int) -> int:
 
 @inner(cache=True)
 def end_of(trails: Trails, row: int, taken: Words) -> int:
-    """Return where the path from a row ends, with what is taken on it; the path is made shorter."""
+    """Return the end of the path from a row, and add the parts taken on it; shorten the path on the way."""
     wide, sought, sets = len(taken), trails.sought, trails.sets
     at = lead_of(trails, row)
     while at >= 0:
@@ -106,8 +106,8 @@ class Paths:
     """The paths of one search.
 
     Args:
-        agents: How many agents there may ever be.
-        wide: How many words have a bit for each part.
+        agents: The greatest number of agents.
+        wide: The number of words of a set of parts.
     """
 
     def __init__(self, agents: int, wide: int) -> None:
@@ -120,12 +120,12 @@ class Paths:
 
     @property
     def trails(self) -> Trails:
-        """As the loops see them; growing makes others: don't keep them."""
+        """The paths in the form that the loops read. Growing replaces them: don't keep them."""
         rooms = (self.movers.room, self.led.room, self.before.room, self.leads.room)
         return Trails(*rooms, self.count, self.sets.interned, np.zeros(self.wide, np.uint64))
 
     def reserve(self, rows: int) -> None:
-        """Make room for the paths of so many rows, and for more sets of what is taken on them."""
+        """Make room for the paths of `rows` rows, and for more sets of parts."""
         self.movers.grow(rows)
         self.leads.grow(rows)
         self.led.grow(rows // WORD + 1)
@@ -133,6 +133,6 @@ class Paths:
         self.sets.reserve(SETS)
 
     def held(self, rows: int) -> int:
-        """Return how many bytes the paths of so many rows take."""
+        """Return the bytes that the paths of `rows` rows take."""
         bits = self.led.held(rows // WORD + 1) + self.before.held(rows // (BLOCK * WORD) + 1)
         return self.movers.held(rows) + bits + self.leads.held(int(self.count[0])) + self.sets.held

@@ -1,8 +1,8 @@
-"""Decision trees as arrays: inner nodes test a column, leaves hold the result.
+"""Decision trees as arrays: an inner node tests a column, a leaf holds the result.
 
-A reference is a number: 0 what is not known yet, k > 0 the inner node k - 1, k < 0 the leaf -k - 1. An inner node has
-a window of codes; what its column's code leads to stands in `next`. A node that asks a yes or no leads from every code
-with the same answer to the same place.
+A reference is a number: 0 for not learned yet, k > 0 for inner node k - 1, k < 0 for leaf -k - 1. An inner node has a
+window of codes; for each of them, `next` holds a reference. A node with a question has the same reference for all codes
+with the same answer.
 """
 
 from collections.abc import Sequence
@@ -17,15 +17,15 @@ from checker.engines.fast.recording import Ask
 
 UNKNOWN = 0
 RECORD = 8
-"""Numbers that an inner node has; the last is one to spare."""
+"""The numbers of an inner node; the last is spare."""
 
 COLUMN, LOW, WIDTH, BASE, WORD, SHIFT, MASK = range(7)
-"""What they are: the column that it asks, the first code of its window, how many codes that has, where it begins in
-`next`, and where the column stands in a row as long as the packing is the same (see `kernel.locate`)."""
+"""The fields of an inner node: its column, the first code and the size of its window, and the begin of the window in
+`next`. The last three are the column's position in a row under the present packing (see `kernel.locate`)."""
 
 
 class LearningError(Exception):
-    """A rule asked something else though all its questions were answered alike: a bug, for rules are pure."""
+    """A rule asked another question after the same answers: a bug, since rules are pure."""
 
 
 def leaf_reference(leaf: int) -> int:
@@ -38,14 +38,14 @@ class Trees:
     """All decision trees of an exploration, by number.
 
     Attributes:
-        root: For each tree the reference to its root.
-        nodes: For each inner node `RECORD` numbers.
+        root: The reference to the root of each tree.
+        nodes: `RECORD` numbers for each inner node.
         next: References, window by window.
-        asks: For each inner node what it asks.
-        answers: For each inner node that asks a question, the reference that each answer leads to.
-        waiting: For each such node the codes whose answer leads nowhere yet, by that answer.
-        answered: For how many codes each such node was asked.
-        forgotten: How many times a tree was forgotten.
+        asks: The question of each inner node.
+        answers: For each inner node with a question, the reference for each answer.
+        waiting: For each such node, the codes without a reference, by their answer.
+        answered: For each such node, the number of codes with a known answer.
+        forgotten: The number of times that a tree was discarded.
     """
 
     root: Growing = field(default_factory=lambda: Growing(np.int32))
@@ -58,18 +58,18 @@ class Trees:
     forgotten: int = 0
 
     def plant(self) -> int:
-        """Return the number of a new tree that knows nothing."""
+        """Return the number of a new, empty tree."""
         return self.root.append(UNKNOWN)
 
     def grow(
         self, tree: int, path: Sequence[tuple[Ask, Any]], leaf: int, columns: Sequence[tuple[Column, int]]
     ) -> None:
-        """Let a tree know that a path leads to a leaf; `columns` are those asked, with their numbers.
+        """Add a path to a leaf to a tree; `columns` are those of its questions, with their numbers.
 
-        A path has a code for each value that was read, and a truth for each yes or no.
+        A path has a code for each value read, and an answer for each question.
 
         Raises:
-            LearningError: The tree asks something else there.
+            LearningError: The tree has another question there.
         """
         reference = int(self.root.room[tree])
         previous: tuple[int, Any, Column] | None = None
@@ -86,7 +86,7 @@ class Trees:
         self._lead(tree, previous, leaf_reference(leaf))
 
     def settle(self, node: int, code: int, column: Column) -> bool:
-        """Answer a node's yes or no for a code that it had not met; False where a rule must be run."""
+        """Answer a node's question for a new code; return False if a rule must run."""
         if self.asks[node].question is None:
             return False
         self._widen(node, code)
@@ -94,21 +94,17 @@ class Trees:
         return self._follow_code(node, code) != UNKNOWN
 
     def column_of(self, node: int) -> int:
-        """Return the number of the column that a node asks."""
+        """Return the number of the column that a node tests."""
         return int(self.nodes.room[RECORD * node + COLUMN])
 
     def forget(self, tree: int) -> None:
-        """Forget all that a tree knows."""
+        """Discard everything that a tree has learned."""
         self.root.room[tree] = UNKNOWN
         self.forgotten += 1
 
     def after(self, node: int, code: int | None) -> int:
-        """Return the reference that a node leads to by the code of its column; `UNKNOWN` without one."""
+        """Return a node's reference for a code of its column; `UNKNOWN` for None."""
         return UNKNOWN if code is None else self._follow_code(node, code)
-
-    def after_answer(self, node: int, answer: Any) -> int:
-        """Return the reference that a node leads to by the answer to its question."""
-        return self.answers[node].get(answer, UNKNOWN)
 
     def _new_node(self, ask: Ask, column: int) -> int:
         self.asks.append(ask)
@@ -127,7 +123,7 @@ class Trees:
         return int(self.next.room[base + answer - low]) if low <= answer < low + width else UNKNOWN
 
     def window(self, node: int) -> tuple[int, int, int]:
-        """Return the first code of a node's window, how many it has, and where it begins in `next`."""
+        """Return the first code of a node's window, its size, and its begin in `next`."""
         low, width, base = self.nodes.room[RECORD * node + LOW : RECORD * node + WORD]
         return int(low), int(width), int(base)
 
@@ -147,7 +143,7 @@ class Trees:
         self._fill(node, column)
 
     def _widen(self, node: int, code: int) -> None:
-        """Let a node's window take in a code, and half of it more, so that growing again and again stays cheap."""
+        """Extend a node's window to a code, and by half of its size, which keeps repeated growth cheap."""
         low, width, old = self.window(node)
         if low <= code < low + width:
             return
@@ -161,7 +157,7 @@ class Trees:
         self.nodes.room[RECORD * node + LOW : RECORD * node + WORD] = first, last - first + 1, base
 
     def _fill(self, node: int, column: Column) -> None:
-        """Answer a node's question for every code that its window holds and its column has: for each once."""
+        """Compute the answers of a node's question for the codes in its window, each once."""
         ask, answers, waiting = self.asks[node], self.answers[node], self.waiting[node]
         _, width, base = self.window(node)
         assert ask.question is not None

@@ -1,4 +1,4 @@
-"""The writes of a transition, as columns and codes: at once, by copying, or name by name."""
+"""The writes of a transition, as columns and codes: direct, by copying, or in parts for each name."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ from semantics.state.signature import Name
 
 
 class Relearn(Exception):
-    """A cell is not what it was taken for: what was learned so must go."""
+    """An assumption about a cell is wrong; everything learned under it must go."""
 
     def __init__(self, cell: Cell) -> None:
         super().__init__(cell)
@@ -24,24 +24,24 @@ class Relearn(Exception):
 
 
 class Varies(Relearn):
-    """A cell was taken for what never varies."""
+    """A cell assumed constant varies."""
 
 
 class Deeper(Relearn):
-    """A cell was taken to hold fewer observations than it may: who writes it must write of the others, too."""
+    """A cell holds more observations than assumed; its writers must write the new ones, too."""
 
 
 @dataclass(slots=True)
 class Concluded:
-    """A transition with what it writes.
+    """A transition with its writes.
 
     Attributes:
         step: The transition.
-        effect: What it writes whomever it is about.
-        said: What is said name by name in holes: the cell, the hole's number, the family.
-        families: What is written name by name.
-        apart: The names about which that is worked out apart.
-        edits: What is made of cells, whatever they hold.
+        effect: The writes that do not depend on a name.
+        said: The pointwise facts of holes: the cell, the hole's number, the facts by name.
+        families: The pointwise writes by name.
+        apart: The names that have parts.
+        edits: The edits of cells, independent of their values.
     """
 
     step: Transition
@@ -54,12 +54,12 @@ class Concluded:
 
 @dataclass(slots=True)
 class Writing:
-    """Turns conclusions into writes.
+    """Translates conclusions into writes.
 
     Attributes:
         columns: All columns.
-        still: The first configuration: what a cell that never varies holds.
-        varying: The cells that were written so far.
+        still: The initial configuration, with the values of constant cells.
+        varying: The cells written so far.
     """
 
     columns: Columns
@@ -67,10 +67,10 @@ class Writing:
     varying: set[Cell]
 
     def conclude(self, step: Transition) -> Concluded:
-        """Return what a transition writes.
+        """Return the writes of a transition.
 
         Raises:
-            Relearn: It writes a cell that was taken for what never varies, or to hold fewer observations.
+            Relearn: It writes a cell assumed constant, or more observations than assumed.
         """
         found = Concluded(step)
         state = step.target.state
@@ -85,7 +85,7 @@ class Writing:
         return found
 
     def part(self, found: Concluded, name: Name) -> Writes:
-        """Return what a transition writes about one name."""
+        """Return the writes of a transition about one name."""
         writes = [
             self._coded((cell, number, name), family[name])
             for cell, number, family in found.said
@@ -99,7 +99,7 @@ class Writing:
         return writes + inner.effect.writes
 
     def edit(self, edited: Edited, value: Any) -> Writes:
-        """Return what an edit writes over a value; neither has observations in it."""
+        """Return the writes of an edit of a value; neither contains observations."""
         return [self._coded((edited.cell,), edited.of(value))]
 
     def _about_still(self, state: Conclusion) -> Iterator[Changes]:
@@ -115,7 +115,7 @@ class Writing:
             if cell in self.still.layout.index and self.still.read(cell) == value:
                 conclusion = found.step.target.state
                 assert isinstance(conclusion, Conclusion)
-                conclusion.recorder.scopes[-1].take(cell)  # what is written is what is there
+                conclusion.recorder.scopes[-1].take(cell)  # the write leaves the value as it is
                 return
             self.varying.add(cell)
             raise Varies(cell)

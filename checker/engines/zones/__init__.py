@@ -1,1 +1,1 @@
-"""Explore missions with times by zones: sets of ages of the clocks that run, beside each configuration."""
+"""Explore missions with times by zones: sets of clock values, kept for each configuration."""

@@ -1,8 +1,8 @@
-"""Timed automata as arrays, as the compiled loops see them: locations with their clocks, edges with their guards.
+"""Timed automata as arrays for the compiled loops: locations with their clocks, edges with their guards.
 
-A clock has a number in the automaton, by which it is known what it is compared with, and stands at an index in each
-location, from 1. An edge says of each clock of its target which of its source goes on in it, 0 for none. A clock that
-no location has is not remembered.
+A clock has a number in the automaton, which identifies its constants, and an index from 1 in each location. An edge
+maps each clock of its target to the clock of its source that continues in it, or to 0. The other clocks of the source
+are dropped.
 """
 
 from collections.abc import Iterable
@@ -16,11 +16,11 @@ from checker.engines.fast.arrays import Growing
 from checker.engines.zones.bounds import MOST, NONE
 
 UNKNOWN = -1
-"""Stands for where the edges of a location begin as long as nobody knows them."""
+"""The start of a location's edges before they are worked out."""
 
 
 class Constraint(NamedTuple):
-    """A clock, by its index, shows at least so much, and at most so much if that is not `NONE`."""
+    """A closed interval for a clock, given by its index; without an upper bound where `most` is `NONE`."""
 
     clock: int
     least: int
@@ -28,13 +28,13 @@ class Constraint(NamedTuple):
 
 
 class Edge(NamedTuple):
-    """What leads from one location to another.
+    """An edge between two locations.
 
     Attributes:
-        step: The number of its step in its location; edges of one step may be taken at different ages.
-        tests: What all of the clocks have to show.
-        target: The location that it leads to.
-        sources: For each clock of the target the one that goes on in it, 0 where it starts.
+        step: The number of its step in its location; several edges of one step have different guards.
+        tests: Its guard, a conjunction.
+        target: The target location.
+        sources: For each clock of the target the clock that continues in it, 0 for a reset one.
     """
 
     step: int
@@ -44,12 +44,13 @@ class Edge(NamedTuple):
 
 
 class Location(NamedTuple):
-    """Where a timed automaton may be.
+    """A location of a timed automaton.
 
     Attributes:
-        clocks: The numbers of the clocks that run; of equal ones the oldest is the first.
-        deadlines: No time passes once a clock has come to a bound; a bound below 0 lets no time pass at all.
-        goal: What is looked for here; None where nothing is.
+        clocks: The numbers of the running clocks; of equal ones the oldest is the first.
+        deadlines: Pairs of a clock and its upper bound. Time stops passing at a bound; a bound below 0 makes the
+            location urgent. Unlike an invariant, a deadline doesn't prevent entry.
+        goal: The constraint that a search looks for here; None for none.
     """
 
     clocks: tuple[int, ...] = ()
@@ -58,11 +59,11 @@ class Location(NamedTuple):
 
 
 class TooLargeError(Exception):
-    """A constant is larger than clocks are compared with."""
+    """A constant that exceeds the largest one for clocks."""
 
 
 LOCATION, EDGE, TEST, DEADLINE = 8, 7, 3, 2
-"""How many numbers each of them has."""
+"""The length of each kind of record."""
 
 SIZE, CLOCKS, DEADLINES, DEADLINES_END, EDGES, EDGES_END, GOAL, LEAST = range(LOCATION)
 STEP, TARGET, TESTS, TESTS_END, SOURCES, LEARNED, FIRST = range(EDGE)
@@ -77,12 +78,13 @@ class Automaton:
     """A timed automaton.
 
     Attributes:
-        locations: Of each `LOCATION` numbers: one more than it has clocks, where its parts are, its goal.
-        edges: Of each `EDGE` numbers; the last are the number by which its step was learned, and after how many steps
-            it was first taken.
-        lower, upper: For each clock the largest constant that it is compared with from below and from above.
-        rows: The row of each location: those of one row are followed side by side.
-        largest: One more than the most clocks that a location has.
+        locations: Records of `LOCATION` numbers: one more than the count of its clocks, the ranges of its parts, its
+            goal.
+        edges: Records of `EDGE` numbers; the last two are the number of the learned step, and the number of steps
+            before the edge was first taken.
+        lower, upper: For each clock the largest constant of its lower and of its upper bounds.
+        rows: The row of each location; the locations of one row are expanded together.
+        largest: One more than the most clocks of any location.
     """
 
     locations: Growing = field(default_factory=_numbers)
@@ -100,13 +102,13 @@ class Automaton:
         return len(self.locations) // LOCATION
 
     def clock(self, lower: int, upper: int) -> int:
-        """Return the number of a new clock, which is compared with these constants."""
+        """Return the number of a new clock with these largest constants."""
         _look(lower, upper)
         self.lower.append(lower)
         return self.upper.append(upper)
 
     def compare(self, clock: int, lower: int, upper: int) -> bool:
-        """Let a clock be compared with these constants, too; tell whether that is with more than before."""
+        """Raise a clock's constants to at least these; return whether one of them grew."""
         _look(lower, upper)
         before = int(self.lower.room[clock]), int(self.upper.room[clock])
         after = max(before[0], lower), max(before[1], upper)
@@ -114,7 +116,7 @@ class Automaton:
         return after != before
 
     def add(self, location: Location) -> int:
-        """Return the number of a new location, whose edges nobody knows."""
+        """Return the number of a new location, its edges still unknown."""
         begin = len(self.deadlines) // DEADLINE
         for each in location.deadlines:
             _look(each[1])
@@ -128,7 +130,7 @@ class Automaton:
         return self.locations.append(size, clocks, begin, end, UNKNOWN, UNKNOWN, goal, least) // LOCATION
 
     def leave(self, location: int, edges: Iterable[Edge]) -> None:
-        """Say what leads from a location, in the order of the steps."""
+        """Set the edges of a location, in the order of their steps."""
         begin = len(self.edges) // EDGE
         for step, tests, target, sources in edges:
             first = len(self.tests) // TEST
@@ -147,7 +149,7 @@ class Automaton:
         return Location(tuple(numbers), tuple((clock, most) for clock, most in deadlines), sought)
 
     def out(self, location: int) -> list[Edge]:
-        """Return what leads from a location; nothing where nobody knows."""
+        """Return the edges of a location; none before they are worked out."""
         return [self._edge(each) for each in self._edges(location).tolist()]
 
     def _edge(self, record: list[int]) -> Edge:
@@ -164,7 +166,7 @@ class Automaton:
         return self.edges.room[EDGE * max(begin, 0) : EDGE * max(end, 0)].reshape(-1, EDGE)
 
     def arrows(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return where the edges that were taken begin and end."""
+        """Return the sources and the targets of the edges that were taken."""
         locations, edges = self.locations.used.reshape(-1, LOCATION), self.edges.used.reshape(-1, EDGE)
         begins = locations[:, EDGES]
         counts = np.where(begins < 0, 0, locations[:, EDGES_END] - begins)
@@ -174,11 +176,11 @@ class Automaton:
         return sources[taken], edges[taken, TARGET].astype(np.int64)
 
     def firsts(self, location: int) -> list[tuple[int, int]]:
-        """Return each step of a location that was taken, with the number of steps before it at the least."""
+        """Return each taken step of a location, with the least number of steps before it."""
         return [(int(each[STEP]), int(each[FIRST])) for each in self._edges(location) if each[FIRST] >= 0]
 
     def forget(self) -> None:
-        """Forget which edges were taken."""
+        """Mark all edges as not taken."""
         self.edges.used[FIRST::EDGE] = NONE
 
 

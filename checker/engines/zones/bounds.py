@@ -1,12 +1,12 @@
-"""Difference bound matrices, as compiled loops: sets of ages of clocks, given by bounds of their differences.
+"""Difference bound matrices (DBMs) as compiled loops: zones given by bounds on differences of clocks.
 
-`d[i, j]` bounds x_i - x_j from above, x_0 being always 0: so `d[i, 0]` is the most that clock i may show, and
-`-d[0, i]` the least. Ages are whole, and all bounds closed. A matrix is canonical where no bound can be tightened
-(Dill 1989); all functions here but `close` and `extrapolate` expect that, and keep it.
+`d[i, j]` is the upper bound of x_i - x_j, where x_0 is 0. So `d[i, 0]` is the greatest value of clock i, and `-d[0, i]`
+the least. Clock values are integers, and all bounds are closed. In a canonical matrix no bound can be tightened (Dill
+1989). All functions except `close` and `extrapolate` require a canonical matrix and keep it canonical.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# (numba infers the types of compiled functions; mypy takes its integers for Python's)
 
 from typing import Final
 
@@ -18,18 +18,18 @@ from checker.engines.fast.loops import inner, njit
 Matrix = NDArray[np.int32]
 
 FREE: Final = np.int32(1 << 29)
-"""Stands for no bound; two of them may be added."""
+"""The missing bound; the sum of two fits the type."""
 
 MOST: Final = 1 << 27
-"""The largest constant that clocks may be compared with."""
+"""The largest constant for clocks."""
 
 NONE: Final = -1
-"""Stands for the constant of a clock that is compared with none."""
+"""The constant of a clock without comparisons."""
 
 
 @njit(cache=True)
 def close(d: Matrix, size: int) -> bool:
-    """Tighten all bounds; False where no ages are within them (Floyd and Warshall)."""
+    """Tighten all bounds to the canonical matrix; False for an empty zone (Floyd and Warshall)."""
     for k in range(size):
         for i in range(size):
             over = d[i, k]
@@ -45,7 +45,7 @@ def close(d: Matrix, size: int) -> bool:
 
 @njit(cache=True)
 def restrict(d: Matrix, size: int, i: int, j: int, bound: int) -> bool:
-    """Take only ages with x_i - x_j <= bound; False where there are none."""
+    """Intersect with x_i - x_j <= bound; False for an empty result."""
     if bound >= d[i, j]:
         return True
     if d[j, i] + bound < 0:
@@ -61,14 +61,14 @@ def restrict(d: Matrix, size: int, i: int, j: int, bound: int) -> bool:
 
 @njit(cache=True)
 def let_pass(d: Matrix, size: int, clocks: Matrix, most: Matrix) -> None:
-    """Let any time pass that takes no clock over its bound: none of them is past it before."""
+    """Let time pass up to the deadlines; no clock may exceed its deadline before."""
     d[1:size, 0] = FREE
     end(d, size, clocks, most)
 
 
 @inner(cache=True)
 def end(d: Matrix, size: int, clocks: Matrix, most: Matrix) -> None:
-    """Take only ages at which no clock is over its bound: there are some."""
+    """Intersect with the deadlines; the result must not be empty."""
     for i in range(1, size):
         for k in range(len(clocks)):
             if d[i, clocks[k]] < FREE:
@@ -82,10 +82,10 @@ def end(d: Matrix, size: int, clocks: Matrix, most: Matrix) -> None:
 
 @njit(cache=True)
 def extrapolate(d: Matrix, size: int, lower: Matrix, upper: Matrix) -> None:
-    """Forget what no bound tells apart: those from below, and those from above, are at most so large, clock by clock.
+    """Extrapolate a zone by the largest lower and upper constants of its clocks.
 
-    That is Extra+LU (Behrmann, Bouyer, Larsen, Pelanek 2006): what is added can do nothing that was not possible
-    before. The matrix is canonical again afterwards.
+    This is Extra+LU (Behrmann, Bouyer, Larsen, Pelanek 2006): values in the zone simulate the added ones, so
+    reachability is the same. The resulting matrix is canonical.
     """
     changed = False
     for i in range(1, size):

@@ -1,6 +1,6 @@
-"""The earliest dates of a run: solved backwards, from what is wanted at its end to what the clocks have to show before.
+"""The earliest dates of a run, by backward propagation of zones from its goal.
 
-What they have to show at one moment is a union of zones, since a step may be taken at ages of several sorts.
+The required clock values at a moment are a union of zones, since several edges may belong to one step.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from checker.engines.zones.bounds import FREE, close, restrict
 
 Zone = NDArray[np.int32]
 Union = dict[int, list[Zone]]
-"""For each location some zones."""
+"""For each location a union of zones."""
 
 Ages = tuple[int, ...]
 Goal = Callable[[int], list[Zone]]
-"""What the clocks have to show in a location, at one moment at the end of a run."""
+"""The accepted clock values in a location at the end of a run, as a union of zones."""
 
 
 class Moment(NamedTuple):
-    """Where a run is, and what the clocks show."""
+    """A state of a run: its location and its clock values."""
 
     location: int
     ages: Ages
 
 
 def whole(clocks: int) -> Zone:
-    """Return all ages of so many clocks."""
+    """Return the zone of all values of so many clocks."""
     zone = np.full((clocks + 1, clocks + 1), FREE, np.int32)
     zone[0, :] = 0
     np.fill_diagonal(zone, 0)
@@ -40,7 +40,7 @@ def whole(clocks: int) -> Zone:
 
 
 def tested(zone: Zone, tests: Iterable[Constraint]) -> Zone | None:
-    """Return the ages of a zone that pass tests, None if there are none."""
+    """Return a zone intersected with constraints, None if that is empty."""
     found = zone.copy()
     for clock, least, most in tests:
         if least > 0 and not restrict(found, len(found), 0, clock, -least):
@@ -51,7 +51,7 @@ def tested(zone: Zone, tests: Iterable[Constraint]) -> Zone | None:
 
 
 def before_edge(edge: Edge, clocks: int, zone: Zone) -> Zone | None:
-    """Return the ages of so many clocks at which an edge may be taken and leads into a zone, None if there are none."""
+    """Return the predecessors of a zone by an edge whose source has so many clocks, None if there are none."""
     found, sources = whole(clocks), np.array((0, *edge.sources))
     for i, one in enumerate(sources):
         for j, other in enumerate(sources):
@@ -63,7 +63,7 @@ def before_edge(edge: Edge, clocks: int, zone: Zone) -> Zone | None:
 
 
 def before_delay(automaton: Automaton, location: int, zone: Zone) -> Iterator[Zone]:
-    """Yield the ages from which a zone is come to as time passes, or at once."""
+    """Yield a zone, and its predecessors by a delay within the deadlines."""
     yield zone
     deadlines = automaton.location(location).deadlines
     if any(most < 0 for _, most in deadlines):
@@ -75,13 +75,13 @@ def before_delay(automaton: Automaton, location: int, zone: Zone) -> Iterator[Zo
 
 
 def holds(zone: Zone, ages: Ages) -> bool:
-    """Tell whether ages are in a zone."""
+    """Return whether clock values are in a zone."""
     shown = np.array((0, *ages))
     return bool(np.all((shown[:, None] - shown[None, :] <= zone) | (zone >= FREE)))
 
 
 def least_delay(zone: Zone, ages: Ages) -> int | None:
-    """Return after how much time ages are in a zone, None if they never are."""
+    """Return the least delay after which clock values are in a zone, None if there is none."""
     shown = np.array((0, *ages))
     apart = (shown[:, None] - shown[None, :] <= zone) | (zone >= FREE)
     if not apart[1:, 1:].all():
@@ -91,7 +91,7 @@ def least_delay(zone: Zone, ages: Ages) -> int | None:
 
 
 class Dates:
-    """The earliest dates of a sequence of steps that leads from a moment to a goal."""
+    """The earliest dates of a sequence of steps from a moment to a goal."""
 
     def __init__(self, automaton: Automaton, first: Moment, steps: Sequence[int], goal: Goal) -> None:
         self.automaton = automaton
@@ -100,9 +100,9 @@ class Dates:
         self.layers = list(self._layers())
         self.goals = {location: goal(location) for location in self.layers[-1]}
         self.wanted: list[Union] = []
-        """For each step what has to be shown as it is taken; last, at the end."""
+        """The required clock values when each step is taken; the last entry is for the end of the run."""
         self.entered: list[Union] = []
-        """The same as its location is entered."""
+        """The required clock values when the location of each step is entered."""
         self._solve()
         self._date()
 
@@ -145,7 +145,7 @@ class Dates:
         return Run(self.steps, tuple(self._dates[1:-1]), self._dates[-1])
 
     def history(self) -> list[tuple[int, Moment]]:
-        """Return when the run enters which location, and what the clocks show then; last its end."""
+        """Return the date and the moment of each entry into a location; last those of the end."""
         state = min(self.ends)
         found = [(self._dates[-1], state)]
         for now, before in zip(reversed(self._dates[:-1]), reversed(self._before_each), strict=True):
@@ -155,7 +155,7 @@ class Dates:
 
     @property
     def ends(self) -> tuple[Moment, ...]:
-        """Every moment that it may end in with these dates."""
+        """The possible last moments of the run with these dates."""
         return tuple(self._before_each[-1])
 
     def _date(self) -> None:
@@ -185,7 +185,7 @@ class Dates:
         return not delay or all(clock and state.ages[clock - 1] + delay <= most for clock, most in bounds)
 
     def _after(self, done: int, states: Iterable[Moment]) -> dict[Moment, Moment]:
-        """Return where a step leads, with where it was taken."""
+        """Return the moments after a step, each with the moment before it."""
         found: dict[Moment, Moment] = {}
         for state in states:
             for edge in self._edges(state.location, self.steps[done]):
@@ -197,7 +197,7 @@ class Dates:
 
 
 def passes(edge: Edge, ages: Ages) -> bool:
-    """Tell whether an edge may be taken at some ages."""
+    """Return whether clock values satisfy the guard of an edge."""
     return all(
         ages[clock - 1] >= least and (most < 0 or ages[clock - 1] <= most)
         for clock, least, most in edge.tests
@@ -205,7 +205,7 @@ def passes(edge: Edge, ages: Ages) -> bool:
 
 
 def moved(edge: Edge, ages: Ages) -> Ages:
-    """Return the ages after an edge."""
+    """Return the clock values after an edge."""
     return tuple(0 if source == 0 else ages[source - 1] for source in edge.sources)
 
 
@@ -214,7 +214,7 @@ def _later(state: Moment, ticks: int) -> Moment:
 
 
 def spread(zones: Sequence[Zone]) -> list[Zone]:
-    """Return zones without those that another one holds."""
+    """Return zones without those included in another one."""
     kept: list[Zone] = []
     for zone in zones:
         if not any(np.all(zone <= other) for other in kept):
@@ -223,7 +223,7 @@ def spread(zones: Sequence[Zone]) -> list[Zone]:
 
 
 def without(zones: Sequence[Zone], away: Zone) -> list[Zone]:
-    """Return what is in some zones and not in another one."""
+    """Return the difference of a union of zones and a zone."""
     found: list[Zone] = []
     for zone in zones:
         rest: Zone | None = zone

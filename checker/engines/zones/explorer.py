@@ -1,4 +1,4 @@
-"""Explore a mission with times by zones, up to the same bounds as the reference explorer."""
+"""Explore a mission with times by zones, up to the same limits as the reference explorer."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ from semantics.state.configuration import Configuration
 
 
 class _Learning(Search):
-    """A search that unfolds what it reaches."""
+    """A search that unfolds the locations it reaches."""
 
     def __init__(self, network: Network) -> None:
         self.network = network
         super().__init__(network.automaton, network.first, network.first_ages)
 
     def learn(self) -> None:
-        """Work out what leads from all locations that were reached."""
+        """Work out the edges of all reached locations."""
         self.network.leave(self.waiting())
 
 
 def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options: Options) -> Exploration:
-    """Visit everything that is reachable in time, then show each configuration to the inspections.
+    """Visit the configurations that are reachable in time, then show each to the inspections.
 
     Raises:
         TickError: A constant is too large.
@@ -46,7 +46,7 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
             search = _Learning(network)
             with bounded(counted.limits, started):
                 _visit_all(network, search, found, counted, started)
-    except BoundMet as met:  # while it learned
+    except BoundMet as met:  # within the learning of rules
         found.bounds.append(met.bound)
     except TooLargeError as error:
         raise TickError(str(error)) from error
@@ -66,7 +66,7 @@ def _visit_all(
     most = options.limits.configurations
     while goes_on:
         goes_on = search.advance(CHUNK if most is None else min(CHUNK, max(most - search.count, 0) + 1))
-        if network.outgrown:  # a constant is larger than it was taken for: what was kept may be too much
+        if network.outgrown:  # a constant has grown: zones were extrapolated too far
             network.outgrown = False
             search.again()
             goes_on = True
@@ -95,7 +95,7 @@ def _progress(search: Search, seconds: float) -> Progress:
 
 
 def _summarise(times: ZoneTimes, found: Exploration) -> None:
-    """Write down the configurations in the order of discovery, and each transition that is taken, once."""
+    """Record the configurations in the order of discovery, and count each taken transition once."""
     network = times.network
     found.origins = times.search.origins.tolist()
     found.times, found.expanded = times, len(times.order)

@@ -1,4 +1,4 @@
-"""The first run to something: the fewest steps, of those the first by their numbers, each as early as may be."""
+"""The first run to a goal: the fewest steps, among those the first by step numbers, each step as early as possible."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from checker.engines.zones.search import Route, Search
 from checker.limits import look
 
 Wanted = Callable[[int], list[Zone]]
-"""What the clocks have to show in each location, at one moment."""
+"""The goal: the accepted clock values in each location, as a union of zones."""
 
 
 def first_run(search: Search, wanted: Wanted) -> Dates | None:
-    """Return the first run to where clocks show what is wanted, None where they never do."""
+    """Return the first run to a goal, None if it is unreachable."""
     zone = next((each for each in range(search.count) if meets(search, each, wanted)), None)
     return None if zone is None else run_of(search, wanted, search.depth(zone))
 
 
 def run_of(search: Search, wanted: Wanted, length: int, ends: Iterable[int] | None = None) -> Dates:
-    """Return the first run of so many steps to what is wanted, which no shorter one leads to."""
+    """Return the first run of a number of steps to a goal that fewer steps don't reach."""
     automaton = search.automaton
     among = range(len(automaton)) if ends is None else ends
     route = Route(automaton, search.location, search.ages, length, [at for at in among if wanted(at)])
@@ -35,7 +35,7 @@ def run_of(search: Search, wanted: Wanted, length: int, ends: Iterable[int] | No
 
 
 def meets(search: Search, zone: int, wanted: Wanted) -> bool:
-    """Tell whether the clocks may show in a zone what is wanted."""
+    """Return whether a zone intersects the goal."""
     return any(_meet(search.matrix(zone), other) for other in wanted(search.place(zone)))
 
 

@@ -1,4 +1,4 @@
-"""The findings of inspections in what is reached in time: by surveys, and by what the clocks of zones show."""
+"""The findings of inspections over the configurations reachable in time, by surveys and by the clocks of zones."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ Tally = tuple[Key | None, int, int]
 
 
 def inspect_zones(times: ZoneTimes, inspections: Iterable[Inspect]) -> None:
-    """Let each inspection have found what it would have found by looking at everything that is reached in time."""
+    """Give each inspection its findings over all configurations that are reachable in time."""
     for each in inspections:
         match each:
             case Visited():
@@ -59,7 +59,7 @@ def inspect_zones(times: ZoneTimes, inspections: Iterable[Inspect]) -> None:
 
 
 def _look_at_deadlocks(times: ZoneTimes, inspection: DeadlockFreedom) -> None:
-    """Collect deadlocks: what may be too late to be said at some time is of no help."""
+    """Collect deadlocks; a message that may have expired doesn't prevent one."""
     tallies = [
         tally
         for late, places in times.late_sayings
@@ -72,7 +72,7 @@ def _look_at_deadlocks(times: ZoneTimes, inspection: DeadlockFreedom) -> None:
 
 
 def _look_at_races(times: ZoneTimes, inspection: ControlRaces) -> None:
-    """Collect races of controls that may be served at one moment."""
+    """Collect races of controls that may be served at the same moment."""
     survey, space = times.survey(InTime.TOGETHER), times.network
     unordered = space.learner.setting.scheduler is Scheduler.UNORDERED
     independent = cache(partial(are_independent, survey))
@@ -82,7 +82,7 @@ def _look_at_races(times: ZoneTimes, inspection: ControlRaces) -> None:
     tallies: list[Tally] = []
     for a, b in combinations_with_replacement(agents, 2):
         if a == b and not unordered:
-            continue  # its controls wait for each other
+            continue  # its controls are served in order
         for one, first in enumerate(due[a]):
             for other, second in enumerate(due[b]):
                 if a == b and other <= one:
@@ -99,7 +99,7 @@ def _look_at_races(times: ZoneTimes, inspection: ControlRaces) -> None:
 
 
 def _due(times: ZoneTimes, a: Name) -> Iterator[NDArray[np.bool_]]:
-    """Yield for each of an agent's controls, by its rank, in which zones it may be served, apart from turns."""
+    """Yield, rank by rank, the zones in which an agent's control may be served, regardless of turns."""
     answers, several = times.survey().answered(partial(controls_of, a))
     answers_of_zones = answers[times.places]
     for rank in range(max(map(len, several), default=0)):
@@ -112,7 +112,7 @@ def _due(times: ZoneTimes, a: Name) -> Iterator[NDArray[np.bool_]]:
 
 
 def _look_at_served(times: ZoneTimes, inspection: StaleObservationRaces) -> None:
-    """Collect what controls rest on that are served at some time."""
+    """Collect stale observations behind the controls that are served at some time."""
     survey, learner = times.survey(InTime.TAKEN), times.network.learner
     found: dict[tuple[Name, int], list[NDArray[np.int64]]] = {}
     for step, places in times.taken_steps():
@@ -128,11 +128,11 @@ def _look_at_served(times: ZoneTimes, inspection: StaleObservationRaces) -> None
     collect(survey, inspection, tallies, lambda: StaleObservationRaces(ALL))
 
 
-# --- what was visited -----------------------------------------------------------------------------------------
+# --- coverage -------------------------------------------------------------------------------------------------
 
 
 def _look_at_visited(times: ZoneTimes, inspection: Visited) -> None:
-    """Collect where agents stood, what they passed over in time, and what the environment did in time."""
+    """Collect the remaining code of agents, the executed statements and branches, and the events, all in time."""
     survey, learner = times.survey(), times.network.learner
     computing: dict[Name, list[NDArray[np.int64]]] = {}
     for step, places in times.taken_steps():

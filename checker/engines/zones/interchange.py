@@ -1,9 +1,9 @@
-"""A mission's timed automaton as other model checkers read it: one process, whose edges are the steps.
+"""A mission's timed automaton in a form for other model checkers: one process, whose edges are the steps.
 
-There clocks have one name everywhere and start at 0, and nothing enters a location too late for its invariant. So a
-first location that takes no time sets what does not start at 0, and what is entered too late for its deadlines is a
-location of its own, in which no time passes. A clock that goes on keeps its name, since UPPAAL copies no clocks: a
-location is there once for each way in which its clocks are named, several only where equal requests are pending.
+Their clocks are global and start at 0, and a location can't be entered in violation of its invariant. So an initial
+committed location sets clocks that don't start at 0, and entry past a deadline leads to an urgent copy of the location.
+UPPAAL copies no clocks, so a continuing clock keeps its name. A location has one copy for each naming of its clocks;
+there are several only where equal requests are pending.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from semantics.properties.property import Property
 from semantics.timing.actor_clocks import Clock
 
 FIRST: Final = "first"
-"""The location in which it begins; no time passes in it."""
+"""The initial location; no time passes in it."""
 
 WRONG: Final = "wrong"
-"""The location that is reached exactly if the property is violated."""
+"""The location that is reachable exactly if the property is violated."""
 
 
 class Place(NamedTuple):
-    """A location: how long one may stay, or that no time passes."""
+    """A location: its name and invariant, or that it is urgent."""
 
     name: str
     invariant: tuple[str, ...] = ()
@@ -42,10 +42,10 @@ class Step(NamedTuple):
 
     Attributes:
         source, target: The names of its locations.
-        event: The name of what is done; the number of the step in its configuration, in short.
-        words: What is done, as traces have it.
-        guard: Comparisons of clocks with constants, of which all have to be true.
-        sets: What clocks are set to.
+        event: A short name of its step: the step's number in its configuration.
+        words: The label of its step, as in traces.
+        guard: A conjunction of comparisons of clocks with constants.
+        sets: The assignments to clocks.
     """
 
     source: str
@@ -61,9 +61,9 @@ class Model(NamedTuple):
 
     Attributes:
         name: The mission's name.
-        asked: The property that `WRONG` is about.
+        asked: The property of `WRONG`.
         clocks: The names of its clocks.
-        places: Its locations, `FIRST` and `WRONG` apart.
+        places: Its locations, without `FIRST` and `WRONG`.
         steps: Its edges.
     """
 
@@ -75,10 +75,10 @@ class Model(NamedTuple):
 
 
 def model_of(times: ZoneTimes, asked: Property | None, name: str) -> Model:
-    """Return a mission's automaton; with a deadline or an endurance, `WRONG` is reached where it is violated.
+    """Return a mission's automaton; with a deadline or an endurance, `WRONG` is reachable exactly if it is violated.
 
     Raises:
-        ValueError: It is another kind of property.
+        ValueError: The property is of another kind.
     """
     network = times.network
     if asked is None or asked.kind is PropertyKind.ENDURANCE:
@@ -106,7 +106,7 @@ def _model(name: str, asked: Property | None, walk: _Walk, location: int, ages: 
 
 
 class _Spot(NamedTuple):
-    """A location with the names of its clocks, and whether it was entered too late for its deadlines."""
+    """A location with the names of its clocks, and whether it is the copy for entry past a deadline."""
 
     at: int
     names: tuple[str, ...]
@@ -115,16 +115,16 @@ class _Spot(NamedTuple):
 
 @dataclass(slots=True)
 class _Walk:
-    """An automaton on its way to a model.
+    """The conversion of an automaton into a model.
 
     Attributes:
-        network: The mission's.
-        automaton: Its own, or that with an observer's clock.
+        network: The mission's automaton.
+        automaton: That automaton, or the one with an observer's clock.
         locations: The mission's location behind each of the automaton's.
-        wrong: What clocks show where the property is violated.
-        spots: The locations that were met, with their names.
-        met: How many of them are one of the automaton's, in time or too late.
-        names: How clocks may be called; None stands for an observer's.
+        wrong: The clock constraints that violate the property in each location.
+        spots: The reached locations, with their names.
+        met: The number of copies of each of the automaton's locations, in time or late.
+        names: The possible names of each clock; None stands for an observer's.
     """
 
     network: Network
@@ -139,12 +139,12 @@ class _Walk:
         self.names = _named([Counter(self.clocks(at)) for at in range(len(self.automaton))])
 
     def clocks(self, at: int) -> tuple[Clock | None, ...]:
-        """Return what the clocks of a location measure."""
+        """Return the measured subjects of a location's clocks."""
         measured = self.network.clocks(self.locations[at])
         return (*measured, *([None] if len(self.automaton.location(at).clocks) > len(measured) else []))
 
     def place(self, at: int, kept: Sequence[str], *, is_late: bool = False) -> _Spot:
-        """Return a location whose clocks have names as far as they go on; others (`""`) get what is free."""
+        """Return a location with the names of its continuing clocks; the others (`""`) get free names."""
         names = list(kept)
         for rank, (name, clock) in enumerate(zip(kept, self.clocks(at), strict=True)):
             names[rank] = name or next(each for each in self.names[clock] if each not in names)
@@ -156,7 +156,7 @@ class _Walk:
         return spot
 
     def steps(self) -> Iterator[Step]:
-        """Yield the edges, from wherever they lead on."""
+        """Yield the edges of all reached locations."""
         done = 0
         while done < len(self.spots):
             for spot in list(self.spots)[done:]:
@@ -194,7 +194,7 @@ class _Walk:
             )
 
     def _too_late(self, spot: _Spot, edge: Edge) -> list[tuple[int, int]]:
-        """Return the clocks, with their bounds, that may be past a deadline after an edge."""
+        """Return the clocks that may be past a deadline after an edge, with its bound."""
         before = {} if spot.is_late else dict(self.automaton.location(spot.at).deadlines)
         after = [
             (edge.sources[clock - 1], most) for clock, most in self.automaton.location(edge.target).deadlines
@@ -202,7 +202,7 @@ class _Walk:
         return [(one, most) for one, most in after if one and before.get(one, most + 1) > most]
 
     def stands(self, at: int) -> bool:
-        """Tell whether no time passes in a location at all."""
+        """Return whether a location is urgent."""
         return any(most < 0 for _, most in self.automaton.location(at).deadlines)
 
     def _words(self, at: int, step: int) -> str:
@@ -210,7 +210,7 @@ class _Walk:
         return str(situation.steps[step].transition.label)
 
     def places(self) -> Iterator[Place]:
-        """Yield the locations that were met."""
+        """Yield the reached locations."""
         for spot, name in self.spots.items():
             if spot.is_late or self.stands(spot.at):
                 yield Place(name, is_urgent=True)
@@ -220,9 +220,9 @@ class _Walk:
 
 
 def _named(locations: Sequence[Counter[Clock | None]]) -> dict[Clock | None, tuple[str, ...]]:
-    """Return how clocks may be called, given how many run in each location: each as many names as run at most.
+    """Return the names of each clock, as many as ever run at once, given the counts of clocks in each location.
 
-    What never runs together may have one name, so that there are few.
+    Clocks that never run together may share a name, so names are few.
     """
     most: Counter[Clock | None] = Counter()
     beside: defaultdict[Clock | None, set[Clock | None]] = defaultdict(set)

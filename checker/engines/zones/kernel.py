@@ -1,16 +1,16 @@
-"""The compiled loops: what follows from zones, and which of it is new.
+"""The compiled loops: the successors of zones, and the test for new ones.
 
-Zones are followed layer by layer: a layer is what so many steps lead to and fewer do not. In a layer, those of one row
-are followed side by side, step by step, and rows in the order in which they were met first. A zone within another one
-of its location is not kept; one that holds others takes their place in what later ones are compared with, and of its
-own layer they are dropped.
+Zones are expanded layer by layer: a layer holds the zones that a number of steps reaches and fewer don't. Within a
+layer, the zones of one row are expanded together, step by step, and rows in the order of discovery. A zone included in
+another one of its location is dropped. A zone that includes others replaces them in later inclusion tests; those of its
+own layer are dropped.
 
-To find the first run to something (`checker.engines.runs`) a search goes group by group instead: a group is what one
-sequence of steps leads to, the first of a layer's sequences first, and nothing that was kept is dropped.
+The search for the first run to a goal (`checker.engines.runs`) proceeds by groups instead. A group is the set of zones
+that one sequence of steps reaches, in the order of sequences within a layer; it drops no kept zone.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# (numba infers the types of compiled functions; mypy takes its integers for Python's)
 
 from typing import NamedTuple
 
@@ -45,9 +45,9 @@ State = NDArray[np.int64]
 
 
 class Model(NamedTuple):
-    """A timed automaton, as the loops see it; see `Automaton`.
+    """A timed automaton for the loops; see `Automaton`.
 
-    `left` has for each location how many steps are left from there to what is looked for, 0 where nothing is known.
+    `left` holds for each location the least number of steps to the goal, 0 where it is unknown.
     """
 
     locations: Ints
@@ -63,20 +63,20 @@ class Model(NamedTuple):
 
 
 class Zones(NamedTuple):
-    """What was reached.
+    """The reached zones.
 
     Attributes:
         bounds: The matrices, one after the other.
-        begins: Where that of each zone begins.
-        sums: The sum of its bounds: what holds it has none smaller.
-        places: The location of each.
-        following: For each zone the next one that later ones of its location are compared with, `COVERED` where another
-            one of its layer holds it.
-        heads: For each location the first such zone.
-        ranks: For each row which it was among those that were met; -1 where it was not.
-        order: The rows that were met, in that order, each with the rank of the row before it.
-        groups: In a search for a run, for each group three numbers: the group before, the step, and its first zone; its
-            last is the one before the next group's first.
+        begins: The start of each zone's matrix.
+        sums: The sum of its bounds; an including zone has at least the same sum.
+        places: Its location.
+        following: The next zone of its location in the list for inclusion tests; `COVERED` for a zone included in
+            another one of its layer.
+        heads: For each location the first zone of that list.
+        ranks: For each row its rank in the order of discovery; -1 before it.
+        order: The rows in the order of discovery, each with the rank of its predecessor.
+        groups: In a search for a run, three numbers for each group: its predecessor, its step, and its first zone. The
+            first zone of the next group ends it.
     """
 
     bounds: Ints
@@ -96,12 +96,15 @@ GROUP, RANK = 3, 2
 BEFORE, BY, BEGIN = range(GROUP)
 
 AT, LAYER, DEPTH, COUNT, USED, FOUND, MISSED, GROUPS, RANKED, LONGEST, STATE = range(11)
-"""The numbers of a state: the next zone to be followed (or group), the first zone of the layer that is made, after how
-many steps, how many zones and bounds there are, after how many steps what is looked for was found, how many zones there
-is no room for, how many groups there are, how many rows were met, and how many steps there may be."""
+"""Indices of a state.
+
+`AT` is the next zone, or group, to expand. `LAYER` is the first zone of the layer under construction, `DEPTH` its
+depth. `COUNT`, `USED`, `GROUPS` and `RANKED` count zones, bounds, groups and discovered rows. `FOUND` is the depth of
+the goal, -1 before. `MISSED` is the number of zones without room, and `LONGEST` the most steps.
+"""
 
 DONE, MISS, FULL = range(3)
-"""Why the loops return; at a MISS nobody knows what leads from some location of what comes next."""
+"""Why the loops return; at a MISS the edges of the next location are unknown."""
 
 
 @njit(cache=True, inline="always")
@@ -115,7 +118,7 @@ def load(z: Zones, zone: int, size: int, d: Matrix) -> None:
 
 @inner(cache=True)
 def meets(m: Model, edge: int, d: Matrix, size: int) -> bool:
-    """Take only the ages at which an edge may be taken; False where there are none."""
+    """Intersect a matrix with the guard of an edge; False for an empty result."""
     for k in range(m.edges[edge + TESTS], m.edges[edge + TESTS_END]):
         clock, least, most = m.tests[TEST * k], m.tests[TEST * k + 1], m.tests[TEST * k + 2]
         if least > 0 and not restrict(d, size, 0, clock, -least):
@@ -127,13 +130,13 @@ def meets(m: Model, edge: int, d: Matrix, size: int) -> bool:
 
 @inner(cache=True)
 def before_rank(m: Model, z: Zones, state: State) -> int:
-    """Return the rank of the row that is followed, 0 at first."""
+    """Return the rank of the row that is expanded, 0 at first."""
     return 0 if state[RANKED] == 0 or state[GROUPS] > 0 else np.int64(z.ranks[m.rows[z.places[state[AT]]]])
 
 
 @inner(cache=True)
 def keep(m: Model, z: Zones, state: State, location: int, d: Matrix, size: int) -> None:
-    """Keep a zone, if no other holds it."""
+    """Keep a zone, unless another one includes it."""
     at = LOCATION * location
     total = np.int64(0)
     for i in range(size):
@@ -183,7 +186,7 @@ def keep(m: Model, z: Zones, state: State, location: int, d: Matrix, size: int) 
 
 @njit(cache=True)
 def enter(m: Model, z: Zones, state: State, location: int, d: Matrix, e: Matrix, bounds: Matrix) -> None:
-    """Keep what is entered in a location, and what it becomes as time passes there."""
+    """Keep the zone entered in a location, and its closure under delays."""
     at = LOCATION * location
     size = m.locations[at + SIZE]
     begin, count = m.locations[at + DEADLINES], m.locations[at + DEADLINES_END] - m.locations[at + DEADLINES]
@@ -215,7 +218,7 @@ def enter(m: Model, z: Zones, state: State, location: int, d: Matrix, e: Matrix,
 def follow(
     m: Model, z: Zones, state: State, zone: int, edge: int, d: Matrix, e: Matrix, f: Matrix, bounds: Matrix
 ) -> None:
-    """Keep what an edge leads to from a zone, if that is not too far from what is looked for."""
+    """Keep the successor of a zone by an edge, if its distance from the goal is small enough."""
     target, sources = m.edges[edge + TARGET], m.edges[edge + SOURCES] - 1
     if state[DEPTH] + m.left[target] > state[LONGEST]:
         return
@@ -237,7 +240,7 @@ def follow(
 
 @inner(cache=True)
 def ways_of(m: Model, z: Zones, begin: int, last: int) -> int:
-    """Return how many edges lead from some zones, -1 where that is not known."""
+    """Return the number of edges from some zones, -1 if some are unknown."""
     ways = np.int64(0)
     for zone in range(begin, last):
         at = LOCATION * z.places[zone]
@@ -249,7 +252,7 @@ def ways_of(m: Model, z: Zones, begin: int, last: int) -> int:
 
 @inner(cache=True)
 def is_full(z: Zones, state: State, ways: int, largest: int) -> bool:
-    """Tell whether there is no room for what so many edges lead to."""
+    """Return whether the successors by so many edges may exceed the room."""
     room = state[MISSED] = 2 * ways
     return bool(
         state[COUNT] + room > len(z.begins)
@@ -260,7 +263,7 @@ def is_full(z: Zones, state: State, ways: int, largest: int) -> bool:
 
 @inner(cache=True)
 def next_step(m: Model, z: Zones, begin: int, last: int, step: int) -> int:
-    """Return the step after another one that leads from some zones, -1 where there is none."""
+    """Return the next step after another one in some zones, -1 if there is none."""
     following = np.int64(-1)
     for zone in range(begin, last):
         at = LOCATION * z.places[zone]
@@ -293,7 +296,7 @@ def take(m: Model, z: Zones, state: State, begin: int, last: int, step: int, s: 
 
 @njit(cache=True)
 def advance(m: Model, z: Zones, state: State, largest: int, until: int, s: Scratch) -> int:
-    """Follow the zones of a layer, row by row, up to a number of zones; say why that ended."""
+    """Expand the zones of a layer, row by row, up to a number of zones; return why that ended."""
     while state[AT] < state[LAYER] and state[COUNT] < until:
         begin = state[AT]
         row, last = m.rows[z.places[begin]], begin + 1
@@ -314,7 +317,7 @@ def advance(m: Model, z: Zones, state: State, largest: int, until: int, s: Scrat
 
 @njit(cache=True, _nrt=True)
 def arrange(m: Model, z: Zones, state: State, kept: State) -> None:
-    """Leave some zones of the layer that was made, in an order; the others are covered."""
+    """Reorder the zones of the layer under construction and keep only the given ones; the others are covered."""
     begin = state[LAYER]
     used = z.begins[begin]
     renamed = np.full(state[COUNT] - begin, -1, np.int64)
@@ -341,7 +344,7 @@ def arrange(m: Model, z: Zones, state: State, kept: State) -> None:
 
 @njit(cache=True)
 def advance_by_groups(m: Model, z: Zones, state: State, largest: int, last_group: int, s: Scratch) -> int:
-    """Follow groups up to a number, in order; say why that ended."""
+    """Expand groups in order, up to a number of groups; return why that ended."""
     while state[AT] < last_group:
         group = state[AT]
         begin = z.groups[GROUP * group + BEGIN]

@@ -1,8 +1,8 @@
-"""The timed automaton of a mission, unfolded as it is reached: what configurations allow, and when.
+"""The timed automaton of a mission, unfolded on demand: the steps of configurations, with their clocks.
 
-A location is a row of the fast engine with what the clocks of windows say, which measure nothing. The rules, and what
-times them, are learned from the few cells that they read; what leads from a location is then worked out by compiled
-loops. What a clock is compared with is taken for what it was anywhere, as long as it grows nowhere.
+A location is a row of the fast engine with the states of the windows' clocks, which measure no time. The rules and
+their clocks are learned from the few cells that they read; compiled loops then work out the edges of a location. The
+constants of a clock are the largest seen so far; the search restarts when one grows.
 """
 
 from __future__ import annotations
@@ -60,32 +60,32 @@ from semantics.timing.intervals import Interval
 from semantics.timing.timing import Window
 
 NOWHERE = (0, NONE)
-"""The deadline of where no time passes at all."""
+"""The deadline of a location in which no time passes."""
 
 MARGIN = 1 << 12
-"""For how many more locations, and edges, there is room."""
+"""The number of further locations, and edges, for which room is reserved."""
 
 
 class Place(NamedTuple):
-    """A location of a mission: the number of its row, and what the clocks of windows say."""
+    """A location of a mission: the number of its row, and the states of the windows' clocks."""
 
     number: int
     windows: tuple[int, ...] = ()
 
 
 class Network(Space):
-    """What is known of a mission's configurations, and the automaton that they make.
+    """The knowledge about a mission's configurations, and the automaton that they form.
 
     Attributes:
-        automaton: The automaton; of some of its locations nobody knows yet what leads from them.
-        clocks_of: For each clock of the automaton what it measures.
-        caps: How far each clock is ever told apart.
-        outgrown: Whether a clock is compared with a larger constant than before.
-        first_ages: What the clocks of the first location show.
+        automaton: The automaton; the edges of some locations may be unknown.
+        clocks_of: The measured subject of each of its clocks.
+        caps: The value of each clock beyond which no test distinguishes values.
+        outgrown: Whether the constant of a clock has grown.
+        first_ages: The clock values of the first location.
     """
 
-    PLAIN = sys.maxsize  # its loops look into rows
-    ORIGINS = OriginPages  # what is known of a location is asked in the order in which clocks lead there
+    PLAIN = sys.maxsize  # its loops index into rows
+    ORIGINS = OriginPages  # origins are read in the order of the timed search
 
     def __init__(self, initial: Configuration, pending: int) -> None:
         self.initial = initial
@@ -120,10 +120,10 @@ class Network(Space):
         self._run(lambda *known: loop(*known, self.rows.words, code, self.state, self.counts_of))
         self.first_ages = self.measured(situation, ages)
 
-    # --- what is learned ------------------------------------------------------------------------------------------
+    # --- learned clocks -------------------------------------------------------------------------------------------
 
     def _see(self) -> None:
-        """Let the loops see what is known now."""
+        """Update the loops' view of the learned rules."""
         super()._see()
         known = len(self.questions)
         vehicles = [self._question(of_vehicle, vehicle) for vehicle, _ in self.timing.endurances]
@@ -132,7 +132,7 @@ class Network(Space):
         ]
         clauses = [self._question(of_clause, number) for number in range(len(self.clauses))]
         if len(self.questions) > known:
-            super()._see()  # their trees are new
+            super()._see()  # the trees of new questions
         self._note_answers()
         windows = [
             each
@@ -154,26 +154,26 @@ class Network(Space):
         )
 
     def _question(self, of: Callable[..., ActorClocks], about: Name | int) -> int:
-        """Return the tree of what times an actor."""
+        """Return the tree for the clocks of an actor."""
         if (of, about) not in self.questions:
             self.questions[of, about] = self.learner.question(partial(_asked, of, about))
         return self.questions[of, about]
 
     def _note_answers(self) -> None:
-        """Write down what was learned of clocks."""
+        """Record the learned clocks of actors."""
         missing = len(self.learner.leaves.leaves) // LEAF - len(self.answers) // ANSWER
         self.answers.extend(missing * ANSWER, NONE)
         new = len(self.learner.answers) - self.noted
         for leaf, answer in reversed(list(islice(reversed(self.learner.answers.items()), new))):
             if not isinstance(answer, ActorClocks):
-                continue  # somebody else's question
+                continue  # the answer to another question
             if answer not in self.records:
                 self.records[answer] = self._record(answer)
             self.answers.room[ANSWER * leaf : ANSWER * (leaf + 1)] = self.records[answer]
         self.noted = len(self.learner.answers)
 
     def _record(self, answer: ActorClocks) -> list[int]:
-        """Write down the clocks of an actor; return where they begin and end, and its steps."""
+        """Record the clocks of an actor; return the ranges of its clocks and its steps."""
         numbers = dict(self.lasting)
         run = len(self.running) // unfolding.RUNNING
         for each in answer.running:
@@ -191,7 +191,7 @@ class Network(Space):
         return [run, len(self.running) // unfolding.RUNNING, step, len(self.times) // unfolding.TIMES]
 
     def _number(self, running: Running) -> int:
-        """Return the number of a clock, below 0 for a window's; a new one for one that was not met."""
+        """Return the number of a clock, a new one at its first use; below 0 for a window's clock."""
         clock, interval, aim = running
         if clock.sort is Sort.WINDOW:
             assert isinstance(clock.of, int)
@@ -207,7 +207,7 @@ class Network(Space):
         return number
 
     def _restoring(self, vehicle: Name) -> tuple[int, int, int]:
-        """Return the clocks that are asked when a vehicle leaves where it is restored, and how long that takes."""
+        """Return the clocks RESTORED and ALOFT of a vehicle, and the time that its restoring takes."""
         endurance = dict(self.timing.endurances)[vehicle]
         restored = self._number(Running(Clock(Sort.RESTORED, vehicle), Interval(endurance.after)))
         return (
@@ -219,7 +219,7 @@ class Network(Space):
     # --- unfolding ------------------------------------------------------------------------------------------------
 
     def leave(self, locations: NDArray[np.int64]) -> None:
-        """Work out what leads from locations, and learn what that takes."""
+        """Work out the edges of locations, and learn the rules that this requires."""
         self.counts_of[unfolding.DONE] = 0
         choices = np.zeros(CHOICE * (len(self.restored) + len(self.windows) + 1), np.int32)
 
@@ -236,9 +236,9 @@ class Network(Space):
     margin = MARGIN
 
     def _run(self, loop: Callable[..., int]) -> None:
-        """Run a loop to its end, with room and with what it does not know."""
+        """Run a loop to its end, with more room and more learned rules where it stops."""
         while True:
-            look()  # locations are written down whole
+            look()  # each location is recorded whole
             self._reserve()
             done = self.counts_of.copy()
             why = loop(self.model, self.timed, self._growth(), self._view())
@@ -296,7 +296,7 @@ class Network(Space):
         )
 
     def _measure(self) -> None:
-        """Note how far the automaton has grown."""
+        """Read the new sizes of the automaton from the loops."""
         located, leaving, tested, sourced, ended, clocked, widest, _ = self.counts_of.tolist()
         automaton = self.automaton
         automaton.locations.size, automaton.edges.size = LOCATION * located, EDGE * leaving
@@ -311,7 +311,7 @@ class Network(Space):
     """The first location."""
 
     def place(self, location: int) -> Place:
-        """Return what a location is."""
+        """Return the row and the windows of a location."""
         said = int(self.said.room[location])
         return Place(
             int(self.of_locations.room[location]), tuple(said // 3**at % 3 for at in range(len(self.windows)))
@@ -325,7 +325,7 @@ class Network(Space):
             at = int(self.before.room[at])
 
     def crowded(self, locations: NDArray[np.int64]) -> bool:
-        """Tell whether in some location an agent has more pending than is followed."""
+        """Return whether in some location an agent has more pending than the limit."""
         records = self.automaton.locations.used.reshape(-1, LOCATION)[locations]
         ends = records[records[:, DEADLINES] < records[:, DEADLINES + 1]][:, DEADLINES]
         return bool(np.any(self.automaton.deadlines.room[DEADLINE * ends + 1] < 0))
@@ -339,31 +339,31 @@ class Network(Space):
         return self.clocks(location).index(clock) + 1
 
     def indices(self, clock: Clock) -> NDArray[np.int64]:
-        """Return the index of a clock that is directed by nothing in each location, 0 where it does not run."""
+        """Return the index of a clock without an aim in each location, 0 where it doesn't run."""
         automaton = self.automaton
         records = automaton.locations.used.reshape(-1, LOCATION)
         at = np.flatnonzero(automaton.clocks.used == self.numbers[clock, None])[
             ::-1
-        ]  # of equal ones the first last
+        ]  # of equal clocks the first wins
         locations = np.searchsorted(records[:, CLOCKS], at, side="right") - 1
         found = np.zeros(len(records), np.int64)
         found[locations] = at - records[locations, CLOCKS] + 1
         return found
 
     def measured(self, situation: Situation, ages: Iterable[int]) -> tuple[int, ...]:
-        """Return the ages of what measures time, as locations have them."""
+        """Return the values of the clocks that measure time, in the order of locations."""
         return tuple(
             age for age, clock in zip(ages, situation.clocks, strict=True) if clock.sort is not Sort.WINDOW
         )
 
     def capped(self, location: int, ages: Iterable[int]) -> tuple[int, ...]:
-        """Return ages as far as they are ever told apart."""
+        """Return clock values, capped where no test distinguishes them."""
         return tuple(
             min(age, self.caps[clock]) for age, clock in zip(ages, self.clocks(location), strict=True)
         )
 
     def tests(self, location: int, step: TimedStep) -> list[tuple[Constraint, ...]]:
-        """Return what clocks have to show that a step may be taken: one of several is enough."""
+        """Return the guards of a step in a location, a disjunction of conjunctions."""
         number, said = self.place(location)
         if not step.guards:
             return [()]
@@ -380,7 +380,7 @@ class Network(Space):
 
 
 def _asked(of: Callable[..., ActorClocks], about: Name | int, c: Configuration) -> ActorClocks:
-    """Return what times an actor; observations in its requests say what they say."""
+    """Return the clocks of an actor, with the contents of observations in its requests filled in."""
     if of is of_vehicle:
         return of(c, about)
     clause: Clause | None = c.setting.environment[about] if isinstance(about, int) else None
@@ -406,12 +406,12 @@ def _settled(clock: Clock) -> Clock:
 
 
 def cap(clock: Clock, interval: Interval) -> int:
-    """Return how far a clock has to be counted: one more than its constant where it may be past it."""
+    """Return the cap of a clock: its constant, plus one where a test may find it exceeded."""
     return max(interval.lo, interval.hi or 0) + (clock.sort in STRICT)
 
 
 def compared(clock: Clock, interval: Interval) -> tuple[int, int]:
-    """Return the largest constants that a clock is compared with, from below and from above."""
+    """Return the largest constants of a clock's lower and upper bounds."""
     lo, hi = interval.lo or NONE, NONE if interval.hi is None else interval.hi
     match clock.sort:
         case Sort.MISSION:

@@ -1,4 +1,4 @@
-"""A mission's automaton with one clock more, which measures since when something is awaited."""
+"""A mission's automaton with one additional clock, which measures how long a proposition is awaited."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ from checker.engines.zones.network import NOWHERE, Network
 
 
 class Watch(Enum):
-    """What the clock does in a location."""
+    """The state of the additional clock in a location."""
 
     OFF = auto()
     ON = auto()
     START = auto()
     END = auto()
-    """It is looked at, and nothing follows."""
+    """The clock is read, and the location has no edges."""
 
 
 class Spot(NamedTuple):
-    """A location of the mission's automaton, and whether the clock runs, or has come to its end."""
+    """A location of the mission's automaton, with the state of the additional clock."""
 
     location: int
     watch: Watch
 
 
 Rule = Callable[[Watch, int], Watch | None]
-"""What the clock does in a location after what it did before; None where that need not be followed."""
+"""The state of the clock in a location, given its state before; None to cut off the location."""
 
 
 @dataclass(frozen=True, slots=True)
 class Meter:
-    """What the clock is compared with.
+    """The constants of the additional clock.
 
     Attributes:
-        lower, upper: From below, from above.
-        most: No step is taken after it has come to so much.
-        goal: What is looked for: where, and that it shows at least so much.
+        lower, upper: The largest constants of its lower and of its upper bounds.
+        most: The last value at which a step is taken.
+        goal: The goal of a search: a state of the clock, and its least value.
     """
 
     lower: int = NONE
@@ -51,14 +51,14 @@ class Meter:
 
 @dataclass(slots=True)
 class Observer:
-    """A mission's automaton, watched.
+    """A mission's automaton with an additional clock.
 
     Attributes:
-        network: The mission's.
-        rule: When the clock runs.
-        meter: What it is compared with.
-        is_exact: Whether clocks are compared with the larger of both constants, so that nothing that may follow is
-            taken for something else.
+        network: The mission's automaton.
+        rule: Determines when the clock runs.
+        meter: The constants of the clock.
+        is_exact: Whether each clock's larger constant serves for both kinds of bounds; extrapolation then adds only
+            bisimilar values.
     """
 
     network: Network
@@ -80,16 +80,16 @@ class Observer:
         watch = self.rule(Watch.OFF, self.network.first)
         assert watch is not None
         self._add(self.network.first, watch)
-        for number, spot in enumerate(self.spots):  # grows on the way
+        for number, spot in enumerate(self.spots):  # grows during the loop
             self.automaton.leave(number, [] if spot.watch is Watch.END else self._edges(spot))
 
     def clock(self, number: int) -> int:
-        """Return the number of the clock in a location, 0 where it does not run."""
+        """Return the index of the additional clock in a location, 0 where it doesn't run."""
         off = self.spots[number].watch is Watch.OFF
         return 0 if off else len(self.automaton.location(number).clocks)
 
     def first_ages(self) -> tuple[int, ...]:
-        """Return what the clocks show at first."""
+        """Return the initial clock values."""
         ages = self.network.first_ages
         return ages if self.spots[0].watch is Watch.OFF else (*ages, 0)
 

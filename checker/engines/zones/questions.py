@@ -1,6 +1,6 @@
-"""What is asked of each agent, and of each vehicle, in configurations that are reached in time.
+"""Questions about each agent and each vehicle in the configurations reachable in time.
 
-Each is a pure function of a configuration that reads few cells, so the answers are learned like the rules.
+Each is a pure function of a configuration and reads few cells, so its answers are learned like the rules.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ from semantics.successors import Expansion, moves, remembered, served, turn_of
 from semantics.timing.actor_clocks import Sort, StepClocks, Test, is_restored, of_moves, of_requests
 
 NO_TURN = math.inf
-"""In the place of a turn: it takes none."""
+"""The turn of a step that waits for none."""
 
 
 class Control(NamedTuple):
     """A pending control.
 
     Attributes:
-        turn: Where it stands in the queue, `NO_TURN` where it waits for none.
-        tests: Of these one has to be met that it may be served; nothing where it may be served at any time.
+        turn: Its position in the queue, `NO_TURN` if it waits for none.
+        tests: A disjunction of clock tests before it may be served; empty if it may be served at any time.
     """
 
     turn: float
@@ -39,7 +39,7 @@ class Control(NamedTuple):
 
 
 def controls_of(a: Name, c: Configuration) -> tuple[Control, ...]:
-    """Return an agent's pending controls that a rule would serve."""
+    """Return an agent's pending controls that a rule can serve."""
     steps = list(served(c, a)) if a in c.alpha else []
     times = dict(zip(map(id, steps), of_requests(c, a, steps).steps, strict=True))
     return tuple(
@@ -49,7 +49,7 @@ def controls_of(a: Name, c: Configuration) -> tuple[Control, ...]:
 
 
 def _controls(steps: Iterable[Transition]) -> list[list[Transition]]:
-    """Return the transitions that serve each control; of equal controls the first alone is served."""
+    """Return the transitions that serve each control; of equal controls only the first is served."""
     found: dict[object, list[Transition]] = {}
     for step in dict.fromkeys(steps):
         if step.label.rule in CONTROLS and step.served is not None:
@@ -80,13 +80,13 @@ def first_turn(a: Name, c: Configuration) -> float:
 def between(
     inspection: Inspection, one: tuple[Name, int], other: tuple[Name, int], c: Configuration
 ) -> tuple[Key | None, ...]:
-    """Return what an inspection finds between two controls, given by their agents and ranks."""
+    """Return the findings of an inspection about two controls, given by their agents and ranks."""
     pair = [remembered(c, step) for a, rank in (one, other) for step in _controls(served(c, a))[rank]]
     return _found(inspection, c, (one[0], other[0]), pair)
 
 
 def about_step(inspection: Inspection, a: Name, rank: int, c: Configuration) -> tuple[Key | None, ...]:
-    """Return what an inspection finds about a step that serves a request of an agent, given by its rank."""
+    """Return the findings of an inspection about a step that serves an agent's request, given by its rank."""
     return _found(inspection, c, (a,), [list(served(c, a))[rank]])
 
 
@@ -98,7 +98,7 @@ def _found(
 
 
 def unbounded(a: Name, c: Configuration) -> frozenset[tuple[str, float]]:
-    """Return the rules of an agent's steps that nothing says an end of, each with its turn."""
+    """Return the rules of an agent's steps without an upper time bound, each with its turn."""
     return frozenset(_unbounded(a, c)) if a in c.alpha else frozenset()
 
 
@@ -113,27 +113,27 @@ def _unbounded(a: Name, c: Configuration) -> Iterator[tuple[str, float]]:
 
 
 def longest_flight(a: Name, c: Configuration) -> int | None:
-    """Return for how many ticks a flight of an agent takes at most that can end; None where none is bounded."""
+    """Return the longest flight of an agent in ticks, among those that can end; None if none is bounded."""
     running = of_requests(c, a, served(c, a)).running if a in c.alpha else ()
     return max((each.interval.hi or 0 for each in running if each.clock.sort is Sort.AIM), default=None)
 
 
 def is_aloft(vehicle: Name, c: Configuration) -> bool:
-    """Tell whether a vehicle is there and is not where it is restored."""
+    """Return whether a vehicle exists and is not where it is restored."""
     return vehicle in c.structure.physical and not is_restored(c, vehicle)
 
 
 def is_failing(a: Name, c: Configuration) -> bool:
-    """Tell whether a computation of an agent fails or diverges."""
+    """Return whether a computation of an agent fails or diverges."""
     return a in c.alpha and any(isinstance(each, Fault) for each in moves(c, a))
 
 
 def left_to_run(a: Name, c: Configuration) -> Code | None:
-    """Return what is left of an agent to run, None where there is no such agent."""
+    """Return the code that is left to an agent, None if the agent doesn't exist."""
     code: Code = c.read(code_cell(a))
     return code if a in c.alpha else None
 
 
 def passed_over(a: Name, c: Configuration) -> frozenset[Passage]:
-    """Return what an agent's computation passes over in one step."""
+    """Return the statements and branches that an agent's computation executes in one step."""
     return frozenset(passages(c.setting, moment_of(c, a)))

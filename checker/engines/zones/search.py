@@ -26,15 +26,15 @@ from checker.engines.zones.kernel import (
 )
 
 CHUNK = 1 << 14
-"""Zones that are kept between two looks at the clock."""
+"""Zones kept between two checks of the time."""
 
 
 class Search:
-    """What was reached from a location at given ages, layer by layer.
+    """The zones reached from a location and clock values, layer by layer.
 
     Attributes:
-        automaton: What is searched.
-        state: How far it has come.
+        automaton: The searched automaton.
+        state: The state of the loops.
         layers: The first zone of each layer.
     """
 
@@ -66,9 +66,9 @@ class Search:
     # --- searching
 
     def advance(self, zones: int = CHUNK) -> bool:
-        """Follow zones until so many more are kept; tell whether anything is left to be followed.
+        """Expand zones until so many more are kept; return whether any are left to expand.
 
-        Nothing is, where what is looked for was found, and all that as many steps lead to.
+        The search ends early after the first layer with the goal.
         """
         until = self.count + zones
         while self._goes_on and self.count < until:
@@ -87,7 +87,7 @@ class Search:
         return bool(self.state[AT] < self.count) and not 0 <= self.found < len(self.layers) - 1
 
     def _settle(self) -> None:
-        """Let the layer that was made be followed, and another one be made."""
+        """Complete the layer under construction, and begin another one."""
         begin, end = int(self.state[LAYER]), self.count
         alive = np.flatnonzero(self.following.room[begin:end] != COVERED)
         rows = self.automaton.rows.room[self.places.room[begin + alive]]
@@ -100,27 +100,27 @@ class Search:
             self.layers.append(self.count)
 
     def learn(self) -> None:
-        """Find out what leads from locations that were reached."""
+        """Work out the edges of reached locations."""
         raise AssertionError("nobody knows what leads from some location")
 
     def waiting(self) -> NDArray[np.int64]:
-        """Return the locations of zones that are not followed yet of which nobody knows what leads from them."""
+        """Return the locations of unexpanded zones whose edges are unknown."""
         reached = np.unique(self.places.room[int(self.state[AT]) : self.count]).astype(np.int64)
         found: NDArray[np.int64] = reached[self.automaton.locations.used[EDGES::LOCATION][reached] == UNKNOWN]
         return found
 
     def again(self) -> None:
-        """Begin anew."""
+        """Restart the search."""
         self.automaton.forget()
         self._begin()
 
     def finish(self, look: Callable[[], None]) -> None:
-        """Search to the end, or to what is looked for, with a look now and then at whether there is time."""
+        """Search to the end or to the goal, with periodic checks of the time."""
         while self.advance():
             look()
 
     def _see(self, zones: int) -> None:
-        """Let the loops see the automaton as it is, with room for so many more zones."""
+        """Update the loops' view of the automaton, with room for so many more zones."""
         automaton = self.automaton
         self._largest = automaton.largest
         for each in (self.begins, self.sums, self.places, self.following):
@@ -153,40 +153,40 @@ class Search:
         d, e, f = (np.zeros(shape, np.int32) for _ in range(3))
         self._scratch = kernel.Scratch(d, e, f, np.zeros((4, 1 + self._largest), np.int32))
 
-    # --- what was found
+    # --- results
 
     @property
     def count(self) -> int:
-        """How many zones there are."""
+        """The number of zones."""
         return int(self.state[COUNT])
 
     @property
     def followed(self) -> int:
-        """How many of them were followed."""
+        """The number of expanded zones."""
         return int(self.state[AT])
 
     @property
     def found(self) -> int:
-        """After how many steps what is looked for was found first; -1 where it was not."""
+        """The least number of steps to the goal; -1 if it was not found."""
         return int(self.state[FOUND])
 
     @property
     def deepest(self) -> int:
-        """After how many steps a row was met last."""
+        """The depth at which the last row was discovered."""
         return int(self.state[DEPTH]) if self.state[RANKED] > self._met else self._deepest
 
     @property
     def order(self) -> NDArray[np.int64]:
-        """The rows that were met: the fewest steps first, then by the row before and the step from there."""
+        """The discovered rows: the fewest steps first, then by the rank of the predecessor and the step from there."""
         return self.rows.room[: RANK * int(self.state[RANKED]) : RANK].astype(np.int64)
 
     @property
     def origins(self) -> NDArray[np.int64]:
-        """For each of those the place there of the row before."""
+        """For each discovered row the rank of its predecessor."""
         return self.rows.room[1 : RANK * int(self.state[RANKED]) : RANK].astype(np.int64)
 
     def depth(self, zone: int) -> int:
-        """Return after how many steps a zone was reached."""
+        """Return the depth of a zone."""
         return int(np.searchsorted(self.layers, zone, side="right")) - 1
 
     def place(self, zone: int) -> int:
@@ -194,7 +194,7 @@ class Search:
         return int(self.places.room[zone])
 
     def matrix(self, zone: int) -> NDArray[np.int32]:
-        """Return a zone."""
+        """Return the matrix of a zone."""
         size = int(self.automaton.locations.room[LOCATION * self.place(zone) + SIZE])
         begin = int(self.begins.room[zone])
         return self.bounds.room[begin : begin + size * size].reshape(size, size)
@@ -211,9 +211,9 @@ class Search:
 
 
 class Route(Search):
-    """The first sequence of a number of steps to what is wanted, which no shorter one leads to.
+    """The first sequence of a number of steps to a goal that fewer steps don't reach.
 
-    It goes by groups (see `kernel`), and only where the steps that are left suffice.
+    The search proceeds by groups (see `kernel`) and prunes locations from which the remaining steps don't suffice.
     """
 
     def __init__(
@@ -263,7 +263,7 @@ class Route(Search):
 
 
 def steps_left(automaton: Automaton, ends: Sequence[int]) -> NDArray[np.int32]:
-    """Return for each location how many edges lead from there to an end at the least, `FREE` where none do."""
+    """Return for each location the least number of edges to an end, `FREE` if no end is reachable."""
     sources, targets = automaton.arrows()
     left = np.full(len(automaton), FREE, np.int32)
     left[ends] = 0

@@ -1,7 +1,7 @@
-"""When steps are taken, by zones: a clock that is never set shows it, first its least and then its most.
+"""The dates of steps, by zones: the least and the greatest value of a clock that is never reset.
 
-The most is counted up to a constant. What may be later than that has no latest moment if a run goes round on its way
-there (`ZoneTimes.goes_round`); else the constant grows.
+The greatest value is counted up to a constant. Beyond it, there is no latest date if some run to the step contains a
+cycle (`ZoneTimes.goes_round`); else the constant grows.
 """
 
 from __future__ import annotations
@@ -23,28 +23,28 @@ from checker.engines.zones.observers import Meter, Observer, Watch
 from checker.engines.zones.search import Search
 
 Asked = list[list[tuple[Edge, int]]]
-"""For each location the edges of steps that are asked for, each with the number of its set."""
+"""For each location the edges of requested steps, each with the number of its set."""
 
 
 class Searched(Protocol):
-    """What is asked of the search that was done (`ZoneTimes`): of what, in which order, and what a clock more shows."""
+    """The results of the mission's search (`ZoneTimes`) that spans need."""
 
     network: Network
     order: NDArray[np.int64]
 
     @property
     def enough(self) -> int:
-        """Return how far a clock more is counted at first."""
+        """Return the first constant of an additional clock."""
 
     def explored(self, observer: Observer) -> tuple[Observer, Search]:
-        """Search with an observer."""
+        """Search the automaton of an observer."""
 
     def goes_round(self, observer: Observer, dates: Dates) -> bool:
-        """Tell whether a run comes to the same again."""
+        """Return whether a run contains a cycle."""
 
 
 class Spans:
-    """When one of some steps is taken, for sets of steps."""
+    """The dates at which a step of each given set is taken."""
 
     def __init__(self, times: Searched, steps: Sequence[Set[TakenStep]]) -> None:
         self.times = times
@@ -55,7 +55,7 @@ class Spans:
                 self.sets.setdefault((int(times.order[place]), step), []).append(number)
 
     def found(self) -> list[Span]:
-        """Return the earliest and the latest moment of each set."""
+        """Return the earliest and the latest date of each set."""
         if not self.sets:
             return [NO_SPAN] * len(self.steps)
         return [Span(*each) for each in zip(self._earliest(), self._latest(), strict=True)]
@@ -118,7 +118,7 @@ class Spans:
     def _has_no_end(
         self, observer: Observer, search: Search, asked: Asked, number: int, zone: int, most: int
     ) -> bool:
-        """Tell whether the first run that takes a step later than so much goes round on its way."""
+        """Return whether the first run that takes a step later than so much contains a cycle."""
 
         def wanted(place: int) -> list[Zone]:
             late = Constraint(observer.clock(place), most + 1)
@@ -133,7 +133,7 @@ class Spans:
 
 
 def _taken(search: Search, asked: Asked) -> Iterator[tuple[int, int, Zone, Edge, int]]:
-    """Yield each zone from which steps that are asked for may lead, with its place, and each of them with its set."""
+    """Yield each zone with each requested edge from its location: zone, location, matrix, edge, and the edge's set."""
     for at in range(search.count):
         place = search.place(at)
         if asked[place]:

@@ -1,8 +1,8 @@
-"""Whether time stops: from which ages nothing but steps that take no time can follow, for ever.
+"""Timelocks: states from which only steps that take no time can follow, for ever.
 
-Steps that take no time compare clocks with constants and start them, so the ages from which time may still pass are
-found backwards, as unions of zones: first those at which it may pass at once, then those from which a step leads to
-them. That is worked out only where steps may go round with deadlines all the way.
+Such steps only compare clocks with constants and reset them. So backward propagation finds the states from which time
+can pass, as unions of zones: first those where it passes at once, then their predecessors by steps. This is done only
+where steps may form a cycle through locations with deadlines.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from semantics.timing.actor_clocks import Sort
 
 
 def first_stop(network: Network) -> Stop | None:
-    """Return the first run after which no time can pass any more, None if there is none."""
+    """Return the first run to a timelock, None if there is none."""
     risky = _risky(network.automaton)
     if not risky:
         return None
@@ -47,7 +47,7 @@ def first_stop(network: Network) -> Stop | None:
 
 
 def _risky(automaton: Automaton) -> set[int]:
-    """Return the locations with deadlines from which steps may go round among such locations."""
+    """Return the locations that reach, through locations with deadlines, a cycle of such locations."""
     graph = nx.DiGraph()
     ending = {place for place in range(len(automaton)) if automaton.location(place).deadlines}
     for place in ending:
@@ -62,7 +62,7 @@ def _risky(automaton: Automaton) -> set[int]:
 
 
 def _passing(automaton: Automaton, risky: set[int]) -> dict[int, list[Zone]]:
-    """Return for each risky location the ages from which time passes sooner or later."""
+    """Return for each risky location the clock values from which time can pass eventually."""
     found = {place: _passing_at_once(automaton, place) for place in risky}
     sources: dict[int, set[int]] = {place: set() for place in risky}
     for place in risky:
@@ -89,7 +89,7 @@ def _passing(automaton: Automaton, risky: set[int]) -> dict[int, list[Zone]]:
 def _passing_at_once(automaton: Automaton, place: int) -> list[Zone]:
     location = automaton.location(place)
     if any(most < 0 for _, most in location.deadlines):
-        return [whole(len(location.clocks))]  # it is not known what follows
+        return [whole(len(location.clocks))]  # its successors are unknown
     if any(most == 0 for _, most in location.deadlines):
         return []
     zone = tested(
@@ -99,7 +99,7 @@ def _passing_at_once(automaton: Automaton, place: int) -> list[Zone]:
 
 
 def _is_more(zones: list[Zone], before: list[Zone]) -> bool:
-    """Tell whether some zones hold more than others."""
+    """Return whether one union of zones holds more than another one."""
     for zone in zones:
         rest = [zone]
         for each in before:
@@ -119,10 +119,10 @@ def _without(place: int, network: Network, passing: dict[int, list[Zone]]) -> li
 
 
 def _going_round(network: Network, observer: Observer, dates: Dates) -> Stop:
-    """Return the run to where time stops, and then the first steps that may be taken, until they come round."""
+    """Return the run to the timelock, extended by the first possible steps until a state repeats."""
 
     def shown(moment: Moment) -> tuple[int, tuple[int, ...]]:
-        """Return a state as `Timeline` has it."""
+        """Return a state in the form of `Timeline`."""
         location = observer.spots[moment.location].location
         place = network.place(location)
         windows, ages = iter(place.windows), iter(network.capped(location, moment.ages))

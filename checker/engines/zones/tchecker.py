@@ -7,7 +7,7 @@ from checker.engines.zones.interchange import FIRST, WRONG, Model, Place, Step
 
 
 def tchecker_text(model: Model) -> str:
-    """Write a model; with a property, the label `wrong` is reachable exactly if it is violated."""
+    """Return a model as text; with a property, the label `wrong` is reachable exactly if it is violated."""
     return "\n".join([*_lines(model), ""])
 
 

@@ -1,4 +1,4 @@
-"""Surveys of the configurations that were reached in time, by their places in the order of discovery."""
+"""Surveys of the configurations that are reachable in time, by their places in the order of discovery."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from semantics.successors import Expansion
 
 
 class TimedSurvey(Survey):
-    """Puts questions to configurations that were reached in time: to all, or to some of them.
+    """Asks questions about all configurations that are reachable in time, or about some of them.
 
     Attributes:
-        times: What is known of them.
-        order: Their rows.
-        in_time: What is shown of each.
-        places: Which are asked.
+        times: The answers about time.
+        order: The row of each configuration.
+        in_time: The view of each configuration that an inspection gets.
+        places: The configurations that are asked about.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class TimedSurvey(Survey):
         self.size = len(self.places)
 
     def among(self, places: NDArray[np.int64]) -> TimedSurvey:
-        """Return a survey of some of them."""
+        """Return a survey of some of the configurations."""
         return TimedSurvey(self.network, self.times, self.order, self.in_time, places)
 
     def configuration(self, number: int) -> Configuration:
@@ -51,21 +51,21 @@ class TimedSurvey(Survey):
         return self.space.configuration(int(self.order[number]))
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
-        """Return the leaf that each configuration leads to in a tree."""
+        """Return each configuration's leaf in a tree."""
         return self.space.classify(tree, self.order[rows])
 
     def shown(self, number: int) -> Iterator[tuple[Configuration, Expansion]]:
-        """Yield what an inspection is shown of a configuration."""
+        """Yield the views of a configuration for an inspection."""
         return shown_in_time(self.times, number, self.in_time)
 
     def blocks(self, size: int | None = None) -> Iterator[NDArray[np.int64]]:
-        """Yield the places of those that are asked, or of the first so many, block by block."""
+        """Yield the places of the configurations to ask about, or of the first so many, block by block."""
         asked = self.places[:size]
         for begin in range(0, len(asked), BLOCK):
             yield asked[begin : begin + BLOCK]
 
     def answered(self, question: Callable[[Configuration], Hashable]) -> tuple[NDArray[np.int64], list[Any]]:
-        """Return the number of each one's answer, and all answers."""
+        """Return the number of each configuration's answer, and all answers."""
         tree, numbers = self.space.learner.question(question), dict[Hashable, int]()
         found = [self.numbered(self.classify(tree, rows), numbers) for rows in self.blocks()]
         return np.concatenate([np.zeros(0, np.int64), *found]), list(numbers)

@@ -1,11 +1,11 @@
-"""The compiled loops that unfold a mission: the automaton's locations and edges, out of rows and learned trees.
+"""The compiled loops that unfold a mission: the automaton's locations and edges, from rows and learned trees.
 
-A row says by one walk through each actor's trees which steps there are, and what times them. A location is a row with
-what the clocks of windows say: base 3, one digit for each.
+One walk through each actor's trees yields the steps of a row and their clocks. A location is a row with the states of
+the windows' clocks, as digits of a number in base 3.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type, no-any-return"
-# (what numba compiles is typed by numba: mypy takes its integers for Python's)
+# (numba infers the types of compiled functions; mypy takes its integers for Python's)
 
 from typing import Any, NamedTuple
 
@@ -52,18 +52,18 @@ State = NDArray[np.int64]
 
 
 class Timed(NamedTuple):
-    """What is timed, as the loops see it.
+    """The learned clocks of actors, for the loops.
 
     Attributes:
-        agents, clauses: The trees of what times the actors of `Model`, in the same order.
-        vehicles: The trees of vehicles that last so long.
-        answers: For each leaf of those trees where its clocks and its steps begin and end (`ANSWER` numbers).
+        agents, clauses: The trees for the clocks of the actors of `Model`, in the same order.
+        vehicles: The trees for the clocks of vehicles with an endurance.
+        answers: For each leaf of those trees the ranges of its clocks and of its steps (`ANSWER` numbers).
         running: Clocks with their bounds (`RUNNING`).
-        steps: Where the clocks that a step is done with, and its tests, begin and end (`TIMES`).
-        done, tests: Those clocks; those tests, of which one has to be met (`TEST`).
-        served: For each clock whether it is one of a request, of which there may be several.
+        steps: For each step the ranges of the clocks that it ends and of its tests (`TIMES`).
+        done, tests: Those clocks; those tests, a disjunction (`TEST`).
+        served: For each clock whether it belongs to a request; there may be several of those.
         lasting: The clocks that run everywhere.
-        restored: For each vehicle its clocks RESTORED and ALOFT, and how long it takes (`RESTORING`).
+        restored: For each vehicle its clocks RESTORED and ALOFT, and the time that restoring takes (`RESTORING`).
         windows: For each window its clause, and its end or `NONE` (`WINDOW`); its clock has the number -1 - window.
     """
 
@@ -86,12 +86,12 @@ CLOCK, LO, HI = range(RUNNING)
 
 
 class Growth(NamedTuple):
-    """The automaton as it grows, with room, and what is known of each location besides.
+    """The growing automaton, with room, and additional data for each location.
 
     Attributes:
-        rows, windows: The row of each location, and what the clocks of windows say.
+        rows, windows: The row of each location, and the states of the windows' clocks.
         of_rows: For each row its last location, -1 for none.
-        before: For each location the one before it of the same row.
+        before: For each location the previous one of the same row.
     """
 
     locations: Ints
@@ -107,15 +107,15 @@ class Growth(NamedTuple):
 
 
 class View(NamedTuple):
-    """What one row allows, as `look` finds it.
+    """The steps and clocks of one row, as `look` finds them.
 
     Attributes:
         leaves: For each actor its leaf: the agents' first, then the clauses'.
-        answers: For each vehicle and then for each actor the leaf of what times it.
-        counts: How many agents' actors there are, how many actors, the turn, and whether it is crowded.
-        at, many, stamps: For each clock the first index at which it runs, how often it does, and the stamp of the view
-            in which that is so.
-        bound: For each clock the stamp of the view in which a step in its turn is done with it.
+        answers: For each vehicle and then for each actor the leaf with its clocks.
+        counts: The numbers of the agents' actors and of all actors, the turn, whether the row is crowded, the stamp of
+            the view, and the number of clocks.
+        at, many, stamps: For each clock its first index, its multiplicity, and the stamp of the view with this data.
+        bound: For each clock the stamp of the view in which an in-turn step ends it.
     """
 
     leaves: Ints
@@ -130,16 +130,17 @@ class View(NamedTuple):
 AGENTS, ACTORS, ITS_TURN, IS_CROWDED, STAMP, CLOCKS = range(6)
 
 LOCATED, LEAVING, TESTED, SOURCED, DEADLINED, CLOCKED, WIDEST, DONE = range(8)
-"""What stands where in the loops' state: how many locations, edges, tests, sources, deadlines and clocks there are, one
-more than the most clocks of a location, and how many of the given locations are left."""
+"""The positions of the loops' state: the numbers of locations, edges, tests, sources, deadlines and clocks, one more
+than the most clocks of a location, and the number of given locations that are done.
+"""
 
 KNOWN, MISS, FULL = range(3)
-"""Why the loops return: all is done, a tree does not know, there is no room."""
+"""Why the loops return: all is done, a tree lacks an answer, or there is no room."""
 
 
 @inner(cache=True)
 def look(m: kernel.Model, t: Timed, words: Words, row: int, v: View, state: State) -> bool:
-    """Find out what a row allows; False at what is not known."""
+    """Find the steps and clocks of a row; False if a tree lacks an answer."""
     state[AT], at = row, row * state[WORDS]
     first, last = np.int64(0), np.int64(len(m.agents))
     if state[kernel.ALPHA] >= 0:
@@ -178,7 +179,7 @@ def look(m: kernel.Model, t: Timed, words: Words, row: int, v: View, state: Stat
 
 @inner(cache=True)
 def note_clocks(m: kernel.Model, t: Timed, v: View) -> None:
-    """Note where each clock runs first, and which are bound: a step that is in its turn is done with them."""
+    """Record the first index of each clock, and the bound clocks: those that an in-turn step ends."""
     stamp, index = v.counts[STAMP], np.int64(1)
     for clock in t.lasting:
         v.at[clock], v.many[clock], v.stamps[clock] = index, 1, stamp
@@ -206,20 +207,20 @@ def note_clocks(m: kernel.Model, t: Timed, v: View) -> None:
 
 @inner(cache=True)
 def steps_of_clause(m: kernel.Model, v: View, clause: int) -> int:
-    """Return how many steps a clause has."""
+    """Return the number of steps of a clause."""
     leaf = LEAF * v.leaves[v.counts[AGENTS] + clause]
     return m.leaves[leaf + END] - m.leaves[leaf + FIRST]
 
 
 @inner(cache=True)
 def digit(windows: int, window: int) -> int:
-    """Return what the clock of a window says."""
+    """Return the state of a window's clock."""
     return windows // 3**window % 3
 
 
 @inner(cache=True)
 def add_location(m: kernel.Model, t: Timed, g: Growth, v: View, row: int, windows: int, s: State) -> int:
-    """Return the number of the location of a row that was looked at, a new one where it was not met; -1 at no room."""
+    """Return the location of a row that was looked at, a new one at the first visit; -1 if there is no room."""
     found = np.int64(g.of_rows[row])
     while found >= 0 and g.windows[found] != windows:
         found = np.int64(g.before[found])
@@ -262,14 +263,14 @@ def add_location(m: kernel.Model, t: Timed, g: Growth, v: View, row: int, window
 
 @inner(cache=True)
 def add_deadlines(m: kernel.Model, t: Timed, g: Growth, v: View, windows: int, begin: int) -> int:
-    """Add the deadline of where nothing is followed, or else that of windows; return the end of the deadlines."""
+    """Add the deadline of a crowded location, or else of the windows; return the end of the deadlines."""
     least = np.int64(NONE)
     for window in range(len(t.windows) // WINDOW):
         within = np.int64(t.windows[WINDOW * window + 1])
         bound = steps_of_clause(m, v, t.windows[WINDOW * window]) > 0 and digit(windows, window) < UNBOUND
         if within >= 0 and bound and (least < 0 or within < least):
             least = within
-    clock = np.int64(1)  # the mission's is the first
+    clock = np.int64(1)  # the mission's clock is the first
     if v.counts[IS_CROWDED]:
         clock, least = np.int64(0), np.int64(NONE)
     elif least < 0:
@@ -290,7 +291,7 @@ def target_row(
     most: int,
     state: State,
 ) -> int:
-    """Return the row that a step leads to, a new one where it was not met: -1 at what is not known, -2 at no room."""
+    """Return the row that a step leads to, new at the first visit; -1 if a tree lacks an answer, -2 without room."""
     width = state[WORDS]
     at, record = row * width, STEP * step
     conclude(words, at, m.masks, step, scratch, 0, width)
@@ -317,7 +318,7 @@ def target_row(
 
 @inner(cache=True)
 def source_of(t: Timed, a: View, done: int, end: int, clock: int, earlier: int) -> int:
-    """Return the index of the clock that goes on in one of the target, of which so many stand before it; 0 for none."""
+    """Return the index of the source clock that continues in the target's, after so many equal ones; 0 for a reset."""
     if a.stamps[clock] != a.counts[STAMP]:
         return 0
     at = np.int64(earlier)
@@ -330,14 +331,14 @@ def source_of(t: Timed, a: View, done: int, end: int, clock: int, earlier: int) 
 
 
 @inner(cache=True)
-def add_edges(  # each argument is another part of what is known
+def add_edges(  # each argument is another part of the state
     m: kernel.Model, t: Timed, g: Growth, a: View, b: View, here: int, row: int, times: int, number: int, step: int,
     choices: Ints, s: State,
 ) -> int:  # fmt: skip
-    """Add the edges of a step to a row that was looked at: one for each way in which it may be taken.
+    """Add the edges of a step to a row that was looked at, one for each combination of tests and choices.
 
-    These are what may be tested, then for each vehicle that leaves where it is restored as it came or with a clock that
-    starts anew, then for each window that binds from now on or is over.
+    The choices are: for each vehicle that leaves where it is restored, whether its endurance was restored in full; and
+    for each window that becomes bound, whether it is already over.
     """
     done, end = t.steps[times], t.steps[times + 1]
     count, said = np.int64(0), np.int64(0)
@@ -404,7 +405,7 @@ def add_edges(  # each argument is another part of what is known
 
 @inner(cache=True)
 def is_second(chosen: int, count: int, choice: int) -> bool:
-    """Tell whether the second of both ways was chosen, the first choice being the last to change."""
+    """Return whether the second alternative of a choice was chosen; the last choice varies fastest."""
     return bool(chosen >> (count - 1 - choice) & 1)
 
 
@@ -421,7 +422,7 @@ def add_sources(
     t: Timed, g: Growth, a: View, b: View, done: int, end: int, target: int, choices: Ints, count: int, chosen: int,
     s: State,
 ) -> None:  # fmt: skip
-    """Add for each clock of the target the one that goes on in it."""
+    """Add for each clock of the target the source clock that continues in it."""
     clocks = g.locations[LOCATION * target + automata.CLOCKS]
     for index in range(1, b.counts[CLOCKS]):
         clock = g.clocks[clocks + index - 1]
@@ -437,7 +438,7 @@ def add_sources(
 def begin(
     m: kernel.Model, t: Timed, g: Growth, v: View, words: Words, windows: int, state: State, s: State
 ) -> int:
-    """Add the location of the first row; say why that ended."""
+    """Add the location of the first row; return why that ended."""
     if not look(m, t, words, 0, v, state):
         return MISS
     return KNOWN if add_location(m, t, g, v, 0, windows, s) >= 0 else FULL
@@ -448,7 +449,7 @@ def leave(
     m: kernel.Model, t: Timed, g: Growth, a: View, b: View, words: Words, origins: Any, table: Any, most: int,
     scratch: Words, taken: Ints, choices: Ints, locations: State, state: State, s: State,
 ) -> int:  # fmt: skip
-    """Add the edges of locations, from the one on that comes next; say why that ended."""
+    """Add the edges of the given locations, from the next undone one; return why that ended."""
     while s[DONE] < len(locations):
         here = locations[s[DONE]]
         row, began = np.int64(g.rows[here]), (s[LEAVING], s[TESTED], s[SOURCED])
@@ -473,7 +474,7 @@ def leave_by_steps(
     m: kernel.Model, t: Timed, g: Growth, a: View, b: View, words: Words, origins: Any, table: Any, most: int,
     scratch: Words, taken: Ints, choices: Ints, here: int, row: int, state: State, s: State,
 ) -> int:  # fmt: skip
-    """Add the edges of each step of a location that is in its turn, those of agents once."""
+    """Add the edges of each in-turn step of a location; equal steps of an agent count once."""
     number = np.int64(0)
     for k in range(a.counts[ACTORS]):
         leaf, record = LEAF * a.leaves[k], ANSWER * a.answers[len(t.vehicles) + k]

@@ -1,4 +1,4 @@
-"""Write the timed automaton of a mission for UPPAAL, as a second opinion: XML by its document type flat-1_2."""
+"""Write the timed automaton of a mission for UPPAAL, as a second opinion: XML of the document type flat-1_2."""
 
 from collections.abc import Iterator, Sequence
 from xml.sax.saxutils import escape, quoteattr
@@ -12,7 +12,7 @@ DOCUMENT_TYPE = (
 
 
 def uppaal_text(model: Model) -> str:
-    """Write a model; with a property, its query is satisfied exactly if the property holds."""
+    """Return a model as text; with a property, its query is satisfied exactly if the property holds."""
     return "\n".join([*_lines(model), ""])
 
 

@@ -1,4 +1,4 @@
-"""What zones tell of time."""
+"""The answers about time from zones."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ Made = TypeVar("Made")
 
 
 class OfRows(Sequence[Made]):
-    """What is made of rows, by their numbers: each anew where it is looked at."""
+    """Objects made from rows on each access, in the order of the given row numbers."""
 
     def __init__(self, make: Callable[[int], Made], rows: NDArray[np.int64]) -> None:
         self.make = make
@@ -74,8 +74,8 @@ class ZoneTimes:
     """Answers from a search through zones.
 
     Attributes:
-        reached: The locations that were reached.
-        order: The rows that were reached, in the order of discovery.
+        reached: The reached locations.
+        order: The reached rows, in the order of discovery.
     """
 
     def __init__(self, network: Network, search: Search) -> None:
@@ -87,19 +87,19 @@ class ZoneTimes:
 
     @property
     def searched(self) -> str:
-        """Over what it searched, in words."""
+        """The size of the searched state space, in words."""
         return f"{self.search.count:,} zones"
 
     @property
     def situations(self) -> Sequence[Situation]:
-        """What time means in each configuration."""
+        """The timed situation of each configuration."""
         return OfRows(self.network.situation, self.order)
 
     def survey(self, shown: InTime = InTime.ENABLED) -> TimedSurvey:
         """Return a survey of the configurations."""
         return TimedSurvey(self.network, self, self.order, shown)
 
-    # --- of all zones
+    # --- zones
 
     @cached_property
     def _locations(self) -> NDArray[np.int32]:
@@ -115,17 +115,17 @@ class ZoneTimes:
         return found
 
     def latest(self, zones: NDArray[np.int64], clock: Clock) -> NDArray[np.int32]:
-        """Return the most that a clock may show in some zones; less than nothing where it does not run."""
+        """Return the greatest value of a clock in some zones; `NONE` where it doesn't run."""
         indices = self.network.indices(clock)[self._locations[zones]]
         sizes = self.network.automaton.locations.used[SIZE::LOCATION][self._locations[zones]]
         shown = self.search.bounds.room[self.search.begins.room[zones] + sizes * indices]
         return np.where(indices > 0, shown, NONE).astype(np.int32)
 
     def is_due(self, zones: NDArray[np.int64], turn: float, tests: tuple[Test, ...]) -> NDArray[np.bool_]:
-        """Return in which zones what has a turn and tests may be done, apart from its turn.
+        """Return in which zones a step with a turn and tests may be taken, regardless of its turn.
 
-        What waits for its turn counts as if it had come to its least time. Zones are closed under the passing of time,
-        so two things that are due in one zone are so at one moment of it.
+        A step that waits for its turn counts as past its least time. Zones are closed under delays, so two steps that
+        are due in one zone are both due at one of its moments.
         """
         waits = turn > self._first_turns[self.places[zones]] if turn < NO_TURN else np.False_
         due = [self.latest(zones, clock) >= least for clock, least, _ in tests]
@@ -134,7 +134,7 @@ class ZoneTimes:
 
     @cached_property
     def _first_turns(self) -> NDArray[np.float64]:
-        """For each configuration the turn of what is in its turn there."""
+        """For each configuration the first turn that steps wait for."""
         survey = self.survey()
         found = np.full(len(self.order), NO_TURN)
         for a in survey.agents() if self.initial.setting.scheduler is Scheduler.FCFS else ():
@@ -152,10 +152,10 @@ class ZoneTimes:
             for zone in self._by_place.get(location, ()):
                 yield location, self.search.matrix(int(zone))
 
-    # --- of configurations
+    # --- configurations
 
     def firsts_of(self, place: int) -> dict[int, int]:
-        """Return each step that is taken in a configuration, with the number of steps before it at the least."""
+        """Return each step that is taken in a configuration, with the least number of steps before it."""
         found: dict[int, int] = {}
         for location in self.network.locations(int(self.order[place])):
             for step, depth in self.network.automaton.firsts(location):
@@ -168,7 +168,7 @@ class ZoneTimes:
 
     @cached_property
     def _taken(self) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
-        """Each step that is taken in a configuration, once: what was learned of it, and the configuration's place."""
+        """The learned step and the configuration's place of each taken step, once."""
         locations = self.network.automaton.locations.used.reshape(-1, LOCATION)
         edges = self.network.automaton.edges.used.reshape(-1, EDGE)
         counts = np.maximum(locations[:, EDGES_END] - locations[:, EDGES], 0)
@@ -185,13 +185,13 @@ class ZoneTimes:
         return found
 
     def taken_steps(self) -> Iterator[tuple[int, NDArray[np.int64]]]:
-        """Yield each learned step that is taken at some time, with the places where it is."""
+        """Yield each learned step that is taken at some time, with the places of its configurations."""
         steps, places = self._taken
         order = np.argsort(steps, kind="stable")
         met, begins = np.unique(steps[order], return_index=True)
         yield from zip(
             met.tolist(), np.split(places[order], begins[1:]), strict=False
-        )  # no step has one empty part
+        )  # without steps there is one empty part
 
     def where(self, formula: Proposition) -> list[bool]:
         """Return for each configuration whether a proposition is true there."""
@@ -199,7 +199,7 @@ class ZoneTimes:
         return true
 
     def unbounded(self) -> set[str]:
-        """Return the rules by which agents may do something in their turn that nothing says an end of."""
+        """Return the rules of agents' in-turn steps that have no upper time bound."""
         survey, found = self.survey(), set[str]()
         for a in survey.agents():
             answers, several = survey.answered(partial(unbounded, a))
@@ -209,7 +209,7 @@ class ZoneTimes:
         return found
 
     def longest_flights(self) -> dict[Name, int]:
-        """Return for how many ticks a flight of each agent takes at most, where that is bounded."""
+        """Return the longest flight of each agent in ticks, where it is bounded."""
         survey = self.survey()
         answers = {a: survey.answers(partial(longest_flight, a)) for a in survey.agents()}
         bounded = {
@@ -218,7 +218,7 @@ class ZoneTimes:
         return {a: max(most) for a, most in bounded.items() if most}
 
     def together(self, place: int) -> Iterator[tuple[Transition, ...]]:
-        """Yield each pair of pending controls that may be served at one moment."""
+        """Yield each pair of pending controls that may be served at the same moment."""
         for one, other in control_pairs(self.situations[place]):
             if any(self._meet(zone, location, one, other) for location, zone in self._zones(place)):
                 yield tuple(step.transition for step in (*one, *other))
@@ -235,12 +235,12 @@ class ZoneTimes:
             yield from self.network.tests(location, step) if step.in_turn else [()]
 
     def unsayable(self, place: int) -> set[int]:
-        """Return the clauses whose message cannot be said any more at some time in a configuration."""
+        """Return the clauses whose message has expired at some time in a configuration."""
         return next(set(late) for late, places in self.late_sayings if place in places)
 
     @cached_property
     def late_sayings(self) -> list[tuple[frozenset[int], NDArray[np.int64]]]:
-        """The sets of clauses whose messages cannot be said any more at some time, each with the places of that."""
+        """The sets of clauses whose messages have expired at some time, each with the places of its configurations."""
         ends = {
             number: times.step.until
             for number, times in enumerate(self.network.timing.clauses)
@@ -265,7 +265,7 @@ class ZoneTimes:
     # --- runs
 
     def way_to(self, run: Run, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
-        """Return the fewest steps in turn from the end of a run to some configuration, none if none lead there."""
+        """Return the shortest in-turn steps from the end of a run to a configuration, empty if none lead there."""
 
         def follow(row: int) -> Iterator[tuple[tuple[int, int], int]]:
             targets = self._targets(row).items()
@@ -276,13 +276,13 @@ class ZoneTimes:
         return tuple(self.network.situation(at).steps[step].transition for at, step in way)
 
     def _targets(self, row: int) -> dict[int, int]:
-        """Return the row that each step in its turn leads to, from where a row was reached."""
+        """Return the target row of each in-turn step, from the reached locations of a row."""
         rows = self.network.of_locations.room
         edges = (e for location in self.network.locations(row) for e in self.network.automaton.out(location))
         return {each.step: int(rows[each.target]) for each in sorted(edges, key=lambda each: each.step)}
 
     def transitions(self, run: Run) -> tuple[Transition, ...]:
-        """Return what is done in a run."""
+        """Return the transitions of a run."""
         situation, found = self.network.situation(0), list[Transition]()
         for at in run.steps:
             found.append(situation.steps[at].transition)
@@ -290,7 +290,7 @@ class ZoneTimes:
         return tuple(found)
 
     def run_before(self, place: int, by: Transition | None) -> Run:
-        """Return the first run to a configuration, and then a transition if that is ever taken there."""
+        """Return the first run to a configuration, then through a transition if that is ever taken there."""
         situation = self.situations[place]
         steps = {
             at: depth for at, depth in self.firsts_of(place).items() if situation.steps[at].transition == by
@@ -321,7 +321,7 @@ class ZoneTimes:
         return true
 
     def waiting(self, asked: Proposition | None, awaited: Proposition) -> Rule:
-        """Return when something is waited for: from the start, or from wherever something else is true."""
+        """Return the observer's rule for a wait from the start, or from wherever another proposition is true."""
         inside = [not true for true in self.true_in(awaited)]
         begins = None if asked is None else self.true_in(asked)
 
@@ -336,7 +336,7 @@ class ZoneTimes:
         return rule
 
     def within(self, asked: Proposition | None, awaited: Proposition, most: int) -> Wait:
-        """Return how long something is waited for from the start, or from wherever something else is true."""
+        """Return the longest wait for a proposition from the start, or from wherever another one is true."""
         rule = self.waiting(asked, awaited)
         if asked is None and rule(Watch.OFF, self.network.first) is Watch.OFF:
             return Wait(0)
@@ -349,7 +349,7 @@ class ZoneTimes:
         return Wait(longest, run, math.isinf(longest))
 
     def moments(self, formula: Proposition) -> Moments:
-        """Return when something is first true."""
+        """Return the earliest and latest moments at which a proposition becomes true."""
         true = self.true_in(formula)
         if true[self.network.first]:
             return Moments(Run(), 0, may_wait=False)
@@ -364,7 +364,7 @@ class ZoneTimes:
         return Moments(first, latest, math.isinf(self._longest(rule, Watch.ON)))
 
     def _first(self, rule: Rule) -> Run | None:
-        """Return the first run of those that come first to an end."""
+        """Return the first of the earliest runs to an end of the observer."""
         observer, search = self.explored(Observer(self.network, rule, Meter(upper=MOST)))
         ends, _ = _shown(observer, search, Watch.END)
         if not len(ends):
@@ -375,13 +375,13 @@ class ZoneTimes:
         return self._measured(search).run()
 
     def explored(self, observer: Observer) -> tuple[Observer, Search]:
-        """Return an observer with a search of its automaton, to the end or to what it looks for."""
+        """Return an observer with a search of its automaton, to the end or to its goal."""
         search = Search(observer.automaton, 0, observer.first_ages())
         search.finish(look)
         return observer, search
 
     def _measured(self, search: Search) -> Dates:
-        """Return the first run to what an observer looked for, and found."""
+        """Return the first run to the goal that a search has found."""
 
         def goal(place: int) -> list[Zone]:
             location = search.automaton.location(place)
@@ -393,9 +393,10 @@ class ZoneTimes:
         return run_of(search, goal, search.found)
 
     def _longest(self, rule: Rule, where: Watch, least: int = 0) -> float:
-        """Return how long a clock may run at most somewhere; infinite where a run that goes round shows that.
+        """Return the greatest value of the observer's clock in one of its states.
 
-        It is counted up to a constant that grows until either is found.
+        The clock is counted up to a constant, which grows until the value is certain. It is infinite if some run to
+        larger values contains a cycle.
         """
         most = max(least, self.enough)
         while True:
@@ -410,11 +411,11 @@ class ZoneTimes:
 
     @property
     def enough(self) -> int:
-        """For how many ticks a clock is counted first, where nobody knows how long it may run."""
+        """The first constant of an additional clock whose greatest value is unknown."""
         return 2 * max(self.network.caps.values(), default=0) + 1
 
     def goes_round(self, observer: Observer, dates: Dates) -> bool:
-        """Tell whether a run comes to the same again, as far as what may follow is concerned, while a clock runs."""
+        """Return whether a run repeats a state, up to indistinguishable values, while the observer's clock runs."""
         history = dates.history()
         seen: dict[tuple[int, tuple[int, ...]], int] = {}
         for at, (now, (place, ages)) in enumerate(history[:-1]):
@@ -437,18 +438,18 @@ class ZoneTimes:
                 return True
         return False
 
-    # --- when steps are taken
+    # --- dates of steps
 
     def spans(self, steps: Sequence[Set[TakenStep]]) -> list[Span]:
-        """Return for each of some sets of steps when one of them is taken."""
+        """Return for each set of steps the span of dates at which one of them is taken."""
         from checker.engines.zones.spans import Spans  # noqa: PLC0415 - few ask for them
 
         return Spans(self, steps).found()
 
-    # --- endurance, and whether time goes on
+    # --- endurance and timelocks
 
     def exhausted(self) -> tuple[dict[str, Run], int]:
-        """Return the first run on which each vehicle is aloft for too long, and how many configurations show that."""
+        """Return the first run that exhausts each vehicle, and the number of configurations with an exhausted one."""
         zones, first, where = np.arange(len(self.places)), dict[Name, int](), np.zeros(0, np.int64)
         for vehicle, endurance in self.network.timing.endurances:
             late = self.latest(zones, Clock(Sort.ALOFT, vehicle)) > endurance.lasts
@@ -462,12 +463,12 @@ class ZoneTimes:
 
     @cached_property
     def _aloft(self) -> dict[Name, NDArray[np.bool_]]:
-        """Where each vehicle that lasts so long is there and is not where it is restored."""
+        """For each vehicle with an endurance, whether it exists and is not where it is restored."""
         vehicles = [vehicle for vehicle, _ in self.network.timing.endurances]
         return {vehicle: self.survey().where(partial(is_aloft, vehicle)) for vehicle in vehicles}
 
     def exhaustion(self, location: int) -> dict[Name, Constraint]:
-        """Return what the clocks show in a location where a vehicle is aloft for too long."""
+        """Return the clock constraint in a location for each vehicle that has exceeded its endurance."""
         place = int(self.search.ranks.room[self.network.place(location).number])
         return {
             vehicle: Constraint(self.network.index(location, Clock(Sort.ALOFT, vehicle)), endurance.lasts + 1)
@@ -485,7 +486,7 @@ class ZoneTimes:
         return run_of(self.search, goal, self.search.depth(zone), self.reached.tolist()).run()
 
     def stop(self) -> Stop | None:
-        """Return the first run after which no time can pass any more."""
+        """Return the first run to a timelock, None if there is none."""
         from checker.engines.zones.stopping import first_stop  # noqa: PLC0415 - few missions go round in no time
 
         return first_stop(self.network)
@@ -494,7 +495,7 @@ class ZoneTimes:
 def _shown(
     observer: Observer, search: Search, where: Watch
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the least and the most that the observer's clock, the last, shows in the zones of some locations."""
+    """Return the least and the greatest value of the observer's clock, the last, in the zones of one of its states."""
     places = search.places.room[: search.count]
     zones = np.flatnonzero(np.array([spot.watch is where for spot in observer.spots])[places])
     sizes = search.automaton.locations.used[SIZE::LOCATION][places[zones]].astype(np.int64)

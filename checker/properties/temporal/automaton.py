@@ -1,9 +1,9 @@
 """From a linear formula to a generalized Büchi automaton, by tableau.
 
-A state is a set of obligations; the formulas of a state unfold into transitions, each with literals that the present
-must fulfil, the obligations that it leaves, and the untils whose promise it postpones. A run is accepted if no until
-is postponed for ever. Acceptance stands on transitions (Couvreur, FM 1999), which needs fewer states than the same
-tableau with acceptance on states (Gerth, Peled, Vardi and Wolper, PSTV 1995).
+A state is a set of obligations. Its formulas unfold into transitions, each with literals that the present must fulfil,
+the remaining obligations, and the untils whose promise it postpones. A run is accepted if no until is postponed for
+ever. Acceptance is on transitions (Couvreur, FM 1999), which needs fewer states than the same tableau with acceptance
+on states (Gerth, Peled, Vardi and Wolper, PSTV 1995).
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -19,7 +19,7 @@ from semantics.properties.temporal import Temporal
 MOST_STATES = 128
 MOST_TERMS = 512
 MOST_UNTILS = 60
-"""Where a formula's automaton is refused: untils are bits of a 64-bit word, the others bound time and memory."""
+"""The limits of an automaton: untils are bits of a 64-bit word, the others bound time and memory."""
 
 
 class TooLargeError(Exception):
@@ -28,7 +28,7 @@ class TooLargeError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """One transition: what the present must fulfil, the state after it, and the promises that it doesn't postpone."""
+    """One transition: the literals to fulfil now, the next state, and the promises that it doesn't postpone."""
 
     literals: tuple[Number, ...]
     target: int
@@ -42,7 +42,7 @@ class Automaton:
     Attributes:
         moves: The transitions of each state; the first state is the initial one.
         literals: The literals of the moves by their numbers.
-        marks: How many promises there are: a run is accepted if its transitions have each mark infinitely often.
+        marks: The number of promises. A run is accepted if its transitions have each mark infinitely often.
         whatever: The state from which every run is accepted, if there is one.
     """
 
@@ -53,7 +53,7 @@ class Automaton:
 
 
 def automaton_of(formula: Temporal, claimed: bool = True) -> Automaton:
-    """Return an automaton that accepts the runs of which a formula, or its denial, is true.
+    """Return an automaton that accepts the runs of which a formula, or its negation, is true.
 
     Raises:
         TooLargeError: It would have too many states.
@@ -70,7 +70,7 @@ State = tuple[Number, ...]
 
 @dataclass(frozen=True, slots=True)
 class _Term:
-    """One way to fulfil formulas: literals now, obligations for what comes next, untils that are postponed."""
+    """One way to fulfil formulas: literals now, obligations for the next moment, postponed untils."""
 
     now: frozenset[Number] = frozenset()
     after: frozenset[Number] = frozenset()
@@ -80,7 +80,7 @@ class _Term:
         return _Term(self.now | other.now, self.after | other.after, self.postponed | other.postponed)
 
     def covers(self, other: "_Term") -> bool:
-        """Tell whether all that the other allows, this allows too."""
+        """Return whether this term is implied by the other one."""
         return self.now <= other.now and self.after <= other.after and self.postponed <= other.postponed
 
     def key(self) -> tuple[list[Number], list[Number], list[Number]]:
@@ -126,7 +126,7 @@ class _Tableau:
         return found
 
     def state(self, term: _Term) -> State:
-        """Return what a term leaves to be fulfilled: conjunctions taken apart, `f` left out where `[] f` is owed."""
+        """Return the obligations of a term: conjunctions are split, and `f` is dropped beside `[] f`."""
         found, waiting = set[Number](), sorted(term.after)
         while waiting:
             number = waiting.pop()
@@ -181,14 +181,14 @@ class _Tableau:
         return found
 
     def possible(self, term: _Term) -> bool:
-        """Tell whether no literal is both claimed and denied."""
+        """Return whether no literal is both claimed and denied."""
         claims = dict[Temporal, bool]()
         literals = map(self.literal, term.now)
         return all(claims.setdefault(formula, claimed) is claimed for formula, claimed in literals)
 
 
 def least(terms: Iterable[_Term]) -> tuple[_Term, ...]:
-    """Return the terms that no other covers, in one order."""
+    """Return the terms that no other covers, in a fixed order."""
     found: list[_Term] = []
     for term in sorted(set(terms), key=lambda term: (len(term.now) + len(term.after), term.key())):
         if not any(other.covers(term) for other in found):
@@ -206,7 +206,7 @@ Moves = list[tuple[Move, ...]]
 
 
 def _useful(moves: Moves, marks: int) -> Moves:
-    """Take out the moves to states from which nothing is accepted."""
+    """Remove the moves to states that accept nothing."""
     graph = nx.MultiDiGraph()
     graph.add_nodes_from(range(len(moves)))
     graph.add_edges_from(
@@ -228,7 +228,7 @@ def _union(marks: Iterable[int]) -> int:
 
 
 def _merged(moves: Moves) -> dict[int, tuple[Move, ...]]:
-    """Merge the states that can do the same: their coarsest bisimulation, the initial state in block 0."""
+    """Merge equivalent states by the coarsest bisimulation, the initial state in block 0."""
     blocks, count = [0] * len(moves), 1
     while True:
         shapes = [_shape(out, blocks) for out in moves]
@@ -240,7 +240,7 @@ def _merged(moves: Moves) -> dict[int, tuple[Move, ...]]:
 
 
 def _numbered(moves: dict[int, tuple[Move, ...]]) -> tuple[tuple[Move, ...], ...]:
-    """Number the blocks that are reached, nearest first."""
+    """Number the reachable blocks, nearest first."""
     order = {block: number for number, block in enumerate(_reached(moves))}
     return tuple(tuple(Move(m.literals, order[m.target], m.marks) for m in moves[block]) for block in order)
 
@@ -252,7 +252,7 @@ def _whatever(moves: tuple[tuple[Move, ...], ...], marks: int) -> int | None:
 
 
 def _shape(out: tuple[Move, ...], blocks: list[int]) -> tuple[Move, ...]:
-    """Return the moves between blocks, without those that another makes needless."""
+    """Return the moves between blocks, without those that another one subsumes."""
     found: list[Move] = []
     for move in dict.fromkeys(Move(m.literals, blocks[m.target], m.marks) for m in out):
         if not any(_needless(move, other) for other in found):
@@ -266,7 +266,7 @@ def _needless(move: Move, other: Move) -> bool:
 
 
 def _reached(moves: dict[int, tuple[Move, ...]]) -> Iterator[int]:
-    """Yield the blocks that are reached from the first, nearest first."""
+    """Yield the blocks that are reachable from the first, nearest first."""
     seen, waiting = {0}, [0]
     while waiting:
         block = waiting.pop(0)

@@ -1,4 +1,4 @@
-"""Branching time by fixpoints: where a formula is true, and a run that shows its value at the start.
+"""Branching time by fixpoints: the configurations where a formula is true, and a run that shows its initial value.
 
 A partial graph gives bounds: where a formula is surely true, and where it may be.
 """
@@ -40,9 +40,9 @@ class Branching:
     """Evaluates formulas on a graph.
 
     Attributes:
-        graph: What was explored, total.
-        truth: Of its configurations.
-        fairness: What the runs do infinitely often over which paths are quantified.
+        graph: The explored graph, total.
+        truth: The truth of atoms in its configurations.
+        fairness: The fairness conditions of the runs that path quantifiers range over.
     """
 
     graph: Graph
@@ -85,20 +85,20 @@ class Branching:
         raise ValueError(f"no branching formula: {formula}")
 
     def before(self, after: Bools, perhaps: bool) -> Bools:
-        """Return the configurations of which some successor is one of these."""
+        """Return the configurations with a successor among these."""
         found = self.graph.enabled(after[self.graph.targets])
         return found | self.graph.open if perhaps else found
 
     def until(self, kept: Bools, goal: Bools, perhaps: bool) -> Bools:
-        """Return from where a run keeps to some configurations until it comes to a goal."""
+        """Return the configurations from which a run stays in `kept` until it reaches a goal."""
         return reaching(self.backwards, goal | (self.graph.open & kept) if perhaps else goal, kept)
 
     def for_ever(self, kept: Bools, perhaps: bool) -> Bools:
-        """Return from where a fair run keeps to some configurations."""
+        """Return the configurations from which a fair run stays in `kept`."""
         return self.until(kept, self.fair(kept) >= 0, perhaps)
 
     def fair(self, kept: Bools) -> "np.ndarray[tuple[int], np.dtype[np.int64]]":
-        """Return the fair components among some configurations; where it matters, those known to the end."""
+        """Return the fair components among some configurations; with fairness only among fully expanded ones."""
         return fair_components(
             self.graph, self.fairness, kept if self.fairness.none else kept & ~self.graph.open
         )
@@ -108,8 +108,7 @@ class Branching:
     def evidence(self, formula: Temporal, at: int = 0, *, claimed: bool = True) -> Lasso:
         """Return a run that shows why a formula is surely true, or surely false, at a configuration.
 
-        What is said of all paths by a true formula, or of some path by a false one, no single run can show: there
-        it ends.
+        No single run shows a true formula about all paths, or a false one about some path: the run ends there.
         """
         return self._evidence(core(formula), at, claimed)
 
@@ -139,22 +138,22 @@ class Branching:
         return known if claimed else ~known
 
     def going(self, at: int, kept: Bools, then: Temporal, *, once: bool = False) -> Lasso:
-        """Return a shortest run to where a formula is true, and on from there as its evidence goes."""
+        """Return a shortest run to a configuration where a formula is true, extended by its evidence."""
         goal = self._surely(then, True)
         if goal[at] and not once:
             return self._evidence(then, at, True)
         within, arriving = kept | goal, goal[self.graph.targets]
         path = shortest(self.graph, at, arriving, through=within)
-        assert path is not None  # it was computed backwards that there is one
+        assert path is not None  # the backward fixpoint found one
         rest = self._evidence(then, int(self.graph.targets[path[-1]]), True)
         return Lasso((*path, *rest.stem), rest.loop, self.graph.partial is None and not len(rest))
 
     def staying(self, at: int, kept: Bools) -> Lasso:
-        """Return a fair run that keeps to some configurations for ever."""
+        """Return a fair run that stays in some configurations for ever."""
         components = self.fair(kept)
         if components[at] < 0:
             path = shortest(self.graph, at, (components >= 0)[self.graph.targets], through=kept)
-            assert path is not None  # it was computed backwards that there is one
+            assert path is not None  # the backward fixpoint found one
         else:
             path = ()
         entry = int(self.graph.targets[path[-1]]) if path else at

@@ -13,7 +13,7 @@ from checker.properties.temporal.digraph import Arrows, Indices, rows_of
 
 @dataclass(frozen=True, eq=False)
 class Streett:
-    """What has to be taken infinitely often if it is enabled infinitely often (Streett's condition).
+    """A strong fairness (Streett) condition: taken infinitely often if it is enabled infinitely often.
 
     Attributes:
         enabled: For each node, whether it is enabled there.
@@ -26,10 +26,10 @@ class Streett:
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """What a run has to do infinitely often.
+    """The conditions on a run's infinitely frequent nodes and edges.
 
     Attributes:
-        recurrent: For each condition the edges of which one is to be taken infinitely often.
+        recurrent: For each condition a set of edges; one of them is taken infinitely often.
         strong: The conditions of strong fairness.
     """
 
@@ -38,11 +38,11 @@ class Conditions:
 
     @property
     def none(self) -> bool:
-        """Whether every run meets them."""
+        """Whether every run satisfies them."""
         return not self.recurrent and not self.strong
 
     def over(self, nodes: Numbers, edges: Numbers) -> "Conditions":
-        """Return the conditions of a graph whose nodes and edges stand for these."""
+        """Return the conditions of a subgraph with these nodes and edges."""
         strong = (Streett(each.enabled[nodes], each.taken[edges]) for each in self.strong)
         return Conditions(tuple(each[edges] for each in self.recurrent), tuple(strong))
 
@@ -50,17 +50,17 @@ class Conditions:
 def fair_components(
     arrows: Arrows, conditions: Conditions, within: Bools | None = None, by: Bools | None = None
 ) -> Indices:
-    """Return for each node the number of the fair component that it is in, or -1.
+    """Return for each node the number of its fair component, or -1.
 
-    A component in which a strong condition is enabled and never taken loses the nodes where it is enabled, and what
-    is left of it is looked at again (Emerson and Lei, 1987). Each round is linear; there are at most as many rounds
-    as conditions are nested.
+    A component in which a strong condition is enabled and never taken loses the nodes where it is enabled; the rest is
+    divided again (Emerson and Lei, 1987). Each round is linear; the number of rounds is at most the nesting of
+    conditions.
 
     Args:
         arrows: The graph.
-        conditions: What fair runs do infinitely often.
-        within: The nodes among which a run has to stay.
-        by: The edges by which it may go.
+        conditions: The conditions of fair runs.
+        within: The nodes in which a run has to stay.
+        by: The edges that it may take.
     """
     size = len(arrows.starts) - 1
     found = np.full(size, -1, dtype=np.int64)
@@ -87,8 +87,8 @@ class _Part:
         nodes: The nodes of the part.
         edges: The edges within components.
         of: For each of the nodes, the number of its component.
-        inner: For each of the edges, that of the component that it is in.
-        count: How many components there are.
+        inner: For each of the edges, the number of its component.
+        count: The number of components.
     """
 
     nodes: Numbers
@@ -106,7 +106,7 @@ class _Part:
 
 @dataclass(frozen=True, eq=False)
 class _Judged:
-    """Which components are fair, and which nodes are to be looked at again."""
+    """The fair components, and the nodes to divide again."""
 
     fair: Bools
     left: Bools

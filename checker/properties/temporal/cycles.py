@@ -1,8 +1,8 @@
 """Shortest fair cycles, with the way to them: exact within a bound of effort.
 
-With one thing to be met on the way that is a breadth-first search from each node. With several, what was met so far is
-part of what is searched: there are as many sets of them as there are bits, and no better way is known (it is NP-hard).
-So what has to be met is asked for one by one, as shortest cycles that don't meet it are found.
+For a single demand this is a breadth-first search from each node. For several, the set of satisfied demands is part of
+the search state: there are exponentially many sets, and no better way is known (it is NP-hard). So demands are added
+one by one, as shortest cycles that violate them are found.
 """
 
 from dataclasses import dataclass
@@ -17,17 +17,17 @@ from checker.properties.temporal.digraph import Arrows, Indices, Rows, leaving, 
 from checker.properties.temporal.effort import Effort, Exhausted
 
 MOST_BITS: Final = 12
-"""How many bits may tell what of that which has to be met was met."""
+"""The most bits of a set of demands."""
 
 MOST_TRIPLES: Final = 1 << 23
 MOST_TRIPLES_OF_ONE: Final = 1 << 26
-"""Of where a cycle began, where it is and what it has met: of the beginnings that are searched at once, and of one."""
+"""The most triples of a start, a node and a set of demands: for the starts of one search, and for one start."""
 
 Cycle = tuple[int, tuple[int, ...]]
 """A node and the edges from there to there."""
 
 
-def shortest_cycle(  # noqa: PLR0913, PLR0917  # each says one thing of the search
+def shortest_cycle(  # noqa: PLR0913, PLR0917  # independent parameters
     arrows: Arrows,
     depths: Numbers,
     components: Numbers,
@@ -36,19 +36,19 @@ def shortest_cycle(  # noqa: PLR0913, PLR0917  # each says one thing of the sear
     effort: Effort,
     by: Bools | None = None,
 ) -> Cycle | None:
-    """Return a fair cycle with the smallest sum of its node's depth and its length, None where none is small enough.
+    """Return a fair cycle with the least sum of its node's depth and its length, None if no sum is small enough.
 
     Args:
         arrows: The graph.
-        depths: How far each node is; -1 where it is not reached.
+        depths: The distance of each node; -1 for an unreached one.
         components: The fair components.
-        conditions: What the cycle meets.
-        most: The sum has to be smaller.
-        effort: What may be spent.
-        by: The edges that it may take, all if not given.
+        conditions: The conditions of the cycle.
+        most: The upper bound of the sum, exclusive.
+        effort: The effort left.
+        by: The edges that it may take; by default all.
 
     Raises:
-        Exhausted: It takes too long.
+        Exhausted: The search exceeds the effort.
     """
     near = np.flatnonzero((components >= 0) & (depths >= 0) & (depths + 1 < most))
     nodes = near[np.argsort(depths[near], kind="stable")]
@@ -64,13 +64,13 @@ def shortest_cycle(  # noqa: PLR0913, PLR0917  # each says one thing of the sear
 
 
 def _demands(conditions: Conditions, nodes: int) -> list[Streett]:
-    """Return what a cycle meets: what has to recur is owed everywhere."""
+    """Return the demands on a cycle; a recurrent condition is a demand that is enabled everywhere."""
     everywhere = np.ones(nodes, dtype=np.bool_)
     return [*(Streett(everywhere, each) for each in conditions.recurrent), *conditions.strong]
 
 
 def _fair(rows: Rows, depths: Numbers, demands: list[Streett], most: int, effort: Effort) -> Cycle | None:
-    """Return a shortest cycle that meets all demands: one that meets some of them, if it happens to meet the others."""
+    """Return a shortest cycle that meets all demands; only those that a shortest cycle misses are searched for."""
     asked: list[Streett] = []
     while True:
         found = _Search(rows, depths, _Owed.of(asked, rows), effort).run(most)
@@ -87,12 +87,12 @@ def _meets(cycle: Cycle, demand: Streett, rows: Rows) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class _Owed:
-    """What a cycle has to meet, as sets of bits.
+    """The demands on a cycle, as sets of bits.
 
     Attributes:
-        met: What each edge meets.
-        settled: For each set, that which stands for it: what was taken is no longer owed, enabled or not.
-        enough: For each set, whether it is enough.
+        met: The demands that each edge meets.
+        settled: For each set an equivalent one: a taken demand no longer depends on whether it is enabled.
+        enough: For each set, whether it suffices.
     """
 
     met: Indices
@@ -120,13 +120,13 @@ class _Owed:
 
     @property
     def sets(self) -> int:
-        """How many sets there are."""
+        """The number of sets."""
         return len(self.enough)
 
 
 @dataclass(frozen=True, eq=False)
 class _Search:
-    """Searches from each node, the nearest first, among those that are not nearer: a cycle is entered where that is."""
+    """Searches from each node, nearest first, through no nearer ones: a cycle is entered at its nearest node."""
 
     rows: Rows
     depths: Numbers
@@ -146,7 +146,7 @@ class _Search:
 
     @cached_property
     def block(self) -> int:
-        """How many beginnings are searched at once."""
+        """The number of starts in one search."""
         triples = len(self.depths) * self.owed.sets
         if triples > MOST_TRIPLES_OF_ONE:
             raise Exhausted
@@ -185,7 +185,7 @@ class _Search:
 
 
 def _path(layers: list[tuple[Indices, Indices]], last: int) -> tuple[int, ...]:
-    """Return the edges that lead to one of those of the last layer."""
+    """Return the edges that lead to an entry of the last layer."""
     path = []
     for before, edges in reversed(layers):
         path.append(int(edges[last]))

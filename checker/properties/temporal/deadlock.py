@@ -1,4 +1,4 @@
-"""Deadlock under fairness: where may a fair run stay for ever although something is left to be done?"""
+"""Deadlock under fairness: fair runs that stay for ever although work is left."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,10 +16,10 @@ from checker.properties.temporal.shortest import run_into
 
 @dataclass(frozen=True, eq=False)
 class Deadlock:
-    """What is left to be done where fair runs may stay.
+    """The remaining work at configurations where fair runs may stay.
 
     Attributes:
-        finding: What it is, at the configuration of the smallest number.
+        finding: The deadlock, at the configuration of the smallest number.
         components: The fair components of such configurations, -1 elsewhere.
     """
 
@@ -29,15 +29,15 @@ class Deadlock:
 
 @dataclass(frozen=True, eq=False)
 class Deadlocks:
-    """Looks for fair runs along which nothing but the environment can move any more.
+    """Searches for fair runs along which only the environment can move any more.
 
-    Along a cycle of the environment's steps neither agents nor requests change. So what is left to be done is asked of
-    one configuration of each fair component.
+    Along a cycle of the environment's steps neither agents nor requests change. So one configuration of each fair
+    component determines the remaining work.
 
     Attributes:
-        graph: What was explored, total.
-        fairness: What fair runs do infinitely often.
-        stuck: What is left to be done in a configuration where no agent can move, None where nothing is.
+        graph: The explored graph, total.
+        fairness: The conditions of fair runs.
+        stuck: Returns the deadlock at a configuration where no agent can move, None without remaining work.
     """
 
     graph: Graph
@@ -45,12 +45,12 @@ class Deadlocks:
     stuck: Callable[[int], Finding | None]
 
     def still(self) -> Bools:
-        """Return for each configuration whether nothing but the environment can move."""
+        """Return for each configuration whether only the environment can move."""
         agents = np.fromiter((label.agent is not None for label in self.graph.labels), dtype=np.bool_)
         return ~self.graph.enabled(self.graph.taken(agents)) & ~self.graph.open
 
     def found(self) -> tuple[Deadlock, ...]:
-        """Return what is left to be done somewhere, each thing once, the nearest first."""
+        """Return the different deadlocks, the nearest first."""
         components = fair_components(self.graph, self.fairness, self.still())
         numbers, firsts = np.unique(components, return_index=True)
         found: dict[str, tuple[Finding, list[int]]] = {}
@@ -65,10 +65,10 @@ class Deadlocks:
         )
 
     def run(self, deadlock: Deadlock) -> Lasso:
-        """Return a run that stays there for ever."""
+        """Return a run that stays in a deadlock for ever."""
         return run_into(self.graph, deadlock.components, self.fairness, deadlock.finding.at)
 
     def led_on(self, among: Bools) -> Lasso | None:
-        """Return a shortest run to a configuration from which fair runs lead on, None where there is none."""
+        """Return a shortest run to one of the given configurations, None if none is reachable."""
         path = shortest(self.graph, 0, among[self.graph.targets])
         return None if path is None else Lasso(path, shortest=True)

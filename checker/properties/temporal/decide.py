@@ -21,7 +21,8 @@ from checker.properties.temporal.lassos import Lasso
 from checker.properties.temporal.progress import Pending, Progress, Starved, owed, pending_requests
 from checker.properties.temporal.truth import Truth, Valuation, valuation
 from checker.properties.temporal.vacuity import is_judged
-from checker.traces import Trace, replay, step_of, to_json
+from checker.steps import step_of
+from checker.traces import Trace, replay, to_json
 from checker.verdicts import Outcome, Verdict, Violation
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
@@ -39,16 +40,16 @@ def kept_graph(found: Exploration) -> Graph:
 
 
 def where_true(found: Exploration, propositions: list[Proposition]) -> Valuation:
-    """Return where propositions are true."""
+    """Return the configurations where propositions are true."""
     if found.survey is not None:
         return found.survey.valuation(propositions)
     return valuation(found.configurations, propositions)
 
 
 def is_still(found: Exploration, formula: Temporal) -> bool:
-    """Tell whether nothing that a formula asks of configurations ever changes, and it asks nothing else.
+    """Return whether a formula reads only configurations, and the values it reads never change.
 
-    Where a bound is met meanwhile, it is not said: the verdict is known by then.
+    The answer is False if a bound is met meanwhile: the verdict is known by then, and the remark is dropped.
     """
     asked = tuple(atoms(formula))
     if not all(isinstance(each, Now) for each in asked):
@@ -63,7 +64,7 @@ def is_still(found: Exploration, formula: Temporal) -> bool:
 
 
 def where_pending(found: Exploration) -> Pending:
-    """Return where each request is pending."""
+    """Return the configurations in which each request is pending."""
     if found.survey is not None:
         return found.survey.pending()
     return pending_requests(found.configurations)
@@ -80,11 +81,11 @@ ENOUGH: Final = {
         _WORLD,
     ),
 }
-"""Fairness that a mission usually means, as it is written, the less the earlier."""
+"""Usual fairness assumptions as they are written, weaker ones first."""
 
 
 class Decider:
-    """Decides the temporal properties of one exploration; what they share is computed once."""
+    """Decides the temporal properties of one exploration, with shared intermediate results."""
 
     def __init__(
         self, found: Exploration, properties: Iterable[Property], most: int = MOST_VIOLATIONS
@@ -102,7 +103,7 @@ class Decider:
         self.formulas = Formulas(truth, found.complete, partial(is_still, found))
 
     def decide(self, asked: Property) -> Verdict:
-        """Return the verdict on a property; what is not violated holds only where everything was explored."""
+        """Return the verdict on a property; it holds only after a complete exploration."""
         match asked.kind:
             case PropertyKind.LTL:
                 return self.linear(asked)
@@ -118,7 +119,7 @@ class Decider:
     # --- linear and branching time
 
     def linear(self, asked: Property) -> Verdict:
-        """Return the verdict on what is claimed of every fair run."""
+        """Return the verdict on a formula about every fair run."""
         assert asked.temporal is not None
         found = self.formulas.linear(asked.temporal, self.conditions(asked.fairness), asked.ranges)
         if found.run is None or found.outcome is not Outcome.VIOLATED:
@@ -127,7 +128,7 @@ class Decider:
         return self.violated(asked, message, found.run, tuple(self.pauses(found.run)))
 
     def branching(self, asked: Property) -> Verdict:
-        """Return the verdict on what is claimed of the tree of fair runs."""
+        """Return the verdict on a formula about the tree of fair runs."""
         assert asked.temporal is not None
         found = self.formulas.branching(asked.temporal, self.conditions(asked.fairness), asked.ranges)
         if found.run is None or found.outcome is not Outcome.VIOLATED:
@@ -138,7 +139,7 @@ class Decider:
         return self.violated(asked, f"false at c0: {asked.shown}", found.run, shown)
 
     def unviolated(self, asked: Property, found: Decision) -> Verdict:
-        """Return the verdict on a formula that holds, or that nothing found speaks against."""
+        """Return the verdict on a formula without a counterexample."""
         return Verdict(
             asked,
             found.outcome,
@@ -149,7 +150,7 @@ class Decider:
         )
 
     def violated(self, asked: Property, message: str, run: Lasso, shown: tuple[str, ...]) -> Verdict:
-        """Return the verdict on a formula that is violated, and whether only unfair runs do."""
+        """Return the verdict on a violated formula, and whether only unfair runs violate it."""
         assert asked.temporal is not None
         if not asked.fairness:
             ways = ((words, self.conditions(each)) for words, each in ENOUGH.items())
@@ -203,7 +204,7 @@ class Decider:
     # --- deadlock under fairness
 
     def deadlock(self, asked: Property) -> Verdict:
-        """Return the verdict on whether fair runs stay for ever where something is left to be done."""
+        """Return the verdict on whether fair runs stay for ever although work is left."""
         deadlocks = Deadlocks(self.graph, self.conditions(asked.fairness), self.stuck)
         found = deadlocks.found()
         violations = []
@@ -230,34 +231,34 @@ class Decider:
         )
 
     def stuck(self, number: int) -> Finding | None:
-        """Return what is left to be done in a configuration where no agent can move, None where nothing is."""
+        """Return the deadlock at a configuration where no agent can move, None without remaining work."""
         inspection, c = DeadlockFreedom(), self.found.configurations[number]
         inspection(number, c, expand(c))
         return next(iter(inspection.collected.first.values()), None)
 
-    # --- what they share
+    # --- shared parts
 
     def conditions(self, declared: Iterable[Fairness]) -> Conditions:
-        """Return what fair runs do infinitely often."""
+        """Return the conditions of fair runs."""
         return conditions_of(declared, self.graph, self.setting.arriving)
 
     def note(self, declared: tuple[Fairness, ...], *always: str) -> str:
-        """Return what is assumed."""
+        """Return the fairness assumptions as text."""
         assumed = (*always, *map(str, declared))
         return f"under {' and '.join(assumed)}" if assumed else ""
 
     def empty(self, declared: tuple[Fairness, ...]) -> Iterator[str]:
-        """Yield what of it is about nothing; what was not explored may have it."""
+        """Yield the assumptions without any step; none if the exploration is incomplete."""
         for each in declared if self.found.complete else ():
             if not any(True for _ in classes(each, self.graph.labels, self.setting.arriving)):
                 yield f"{each} is about no step that ever is"
 
     def unless_violated(self) -> Outcome:
-        """Return what it means that nothing speaks against a property."""
+        """Return the outcome for a property without a violation."""
         return Outcome.HOLDS if self.found.complete else Outcome.INCOMPLETE
 
     def pauses(self, lasso: Lasso) -> Iterator[str]:
-        """Yield where a run stays for a moment only: in a trace that is no step."""
+        """Yield where a run stutters before it goes on; a trace has no step for that."""
         edges = (*lasso.stem, *lasso.loop)
         steps = [self.graph.actions[edge] >= 0 for edge in edges]
         for at, is_step in enumerate(steps):
@@ -265,7 +266,7 @@ class Decider:
                 yield f"it stays at c{sum(steps[:at])} for a moment before it goes on"
 
     def trace(self, lasso: Lasso) -> Trace:
-        """Return a run as a trace, replayed through the rules; staying is no step."""
+        """Return a run as a trace, replayed through the rules; stutter steps are left out."""
         stem, loop = ([e for e in edges if self.graph.actions[e] >= 0] for edges in (lasso.stem, lasso.loop))
         stays = lasso.loop or (lasso.stem and self.graph.actions[lasso.stem[-1]] < 0)
         configurations = self.found.configurations

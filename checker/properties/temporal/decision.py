@@ -1,4 +1,4 @@
-"""Decide a formula on a graph, under fairness: of missions and of systems of bigraphs alike."""
+"""Decide a formula on a graph, under fairness: for missions and for bigraphical reactive systems alike."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from checker.properties.temporal.branching import Branching
 from checker.properties.temporal.components import Conditions
 from checker.properties.temporal.evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso
-from checker.properties.temporal.linear import counterexample, shortest_counterexample
+from checker.properties.temporal.linear import counterexample
 from checker.properties.temporal.truth import Truth
 from checker.properties.temporal.vacuity import Judged, judge_branching, judge_linear
 from checker.verdicts import Outcome
@@ -19,14 +19,14 @@ from semantics.properties.temporal import Temporal
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """What became of a formula.
+    """The decision on a formula.
 
     Attributes:
-        outcome: What is known.
-        examined: Of how many states it is known.
-        run: A counterexample; where it holds, a witness. Empty where a formula is violated and no single run shows it.
-        remarks: What makes a formula that holds say less than it seems to.
-        note: Why it is not decided.
+        outcome: The outcome.
+        examined: The number of states with a known value.
+        run: A counterexample; a witness if the formula holds. Empty if it is violated and no single run shows it.
+        remarks: Reasons why a true formula may be vacuous.
+        note: Why it is undecided.
     """
 
     outcome: Outcome
@@ -41,9 +41,9 @@ class Formulas:
     """Decides formulas on one graph.
 
     Attributes:
-        truth: Where their atoms are true.
-        complete: Whether the graph is all there is; else what nothing speaks against is not known to hold.
-        is_still: Tells whether nothing that a formula speaks of ever changes.
+        truth: The truth of their atoms.
+        complete: Whether the graph is complete; else no formula is known to hold.
+        is_still: Returns whether the values that a formula reads never change.
     """
 
     truth: Truth
@@ -51,9 +51,9 @@ class Formulas:
     is_still: Callable[[Temporal], bool]
 
     def linear(self, formula: Temporal, fairness: Conditions, ranges: Ranges = ()) -> Decision:
-        """Decide what is claimed of every fair run."""
+        """Decide a formula about every fair run."""
         try:
-            lasso = shortest_counterexample(self.truth.graph, self.truth, formula, fairness)
+            lasso = counterexample(self.truth.graph, self.truth, formula, fairness)
         except TooLargeError as error:
             return Decision(Outcome.INCOMPLETE, note=f"not decided: {error}; split the formula")
         if lasso is not None:
@@ -67,7 +67,7 @@ class Formulas:
         return Decision(Outcome.HOLDS, size, judged.witness, judged.remarks)
 
     def branching(self, formula: Temporal, fairness: Conditions, ranges: Ranges = ()) -> Decision:
-        """Decide what is claimed of the tree of fair runs."""
+        """Decide a formula about the tree of fair runs."""
         tree = Branching(self.truth.graph, self.truth, fairness)
         surely, perhaps = bool(tree.where(formula)[0]), bool(tree.where(formula, perhaps=True)[0])
         if not perhaps:
@@ -79,23 +79,23 @@ class Formulas:
         return Decision(Outcome.HOLDS, examined, judged.witness or witness, judged.remarks)
 
     def judged(self, formula: Temporal, judge: Callable[[], Judged]) -> Judged:
-        """Return what there is to say of a formula that holds of all fair runs."""
+        """Return the remarks on a formula that all fair runs satisfy, and a witness."""
         return Judged((STILL,)) if self.is_still(formula) else judge()
 
     def enough(self, formula: Temporal, linear: bool, ways: Iterable[tuple[str, Conditions]]) -> str | None:
-        """Return the first of some ways to be fair under which a formula holds that was violated, if one is."""
+        """Return the first of some fairness assumptions under which a violated formula holds, if any."""
         if not self.complete:
             return None
         holds = self.is_fairly_true if linear else self.is_fairly_true_of_all
         return next((words for words, fairness in ways if holds(formula, fairness)), None)
 
     def is_fairly_true(self, formula: Temporal, fairness: Conditions) -> bool:
-        """Tell whether a formula of linear time is true of all fair runs, as far as its automata are small."""
+        """Return whether all fair runs satisfy a linear formula; False if an automaton is too large."""
         try:
             return counterexample(self.truth.graph, self.truth, formula, fairness) is None
         except TooLargeError:
             return False
 
     def is_fairly_true_of_all(self, formula: Temporal, fairness: Conditions) -> bool:
-        """Tell whether a formula of branching time is true at the first state, of fair runs."""
+        """Return whether a branching formula is true at the first state, over fair runs."""
         return bool(Branching(self.truth.graph, self.truth, fairness).where(formula)[0])

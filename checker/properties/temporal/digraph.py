@@ -15,19 +15,19 @@ Indices = NDArray[np.int64]
 
 
 class Arrows(Protocol):
-    """What is searched: compressed sparse rows, as `checker.engines.graph.Graph` is."""
+    """A graph in compressed sparse rows, such as `checker.engines.graph.Graph`."""
 
     @property
     def starts(self) -> Numbers:
-        """Where the edges of each node begin, and after the last where they end."""
+        """The start of the edges of each node, and the end of the last."""
 
     @property
     def targets(self) -> Numbers:
-        """Where each edge leads."""
+        """The target of each edge."""
 
     @property
     def sources(self) -> Numbers:
-        """Where each edge comes from."""
+        """The source of each edge."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ class Rows:
 
     @cached_property
     def sources(self) -> Numbers:
-        """Where each edge comes from."""
+        """The source of each edge."""
         nodes = np.arange(len(self.starts) - 1, dtype=self.targets.dtype)
         return np.repeat(nodes, np.diff(self.starts))
 
@@ -51,7 +51,7 @@ def rows_of(sources: Numbers, targets: Numbers, nodes: int) -> Rows:
 
 
 def reversed_rows(arrows: Arrows) -> Rows:
-    """Return the graph with every edge turned round."""
+    """Return the graph with every edge reversed."""
     order = np.argsort(arrows.targets, kind="stable")
     return rows_of(arrows.targets[order], arrows.sources[order], len(arrows.starts) - 1)
 
@@ -65,7 +65,7 @@ def leaving(arrows: Arrows, nodes: Numbers) -> Indices:
 
 
 def reaching(backwards: Rows, goal: Bools, through: Bools) -> Bools:
-    """Return the nodes from which a path through some nodes leads to the goal, given the graph turned round."""
+    """Return the nodes from which a path through some nodes leads to the goal, given the reversed graph."""
     found = goal.copy()
     frontier: Numbers = np.flatnonzero(found)
     while len(frontier):
@@ -80,14 +80,14 @@ def reaching(backwards: Rows, goal: Bools, through: Bools) -> Bools:
 def shortest(
     arrows: Arrows, start: int, goal: Bools, through: Bools | None = None, by: Bools | None = None
 ) -> tuple[int, ...] | None:
-    """Return the edges of a shortest path whose last edge is one of the goal's; None where there is none.
+    """Return the edges of a shortest path whose last edge is in the goal; None if there is none.
 
     Args:
         arrows: The graph.
-        start: Where the path begins.
-        goal: The edges of which one is to be taken.
-        through: The nodes that it may come to, all if not given.
-        by: The edges that it may take, all if not given.
+        start: The first node.
+        goal: The edges of which the last is one.
+        through: The nodes that it may visit; by default all.
+        by: The edges that it may take; by default all.
     """
     parents = np.full(len(arrows.starts) - 1, -1, dtype=np.int64)
     seen = np.zeros(len(parents), dtype=np.bool_)
@@ -108,10 +108,10 @@ def shortest(
 
 
 def distances(arrows: Arrows, start: int, most: int, effort: Effort, through: Bools | None = None) -> Numbers:
-    """Return how far each node is from one, -1 where that is more than so many edges.
+    """Return the distance of each node from one, -1 beyond so many edges.
 
     Raises:
-        Exhausted: More would have to be looked at than the effort allows.
+        Exhausted: The search exceeds the effort.
     """
     found = np.full(len(arrows.starts) - 1, -1, dtype=np.int64)
     found[start] = 0
@@ -127,10 +127,10 @@ def distances(arrows: Arrows, start: int, most: int, effort: Effort, through: Bo
 
 
 def _discovered(arrows: Arrows, edges: Indices, seen: Bools, parents: Indices) -> Numbers:
-    """Note the first edge that leads to each new node, and return these nodes in that order."""
+    """Record the first edge to each new node, and return these nodes in that order."""
     fresh = edges[~seen[arrows.targets[edges]]]
     reached = arrows.targets[fresh]
-    parents[reached[::-1]] = fresh[::-1]  # of several the last that is written stays, so the first edge
+    parents[reached[::-1]] = fresh[::-1]  # the last write stays, so the first edge
     seen[reached] = True
     new: Numbers = reached[parents[reached] == fresh]
     return new

@@ -20,7 +20,7 @@ from semantics.properties.temporal import (
 
 
 def is_true_on(lasso: Lasso, formula: Temporal, truth: Truth) -> bool:
-    """Tell whether a formula is true of a run with a loop, by the definitions: O(length) for each operator."""
+    """Return whether a lasso satisfies a formula, by the definitions: O(length) for each operator."""
     return _Word(lasso, truth).truths(formula)[0]
 
 
@@ -31,7 +31,7 @@ class _Word:
         self.back = len(lasso.stem)
 
     def truths(self, formula: Temporal) -> list[bool]:
-        """Return for each position whether a formula is true from there on."""
+        """Return for each position whether the run from there satisfies a formula."""
         match formula:
             case Taken():
                 return [bool(self.truth.taken(formula)[edge]) for edge in self.edges]
@@ -64,7 +64,7 @@ class _Word:
         return [*values[1:], values[self.back]]
 
     def until(self, kept: list[bool], ends: list[bool], *, at_last: bool) -> list[bool]:
-        """Return where `kept` holds until `ends`, by going round the loop twice; `at_last` is what for ever counts."""
+        """Return where `kept` holds until `ends`, in two rounds of the loop; `at_last` is the value without an end."""
         found = [at_last] * len(self.edges)
         for _ in range(2):
             for at in reversed(range(len(found))):

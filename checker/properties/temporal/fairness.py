@@ -16,14 +16,14 @@ EACH_RULE_AND_REQUEST = (
     Fairness(False, Steps(), ("agent", "rule"), "rules"),
     Fairness(False, Steps(SERVES), ("label",), "requests"),
 )
-"""Under what progress is asked for: weak fairness of each bigActor's rules, and of the serving of each request."""
+"""The assumptions of progress: weak fairness of each bigActor's rules, and of the serving of each request."""
 
 
 def conditions_of(declared: Iterable[Fairness], graph: Graph, arriving: Collection[Name] = ()) -> Conditions:
     """Return the conditions of a total graph.
 
-    Weak fairness: infinitely often the steps are taken, or not enabled. Strong fairness: taken, if enabled infinitely
-    often.
+    Weak fairness: infinitely often the steps are taken, or not enabled. Strong fairness: taken infinitely often, if
+    enabled infinitely often.
     """
     recurrent: list[Bools] = []
     strong: list[Streett] = []
@@ -41,9 +41,9 @@ def conditions_of(declared: Iterable[Fairness], graph: Graph, arriving: Collecti
 def classes(
     fairness: Fairness, labels: tuple[Label, ...], arriving: Collection[Name] = ()
 ) -> Iterator[Bools]:
-    """Yield for each set of steps that is owed something which labels it has.
+    """Yield the labels of each set of steps that a fairness assumption promises separately.
 
-    The end of a flight is among them only if the mission says that it arrives, or names the rule `commit`.
+    The end of a flight is included only if the mission promises its arrival, or the assumption names the rule `commit`.
     """
     said = fairness.steps.rules == ("commit",)
     members: dict[tuple[object, ...], list[int]] = {}
@@ -58,13 +58,13 @@ def classes(
 
 
 def optional(labels: tuple[Label, ...], arriving: Collection[Name]) -> Bools:
-    """Return for each label whether its steps need never happen: the world's, and ends of flights that may last."""
+    """Return for each label whether its steps need never happen: the world's, and ends of flights without a promise."""
     found = (label.agent is None or not arrives(label, arriving) for label in labels)
     return np.fromiter(found, dtype=np.bool_, count=len(labels))
 
 
 def arrives(label: Label, arriving: Collection[Name]) -> bool:
-    """Tell whether a step is no end of a flight, or the end of one that the mission says arrives."""
+    """Return whether a step is no end of a flight, or the end of one that the mission promises."""
     if label.rule != "commit" or not isinstance(label.about, FLY):
         return True
     return all(node in arriving for node, _ in moved(label.about.reaction, label.about.match))

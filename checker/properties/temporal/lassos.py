@@ -12,18 +12,19 @@ from checker.properties.temporal.digraph import Arrows, Rows, rows_of, shortest
 
 MOST_ENTRIES: Final = 16
 MOST_EDGES: Final = 1_000_000
-"""A cycle is looked for at so many entries to fair components, the nearest first, and the shortest lasso is taken; at
-fewer where that means to search more than so many edges, and at one at least."""
+"""The most entries to fair components at which a cycle is searched, nearest first; the shortest lasso is taken. Fewer
+entries, at least one, if the search would exceed so many edges.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Lasso:
-    """The edges of a run: `stem`, and then `loop` again and again; without a loop whatever may follow.
+    """The edges of a run: `stem`, and then `loop` for ever; without a loop any continuation.
 
     Attributes:
-        stem: How it begins.
-        loop: What it repeats.
-        shortest: Whether it is known that no other run that shows the same has fewer edges.
+        stem: The first edges.
+        loop: The repeated edges.
+        shortest: Whether it is certain that no run with the same evidence has fewer edges.
     """
 
     stem: tuple[int, ...]
@@ -36,7 +37,7 @@ class Lasso:
 
 @dataclass(frozen=True, eq=False)
 class Component:
-    """A fair component as a graph of its own: its nodes and edges, by their numbers in the whole."""
+    """A fair component as a graph of its own; its nodes and edges have their numbers in the whole graph."""
 
     nodes: Numbers
     edges: Numbers
@@ -47,7 +48,7 @@ class Component:
 def component_of(
     arrows: Arrows, components: Numbers, node: int, conditions: Conditions, by: Bools | None = None
 ) -> Component:
-    """Return the component that a node is in."""
+    """Return the component of a node."""
     inside = components == components[node]
     nodes = np.flatnonzero(inside)
     allowed = inside[arrows.sources] & inside[arrows.targets]
@@ -58,9 +59,9 @@ def component_of(
 
 
 def fair_cycle(part: Component, entry: int) -> tuple[int, ...]:
-    """Return the edges of a short cycle through a node of a fair component, which meets the conditions.
+    """Return the edges of a short cycle through a node of a fair component that meets the conditions.
 
-    Each of them that the shortest cycle doesn't meet is met by a detour to where it is met nearest.
+    For each condition that the cycle misses, it takes a detour to the nearest edge that meets it.
     """
     start = int(np.searchsorted(part.nodes, entry))
     home = part.rows.targets == start
@@ -95,7 +96,7 @@ def fair_cycles(
 
 
 def _unmet(part: Component, cycle: tuple[int, ...]) -> Bools:
-    """Return the edges by which some condition is met that a cycle doesn't meet."""
+    """Return the edges that meet a condition missed by a cycle."""
     taken = np.array(cycle, dtype=np.int64)
     visited = part.rows.targets[taken]
     found = np.zeros(len(part.edges), dtype=np.bool_)
@@ -109,7 +110,7 @@ def _unmet(part: Component, cycle: tuple[int, ...]) -> Bools:
 
 
 def tightened(lasso: Lasso) -> Lasso:
-    """Return the same run written shorter: the loop not repeated in itself, nor begun before it is entered."""
+    """Return the same run in its shortest form: a primitive loop, entered as early as possible."""
     stem, loop = list(lasso.stem), list(lasso.loop)
     if not loop:
         return lasso

@@ -22,7 +22,7 @@ from semantics.properties.temporal import (
 )
 
 Number = int
-"""Of a formula among `Formulas.nodes`; numbers grow with formulas, so their order is the same in each process."""
+"""The index of a formula in `Formulas.nodes`, in order of construction: the same in each process."""
 
 Literal = tuple[Temporal, bool]
 """A formula without temporal operators, and whether it is claimed or denied."""
@@ -32,7 +32,7 @@ FALSE, TRUE = 0, 1
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """`lit`, `and`, `or`, `next`, `until` or `release`, with what it is applied to."""
+    """`lit`, `and`, `or`, `next`, `until` or `release`, with its operands."""
 
     operator: str
     operands: tuple[Number, ...] = ()
@@ -41,7 +41,7 @@ class Operation:
 
 @dataclass(slots=True)
 class Formulas:
-    """Makes formulas, simplified as they are made."""
+    """A factory of formulas, which simplifies them on construction."""
 
     nodes: list[Operation] = field(default_factory=lambda: [Operation("false"), Operation("true")])
     numbers: dict[Operation, Number] = field(default_factory=dict)
@@ -53,7 +53,7 @@ class Formulas:
         return self.numbers[operation]
 
     def literal(self, formula: Temporal, claimed: bool) -> Number:
-        """Return a formula without temporal operators, or its denial."""
+        """Return a formula without temporal operators, or its negation."""
         match formula:
             case Denied(inner):
                 return self.literal(inner, not claimed)
@@ -82,7 +82,7 @@ class Formulas:
     def _inside(
         self, outer: str, first: Number, inner: str, second: Number, *formulas: Number
     ) -> tuple[Number, ...] | None:
-        """Return what stands behind two operators, if all formulas begin with these."""
+        """Return the formulas behind two operators, if all formulas begin with these."""
         found = []
         for number in formulas:
             around = self.nodes[number]
@@ -121,9 +121,9 @@ class Formulas:
         return self._number(Operation("release", (left, right)))
 
     def normal(self, formula: Temporal, claimed: bool = True) -> Number:
-        """Return the negation normal form of a formula, or of its denial.
+        """Return the negation normal form of a formula, or of its negation.
 
-        What has no temporal operator and is about the configuration alone stays whole, as one literal.
+        A formula about the configuration alone, without temporal operators, stays whole, as one literal.
         """
         if isinstance(formula, State) or is_propositional(formula):
             return self.literal(formula, claimed)
@@ -155,7 +155,7 @@ class Formulas:
 
 
 def is_propositional(formula: Temporal) -> bool:
-    """Tell whether a formula is about the configuration alone."""
+    """Return whether a formula is about the configuration alone."""
     if isinstance(formula, State):
         return not isinstance(formula, Taken)
     return isinstance(formula, Denied | Both | Either) and all(map(is_propositional, parts(formula)))

@@ -19,15 +19,15 @@ class Product:
     """Pairs of a configuration and a state of the automaton, numbered by their distance from the first.
 
     Attributes:
-        starts: Where the edges of each node begin, and after the last where they end.
-        targets: Where each edge leads.
-        edges: For each edge, that of the graph.
+        starts: The start of the edges of each node, and the end of the last.
+        targets: The target of each edge.
+        edges: For each edge, the graph's edge.
         marks: For each edge, the promises that it keeps, a bit each.
         configurations: For each node, its configuration.
-        before: For each node, the one before it on a shortest way to it; -1 for the first.
-        by: For each node, the graph's edge that leads to it there.
-        prefix: The graph's edges on a shortest way to where the automaton accepts whatever follows, if it comes to
-            that; then the product is not complete.
+        before: For each node, its predecessor on a shortest path; -1 for the first.
+        by: For each node, the graph's edge from that predecessor.
+        prefix: The graph's edges of a shortest path after which the automaton accepts any continuation, if there is
+            one; the product is incomplete then.
     """
 
     starts: Numbers
@@ -41,15 +41,15 @@ class Product:
 
     @cached_property
     def sources(self) -> Numbers:
-        """Where each edge comes from."""
+        """The source of each edge."""
         return np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
 
     def way_to(self, node: int) -> tuple[int, ...]:
-        """Return the graph's edges on a shortest way to a node."""
+        """Return the graph's edges of a shortest path to a node."""
         return _way(self.before, self.by, node)
 
     def conditions(self, promises: int, fairness: Conditions) -> Conditions:
-        """Return what an accepted run does infinitely often: keep each promise, and be fair."""
+        """Return the conditions of an accepted fair run: each promise is kept infinitely often, and fairness."""
         kept = tuple((self.marks >> bit) & 1 == 1 for bit in range(promises))
         fair = fairness.over(self.configurations, self.edges)
         return Conditions((*kept, *fair.recurrent), fair.strong)
@@ -112,7 +112,7 @@ class _Search:
         return self.product()
 
     def accept(self, frontier: Numbers) -> None:
-        """Note where the automaton needs no further step to accept whatever follows."""
+        """Record the first node from which the automaton accepts any continuation without a further step."""
         for state, moves in enumerate(self.automaton.moves):
             free = [m for m in moves if m.target == self.automaton.whatever and not self.on_edges(m)]
             codes = frontier[frontier % self.states == state] if free else frontier[:0]
@@ -148,22 +148,22 @@ class _Search:
         return _Found(sources, targets, edges, np.full(len(edges), move.marks, dtype=self.marks))
 
     def allowed(self, configurations: Numbers, move: Move) -> Bools:
-        """Return which configurations fulfil a move's literals."""
+        """Return whether each configuration fulfils a move's literals."""
         found = np.ones(len(configurations), dtype=np.bool_)
         for formula, claimed in map(self.automaton.literals.__getitem__, move.literals):
             if not isinstance(formula, Taken):
                 found &= self.truth.here(formula)[configurations] == claimed
-                if is_about_steps(formula):  # what is enabled where not all is known, nobody can say
+                if is_about_steps(formula):  # unknown where successors may be missing
                     found &= ~self.graph.open[configurations]
         return found
 
     def on_edges(self, move: Move) -> list[tuple[Taken, bool]]:
-        """Return a move's literals that are about the step to be taken."""
+        """Return a move's literals about the taken step."""
         literals = map(self.automaton.literals.__getitem__, move.literals)
         return [(formula, claimed) for formula, claimed in literals if isinstance(formula, Taken)]
 
     def discover(self, layer: _Found) -> None:
-        """Number the nodes that a layer leads to for the first time."""
+        """Number the nodes that a layer is the first to reach."""
         fresh = np.flatnonzero(self.numbers[layer.codes] < 0)
         _, first = np.unique(layer.codes[fresh], return_index=True)
         new = fresh[np.sort(first)]
@@ -178,7 +178,7 @@ class _Search:
         return _way(np.concatenate(self.before), np.concatenate(self.by), node)
 
     def product(self) -> Product:
-        """Return what was found, the edges sorted by their sources."""
+        """Return the product, its edges sorted by their sources."""
         codes, before, by = (np.concatenate(each) for each in (self.codes, self.before, self.by))
         found = self.found or [self.expand(codes[:0])]
         sources, targets, edges, marks = (

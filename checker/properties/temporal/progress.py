@@ -21,11 +21,11 @@ Pending = Mapping[Request, Sequence[int] | Numbers]
 """For each request, the configurations in which it is pending."""
 
 OFTEN = 1024
-"""Configurations between two looks at the clock."""
+"""The number of configurations between two checks of the time."""
 
 
 def pending_requests(configurations: Iterable[Configuration]) -> Pending:
-    """Return where each request is pending."""
+    """Return the configurations in which each request is pending."""
     found: dict[Request, list[int]] = {}
     for number, c in enumerate(configurations):
         if number % OFTEN == 0:
@@ -36,7 +36,7 @@ def pending_requests(configurations: Iterable[Configuration]) -> Pending:
 
 
 def owed(pending: Pending, arriving: Collection[Name]) -> Pending:
-    """Return what is to be served: all but observations that wait to be received, and flights that need never end."""
+    """Return the requests to serve: all except ready observations, and flights without a promise to arrive."""
     return {request: numbers for request, numbers in pending.items() if _is_owed(request, arriving)}
 
 
@@ -54,7 +54,7 @@ class Starved:
         request: The request.
         run: The run; in its loop the request stays pending.
         now_and_then: Whether some step of the loop's configurations would serve it.
-        behind: The flights of its agent that may end in the loop and need not.
+        behind: The flights of its agent that may end in the loop, without a promise.
     """
 
     request: Request
@@ -65,13 +65,13 @@ class Starved:
 
 @dataclass(frozen=True, eq=False)
 class Progress:
-    """Looks for requests that are never served.
+    """Searches for requests that are never served.
 
     Attributes:
-        graph: What was explored, total.
-        pending: Where each request is pending.
-        fairness: What fair runs do infinitely often.
-        arriving: Whose flights end.
+        graph: The explored graph, total.
+        pending: The configurations in which each request is pending.
+        fairness: The conditions of fair runs.
+        arriving: The entities whose flights end.
     """
 
     graph: Graph
@@ -80,7 +80,7 @@ class Progress:
     arriving: Collection[Name]
 
     def starved(self) -> tuple[tuple[Starved, ...], int]:
-        """Return the request of each sort that is starved earliest, and how many are starved in all."""
+        """Return the nearest starved request of each kind, and the number of starved requests."""
         first: dict[str, tuple[int, Request]] = {}
         count = 0
         for request in self.pending:
@@ -88,7 +88,7 @@ class Progress:
             if len(entries):
                 count += 1
                 sort = type(request).__name__
-                entry = int(entries[0])  # configurations are numbered by their distance
+                entry = int(entries[0])  # configurations are numbered by distance
                 if sort not in first or entry < first[sort][0]:
                     first[sort] = (entry, request)
         return tuple(self._starved(request, entry) for entry, request in first.values()), count
@@ -107,7 +107,7 @@ class Progress:
         return self.graph.taken(np.fromiter(labels, dtype=np.bool_, count=len(self.graph.labels)))
 
     def served(self) -> Lasso | None:
-        """Return a shortest run at whose end one of the requests is served; None where none ever is."""
+        """Return a shortest run that ends by serving one of the requests; None if there is none."""
         labels = (label.rule in SERVES and label.about in self.pending for label in self.graph.labels)
         goal = self.graph.taken(np.fromiter(labels, dtype=np.bool_, count=len(self.graph.labels)))
         path = shortest(self.graph, 0, goal)

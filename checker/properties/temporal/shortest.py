@@ -1,62 +1,27 @@
-"""Shortest lassos: whether a shorter run exists, if a bounded search can decide it."""
+"""Shortest runs into a fair component: whether a shorter one exists, if a bounded search can decide it."""
 
-from collections.abc import Iterable
 from dataclasses import replace
 
 from checker.engines.graph import Bools, Graph, Numbers
-from checker.properties.temporal.bounded_product import nearby
-from checker.properties.temporal.components import Conditions, fair_components
+from checker.properties.temporal.components import Conditions
 from checker.properties.temporal.cycles import shortest_cycle
 from checker.properties.temporal.digraph import distances, shortest
 from checker.properties.temporal.effort import Effort, Exhausted
 from checker.properties.temporal.lassos import Lasso, component_of, fair_cycle, tightened
-from checker.properties.temporal.tight_automaton import tight
-from checker.properties.temporal.truth import Truth
-from semantics.properties.temporal import Temporal
-
-
-def shortest_false(
-    graph: Graph, truth: Truth, formulas: Iterable[Temporal], fairness: Conditions, known: Lasso
-) -> Lasso:
-    """Return a shortest lasso on which one of some formulas is false, given one; it says whether it surely is."""
-    if graph.partial is not None:
-        return known
-    effort, best = Effort(), known
-    try:
-        for formula in formulas:
-            best = _shorter_false(graph, truth, formula, fairness, best, effort) or best
-    except Exhausted:
-        return best
-    return replace(best, shortest=True)
-
-
-def _shorter_false(
-    graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions, known: Lasso, effort: Effort
-) -> Lasso | None:
-    automaton = tight(formula)
-    near = nearby(graph, automaton, truth, len(known) - 2, effort)
-    product = near.product
-    conditions = product.conditions(automaton.promises, fairness)
-    components = fair_components(product, conditions)
-    found = shortest_cycle(product, near.depths, components, conditions, len(known), effort)
-    if found is None:
-        return None
-    node, cycle = found
-    return Lasso(product.way_to(node), tuple(int(product.edges[edge]) for edge in cycle))
 
 
 def run_into(
     graph: Graph, components: Numbers, conditions: Conditions, entry: int, by: Bools | None = None
 ) -> Lasso:
-    """Return a run that stays in one of some fair components, as short as can be found; `entry` is in the nearest."""
+    """Return a run that stays in a fair component, as short as the search finds; `entry` is in the nearest one."""
     part = component_of(graph, components, entry, conditions, by=by)
     stem = shortest(graph, 0, graph.targets == entry) if entry else ()
-    assert stem is not None  # everything that was explored is reached
+    assert stem is not None  # every explored configuration is reachable
     known = tightened(Lasso(stem, fair_cycle(part, entry)))
     return shortest_run(graph, components, conditions, known, by=by)
 
 
-def shortest_run(  # noqa: PLR0913  # each says one thing of the search
+def shortest_run(  # noqa: PLR0913  # independent parameters
     graph: Graph,
     components: Numbers,
     conditions: Conditions,
@@ -66,16 +31,16 @@ def shortest_run(  # noqa: PLR0913  # each says one thing of the search
     through: Bools | None = None,
     by: Bools | None = None,
 ) -> Lasso:
-    """Return a shortest lasso to a fair component, given one; it says whether it surely is.
+    """Return a shortest lasso to a fair component, given one; `shortest` is set if it is certain.
 
     Args:
         graph: The graph.
         components: The fair components.
-        conditions: What its loop meets.
+        conditions: The conditions of its loop.
         known: A lasso.
-        start: Where it begins.
-        through: The configurations that it may come to, all if not given.
-        by: The edges that its loop may take, all if not given.
+        start: Its first configuration.
+        through: The configurations that it may visit; by default all.
+        by: The edges that its loop may take; by default all.
     """
     if graph.partial is not None:
         return known

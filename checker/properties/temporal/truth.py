@@ -23,10 +23,10 @@ from semantics.properties.temporal import (
 from semantics.state.configuration import Configuration
 
 Valuation = Mapping[Proposition, Bools]
+"""For each proposition, whether it is true in each configuration."""
 
 OFTEN = 1024
-"""Configurations between two looks at the clock."""
-"""For each proposition, for each configuration, whether it is true there."""
+"""The number of configurations between two checks of the time."""
 
 
 def valuation(configurations: Iterable[Configuration], asked: Iterable[Proposition]) -> Valuation:
@@ -45,11 +45,11 @@ def _row(number: int, c: Configuration, wanted: Iterable[Proposition]) -> list[b
 
 @dataclass(eq=False)
 class Truth:
-    """Answers where formulas are true.
+    """The truth of formulas on a graph.
 
     Attributes:
         graph: The graph, total.
-        values: Of the propositions, or of the atoms that they are made of.
+        values: The truth of its propositions, or of their atoms.
     """
 
     graph: Graph
@@ -89,14 +89,14 @@ class Truth:
         raise ValueError(f"more than the configuration is asked for: {formula}")
 
     def joined(self, how: np.ufunc, neutral: bool, formulas: Iterable[Proposition]) -> Bools:
-        """Return for each configuration what a connective makes of propositions."""
+        """Return for each configuration the value of a connective of propositions."""
         found = np.full(self.graph.size, neutral)
         for each in formulas:
             how(found, self.here(Now(each)), out=found)
         return found
 
     def everywhere(self, formula: Temporal) -> Bools | None:
-        """Return for each edge whether a formula without temporal operators is true; None of one that has some."""
+        """Return for each edge whether a formula is true; None if it has temporal operators."""
         if isinstance(formula, Taken):
             return self.taken(formula)
         if isinstance(formula, Now | Enabled):
@@ -119,5 +119,5 @@ class Truth:
 
 
 def is_about_steps(formula: Temporal) -> bool:
-    """Tell whether it is asked what is enabled."""
+    """Return whether a formula asks for enabled steps."""
     return any(isinstance(atom, Enabled) for atom in atoms(formula))

@@ -1,7 +1,7 @@
-"""Vacuity of temporal properties: the parts that are never needed, and a run that needs the others.
+"""Vacuity of temporal properties: the unneeded parts, and a run that needs the others.
 
-A part is replaced by the worst that may stand there, and the formula is decided once more on the same graph. Where it
-doesn't hold then, the run that shows it is one on which the part is needed (an interesting witness).
+A part is replaced by the strongest constant, and the formula is decided again on the same graph. If it fails then, the
+counterexample is a run on which the part is needed (an interesting witness).
 """
 
 from collections.abc import Callable, Iterator
@@ -20,19 +20,18 @@ from checker.properties.temporal.effort import Exhausted
 from checker.properties.temporal.evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso, component_of, fair_cycle, tightened
 from checker.properties.temporal.linear import conjuncts, counterexample
-from checker.properties.temporal.shortest import shortest_false
 from checker.properties.temporal.truth import Truth
 from semantics.properties.property import Ranges
 from semantics.properties.propositions import Always, Not, Or
 from semantics.properties.temporal import Denied, Either, Globally, Now, OnAllPaths, Temporal
 
 MOST_EDGES: Final = 1_000_000
-"""A formula is decided again as often as a graph's edges go into so many, and not at all where they don't."""
+"""The budget for deciding a formula's variants, in edges; each decision costs the edges of the graph."""
 
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """What makes a formula that holds say less than it seems to, and a run on which it says what it says."""
+    """The reasons why a true formula is vacuous, and a run on which it is not."""
 
     remarks: tuple[str, ...] = ()
     witness: Lasso | None = None
@@ -40,7 +39,7 @@ class Judged:
 
 @dataclass(eq=False)
 class _Trials:
-    """Tells of strengthened formulas whether they hold, as long as that isn't too much, and remembers which don't."""
+    """Decides strengthened formulas within a bound, and records those that fail."""
 
     decide: Callable[[Temporal], bool]
     left: int
@@ -50,7 +49,7 @@ class _Trials:
         if self.left == 0:
             raise Exhausted
         self.left -= 1
-        strengthened = cast("Temporal", formula)  # of a formula on runs
+        strengthened = cast("Temporal", formula)  # the original is a temporal formula
         held = self.decide(strengthened)
         if not held:
             self.failed.append(strengthened)
@@ -58,12 +57,12 @@ class _Trials:
 
 
 def is_judged(graph: Graph) -> bool:
-    """Tell whether a graph is small enough to decide formulas on it once more."""
+    """Return whether a graph is small enough for repeated decisions."""
     return len(graph.targets) <= MOST_EDGES
 
 
 def judge_linear(truth: Truth, formula: Temporal, fairness: Conditions, ranges: Ranges) -> Judged:
-    """Return what there is to say of a formula that holds of all fair runs of a graph that is not partial."""
+    """Return the judgement on a formula that all fair runs of a complete graph satisfy."""
     graph, held = truth.graph, set(conjuncts(formula))
 
     def decide(strengthened: Temporal) -> bool:
@@ -84,7 +83,7 @@ def judge_linear(truth: Truth, formula: Temporal, fairness: Conditions, ranges: 
 
 
 def judge_branching(tree: Branching, formula: Temporal, ranges: Ranges) -> Judged:
-    """Return what there is to say of a formula that holds; a witness where its own evidence is no step long."""
+    """Return the judgement on a true formula; with a witness if its own evidence is empty."""
     trials = _Trials(lambda each: bool(tree.where(each)[0]), MOST_EDGES // max(1, len(tree.graph.targets)))
     remarks = _remarks(tree.truth, formula, ranges, trials)
     if len(tree.evidence(formula)):
@@ -96,11 +95,11 @@ def judge_branching(tree: Branching, formula: Temporal, ranges: Ranges) -> Judge
         return Judged(remarks)
 
 
-# --- what is never needed -------------------------------------------------------------------------------------
+# --- unneeded parts -------------------------------------------------------------------------------------------
 
 
 def _remarks(truth: Truth, formula: Temporal, ranges: Ranges, trials: _Trials) -> tuple[str, ...]:
-    """Return what is said of parts, as far as bounds let it be known."""
+    """Return the remarks on parts, as far as bounds allow."""
     found = list(_never_begun(truth, formula))
     if found:
         return tuple(found)
@@ -112,7 +111,7 @@ def _remarks(truth: Truth, formula: Temporal, ranges: Ranges, trials: _Trials) -
 
 
 def _never_begun(truth: Truth, formula: Temporal) -> Iterator[str]:
-    """Yield that the condition of a formula is never true: that is known without deciding anything."""
+    """Yield a remark if the condition of an implication is never true; this needs no decision."""
     match formula:
         case Globally(Either(Denied(condition), conclusion)) | OnAllPaths(
             Globally(Either(Denied(condition), conclusion))
@@ -131,7 +130,7 @@ def _remark(truth: Truth, formula: Temporal, around: Part, part: Part) -> str:
 
 
 def _condition_before(formula: Temporal, path: tuple[int, ...]) -> Temporal | None:
-    """Return the condition of the implication of which the conclusion stands somewhere."""
+    """Return the condition of an implication with its conclusion at a position."""
     if path[-1] != 1:
         return None
     match at(formula, path[:-1]):
@@ -147,11 +146,11 @@ def _is_never(truth: Truth, condition: Temporal) -> bool:
     return true is not None and not true.any()
 
 
-# --- a run on which all is needed -----------------------------------------------------------------------------
+# --- an interesting witness -----------------------------------------------------------------------------------
 
 
 def _witness(truth: Truth, failed: list[Temporal], fairness: Conditions) -> Lasso | None:
-    """Return a shortest run on which all of some formulas are false; if there is none, a shortest of one of them."""
+    """Return a run on which all of some formulas are false; else the shortest one found for a single formula."""
     try:
         wanted = reduce(Either, failed, cast("Temporal", Now(Always(False))))
         found = _run_against(truth, wanted, fairness)
@@ -165,19 +164,17 @@ def _witness(truth: Truth, failed: list[Temporal], fairness: Conditions) -> Lass
 
 def _run_against(truth: Truth, formula: Temporal, fairness: Conditions) -> Lasso | None:
     found = counterexample(truth.graph, truth, formula, fairness)
-    if found is None:
-        return None
-    return shortest_false(truth.graph, truth, [formula], fairness, _continued(truth.graph, found, fairness))
+    return None if found is None else _continued(truth.graph, found, fairness)
 
 
 def _continued(graph: Graph, run: Lasso, fairness: Conditions) -> Lasso:
-    """Return a fair run that begins as one does that needs no loop."""
+    """Return a fair infinite run with the given beginning."""
     if run.loop:
         return run
     end = int(graph.targets[run.stem[-1]]) if run.stem else 0
     components = fair_components(graph, fairness)
     path = () if components[end] >= 0 else shortest(graph, end, (components >= 0)[graph.targets])
-    assert path is not None  # every run goes on to a fair one
+    assert path is not None  # every run has a fair continuation
     entry = int(graph.targets[path[-1]]) if path else end
     loop = fair_cycle(component_of(graph, components, entry, fairness), entry)
     return tightened(Lasso((*run.stem, *path), loop))

@@ -243,6 +243,7 @@ def card(level=0, **more):
         "handed": None,
         "said": None,
         "taken": None,
+        "ordered": None,
         "on_return": None,
         "level": level,
         "word": ["well", "watch", "wrong", "lost"][level],
@@ -270,7 +271,10 @@ def recorded(action, by):
     """Return what a run records of an action that it took, None of what it records elsewhere."""
     match action:
         case {"order": {"order": order, "vehicle": vehicle}}:
-            return deed(time.time(), by, order, vehicle or "all", "sent")
+            fates = {
+                name: {"state": "sent", "why": ""} for name in ([vehicle] if vehicle else ["uav0", "uav1"])
+            }
+            return deed(time.time(), by, order, vehicle or "all", "sent") | {"fates": fates}
         case {"say": {"agent": agent, "message": message}}:
             return deed(time.time(), by, f'say "{message}"', agent)
         case {"give_back": {"vehicle": vehicle}}:
@@ -282,7 +286,7 @@ def deed(at, by, what, about, state="confirmed", why=""):
     """Return an action as the section has it."""
     answered = None if state == "sent" else at
     done = {"time": at, "by": by, "what": what, "about": about, "state": state, "why": why}
-    return done | {"left_out": {}, "notes": [], "vain": None, "answered": answered}
+    return done | {"fates": {}, "left_out": {}, "notes": [], "vain": None, "answered": answered}
 
 
 def world():

@@ -7,7 +7,7 @@ from recorded import BETWEEN, EAST, FLIGHT, WEST, Tape, rules_of_once, uav, writ
 from adapters.console.history import History
 from adapters.live.state import Acknowledging, GivingBack, Ordering
 from adapters.live.timing import flying
-from adapters.plugin import Accepted, GoTo, LinkLost, LinkRestored, Rejected, Status, TakenOver
+from adapters.plugin import Accepted, GoTo, Hold, LinkLost, LinkRestored, Rejected, Sent, Status, TakenOver
 from bigactors.missions import digest_of
 from semantics.contingencies import Fallback
 
@@ -208,25 +208,116 @@ def actions(tape):
     return list(tape.history().newest().sections["actions"].values())
 
 
-def test_an_order_is_sent_then_confirmed_by_the_vehicle_until_it_is_given_back(tape):
+def fated(state, why=""):
+    """Return what stands in an action and on a card of an order that one vehicle was given."""
+    ordered = {"order": "hold", "by": "Ana", "since": 1001.0, "state": state, "why": why}
+    return {"state": state, "why": why, "fates": {"uav0": {"state": state, "why": why}}}, ordered
+
+
+def test_an_order_is_asked_sent_then_confirmed_by_the_vehicle_until_it_is_given_back(tape):
     tape.turn(0, uav(WEST, 0))
     tape.turn(1, sayings=[Ordering(Fallback.HOLD, "uav0", "Ana")])
-    sent = {"time": 1001.0, "by": "Ana", "what": "hold", "about": "uav0", "state": "sent", "why": ""}
-    sent |= {"left_out": {}, "notes": [], "vain": None}
-    assert actions(tape) == [{**sent, "answered": None}]
+    order = {"time": 1001.0, "by": "Ana", "what": "hold", "about": "uav0"}
+    order |= {"left_out": {}, "notes": [], "vain": None}
+    asked, ordered = fated("asked")
+    assert actions(tape) == [{**order, **asked, "answered": None}]
     card = tape.card()
-    assert (card["level"], card["taken"]) == (1, "held by the operator (Ana)")
+    told = "told to hold by the operator (Ana), not confirmed yet"
+    assert (card["level"], card["taken"], card["ordered"]) == (1, told, ordered)
     assert card["why"].endswith("; the 100 s of its request run on meanwhile")
-    assert (card["order"]["command"], card["order"]["state"]) == ("Hold", "sent")
-    tape.turn(2, uav(WEST, 2), reports=[Accepted("operator-2", "uav0", 1002.0)])
-    assert actions(tape) == [{**sent, "state": "confirmed", "answered": 1002.0}]
-    assert tape.card()["order"]["state"] == "accepted"
-    tape.turn(3, sayings=[GivingBack("uav0", by="Bo")])
+    assert (card["order"]["command"], card["order"]["state"]) == ("Hold", "asked")
+    tape.turn(2, reports=[Sent("operator-2", "uav0", 1002.0)])
+    sent, ordered = fated("sent")
+    assert actions(tape) == [{**order, **sent, "answered": None}]
+    card = tape.card()
+    assert (card["taken"], card["ordered"], card["order"]["state"]) == (told, ordered, "sent")
+    tape.turn(3, uav(WEST, 3), reports=[Accepted("operator-2", "uav0", 1003.0)])
+    confirmed, ordered = fated("confirmed")
+    assert actions(tape) == [{**order, **confirmed, "answered": 1003.0}]
+    card = tape.card()
+    assert (card["level"], card["taken"], card["ordered"]) == (1, "held by the operator (Ana)", ordered)
+    assert card["order"]["state"] == "accepted"
+    tape.turn(4, sayings=[GivingBack("uav0", by="Bo")])
     assert [(each["what"], each["by"], each["state"]) for each in actions(tape)][1:] == [
         ("give back", "Bo", "confirmed")
     ]
     card = tape.card()
-    assert (card["level"], card["taken"], card["order"]["command"]) == (0, None, "GoTo")
+    assert (card["level"], card["taken"], card["ordered"], card["order"]["command"]) == (
+        0,
+        None,
+        None,
+        "GoTo",
+    )
+
+
+OBEYS = "it obeys system 252, not gcs0"
+
+
+def test_a_refused_order_never_reads_as_done_until_the_vehicle_obeys_after_all(tape):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(1, sayings=[Ordering(Fallback.HOLD, "uav0", "Ana")])
+    tape.turn(2, reports=[Sent("operator-2", "uav0", 1002.0), Rejected("operator-2", "uav0", 1002.0, OBEYS)])
+    refused, ordered = fated("refused", OBEYS)
+    words = f"refuses to hold, as the operator (Ana) ordered: {OBEYS}"
+    for now in (2, 8):  # it is told again then, and has not answered yet
+        if now > 2:
+            assert any(isinstance(each, Hold) for each in tape.turn(now, uav(WEST, now)).commands)
+            tape.turn(now, reports=[Sent("operator-2", "uav0", 1000.0 + now)])
+        assert actions(tape)[0].items() >= {**refused, "answered": None}.items()
+        card = tape.card()
+        assert (card["level"], card["taken"], card["ordered"]) == (2, words, ordered)
+        assert card["why"].startswith(f"{words}; ")
+        assert card["order"]["state"] == "refused"
+    tape.turn(9, uav(WEST, 9), reports=[Accepted("operator-2", "uav0", 1009.0)])
+    confirmed, ordered = fated("confirmed")
+    assert actions(tape)[0].items() >= {**confirmed, "answered": 1009.0}.items()
+    card = tape.card()
+    assert (card["level"], card["taken"], card["ordered"]) == (1, "held by the operator (Ana)", ordered)
+    assert card["taken"] == tape.run.state.taken["uav0"]  # the run's own words
+
+
+def ended(order):
+    return {"state": "refused", "why": f"{OBEYS}; then it was {order}", "answered": 1003.0}
+
+
+@pytest.mark.parametrize(
+    ("then", "what"),
+    [
+        ({"sayings": [GivingBack("uav0", by="Bo")]}, "given back"),
+        ({"sayings": [Ordering(Fallback.RETURN, "uav0", "Bo")]}, "told to return"),
+        ({"reports": [TakenOver("uav0", 1003.0, "a pilot flies it")]}, "taken over: a pilot flies it"),
+    ],
+)
+def test_an_order_that_ends_before_it_is_confirmed_says_so_and_stands_no_more(tape, then, what):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(1, sayings=[Ordering(Fallback.HOLD, "uav0", "Ana")])
+    tape.turn(2, reports=[Rejected("operator-2", "uav0", 1002.0, OBEYS)])
+    tape.turn(3, uav(WEST, 3), **then)
+    assert actions(tape)[0].items() >= ended(what).items()
+    ordered = tape.card()["ordered"]
+    assert ordered is None or ordered["order"] == "return"
+
+
+def test_an_order_that_the_run_refuses_is_refused_at_once_and_stands_for_no_vehicle(tape):
+    tape.turn(0, uav(WEST, 0))
+    tape.turn(1, sayings=[Ordering(Fallback.HOLD, "nobody", "Ana")])
+    (action,) = actions(tape)
+    assert (action["state"], action["fates"], action["answered"]) == ("refused", {}, 1001.0)
+    assert tape.card()["ordered"] is None
+
+
+def test_a_change_of_address_that_is_refused_says_why(tmp_path):
+    rebind = {"command": "Rebind", "request": "operator-7", "entity": "uav0", "at": "127.0.0.1:9"}
+    given = {"vehicle": "uav0", "by": "Ana", "at": "127.0.0.1:9", "refusal": ""}
+    why = {"report": "Rejected", "request": "operator-7", "entity": "uav0", "time": 1003.0, "reason": "no"}
+    told_so = [("commands", 1002.0, rebind), ("given_back", 1002.0, given)]
+    (action,) = told(tmp_path / "a", *told_so)["actions"].values()
+    assert (action["what"], action["state"], action["answered"]) == ("is at 127.0.0.1:9", "sent", None)
+    (action,) = told(tmp_path / "b", *told_so, ("reports", 1003.0, why))["actions"].values()
+    assert (action["state"], action["why"], action["answered"]) == ("refused", "no", 1003.0)
+    heard = {"report": "LinkRestored", "entity": "uav0", "time": 1003.0}
+    (action,) = told(tmp_path / "c", *told_so, ("reports", 1003.0, heard))["actions"].values()
+    assert (action["state"], action["answered"]) == ("confirmed", 1003.0)
 
 
 def test_an_order_that_the_vehicle_refuses_says_why(tape):
@@ -243,7 +334,7 @@ def test_an_order_overrules_who_has_taken_a_vehicle_over_and_is_overruled_so(tap
     tape.turn(1, uav(WEST, 1), reports=[TakenOver("uav0", 1001.0, "a pilot flies it")])
     tape.turn(2, sayings=[Ordering(Fallback.HOLD, "uav0")])
     card = tape.card()
-    assert (card["level"], card["taken"]) == (1, "held by the operator")
+    assert (card["level"], card["taken"]) == (1, "told to hold by the operator, not confirmed yet")
     tape.turn(3, uav(WEST, 3), reports=[TakenOver("uav0", 1003.0, "it is in RTL")])
     card = tape.card()
     assert (card["level"], card["taken"]) == (3, "it is in RTL")
@@ -256,7 +347,13 @@ DONE = {"report": "Accepted", "request": "hold-1", "entity": "uav0", "time": 100
 def test_an_order_to_all_is_confirmed_when_all_have_confirmed_it(tmp_path):
     both = {**HOLD, "vehicle": None, "requests": {"uav0": "hold-1", "uav1": "hold-2"}}
     view = told(tmp_path / "a", ("orders", 1002.0, both), ("reports", 1003.0, DONE))
-    assert (view["actions"]["1"]["about"], view["actions"]["1"]["state"]) == ("all", "sent")
+    assert (view["actions"]["1"]["about"], view["actions"]["1"]["state"]) == ("all", "asked")
+    assert view["actions"]["1"]["fates"]["uav0"] == {"state": "confirmed", "why": ""}
+    no = {**DONE, "report": "Rejected", "reason": "it is on the ground"}
+    view = told(tmp_path / "c", ("orders", 1002.0, both), ("reports", 1003.0, no))
+    action = view["actions"]["1"]
+    assert (action["state"], action["why"]) == ("refused", "uav0: it is on the ground")
+    assert action["fates"]["uav1"] == {"state": "asked", "why": ""}
     also = {**DONE, "request": "hold-2", "entity": "uav1"}
     view = told(
         tmp_path / "b", ("orders", 1002.0, both), ("reports", 1003.0, DONE), ("reports", 1004.0, also)
@@ -285,7 +382,8 @@ def test_while_a_vehicle_is_held_its_request_runs_out_and_its_agent_is_grounded(
         tape.turn(101, uav(WEST, 101))
         stopped = "nothing that a orders is carried out any more"
         assert tape.card()["why"] == (
-            f"its request stands for longer than 100 s; {stopped}; held by the operator (Ana)"
+            f"its request stands for longer than 100 s; {stopped}; "
+            "told to hold by the operator (Ana), not confirmed yet"
         )
         tape.turn(102, sayings=[GivingBack("uav0")])
         assert tape.run.state.grounded == {"a"}
@@ -309,7 +407,7 @@ def test_after_a_fallback_the_cards_say_that_nothing_is_commanded_any_more(tmp_p
         card = tape.card()
         assert (card["level"], card["why"], card["request"]["given_up"]) == (2, STOPPED, True)
         tape.turn(2, sayings=[Ordering(Fallback.HOLD, "uav0", "Ana")])
-        assert tape.card()["why"] == f"{STOPPED}; held by the operator (Ana)"
+        assert tape.card()["why"] == f"{STOPPED}; told to hold by the operator (Ana), not confirmed yet"
         tape.turn(3, sayings=[GivingBack("uav0", by="Ana")])
         assert (level(tape), tape.card()["request"]["given_up"]) == ((2, STOPPED), True)
 

@@ -6,7 +6,7 @@ import time
 import pytest
 from browsers import DESK, PHONE, overflow
 from page_driving import HOLD, await_acts, await_turns, focused, has, press_mouse
-from page_harness import Harness, alert, card, crowd, world
+from page_harness import Harness, alert, card, crowd, deed, world
 
 HOSTILE = '<img src=x onerror="document.title=1">"\'&amp;'
 
@@ -175,6 +175,49 @@ def test_a_notice_follows_its_action_until_the_vehicle_has_confirmed_it(shown):
         has(page, ".notice.confirmed", "hold uav0: confirmed by the vehicle")
         page.locator(".notice button").click()
         page.locator(".notice").wait_for(state="detached")
+
+
+REFUSED = "it obeys system 252, not gcs0"
+
+
+def test_a_refused_order_stays_refused_on_its_card_and_in_its_notice_until_the_vehicle_obeys(shown):
+    with Harness(world()) as harness:
+        page = shown(harness)
+        press_key(page, 1.2)
+        has(page, ".notice.sent", "hold uav0: sent, not confirmed yet")
+        fate = {"state": "refused", "why": REFUSED}
+        ordered = {"order": "hold", "by": "Ana", "since": time.time(), **fate}
+        harness.set("actions", {"3": harness.state["actions"]["3"] | fate | {"fates": {"uav0": fate}}})
+        harness.set("vehicles", {"uav0": card(2, ordered=ordered, taken=f"refuses to hold: {REFUSED}")})
+        told = f"refused, and told again: {REFUSED}"
+        has(page, ".notice.refused", f"hold uav0: {told}")
+        has(page, ".fates .refused", told)
+        has(page, "[data-name=uav0] .ordered.refused", f"to hold, by Ana: {told}")
+        page.wait_for_timeout(6_500)  # longer than a notice of what is done
+        has(page, ".notice.refused", told)
+        assert page.locator("[data-name=uav0]", has_text="confirmed").count() == 0
+        fate, done = {"state": "confirmed", "why": ""}, {"answered": time.time()}
+        harness.set("actions", {"3": harness.state["actions"]["3"] | fate | done | {"fates": {"uav0": fate}}})
+        harness.set("vehicles", {"uav0": card(1, ordered=ordered | fate, taken="held by the operator (Ana)")})
+        has(page, ".notice.confirmed", "hold uav0: confirmed by the vehicle")
+        has(page, "[data-name=uav0] .ordered.confirmed", "to hold, by Ana: confirmed by the vehicle")
+
+
+def test_an_order_to_all_says_of_each_vehicle_what_became_of_it(shown):
+    fates = {"uav0": {"state": "confirmed", "why": ""}, "uav1": {"state": "refused", "why": REFUSED}}
+    order = deed(time.time(), "Ana", "hold", "all", "sent") | {"state": "refused", "why": f"uav1: {REFUSED}"}
+    with Harness(world() | {"actions": {"1": order | {"fates": fates}}}) as harness:
+        page = shown(harness)
+        has(page, ".fates .refused", "refused, and told again: uav1")
+        has(page, ".fates .aside", "uav0: confirmed by the vehicle")
+        has(page, ".fates .aside", f"uav1: refused: {REFUSED}")
+
+
+def test_an_order_that_ended_unconfirmed_never_reads_as_done(shown):
+    over = deed(time.time(), "Ana", "hold", "uav0", "sent") | {"why": "then it was given back"}
+    over |= {"answered": time.time(), "fates": {"uav0": {"state": "sent", "why": over["why"]}}}
+    with Harness(world() | {"actions": {"1": over}}) as harness:
+        has(shown(harness), ".fates .sent", "sent, never confirmed: then it was given back")
 
 
 def test_nobody_acts_without_a_name(shown):
@@ -491,7 +534,7 @@ def test_what_is_refused_is_said_with_its_reason(shown):
         harness.refusal = "nobody listens"
         page = shown(harness)
         press_mouse(page, 1.2, ".sayings button")
-        has(page, ".notice.refused", "refused, nobody listens")
+        has(page, ".notice.refused", "refused: nobody listens")
         assert harness.acts() == [{"say": {"agent": "tower", "message": "handover"}}]
 
 

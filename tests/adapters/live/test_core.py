@@ -457,6 +457,24 @@ def test_a_member_of_a_family_is_spoken_to_by_its_name():
     ]
 
 
+@pytest.mark.parametrize(
+    ("said", "heard"),
+    [("gcs1", ["gcs1"]), ('"gcs1"', ["a text"]), ("stop", ["a stop"]), ('"stop"', ["a stop"])],
+)
+def test_an_operator_types_quotes_only_where_a_name_is_said_too(said, heard):
+    talk = """
+    BigActor op hosted_at gcs0 with_behavior { loop { react {
+      case "gcs1" => display("a text") case "stop" => display("a stop") case m: Message => display(m)
+    } } }
+    environment { says "gcs1" to op says gcs1 to op says "stop" to op }
+    """
+    run = Run(plan_of(TOUR + talk))
+    run.turn(0.0)
+    run.turn(1.0, sayings=[Saying("op", "what?"), Saying("op", said)])
+    assert run.answers[0].refusal.endswith('may be said now: "gcs1" to op, gcs1 to op, stop to op')
+    assert [shown for step in run.steps for shown in step.transition.shown] == heard
+
+
 def test_an_agent_that_never_waits_does_not_keep_others_from_going_on():
     text = TOUR + (
         "BigActor a hosted_at gcs0 with_behavior { loop { observe(ALL)\n react { case x => skip } } }\n"

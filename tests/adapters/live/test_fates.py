@@ -50,6 +50,17 @@ def test_a_refused_order_is_shown_as_refused_and_not_as_done():
     assert standing(run.state) == f"; uav0 {REFUSES}"
 
 
+def test_while_a_refused_order_is_told_again_who_asks_hears_that_it_is_refused():
+    run = refused(held())
+    run.turn(2.0 + RETRY)  # it is told again
+    assert run.state.bidden["uav0"].fate is Fate.ASKED
+    assert run.state.fates == {"uav0": ("refused", REFUSES)}
+    run.turn(2.5 + RETRY, reports=[Sent("operator-2", "uav0", 2.5 + RETRY)])
+    assert run.state.fates == {"uav0": ("refused", REFUSES)}
+    run.turn(3.0 + RETRY, reports=[Accepted("operator-2", "uav0", 3.0 + RETRY)])
+    assert run.state.fates == {"uav0": ("confirmed", f"held by {ANA}")}
+
+
 def test_a_refused_order_is_told_again_until_it_is_confirmed():
     run = refused(held())
     assert run.again <= 2.0 + RETRY

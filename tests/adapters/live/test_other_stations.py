@@ -14,6 +14,7 @@ from adapters.recording.encoding import report_json, step_json
 from adapters.recording.schemas import REPORT
 from checker import replay
 from checker.traces import SCHEMA
+from semantics.behaviours.values import Text
 from semantics.state.parcel_serialization import parcel_json
 from semantics.state.parcels import Parcel
 from semantics.state.partition import Parting, parted, station_of
@@ -49,7 +50,7 @@ def at(station, vehicles=("uav0",)):
 
 
 def message(number, agent="op1", text="told", station="gcs0"):
-    return Delivered(station, 1.0, number, json.loads(json.dumps(parcel_json(Parcel(agent, (text,))))))
+    return Delivered(station, 1.0, number, json.loads(json.dumps(parcel_json(Parcel(agent, (Text(text),))))))
 
 
 TRACES = json.loads((Path(__file__).parents[3] / "docs" / "reference" / "trace.schema.json").read_text())
@@ -72,7 +73,7 @@ def test_a_message_leaves_with_the_step_that_sends_it_and_enters_at_the_other_st
     gcs0, gcs1 = at("gcs0"), at("gcs1")
     turn = gcs0.turn(0.0, sayings=[Saying("op0", "tell")])
     (left,) = turn.parcels
-    assert (left.station, left.number, left.parcel) == ("gcs1", 1, Parcel("op1", ("told",)))
+    assert (left.station, left.number, left.parcel) == ("gcs1", 1, Parcel("op1", (Text("told"),)))
     assert gcs0.rules[-2:] == ["snd", "leave"]
     gcs1.turn(0.0, reports=[message(1), message(1)])
     assert gcs1.rules[:2] == ["enter", "rcv_msg"]

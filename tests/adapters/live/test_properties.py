@@ -9,7 +9,8 @@ from adapters.live.state import Acknowledging, Batch, GivingBack, Ordering, Sayi
 from adapters.plugin import GiveBack, Hold, LinkLost, LinkRestored, Rejected, Return, TakenOver
 from adapters.recording.encoding import step_json
 from checker import replay
-from checker.traces import SCHEMA, candidates
+from checker.steps import candidates
+from checker.traces import SCHEMA
 from semantics.contingencies import Fallback, Precautions, TimeLimit
 from semantics.state.physical_model import Placed
 

@@ -1,5 +1,6 @@
 import json
 import os
+import zlib
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -189,16 +190,45 @@ def test_a_log_of_which_not_even_the_beginning_is_left_is_refused(opened, tmp_pa
         opened()
 
 
-def test_a_log_of_an_earlier_version_is_read_and_written_anew_with_checksums(opened, tmp_path):
-    last, path = full(opened), tmp_path / "x.log"
+def of_version_1(path):
+    """Write a log as the first version did, without checksums."""
     lines = [line.partition(" ")[2] for line in path.read_text().splitlines()]
-    path.write_text("\n".join([lines[0].replace("station/2", "station/1"), *lines[1:]]) + '\n{"torn')
+    path.write_text("\n".join([lines[0].replace("station/3", "station/1"), *lines[1:]]) + '\n{"torn')
+
+
+def of_version_2(path):
+    """Write a log as the second version did, with checksums."""
+    lines, summed = [line.partition(" ")[2] for line in path.read_text().splitlines()], 0
+    with path.open("w") as file:
+        for line in [lines[0].replace("station/3", "station/2"), *lines[1:]]:
+            summed = zlib.crc32(line.encode(), summed)
+            file.write(f"{summed:08x} {line}\n")
+        file.write("torn")
+
+
+@pytest.mark.parametrize("earlier", [of_version_1, of_version_2])
+def test_a_log_of_an_earlier_version_is_read_and_written_anew_with_checksums(opened, tmp_path, earlier):
+    journal, path = opened(), tmp_path / "x.log"
+    journal.add([said("a", 1.0), said("b", 1.0)])
+    journal.close()
+    last = journal.last
+    earlier(path)
     again = opened()
     assert again.word(("said", "b")) == said("b", 1.0)
     assert "the last entry was dropped: it is torn" in again.dropped
     again.close()
-    assert path.read_text().split(" ")[1] == '{"log":'
+    assert path.read_text().split(" ")[1:3] == ['{"log":', '"bigactors.station/3",']
     assert opened().last == again.last > last
+
+
+@pytest.mark.parametrize("earlier", [of_version_1, of_version_2])
+def test_a_log_of_an_earlier_version_with_parcels_is_refused_since_texts_are_names_there(
+    opened, tmp_path, earlier
+):
+    full(opened)
+    earlier(tmp_path / "x.log")
+    with pytest.raises(JournalError, match="has parcels of an earlier version: move it away"):
+        opened()
 
 
 def test_only_one_run_writes_a_log(opened):
@@ -219,7 +249,7 @@ def test_the_log_of_another_station_or_mission_is_refused(opened, other, says):
         opened(**other)
 
 
-@pytest.mark.parametrize("text", ["{}\n", "hello\n", '{"log": "bigactors.station/2"}\n'])
+@pytest.mark.parametrize("text", ["{}\n", "hello\n", '{"log": "bigactors.station/3"}\n'])
 def test_what_is_no_log_is_refused(opened, tmp_path, text):
     (tmp_path / "x.log").write_text(text)
     with pytest.raises(JournalError, match="log"):

@@ -194,6 +194,7 @@ class Run:
     Attributes:
         flipped: The one answer that is another.
         known: What an earlier run has seen and heard: all else may be anything, and is not said. None in the first run.
+        forgets: Whether tests inside of the statement with the flipped answer may turn out in any way.
         choices: How what may be anything turns out, one after the other.
         controls: Where it asked for which control.
         uses: The answers that it used, where, in order; each with how many controls came before.
@@ -202,9 +203,11 @@ class Run:
     script: Script
     flipped: Use | None = None
     known: frozenset[Path] | None = None
+    forgets: bool = False
     choices: list[int] = field(default_factory=list)
     drawn: int = 0
     steps: int = 0
+    inside: Path | None = None
     controls: list[tuple[Path, str]] = field(default_factory=list)
     uses: list[tuple[Use, Path, int]] = field(default_factory=list)
     met: set[Path] = field(default_factory=set)
@@ -230,9 +233,12 @@ class Run:
         seen, place, thing = use
         known = self.known is None or seen in self.known
         shown = {"full": len(THINGS) if thing == MEMBERS else 1, "bare": 0}[place]
+        if use == self.flipped and self.inside is None:
+            self.inside = at
         if use == self.flipped and thing != MEMBERS:
             return 1 - shown
-        if known and use != self.flipped:
+        free = self.forgets and self.inside is not None and at[: len(self.inside)] == self.inside
+        if known and use != self.flipped and not free:
             return shown
         return (0, 2, 1)[self.draw() % 3] if thing == MEMBERS else self.draw() % 2
 
@@ -301,21 +307,24 @@ class Run:
         self.store[f"o{node.number}"] = (at, node.word)
 
 
-def rests_on(first: Run, rank: int) -> frozenset[tuple[str, str]]:
-    """Return the answers, by place and thing, that decided that a run came to its control of this rank."""
+def rests_on(first: Run, rank: int, *, forgets: bool = False) -> frozenset[tuple[str, str]]:
+    """Return the answers, by place and thing, that decided that a run came to its control of this rank.
+
+    With `forgets`, those that decide it where the text alone counts: a way may block if any of its tests lets it.
+    """
     goal = first.controls[rank]
     used = {use: at for use, at, before in first.uses if before <= rank and not _earlier_turn(at, goal[0])}
-    deciding = (use for use in used if not all(goal in run.controls for run in others(first, use)))
+    deciding = (use for use in used if not all(goal in run.controls for run in others(first, use, forgets)))
     return frozenset((place, thing) for _, place, thing in deciding)
 
 
-def others(first: Run, flipped: Use) -> Iterator[Run]:
+def others(first: Run, flipped: Use, forgets: bool) -> Iterator[Run]:
     """Yield the runs that follow if one answer is another, each way in which what is not known may turn out."""
     choices: list[int] | None = []
     for _ in range(MOST_RUNS):
         if choices is None:
             return
-        run = Run(first.script, flipped, frozenset(first.met), choices).go()
+        run = Run(first.script, flipped, frozenset(first.met), forgets, choices).go()
         yield run
         choices = _following(run.choices[: run.drawn])
 

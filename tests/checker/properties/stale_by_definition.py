@@ -5,6 +5,7 @@ and sent. Nothing is forgotten and nothing is merged. Missions are of lines that
 control depends on is read off the lines; tests are of the form `name in o` or `size(o) < 3`.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 from hypothesis import strategies as st
@@ -29,7 +30,7 @@ QUERIES = (
 NAMES = ("uav0", "uav0", "uav1", "uav1", "vessel0", "gate0", "", "")
 """Whom a line asks for; empty where it asks how many there are."""
 
-TELLING = ("tested", "told", "reported", "reported", "impatient")
+TELLING = ("tested", "told", "reported", "reported", "kept", "impatient")
 WAYS = (*TELLING, "bare", "woken", "heard", "trusted", "trusted", "relayed", "relayed")
 """How an agent comes to a control, or lets another know; the first tells most."""
 
@@ -45,6 +46,7 @@ class Line:
     query: str = ""
     name: str = ""
     to: str = ""
+    second: str = ""
 
     def text(self, number: int) -> str:
         test = f"{self.name} in o" if self.name else "size(o) < 3"
@@ -63,6 +65,11 @@ class Line:
             case "reported":
                 send = f'send(("seen", {number}, {test}), {self.to})'
                 return self.looking(f"case o: Observation => {self.control} {send}")
+            case "kept":
+                send = f'send(("seen", {number}, k), {self.to})'
+                return self.looking(
+                    f"case o: Observation => let k = {test} {self.control} if k {{ {self.second} }} {send}"
+                )
             case "woken":
                 return f"react {{ case m: Message => {self.control} }}"
             case "relayed":
@@ -84,16 +91,38 @@ def companies(draw) -> dict[str, list[Line]]:
     company = {}
     for agent in agents:
         lines = [
-            Line(
-                draw(st.sampled_from(WAYS if rank or agent != "a" else TELLING)),
-                draw(st.sampled_from(MOVES[agent])),
-                draw(st.sampled_from(QUERIES)),
-                draw(st.sampled_from(NAMES)),
-                draw(st.sampled_from(agents.replace(agent, ""))),
-            )
+            draw(lines_of(agent, WAYS if rank or agent != "a" else TELLING, agents.replace(agent, "")))
             for rank in range(draw(st.integers(1, 3)))
         ]
         company[agent] = lines
+    return company
+
+
+@st.composite
+def lines_of(draw, agent: str, ways: tuple[str, ...], others: str, names: tuple[str, ...] = NAMES) -> Line:
+    """Yield a line of an agent, which comes to a control in one of some ways, or tells one of some others."""
+    first, second = (draw(st.sampled_from(MOVES[agent])) for _ in range(2))
+    query, name = draw(st.sampled_from(QUERIES)), draw(st.sampled_from(names))
+    return Line(
+        draw(st.sampled_from(ways)), first, query, name, draw(st.sampled_from(others or agent)), second
+    )
+
+
+@st.composite
+def chains(draw) -> dict[str, list[Line]]:
+    """Yield agents of which the first tells what it saw, the last trusts it, and each moves when it likes.
+
+    What is told is often about one of them, so that who hands it on has changed it meanwhile.
+    """
+    agents = "".join(draw(st.permutations("abcd")))[: draw(st.integers(2, 3))]
+    names = tuple(HOSTS[agent] for agent in agents)
+    company = {}
+    for rank, agent in enumerate(agents):
+        others = agents[rank + 1 : rank + 2]
+        ways = ("relayed",) if rank and others else ("reported", "kept") if others else ("trusted",)
+        line, moves = lines_of(agent, ways, others, names), lines_of(agent, ("bare",), others)
+        before, after = (draw(st.lists(moves, max_size=1)) for _ in range(2))
+        company[agent] = [*before, draw(line), *after]
     return company
 
 
@@ -220,6 +249,8 @@ class Judge:
     controls: dict[str, list[frozenset[Test]]] = field(default_factory=dict)
     messages: dict[str, frozenset[Test]] = field(default_factory=dict)
     received: dict[str, frozenset[Test]] = field(default_factory=dict)
+    moved: set[tuple[str, int]] = field(default_factory=set)
+    """Who has asked for the first control of which line."""
 
     def line(self, number: int) -> Line:
         rows: dict[int, Line] = {}
@@ -229,16 +260,17 @@ class Judge:
             at += len(lines) + 2
         return rows[number]
 
-    def is_race(self, t: Transition) -> bool:
-        """Tell whether a served control rests on what others have changed."""
+    def races(self, t: Transition) -> set[tuple[int, int]]:
+        """Return what a served control rests on that others have changed: when it was sensed, and when changed."""
         assert t.served is not None
         request = t.served.request
         assert isinstance(request, CTR | FLY)
         tests = self.controls[request.agent][0]
         used = slots_of(str(request.reaction), HOSTS[request.agent])
-        return any(self.is_stale(test, used) for test in tests)
+        return {(test.at, change.time) for test in tests for change in self.changed(test, used)}
 
-    def is_stale(self, test: Test, used: frozenset[tuple[str, str]]) -> bool:
+    def changed(self, test: Test, used: frozenset[tuple[str, str]]) -> Iterator[Change]:
+        """Yield the changes that each make a test stale."""
         node = test.node
         for change in self.changes:
             if change.time <= test.at:
@@ -247,13 +279,11 @@ class Judge:
             if test.around is not None and differs(change, ("parent", test.around)):
                 led = change.after.parents[test.around]
             flips = test.answer(change.before, node) != test.answer(change.after, led)
-            if flips and test.concerns(change):
-                return True
-            if not test.is_own(change) and any(differs(change, slot) for slot in used):
-                return True
+            touches = any(differs(change, slot) for slot in used)
+            if (flips and test.concerns(change)) or (touches and not test.is_own(change)):
+                yield change
             if not test.is_holders(change):
                 node = led
-        return False
 
     def take(self, before: Configuration, t: Transition) -> None:
         """Watch one step of the run."""
@@ -289,9 +319,18 @@ class Judge:
         elif rule == "rcv_msg":
             self.receive(agent, number, line, str(t.label))
         elif rule == "req_ctr":
-            self.controls.setdefault(agent, []).append(here)
+            self.controls.setdefault(agent, []).append(here | self.kept(agent, number, line))
         elif rule == "req_snd":
             self.send(agent, number, line, here)
+
+    def kept(self, agent: str, number: int, line: Line) -> frozenset[Test]:
+        """Return what the second control of a line is decided by, which comes after the first."""
+        if line.way != "kept":
+            return frozenset()
+        if (agent, number) in self.moved:
+            return frozenset({self.seen[agent]})
+        self.moved.add((agent, number))
+        return frozenset()
 
     def test(self, c: Configuration, agent: str, line: Line) -> Test:
         operator, _, inner = line.query.partition("(")
@@ -302,7 +341,7 @@ class Judge:
 
     def send(self, agent: str, number: int, line: Line, here: frozenset[Test]) -> None:
         tests = {each.handed(self.time, line.to, by_value=False) for each in here}
-        if line.way == "reported":
+        if line.way in ("reported", "kept"):
             tests.add(self.seen[agent].handed(self.time, line.to, by_value=True))
         if line.way == "relayed":
             values = (each for each in self.received[agent] if each.by_value[-1])

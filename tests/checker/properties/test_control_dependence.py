@@ -47,7 +47,9 @@ def test_a_control_rests_on_each_answer_with_another_of_which_it_would_not_have_
         decided = rests_on(run, rank)
         event(f"rests on {min(len(decided), 3)}")
         assert decided <= said
-        assert assigns or decided == said  # what another way assigns may be what is there already
+        # The monitor asks the text whether another way may block, and not which answers are known on it. What
+        # another way assigns may be what is there already.
+        assert assigns or said <= rests_on(run, rank, forgets=True)
 
 
 LOOKS = "observe(CHILDREN(gate0)) "

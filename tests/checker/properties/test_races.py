@@ -9,11 +9,12 @@ from hypothesis import event, given, reject
 from hypothesis import strategies as st
 from mission_texts import missions
 from scale import examples
-from stale_by_definition import Judge, companies, text_of
+from stale_by_definition import Judge, chains, companies, text_of
 
-from checker import Engine, Limits, check, explore
+from checker import Engine, Limits, Trace, check, explore
 from checker.properties.findings import Collected
 from checker.properties.races import ControlRaces, StaleObservationRaces, asked_in_words, is_stale
+from checker.properties.stale_steps import stale_steps
 from checker.verdicts import Outcome
 from semantics import extension
 from semantics.behaviours import stepping
@@ -1006,20 +1007,24 @@ def test_control_races_of_the_same_two_places_of_the_text_are_one(engine):
 
 
 @examples(300)
-@given(companies(), st.sampled_from(["atomic", "timed"]), st.integers(0, 1 << 32))
+@given(st.one_of(companies(), chains()), st.sampled_from(["atomic", "timed"]), st.integers(0, 1 << 32))
 def test_in_a_run_each_control_is_stale_that_is_so_by_definition_and_no_other(company, control, seed):
     first = WORLD.count("\n") + 1
     try:
         c = monitored(start(text_of(company, first) + f"control {control}\n"))
     except MissionError:
         reject()
-    judge, choose = Judge(company, first), Random(seed).choice
+    judge, choose, trace = Judge(company, first), Random(seed).choice, Trace(c)
     while allowed := expand(c).by_agents:
         taken = choose(allowed)
+        trace = trace.extended(taken)
         if taken.label.rule in monitor.CONTROLS:
-            race = judge.is_race(taken)
-            event("race" if race else "no race")
-            assert bool(is_stale(c, taken.served)) == race
+            races = judge.races(taken)
+            event("race" if races else "no race")
+            assert bool(is_stale(c, taken.served)) == bool(races)
+            found = stale_steps(trace.initial, trace.steps)
+            assert (found is None) == (not races)
+            assert found is None or (found.sensed, found.changed) in races
         judge.take(c, taken)
         c = taken.target
 

@@ -4,7 +4,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from checked_missions import load, start
+from checked_missions import WORLD, load, start
 from everything_found import everything, stale_races
 from hypothesis import given
 from hypothesis import strategies as st
@@ -265,6 +265,24 @@ def test_a_trace_of_a_reduced_search_replays_but_is_not_said_to_be_a_shortest_on
     trace = found.violations[0].trace
     assert trace.called == "a trace"
     assert replay(mission.initial, to_json(trace, "m", "d")) == trace
+
+
+CYCLIC = """
+believes { zone0 in gate0  gate0 in region }
+rule see(u: UAV) { HOST[c] || u[c] || gate0.(zone0.$1 | $0) -> HOST[c] || u || gate0.(zone0.$1 | $0) }
+BigActor a hosted_at gcs1 with_behavior { observe(PARENT(gate0)) react { case o => skip } }
+BigActor b hosted_at gcs0 with_behavior { control(see(uav0)) }
+check { local_consistency }
+"""
+"""What a sees takes zone0 out of gate0, where b believes it: they cannot both be in one another."""
+
+
+def test_who_believes_what_another_sees_to_be_the_other_way_round_is_followed_before_and_after():
+    world = WORLD.replace("  gate0:", "  zone0: Location = circle (37.00, -8.70) radius 600 m\n  gate0:")
+    mission = load(CYCLIC, world)
+    assert compared(mission.initial) == (8, 5)
+    (found,) = check(mission.initial, mission.properties[:1], reduce=POR).verdicts[:1]
+    assert {each.kind for each in found.violations} == {"inconsistent", "unmatched"}
 
 
 # --- what it is refused for -----------------------------------------------------------------------------------

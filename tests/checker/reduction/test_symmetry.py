@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scale import examples
 from shipped import UNTIMED
 
-from checker import Keeping, Limits, Reduction, RefusedError, check, explore
+from checker import Keeping, Limits, Outcome, Reduction, RefusedError, check, explore
 from checker.check import reductions_of
 from checker.reduction import Reduced
 from checker.reduction.footprint_check import Drift
@@ -396,3 +396,24 @@ def test_both_reductions_together_visit_least(control):
 def test_robots_of_a_chain_are_not_interchangeable():
     with pytest.raises(RefusedError, match="nothing in the mission is interchangeable"):
         Symmetry(load_mission(MISSIONS / "rendezvous.mission").initial)
+
+
+# --- what is put off ------------------------------------------------------------------------------------------
+
+CIRCLES = 'send ("here", SELF) to base loop { observe(PARENT(HOST)) react { case o => skip } }'
+FOLLOWS = 'send ("me", SELF) to base react { case "go" => control(MOVE_HOST_TO room0) }'
+SENDS_ON = """
+BigActor base hosted_at gcs0 with_behavior {
+  react { case ("me", who) => react { case ("here", other) => send "go" to who } }
+}
+check { invariant "out": not (actually robot0 in room0) and not (actually robot1 in room0) }
+"""
+
+
+@pytest.mark.parametrize("scheduler", ["program_order", "unordered"])
+@pytest.mark.parametrize("ways", [(CIRCLES, FOLLOWS), (FOLLOWS, CIRCLES)], ids=["circles first", "last"])
+def test_who_waits_beside_its_like_that_circles_is_not_taken_for_it_under_both_reductions(ways, scheduler):
+    body = "choose {{ {} }} or {{ {} }}".format(*ways)
+    asked = mission(body, 2, f"{SENDS_ON}scheduler {scheduler}")
+    found = check(asked.initial, asked.properties, reduce=BOTH).verdicts
+    assert [each.outcome for each in found if each.property.name == "out"] == [Outcome.VIOLATED]

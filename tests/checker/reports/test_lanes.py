@@ -8,7 +8,7 @@ from checked_missions import WORLD, load, moves, start, verdict, violation
 from checker import Trace
 from checker.reports.comparison import Pair, compare, comparison_text
 from checker.reports.lanes import LeftOut, Repetition, bounded, folded, lanes_of_trace, lanes_text, steps_of
-from checker.traces import candidates
+from checker.steps import candidates
 from semantics.state.configuration import Label
 from semantics.state.differences import Difference
 

@@ -162,6 +162,19 @@ def test_the_schema_refuses_what_is_not_so(changed):
         VALIDATOR.validate(sarif_json([], "1") | changed)
 
 
+def test_the_three_steps_of_a_race_are_essential_and_say_what_they_are():
+    mission = load_mission(ROOT / "tests" / "corpus" / "violated" / "stale_message.mission")
+    report = check(mission.initial, mission.properties, SPARE)
+    said = sarif_json([Result("stale_message", "stale_message.mission", report)], "1")
+    VALIDATOR.validate(said)
+    (found,) = (each for each in said["runs"][0]["results"] if "stale" in each["message"]["text"])
+    steps = found["codeFlows"][0]["threadFlows"][0]["locations"]
+    essential = [
+        each["location"]["message"]["text"] for each in steps if each.get("importance") == "essential"
+    ]
+    assert [each.rpartition(" ")[2] for each in essential] == ["[sensed]", "[changed]", "[acted]"]
+
+
 # --- places ---------------------------------------------------------------------------------------------------
 
 PLACED = {

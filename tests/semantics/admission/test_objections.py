@@ -12,6 +12,7 @@ from semantics.admission.objections import text_objection
 from semantics.admission.value_flow import flow_of
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault
+from semantics.behaviours.values import Text
 from semantics.state.parcel_serialization import parcel_json, parcel_of
 from semantics.state.partition import Parting, enter, is_here, leave, objection, parted, sent_cell, station_of
 from semantics.state.partition import parcel_of as parcel_here
@@ -120,7 +121,9 @@ VALUES = st.sampled_from(
         {"Controls": ["scout", "MOVE_HOST_TO", "uav0", ["west0"]]},
         {"CTR": ["scout", {"Reaction": ["MOVE_HOST_TO west0", {}, {}, []]}]},
         {"MGR": ["scout", "gcs1"]},
-        {"SND": ["scout", "op0", "hello"]},
+        {"text": "more"},
+        {"text": "west0"},
+        {"SND": ["scout", "op0", {"text": "hello"}]},
     ]
 )
 
@@ -154,12 +157,12 @@ def is_of_the_text(request):
             return any(reaction == make(host, place) for host in ("gcs0", "uav0") for place in SAFE)
         case OBS(_, query) | READY(_, query, _):
             return str(query) == "CHILDREN(west0)"
-        case SND(_, to, ("round", int(), route)):
+        case SND(_, to, (Text("round"), int(), route)):
             return to == "op0" and route.stops == ("west0", "east0")
-        case SND(_, "op0", "begun"):
+        case SND(_, "op0", Text("begun")):
             return True
         case SND(_, to, message):
-            return to == "scout" and message == ("more", "west0")
+            return to == "scout" and message == (Text("more"), "west0")
         case MGR(_, host):
             return host in ("uav0", "gcs0")
     return False
@@ -227,7 +230,7 @@ def forged(**changes):
         ({"requests": [{"Controls": ["op0", "MOVE_HOST_TO", "uav0", ["east0"]]}]}, "another agent"),
         ({"requests": [{"MGR": ["scout", "danger0"]}]}, "no statement that"),
         (
-            {"requests": [{"SND": ["scout", "op0", ["round", 1, {"route": ["danger0"]}]]}]},
+            {"requests": [{"SND": ["scout", "op0", [{"text": "round"}, 1, {"route": ["danger0"]}]]}]},
             "no statement that",
         ),
         ({"host": "gcs0"}, "does not run what is hosted at gcs0"),
@@ -249,14 +252,14 @@ def test_what_the_text_cannot_have_produced_is_refused(changes, why):
 
 
 def test_what_a_statement_outside_of_all_loops_asks_for_comes_once():
-    begun = {"SND": ["scout", "op0", "begun"]}
+    begun = {"SND": ["scout", "op0", {"text": "begun"}]}
     assert objection(forged(requests=[begun])[0], forged(requests=[begun])[3]) == ""
     there, *_, parcel = forged(requests=[begun, begun])
     assert objection(there, parcel) == "it asks more often than its statements ask"
 
 
 def test_what_a_statement_that_is_still_to_come_asks_for_does_not_enter():
-    begun = {"SND": ["scout", "op0", "begun"]}
+    begun = {"SND": ["scout", "op0", {"text": "begun"}]}
     start = list(FIRST.alpha.code("scout"))
     there, *_, parcel = forged(requests=[begun], code=start, store=[])
     assert "no statement that it has passed" in objection(there, parcel)

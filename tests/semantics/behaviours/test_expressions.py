@@ -18,7 +18,7 @@ from semantics.behaviours.expressions import (
     evaluate,
 )
 from semantics.behaviours.observations import Observation
-from semantics.behaviours.values import LARGEST_NUMBER, Route, Truth
+from semantics.behaviours.values import LARGEST_NUMBER, Route, Text, Truth
 from semantics.state.relations import Linked, Parent
 
 SEEN = Observation.of(("base", "u0"), ("a",), (Parent("u0", "base"), Linked("w", "u0"), Linked("w", "u1")))
@@ -55,7 +55,7 @@ def of(operator, *values):
         ("children", ("base", SEEN), frozenset({"u0"})),
         ("linked", ("u0", "u1", SEEN), Truth.TRUE),
         ("linked", ("u0", "base", SEEN), Truth.FALSE),
-        ("kind", ("u0",), "Uav"),
+        ("kind", ("u0",), Text("Uav")),
         ("first", (frozenset({"b", "a"}),), "a"),
         ("element", (("x", "y"), 1), "y"),
         ("in", ("b", Route(("a", "b"))), Truth.TRUE),
@@ -81,7 +81,9 @@ def test_operators_mean_what_they_say(operator, arguments, expected):
     assert of(operator, *arguments) == expected
 
 
-@pytest.mark.parametrize("wrong", [7, "text", Truth.TRUE, (1,), frozenset({1}), Route((1,)), SEEN])
+@pytest.mark.parametrize(
+    "wrong", [7, "text", Text("text"), Truth.TRUE, (1,), frozenset({1}), Route((1,)), SEEN]
+)
 @pytest.mark.parametrize("name", sorted(OPERATORS))
 def test_an_operator_gives_a_value_or_a_fault_of_anything(name, wrong):
     with suppress(Fault):

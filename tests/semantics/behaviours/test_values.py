@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from semantics.behaviours.observations import Observation
-from semantics.behaviours.values import LARGEST_NUMBER, Truth, in_order, order_key, parts, show
+from semantics.behaviours.values import LARGEST_NUMBER, Text, Truth, in_order, order_key, parts, show
 from semantics.state.relations import Parent
 
 atoms = st.one_of(
@@ -48,4 +48,4 @@ def test_parts_are_counted_as_often_as_they_occur(value):
 
 
 def test_a_text_that_is_no_name_is_quoted():
-    assert show(("go", "u0", Truth.FALSE), frozenset({"u0"})) == '("go", u0, false)'
+    assert show((Text("go"), "u0", Truth.FALSE)) == '("go", u0, false)'

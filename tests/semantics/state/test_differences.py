@@ -7,6 +7,7 @@ from semantics.behaviours.expressions import QueryOf
 from semantics.behaviours.observations import All
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import Observe
+from semantics.behaviours.values import Text
 from semantics.environment import Says
 from semantics.races.monitor import monitored
 from semantics.state.agents import code_cell, host_cell, mailbox_cell, store_cell
@@ -34,7 +35,7 @@ SIGNATURE = Signature.of(
         Kind("Vessel", carries=frozenset({"UAV"}), driven=True),
     ]
 )
-SAYS = Says("go", "a", 2, 0)
+SAYS = Says(Text("go"), "a", 2, 0)
 
 
 def start() -> Configuration:
@@ -60,7 +61,7 @@ CHANGES = {
     "what an agent is at": ({code_cell("a"): ()}, ["α  a ended"]),
     "where it is hosted": ({host_cell("a"): "vessel0"}, ["α  a hosted_at vessel0"]),
     "a new value": ({store_cell("a"): (("n#1", 3), ("#2", ()))}, ["α  a.n = 3"]),
-    "mail": ({mailbox_cell("a"): ("go", "go")}, ['α  mail of a: + "go"', 'α  mail of a: + "go"']),
+    "mail": ({mailbox_cell("a"): (Text("go"), "go")}, ['α  mail of a: + "go"', "α  mail of a: + go"]),
     "a request": ({("line", "a"): (OBS("a", ALL),)}, ["η  + OBS(a, ALL)"]),
     "a place believed": ({("parent", "uav0"): "sea0"}, ["L  uav0 : shore0 ↦ sea0"]),
     "links believed": ({("links", "uav0"): ("mesh",)}, ["L  uav0 : − control:gcs0", "L  uav0 : + mesh"]),

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from semantics.behaviours.observations import All, Of, QueryOperator
-from semantics.behaviours.values import Route
+from semantics.behaviours.values import Route, Text
 from semantics.environment import Says
 from semantics.extension import say
 from semantics.observed_steps import WRITABLE
@@ -247,11 +247,11 @@ def test_what_runs_here_does_not_leave():
 
 def test_parcels_enter_once_and_in_order():
     part = parted(FIRST, parting("gcs1"))
-    parcel = Parcel("op1", ("hello",))
+    parcel = Parcel("op1", (Text("hello"),))
     assert list(enter(part, "gcs0", 2, parcel)) == []
     (first,) = enter(part, "gcs0", 1, parcel)
     assert str(first.label) == "⟨enter : op1, gcs0⟩"
-    assert first.target.alpha.mailbox("op1") == ("hello",)
+    assert first.target.alpha.mailbox("op1") == (Text("hello"),)
     assert first.target.read(took_cell("gcs0")) == 1
     assert list(enter(first.target, "gcs0", 1, parcel)) == []
     assert len(list(enter(first.target, "gcs0", 2, parcel))) == 1
@@ -288,9 +288,10 @@ def test_what_no_station_of_the_mission_can_have_sent_does_not_enter(parcel, why
 
 
 def test_a_parcel_is_read_as_it_was_written():
-    whole = Parcel("nomad", ("x",), running(requests=(HANDS,)))
+    whole = Parcel("nomad", ("gcs1", Text("gcs1")), running(requests=(HANDS,)))
     assert parcel_in(json.loads(json.dumps(parcel_json(whole)))) == whole
-    assert objection(parted(FIRST, parting("gcs1")), Parcel("nomad", ("come",), running())) == ""
+    assert objection(parted(FIRST, parting("gcs1")), Parcel("nomad", (Text("come"),), running())) == ""
+    assert "nobody sends" in objection(parted(FIRST, parting("gcs1")), Parcel("nomad", ("come",), running()))
 
 
 def test_a_route_is_read_as_it_was_written_and_as_no_tuple():
@@ -328,6 +329,7 @@ def deep(levels):
         {"Parcel": ["nomad", [], {"Running": ["gcs0", [1], [], [{"Parcel": []}], []]}]},
         {"Parcel": ["nomad", [1.5], None]},
         {"Parcel": ["nomad", [{"truth": "maybe"}], None]},
+        {"Parcel": ["nomad", [{"text": 3}], None]},
         {"Parcel": ["nomad", [10**30], None]},
         {"Parcel": ["nomad", [deep(100)], None]},
         {"Parcel": ["nomad", [["x"] * 2000], None]},

@@ -145,3 +145,22 @@ def actions(graph):
     """Return who does what, edge by edge: the fast engine doesn't say which observation is received."""
     labels = [(each.rule, each.agent) for each in graph.labels]
     return [labels[action] for action in graph.actions]
+
+
+SPELLED = """
+BigActor f[u] for u in UAV hosted_at u with_behavior {
+  send ("uav0", u) to gcs
+  send (u, {u, uav0, "uav1"}) to gcs
+  react { case "uav1" => control(MOVE_HOST_TO north0) case =u => control(MOVE_HOST_TO gate0) }
+}
+BigActor gcs hosted_at vessel0 with_behavior {
+  loop { react { case ("uav0", who) => send who to f[who] case (=uav0, all) => send "uav1" to f[uav0] } }
+}
+check { race_freedom local_consistency deadlock_freedom ltl "b": eventually uav1 in gate0 reachable "g": uav0 in gate0 }
+"""
+
+
+def test_texts_that_are_spelled_like_names_are_judged_alike_by_both_engines():
+    mission = load(SPELLED)
+    reports = [check(mission.initial, mission.properties, engine=engine) for engine in ENGINES]
+    assert told(reports[0]) == told(reports[1])

@@ -2,6 +2,7 @@
 
 from checker.engines.fast.columns import packing
 from checker.engines.fast.learner import Actor, CodedSource, Learner
+from checker.engines.fast.leaves import PAIR, STEP, WRITES, WRITES_END
 from checker.engines.fast.recording import Ask, Edited, Recorder
 from checker.engines.fast.trees import UNKNOWN
 from semantics.behaviours.observations import All, Observation
@@ -93,4 +94,6 @@ def test_what_is_written_unread_over_what_was_always_there_is_learned_again_when
     assert int(learner.trees.root.room[keeps]) == UNKNOWN  # else it would go on to write nothing
     learner.learn(keeps, source())
     (step,) = learner.leaves.steps_of(-int(learner.trees.root.room[keeps]) - 1)
-    assert learner.leaves.codes_of(step) == {learner.columns.numbers[("shown",),]: 0}
+    record = learner.leaves.steps.room[STEP * step :]
+    written = learner.leaves.writes.room[PAIR * record[WRITES] : PAIR * record[WRITES_END]]
+    assert written.tolist() == [learner.columns.numbers[("shown",),], 0]

@@ -7,7 +7,6 @@ import pytest
 
 from checker import Limits
 from checker.engines.fast import space as spaces
-from checker.engines.fast.compacting import tag_of, write_tags
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.space import Space
 from checker.engines.fast.table import (
@@ -18,9 +17,7 @@ from checker.engines.fast.table import (
     hashed,
     most_in,
     rebuild,
-    slot_of,
     slots_for,
-    write_numbers,
 )
 from specs.elaboration import load_mission
 
@@ -48,34 +45,19 @@ def test_a_table_that_is_filled_finds_each_row_and_no_other(count):
     words, others = rows(count), rows(count, seed=1)
     slots = next(slots for slots in range(count, 3 * count) if most_in(slots) >= count)
     table = np.zeros(slots, np.uint32)
-    rebuild(words, count, WIDTH, table, write_numbers, bits_for(slots), alone)
+    rebuild(words, count, WIDTH, table, alone)
     assert np.count_nonzero(table) == count
     some = range(0, count, max(count // 1000, 1))
     assert [found(words, table, words, k) for k in some] == list(some)
     assert all(table[-found(words, table, others, k) - 1] == 0 for k in some)
 
 
-@pytest.mark.parametrize(("kind", "bits"), [(np.uint32, 32), (np.uint64, 64)])
-def test_tags_stand_at_or_behind_the_slots_of_their_hashes(kind, bits):
-    count = 1000
-    words, table = rows(count), np.zeros(slots_for(count), kind)
-    rebuild(words, count, WIDTH, table, write_tags, bits, alone)
-    assert np.count_nonzero(table) == count
-    for row in range(count):
-        mixed = np.uint64(hashed(words, WIDTH * row, WIDTH))
-        tag, slot = tag_of(mixed, bits), int(slot_of(mixed, len(table)))
-        while table[slot] != tag:
-            assert table[slot] != 0
-            slot = (slot + 1) % len(table)
-
-
-@pytest.mark.parametrize(("kind", "write"), [(np.uint32, write_numbers), (np.uint64, write_tags)])
-def test_a_table_is_filled_alike_whoever_fills_its_parts(kind, write):
+def test_a_table_is_filled_alike_whoever_fills_its_parts():
     count = 20_000
     words, slots = rows(count), count * 3 // 2
-    tables = [np.zeros(slots, kind) for _ in range(2)]
+    tables = [np.zeros(slots, np.uint32) for _ in range(2)]
     for table, share in zip(tables, (alone, one_by_one), strict=True):
-        rebuild(words, count, WIDTH, table, write, 40 if write is write_tags else bits_for(slots), share)
+        rebuild(words, count, WIDTH, table, share)
     assert np.array_equal(*tables)
     assert np.count_nonzero(tables[0]) == count
 

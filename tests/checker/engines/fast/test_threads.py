@@ -58,7 +58,7 @@ def seen(initial, threads, **options):
     rows = inner.rows.words[: inner.size * inner.rows.kept]
     numbers = (found.depth, found.expanded, found.transitions, found.rules, found.bounds, found.rule_runs)
     interned = [each.tolist() for each in inner.rows.interned]
-    return (rows.tolist(), list(map(int, found.origins)), numbers, inner.learned, inner.probed, interned)
+    return (rows.tolist(), list(map(int, found.origins)), numbers, inner.learned, interned)
 
 
 @pytest.mark.usefixtures("kept")
@@ -141,15 +141,6 @@ def test_other_threads_expand_slices_and_sift_them(monkeypatch):
     assert seen(start("rendezvous"), 4, limits=Limits()) == alone
     assert {("_expand", False), ("_sift", False)} <= done
     assert ("_sift", True) not in done
-
-
-@pytest.mark.usefixtures("kept")
-@pytest.mark.parametrize("bits", [16, 32, 64])
-def test_hashes_leave_the_same_out_for_any_number_of_threads(bits):
-    keeping = Keeping(compact=bits)
-    alone = seen(start("rendezvous"), 1, keeping=keeping, limits=Limits())
-    for threads in SEVERAL:
-        assert seen(start("rendezvous"), threads, keeping=keeping, limits=Limits()) == alone
 
 
 @pytest.mark.usefixtures("kept")

@@ -1,0 +1,112 @@
+"""The fate of operators' orders to hold or to return: asked, sent, confirmed or refused, in the words of the run.
+
+A vehicle is told again what it has refused: the order stays refused until the vehicle shows that it does it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
+from typing import Any, Final
+
+from adapters.console.actions import MOST_NAMED, act
+from adapters.console.draft import Draft
+from adapters.console.facts import Bid
+from adapters.console.parsing import text
+from adapters.console.view import Json
+from adapters.live.orders import stopping
+from adapters.live.state import Bidden, Fate
+from semantics.contingencies import Fallback
+
+MOST_VEHICLES: Final = 1_000
+
+WORST_FIRST: Final = (Fate.REFUSED, Fate.ASKED, Fate.SENT, Fate.CONFIRMED)
+
+
+def take_order(draft: Draft, time: float, data: Any) -> None:
+    """Take in that vehicles were ordered to hold or to return, or that the run refused to tell them."""
+    match data:
+        case {"order": "hold" | "return" as order, "requests": dict(requests)}:
+            named = [each for each in requests.items() if isinstance(each[1], str)][:MOST_NAMED]
+            name, by = data.get("vehicle"), text(data.get("by"))
+            for vehicle, _ in named:
+                end(draft, time, vehicle, f"then it was told to {order}")
+            number = act(draft, time, data, order, text(name) if isinstance(name, str) else "all", "asked")
+            for vehicle, request in named:
+                draft.taken.pop(vehicle, None)  # who had taken it over is overruled
+                draft.bidden[vehicle] = Bid(
+                    number, time, Bidden(stopping(Fallback(order), request, vehicle), by)
+                )
+                _note(draft, time, vehicle, draft.bidden[vehicle])
+            draft.bidden.bounded(MOST_VEHICLES)
+
+
+def sent(draft: Draft, time: float, vehicle: str, request: str) -> None:
+    """Note that a vehicle is told an order; one that it has refused stays refused."""
+    for bid in _ordered(draft, vehicle, request):
+        if bid.bidden.fate is Fate.ASKED:
+            _becomes(draft, time, vehicle, bid, Fate.SENT)
+
+
+def confirm(draft: Draft, time: float, vehicle: str, request: str) -> None:
+    """Note that a vehicle shows that it does what was ordered."""
+    for bid in _ordered(draft, vehicle, request):
+        if bid.bidden.owed:
+            _becomes(draft, time, vehicle, bid, Fate.CONFIRMED)
+
+
+def refuse(draft: Draft, time: float, vehicle: str, request: str, why: str) -> None:
+    """Note that a vehicle refuses an order, and why."""
+    for bid in _ordered(draft, vehicle, request):
+        _becomes(draft, time, vehicle, bid, Fate.REFUSED, why)
+
+
+def end(draft: Draft, time: float, vehicle: str, why: str) -> None:
+    """Note that an order stands no more; one that was not confirmed then never will be."""
+    bid: Bid | None = draft.bidden.pop(vehicle, None)
+    if bid is not None and bid.bidden.owed:
+        _note(draft, time, vehicle, bid, why)
+
+
+def _ordered(draft: Draft, vehicle: str, request: str) -> Iterator[Bid]:
+    """Yield the order that a request is, if it stands for its vehicle."""
+    bid: Bid | None = draft.bidden.get(vehicle)
+    if bid is not None and bid.bidden.command.request == request:
+        yield bid
+
+
+def _becomes(draft: Draft, time: float, vehicle: str, bid: Bid, fate: Fate, why: str = "") -> None:
+    draft.bidden[vehicle] = replace(bid, bidden=replace(bid.bidden, fate=fate, refusal=why))
+    _note(draft, time, vehicle, draft.bidden[vehicle])
+
+
+def _note(draft: Draft, time: float, vehicle: str, bid: Bid, then: str = "") -> None:
+    """Note what has become of an order to a vehicle in the action that it is of, and what came then."""
+    action: Json = draft.actions.get(bid.action)
+    if action is None:
+        return
+    why = "; ".join(filter(None, [bid.bidden.refusal, then]))
+    fates = {**action["fates"], vehicle: {"state": bid.bidden.fate.value, "why": why}}
+    owed = any(_is_owed(draft, name, bid.action) for name in fates)
+    draft.actions[bid.action] = {
+        **action,
+        "state": _state([each["state"] for each in fates.values()]),
+        "why": _why(fates),
+        "fates": fates,
+        "answered": None if owed else time,
+    }
+
+
+def _is_owed(draft: Draft, vehicle: str, action: str) -> bool:
+    bid: Bid | None = draft.bidden.get(vehicle)
+    return bid is not None and bid.action == action and bid.bidden.owed
+
+
+def _state(fates: Collection[str]) -> str:
+    """Return the fate of an order to several vehicles: the worst of theirs."""
+    return next(fate.value for fate in WORST_FIRST if fate.value in fates)
+
+
+def _why(fates: Mapping[str, Mapping[str, str]]) -> str:
+    named = {name: each["why"] for name, each in fates.items() if each["why"]}
+    return "; ".join(named.values() if len(fates) == 1 else (f"{name}: {why}" for name, why in named.items()))

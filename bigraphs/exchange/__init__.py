@@ -1,1 +1,0 @@
-"""Bigraphs in the files of other tools: the Bigraph Framework's XMI."""

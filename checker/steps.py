@@ -1,0 +1,89 @@
+"""Steps of runs: one transition with its choice, and the steps that a label, an observation or a target may mean."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from semantics.observed_steps import Sight, steps_seen
+from semantics.state.brief import cut
+from semantics.state.configuration import Configuration, Label, Transition
+from semantics.state.partition import Elsewhere
+from semantics.state.requests import Received
+from semantics.state.signature import Name
+from semantics.successors import expand_by, served, turn_of
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One transition of a trace.
+
+    Attributes:
+        label: Its label.
+        choice: The index of the chosen successor among those with that label.
+        target: The configuration after it.
+        sight: The observation, for a step that the world decided (live).
+    """
+
+    label: Label
+    choice: int
+    target: Configuration
+    sight: Sight | Elsewhere | None = None
+
+    def __repr__(self) -> str:
+        return f"<Step {cut(self.label)}>"
+
+
+def step_of(source: Configuration, label: Label, target: Configuration) -> Step:
+    """Return the step between two configurations; labels that print alike are alike, as `replay` knows no more.
+
+    What an observation is received without is looked up.
+    """
+    if isinstance(label.about, Received):
+        received = (t for t in candidates(source, label=str(label)) if isinstance(t.label.about, Received))
+        label = next(t.label for t in received if t.target == target and t.label.agent == label.agent)
+    targets = [transition.target for transition in alike(source, str(label))]
+    return Step(label, targets.index(target), target)
+
+
+def step_between(source: Configuration, target: Configuration) -> Step:
+    """Return the first step from one configuration to another."""
+    changed = target.state.changed(source.state)
+    agents = source.alpha.names()
+    if changed and all(
+        len(cell) > 1 for cell in changed
+    ):  # a step changes its agent, or what is nobody's: the queue
+        named = {name for cell in changed for name in cell[1:]}
+        agents = tuple(name for name in agents if name in named)
+    steps = _in_turn(source, agents)
+    return step_of(source, next(step.label for step in steps if step.target == target), target)
+
+
+def candidates(
+    source: Configuration, sight: Sight | Elsewhere | None = None, label: str | None = None
+) -> tuple[Transition, ...]:
+    """Return what may follow, or be meant by what was observed.
+
+    With a label, agents that it does not name are passed over: every label of an agent's steps names it.
+    """
+    agents = [name for name in source.alpha.names() if label is None or name in label]
+    if sight is not None:
+        return tuple(steps_seen(source, sight, agents))
+    return _in_turn(source, agents)
+
+
+def _in_turn(source: Configuration, agents: Sequence[Name]) -> tuple[Transition, ...]:
+    """Return what some agents and the environment may do, in the turn of all."""
+    found = expand_by(source, agents).transitions
+    turn = next((turn_of(each) for each in found if turn_of(each) is not None), None)
+    if turn is None:
+        return found
+    others = (name for name in source.alpha.names() if name not in agents)
+    turns = (turn_of(each) for other in others for each in served(source, other))
+    is_first = all(other is None or turn <= other for other in turns)
+    return found if is_first else tuple(each for each in found if turn_of(each) is None)
+
+
+def alike(source: Configuration, label: str, sight: Sight | Elsewhere | None = None) -> list[Transition]:
+    """Return the steps with a label."""
+    return [each for each in candidates(source, sight, label) if str(each.label) == label]

@@ -1,0 +1,60 @@
+"""Comparisons of variables with constants in properties: those that no value can meet."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from semantics.behaviours.program import VariableOf
+from semantics.behaviours.values import Value, show
+from semantics.properties.propositions import ORDERS
+from specs import syntax as s
+from specs.codes import Code
+from specs.elaboration.names import Names
+from specs.elaboration.needs import requoted, unquoted
+from specs.elaboration.value_types import ANY, NAMES, NOTHING, Sort, Sorts, Types, sort_of
+from specs.writing import write
+
+_PLURALS: Final = {
+    Sort.NUMBER: "numbers",
+    Sort.TEXT: "texts",
+    Sort.ENTITY: "entities",
+    Sort.AGENT: "bigActors",
+    Sort.TRUTH: "true and false",
+    Sort.TUPLE: "tuples",
+    Sort.SET: "sets",
+    Sort.ROUTE: "routes",
+    Sort.OBSERVATION: "observations",
+}
+
+_WORDS: Final = NAMES | {Sort.TEXT}
+
+
+def check_comparable(node: s.Stored, variable: VariableOf, value: Value, names: Names, types: Types) -> None:
+    """Report a comparison that no value of the variable can meet."""
+    if node.operator in ORDERS and not isinstance(value, int):
+        message = f"'{node.operator}' compares numbers, and {show(value)} is none"
+        hint = "write a whole number, or compare with == or !="
+        names.findings.add(Code.NOT_COMPARABLE, node, message, hint)
+        return
+    sorts = frozenset[Sort]().union(*(types.get(each, NOTHING).sorts for each in variable.variables))
+    sort, sorts = sort_of(value, names.agents), sorts or ANY.sorts
+    if sort in _WORDS and sorts & _WORDS:
+        _check_quotes(node, variable, value, sorts & _WORDS, names)
+    elif sort not in sorts:
+        has = " or ".join(words for sort, words in _PLURALS.items() if sort in sorts)
+        message = f"'{variable}' never has a value of that type, only {has}"
+        hint = f"whether it has a value at all is asked with: bound {variable}"
+        names.findings.add(Code.NOT_COMPARABLE, node, message, hint)
+
+
+def _check_quotes(node: s.Stored, variable: VariableOf, value: Value, sorts: Sorts, names: Names) -> None:
+    """Warn of a text that is compared with names, or a name with texts."""
+    sort = sort_of(value, names.agents)
+    if (sort is Sort.TEXT) is not (Sort.TEXT in sorts) and not {sort, Sort.TEXT} <= sorts:
+        has = " or ".join(words for each, words in _PLURALS.items() if each in sorts)
+        message = (
+            f"these are never equal: '{variable}' has only {has}, and {write(node.value)} is {sort.value}"
+        )
+        known = {*names.kinds, *names.agents}
+        hint = unquoted(node.value, known) or requoted(value)
+        names.findings.warn(Code.ALWAYS_THE_SAME, node, message, hint)
