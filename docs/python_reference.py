@@ -1,4 +1,4 @@
-"""The public names as sphinx's autodoc shows them: by their installed names, with the members of enumerations and unions.
+"""The public names as sphinx's autodoc shows them: by their installed names, with the members of enums and unions.
 
 The `__all__` of a module has the names of its `__init__.pyi`, so no page lists them.
 """
