@@ -14,11 +14,11 @@ from typing import Final
 
 from adapters.addresses import parse_address
 from adapters.feed import Feed
+from adapters.issue_counter import Troubles
 from adapters.lines import Lines
 from adapters.naming import NamingService
 from adapters.plugin import Aged, World
 from adapters.transport import Port, Remote, open_port
-from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError, PhysicalProperty, contains, open_file
 from physical.ais_receiver import TAKEN, Ear, hear
 from physical.ais_reports import AisError, PositionReport

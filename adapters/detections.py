@@ -16,10 +16,10 @@ from typing import Final
 from urllib.parse import unquote
 
 from adapters.feed import Feed
+from adapters.issue_counter import Troubles
 from adapters.naming import NamingService
 from adapters.plugin import Aged, Gone, World
 from adapters.slices import in_slices
-from adapters.troubles import Troubles
 from adapters.web import MAX_BODY, Listen, serve
 from physical import PhysicalError, PhysicalProperty, legible, open_file, reading_geojson
 from physical.tally import Counting

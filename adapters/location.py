@@ -14,10 +14,10 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from adapters.feed import Feed
+from adapters.issue_counter import Troubles
 from adapters.naming import NamingService
 from adapters.plugin import Aged, World
 from adapters.slices import in_slices
-from adapters.troubles import Troubles
 from adapters.web import MAX_BODY, fetching
 from physical import Band, PhysicalError, PhysicalProperty, Velocity, is_word, point, read_json
 

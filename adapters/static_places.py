@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Final
 
 from adapters.feed import Feed
+from adapters.issue_counter import Troubles
 from adapters.plugin import Gone, World
-from adapters.troubles import Troubles
 from physical import PhysicalError, PhysicalProperty, open_file
 from physical.place_files import read_place_file
 

@@ -19,7 +19,7 @@ from physical.ais_recording import read_recording
 from physical.ais_world import COARSE, Finest, dated, physical_property
 from physical.mmsi import digits
 from physical.tally import Counting, Tally
-from semantics.contingencies import Fallback, Precautions
+from semantics.live_policy import Fallback, LivePolicy
 from specs.elaboration import ElaboratedMission
 
 TELEMETRY = ".tlog"
@@ -46,7 +46,7 @@ class Shown:
 
 def watched(path: str, mission: ElaboratedMission, names: dict[str, str]) -> Shown:
     """Return a recording's view of a mission's world; raises Mistake if it can't be read or has no position."""
-    plan = Plan(mission.initial, precautions=Precautions(Fallback.CONTINUE))
+    plan = Plan(mission.initial, precautions=LivePolicy(Fallback.CONTINUE))
     state, steps, times, findings, count = started(plan), list[Step](), list[float](), list[Finding](), 0
     accounts: list[Tally] = []
     try:

@@ -20,7 +20,7 @@ from bigactors.fences import placements_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import tell
 from checker.reduction.bounds import Bounds
-from checker.reduction.roles import Roles
+from checker.reduction.possible_values import Roles
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction
 from semantics.behaviours.statements import ControlBy

@@ -16,7 +16,7 @@ from bigactors.missions import digest_of
 from bigactors.mistakes import Mistake, unreadable
 from checker import ReplayError, Trace, replay
 from checker.traces import SCHEMA
-from semantics.contingencies import Fallback
+from semantics.live_policy import Fallback
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.partition import Parting, Passage, parcel_of, parted
 from semantics.state.setting import Control, Scheduler

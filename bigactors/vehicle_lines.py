@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from adapters.live.sayings import typed
+from adapters.live.operator_commands import typed
 from adapters.live.scheduling import in_turn
 from adapters.live.state import LiveState, Plan
 from adapters.live.timing import flying

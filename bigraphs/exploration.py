@@ -9,8 +9,8 @@ from functools import partial
 from typing import Final, NamedTuple
 
 from bigraphs.engine.machine import Machine
-from bigraphs.reached import Reached
 from bigraphs.slices import Copy, slices_of
+from bigraphs.state_store import Reached
 from bigraphs.system import System
 from bigraphs.transitions import TransitionSystem
 from bigraphs.workers import Workers

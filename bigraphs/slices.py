@@ -11,11 +11,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from bigraphs.columns import Column
+from bigraphs.engine.frontier import Block, Waiting
 from bigraphs.engine.labelling import labels_in
 from bigraphs.engine.state import Key, codes_in, to_key
-from bigraphs.engine.waiting import Block, Waiting
 from bigraphs.engine.world import Codes, Row, World
-from bigraphs.reached import Reached
+from bigraphs.state_store import Reached
 from bigraphs.transitions import Kind
 
 

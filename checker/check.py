@@ -23,8 +23,8 @@ from checker.properties.inspections import (
 from checker.properties.ownership import owned
 from checker.properties.races import ControlRaces, StaleObservationRaces
 from checker.properties.visited import Visited
+from checker.reduction.original_run import told
 from checker.reduction.refusals import Reduction, RefusedError
-from checker.reduction.unfolding import told
 from checker.traces import Trace, trace_of, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation
 from semantics.properties.kinds import PropertyKind

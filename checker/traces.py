@@ -13,7 +13,7 @@ from checker.properties.inspections import is_unfair
 from checker.properties.race_steps import RaceSteps
 from checker.properties.races import STALE
 from checker.properties.stale_steps import stale_steps
-from checker.reduction.unfolding import run_to
+from checker.reduction.original_run import run_to
 from checker.steps import Step, alike, candidates, step_between, step_of
 from physical.messages import counted
 from semantics.observed_steps import Sight
@@ -27,8 +27,8 @@ from semantics.successors import expand, turn_of
 from semantics.timing.dates import clock_text
 
 if TYPE_CHECKING:
-    from checker.engines.runs import Run
-    from checker.engines.times import Times
+    from checker.engines.timed.answers import Times
+    from checker.engines.timed.first_runs import Run
 
 SCHEMA = "bigactors.trace/1"
 """The version of the step schema: schema, mission, digest, monitored, steps of label, choice and changes, and loop.

@@ -102,7 +102,7 @@ def remembered(c: Configuration, transition: Transition) -> Transition:
     """Return the transition with what has to be remembered of flights, where a mission says how long they take."""
     if c.setting.timing is None:
         return transition
-    from semantics.timing.voyages import remembering  # noqa: PLC0415 - geometry takes its time to load
+    from semantics.timing.flight_history import remembering  # noqa: PLC0415 - geometry takes its time to load
 
     return remembering(c, transition)
 

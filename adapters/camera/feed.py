@@ -21,9 +21,9 @@ from adapters.camera.sources import Shot, Source
 from adapters.camera.view import Lens, Pose
 from adapters.camera.votes import Region, share
 from adapters.feed import Feed
+from adapters.issue_counter import Troubles
 from adapters.naming import NameClash, NamingService
 from adapters.plugin import Aged, World
-from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError, PhysicalProperty
 
 DOWN: Final = Lens()

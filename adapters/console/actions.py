@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 from adapters.console.alerts import vanity
-from adapters.console.draft import Draft
+from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import text, texts
 from adapters.console.ticks import tick
 from adapters.console.view import Json

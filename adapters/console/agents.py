@@ -7,11 +7,11 @@ from functools import lru_cache
 from typing import Any, Final
 
 from adapters.console.alerts import vanity
-from adapters.console.draft import Draft
 from adapters.console.facts import Facts
+from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import number, text
 from adapters.console.view import Json
-from adapters.live.sayings import typed
+from adapters.live.operator_commands import typed
 from adapters.live.scheduling import in_turn, own_steps
 from semantics.behaviours.computation import first_fitting
 from semantics.behaviours.expressions import Fault

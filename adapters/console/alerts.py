@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from adapters.console.draft import Draft
 from adapters.console.facts import Facts
+from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import text, texts
 from adapters.console.ticks import tick
 from adapters.console.view import Json, Section

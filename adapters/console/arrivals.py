@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator
 from typing import Any, Final
 
-from adapters.console.draft import Draft
 from adapters.console.facts import Facts, Link, Position, Seen, Shape, Trail
+from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import band, number, position, ring, text, texts
 from adapters.console.stations import obeys
 from adapters.console.view import Json

@@ -17,7 +17,7 @@ from adapters.console.view import Json
 from adapters.console.whereabouts import UNKNOWN, Whereabouts, destination, known_whereabouts
 from adapters.live.state import Waiting
 from semantics.behaviours.durations import duration_text
-from semantics.contingencies import Fallback, TimeLimit
+from semantics.live_policy import Fallback, TimeLimit
 from semantics.state.requests import CTR, FLY, Request
 from semantics.state.signature import Name
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from adapters.console.view import Json, Section
 from adapters.live.state import Bidden, Waiting
-from semantics.contingencies import Fallback, TimeLimit
+from semantics.live_policy import Fallback, TimeLimit
 from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name
 

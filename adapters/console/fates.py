@@ -10,13 +10,13 @@ from dataclasses import replace
 from typing import Any, Final
 
 from adapters.console.actions import MOST_NAMED, act
-from adapters.console.draft import Draft
 from adapters.console.facts import Bid
+from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import text
 from adapters.console.view import Json
 from adapters.live.orders import stopping
 from adapters.live.state import Bidden, Fate
-from semantics.contingencies import Fallback
+from semantics.live_policy import Fallback
 
 MOST_VEHICLES: Final = 1_000
 

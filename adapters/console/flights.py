@@ -6,10 +6,10 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any, Final
 
-from adapters.console.draft import Draft, Table
 from adapters.console.facts import Link, Order, Position
 from adapters.console.fates import confirm, end, refuse, sent
 from adapters.console.giving_back import not_rebound, rebind, rebound
+from adapters.console.mutable_facts import Draft, Table
 from adapters.console.parsing import count, number, text, texts
 from adapters.console.stations import obeys
 from adapters.console.view import Json

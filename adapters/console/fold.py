@@ -9,11 +9,11 @@ from adapters.console.actions import take_acknowledgement, take_saying
 from adapters.console.agents import take_deadline
 from adapters.console.alerts import take_finding, tell
 from adapters.console.arrivals import take_arrival
-from adapters.console.draft import Draft
 from adapters.console.facts import Change, Facts, Opening, Standing, Unreplayable
 from adapters.console.fates import take_order
 from adapters.console.flights import take_command, take_flight, take_report, take_status, take_words
 from adapters.console.giving_back import take_giving_back
+from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import text
 from adapters.console.preflight import take_preflight
 from adapters.console.runs import run_of

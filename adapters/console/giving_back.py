@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any, Final
 
 from adapters.console.actions import act, settle
-from adapters.console.draft import Draft
 from adapters.console.fates import end
+from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import text
 
 MOST_VEHICLES: Final = 1_000

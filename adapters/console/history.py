@@ -14,9 +14,9 @@ from operator import is_ as _is
 from pathlib import Path
 from typing import Final, Protocol
 
-from adapters.console.draft import Draft
 from adapters.console.facts import Change, Facts, Opening
 from adapters.console.fold import take, time_of
+from adapters.console.mutable_facts import Draft
 from adapters.console.sections import view_of
 from adapters.console.view import NOTHING, Json, View
 from adapters.recording.foxglove import OTHERS

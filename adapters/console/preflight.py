@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from adapters.console.draft import Draft
+from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import text
 from adapters.console.view import Json
 

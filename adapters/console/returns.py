@@ -17,7 +17,7 @@ from adapters.live.sightings import Fences
 from adapters.live.state import Plan
 from physical import Geometry, point
 from physical.frame import E7
-from semantics.contingencies import Fallback
+from semantics.live_policy import Fallback
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Placed
 from semantics.state.signature import Name

@@ -7,7 +7,7 @@ from typing import Any, Final
 from adapters.console.facts import Run
 from adapters.console.parsing import number, ring, text, texts
 from adapters.console.view import Json
-from semantics.contingencies import Fallback, TimeLimit
+from semantics.live_policy import Fallback, TimeLimit
 
 MOST: Final = 1_000
 

@@ -19,8 +19,8 @@ from typing import Any, Final
 
 from adapters.addresses import LOOPBACK
 from adapters.console.access import Role, bearer
+from adapters.console.browser_session import EVERY, STALLED, Console, Looker
 from adapters.console.coast import coast, window_of
-from adapters.console.looker import EVERY, STALLED, Console, Looker
 from adapters.console.requests import MOST_BYTES, PROTOCOL, Hello, Unreadable, read_request
 from adapters.recording.mcap_files import RecordingError
 from adapters.web import BACKLOG, Door, is_meant, library, quiet_log

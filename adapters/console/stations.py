@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from adapters.console.draft import Draft
 from adapters.console.facts import Authority, Facts
+from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import number, text
 from adapters.console.view import Json
 from semantics.state.signature import Name

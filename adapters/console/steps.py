@@ -7,9 +7,9 @@ from functools import lru_cache
 from typing import Any, Final
 
 from adapters.console.alerts import tell
-from adapters.console.draft import Draft
 from adapters.console.facts import Change, Standing, Unreplayable
 from adapters.console.flights import arrive
+from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import count, text, texts
 from adapters.console.ticks import tick
 from adapters.live.limits import heads_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import Final
 
-from adapters.console.draft import Draft
+from adapters.console.mutable_facts import Draft
 
 MOST: Final = 2_000
 

@@ -10,7 +10,7 @@ from adapters.live.fates import tell_again
 from adapters.live.flying import remember
 from adapters.live.ingest import take_in
 from adapters.live.limits import check_limits
-from adapters.live.sayings import answer
+from adapters.live.operator_commands import answer
 from adapters.live.scheduling import in_turn
 from adapters.live.state import Batch, LiveState, Plan, Turn
 from adapters.live.timing import begun

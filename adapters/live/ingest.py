@@ -15,7 +15,7 @@ from adapters.live.sightings import Refusal, placement_seen, sighting_of
 from adapters.live.state import Batch, Heard
 from adapters.live.surroundings import told_apart
 from adapters.live.turn import Turning
-from adapters.live.unannounced import comes_in, place_strangers, remove_strangers
+from adapters.live.unknown_entities import comes_in, place_strangers, remove_strangers
 from adapters.plugin import (
     Accepted,
     Arrived,

@@ -9,7 +9,7 @@ from adapters.live.scheduling import in_turn
 from adapters.live.state import Waiting
 from adapters.live.turn import Turning
 from semantics.behaviours.durations import duration_text
-from semantics.contingencies import Fallback, TimeLimit
+from semantics.live_policy import Fallback, TimeLimit
 from semantics.state.configuration import Configuration
 from semantics.state.requests import SND
 

@@ -16,7 +16,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from adapters.listening import Listening
+from adapters.issue_counter import Troubles
 from adapters.live.core import advance, is_over, is_refused, watch
 from adapters.live.state import Answer, Batch, Finding, Heard, LiveState, Plan, Said, Saying, Turn
 from adapters.live.validation import flaw_of, legible_report
@@ -39,7 +39,7 @@ from adapters.plugin import (
     Status,
     entity_of,
 )
-from adapters.troubles import Troubles
+from adapters.silence_clock import Listening
 from physical import is_text
 
 GATHER = 0.002

@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 from adapters.live.socket_file import Reserve, bound
 from adapters.live.state import Acknowledging, Answer, GivingBack, Ordering, Said, Saying
 from physical import PhysicalError, is_text, is_word, read_json
-from semantics.contingencies import Fallback
+from semantics.live_policy import Fallback
 
 MOST_BYTES: Final = 16_384
 MOST_ANSWER: Final = 2**20

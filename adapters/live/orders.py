@@ -6,8 +6,8 @@ from adapters.live.surroundings import surroundings
 from adapters.plugin import Follow, GoTo, HandOver, Hold, Return
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, moved, relinked
 from semantics.brr_driver import passed
-from semantics.contingencies import Fallback
 from semantics.control import Realisation, commits
+from semantics.live_policy import Fallback
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, Placed, placement_cell
 from semantics.state.requests import CTR, FLY

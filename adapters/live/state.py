@@ -10,7 +10,7 @@ from enum import StrEnum
 from adapters.live.timing import Timers
 from adapters.plugin import Command, Follow, GoTo, HandOver, Hold, Published, Report, Return
 from physical import Geometry, PhysicalProperty
-from semantics.contingencies import Fallback, Precautions
+from semantics.live_policy import Fallback, LivePolicy
 from semantics.observed_steps import Sight
 from semantics.state.cells import Cell
 from semantics.state.configuration import Configuration, Transition
@@ -34,7 +34,7 @@ class Plan:
 
     first: Configuration
     vehicles: Mapping[Name, str] = field(default_factory=dict)
-    precautions: Precautions = field(default_factory=Precautions)
+    precautions: LivePolicy = field(default_factory=LivePolicy)
     strict: bool = False
     peers: str = ""
 

@@ -19,8 +19,8 @@ from semantics.timing.actor_clocks import BOUND, FREE, Clock, Sort, is_restored
 from semantics.timing.bounds import Bound, bound_of, clause_beginnings, going_on, running_in, timed_by
 from semantics.timing.clocks import Situation, TimedStep
 from semantics.timing.dates import lapse_text
+from semantics.timing.flight_history import travelling
 from semantics.timing.timing import Every, Sayable, Window
-from semantics.timing.voyages import travelling
 
 GRACE: Final = 0.25
 """Seconds that a run itself may need to notice that something is done."""

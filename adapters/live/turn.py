@@ -27,9 +27,9 @@ from adapters.plugin import Command, HandOver
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.statements import React
 from semantics.behaviours.stepping import next_statement
-from semantics.contingencies import Fallback
 from semantics.control import Realisation, obstacle, realisations
 from semantics.extension import timeout
+from semantics.live_policy import Fallback
 from semantics.observed_steps import Sight
 from semantics.state.configuration import Transition
 from semantics.state.eta import Pending

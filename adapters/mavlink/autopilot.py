@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any, Final
 
 from adapters.addresses import parse_address
-from adapters.listening import Listening
+from adapters.issue_counter import Troubles
 from adapters.mavlink import pilot as piloting
 from adapters.mavlink import roster as rosters
 from adapters.mavlink.codec import Decoder, Encoder, Garbage
@@ -36,9 +36,9 @@ from adapters.plugin import (
     StatusText,
     World,
 )
-from adapters.ration import Ration
+from adapters.rate_limit import Ration
+from adapters.silence_clock import Listening
 from adapters.transport import Port, Remote, open_port
-from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError, Surroundings
 
 TICK: Final = 0.2

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from adapters.live.state import Finding, Heard, Turn
 from adapters.plugin import Report, Seen, entity_of
-from adapters.ration import Ration, Turns
+from adapters.rate_limit import Ration, Turns
 from adapters.recording.encoding import (
     answer_json,
     arrival_json,

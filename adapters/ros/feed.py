@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from adapters.feed import Feed
+from adapters.issue_counter import Troubles
 from adapters.naming import NamingService
 from adapters.plugin import Aged, World
 from adapters.ros.link import REPORT, Link, read_address, read_at
 from adapters.ros.messages import TYPES, hash_of, typestore
 from adapters.ros.wire import NODE, Topic, all_of
-from adapters.troubles import Troubles
 from physical import PhysicalError, PhysicalProperty
 
 

@@ -11,10 +11,10 @@ from dataclasses import replace
 from typing import Any, Final
 
 from adapters.addresses import Address, parse_address
+from adapters.issue_counter import Troubles
 from adapters.plugin import World
 from adapters.ros.messages import MOST_BYTES, Position, hash_of, read_position
 from adapters.ros.wire import UNHASHED, Topic, node_token, topic_of
-from adapters.troubles import Troubles
 from physical import PhysicalError
 from physical.messages import install_extra
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from adapters.assigned import Assigned
+from adapters.issue_counter import Troubles
 from adapters.plugin import (
     Accepted,
     Aged,
@@ -49,7 +50,6 @@ from adapters.ros.messages import (
 )
 from adapters.ros.publisher import Publisher
 from adapters.ros.wire import NODE, UNHASHED, Topic, attachment, gid_of, key_of, subscriptions_of
-from adapters.troubles import Troubles
 from physical import Geometry, PhysicalError, PhysicalProperty, circle, contains, point
 
 STAYS: Final = 10.0

@@ -14,7 +14,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Final
 
-from adapters.listening import Listening
+from adapters.issue_counter import Troubles
 from adapters.live.sightings import MOST_AHEAD
 from adapters.live.state import Heard, Turn
 from adapters.plugin import (
@@ -35,6 +35,7 @@ from adapters.plugin import (
     World,
     entity_of,
 )
+from adapters.silence_clock import Listening
 from adapters.stations.authority import Authority, is_silent
 from adapters.stations.bus import Bus
 from adapters.stations.entries import (
@@ -59,7 +60,6 @@ from adapters.stations.peers import Peers
 from adapters.stations.remote_station import Other
 from adapters.stations.shared_plugin import Shared
 from adapters.stations.skew import measured
-from adapters.troubles import Troubles
 from physical import PhysicalError, read_json
 
 NAME: Final = "stations"

@@ -14,9 +14,9 @@ from typing import Final
 
 from adapters.addresses import LOOPBACK
 from adapters.console.access import Access
+from adapters.console.browser_session import Console
 from adapters.console.history import History
-from adapters.console.looker import Console
-from adapters.console.performing import performing
+from adapters.console.run_client import performing
 from adapters.console.server import Site, lacks_parts, serving
 from adapters.recording.mcap_files import McapReader, RecordingError
 from adapters.recording.reading import checked_run

@@ -21,10 +21,10 @@ def run(options: Namespace) -> Exit:
             f"{options.file} says nothing of times",
             "only missions with a section `timing` have timed automata",
         )
+    from checker.engines.timed.zone_answers import ZoneTimes  # noqa: PLC0415 - the same
     from checker.engines.zones.interchange import model_of  # noqa: PLC0415 - numba is slow to load
     from checker.engines.zones.tchecker import tchecker_text  # noqa: PLC0415 - the same
     from checker.engines.zones.uppaal import uppaal_text  # noqa: PLC0415 - the same
-    from checker.engines.zones.zone_times import ZoneTimes  # noqa: PLC0415 - the same
 
     asked = None if options.property is None else _asked(mission, options.property)
     try:

@@ -14,13 +14,13 @@ from bigraphs.engine.contexts import occurs, without_idle
 from bigraphs.engine.forms import Forms
 from bigraphs.engine.labelling import Labelling
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.outlines import Outlines
 from bigraphs.engine.patterns import check_size, compile_pattern
 from bigraphs.engine.reactions import Reaction
 from bigraphs.engine.rule_index import ReactionIndex, RuleIndex, numbers_in
 from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import Occurrence
 from bigraphs.engine.state import Key, State, make_state
+from bigraphs.engine.state_order import Outlines
 from bigraphs.engine.world import World, has_edges, has_sharing
 from bigraphs.errors import BigraphError
 from bigraphs.system import System

@@ -86,7 +86,7 @@ def _explore_in_time(initial: Configuration, inspect: tuple[Inspect, ...], optio
         from checker.engines.zones.explorer import explore_in_zones  # noqa: PLC0415  # numba takes its time to load
 
         return explore_in_zones(initial, inspect, options)
-    from checker.engines.ticks import explore_in_ticks  # noqa: PLC0415 - few missions speak of time
+    from checker.engines.timed.digital_clocks import explore_in_ticks  # noqa: PLC0415 - few missions speak of time
 
     return explore_in_ticks(initial, inspect, options)
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from checker.engines.graph import Bools, Graph, Numbers
-    from checker.engines.times import Times
+    from checker.engines.timed.answers import Times
     from checker.reduction.reducer import Reduced
 
 

@@ -13,7 +13,7 @@ from checker.engines.contract import Exploration, Inspect, Options, Progress, sa
 from checker.engines.edges import Edges
 from checker.engines.estimate import estimate
 from checker.limits import Bound, BoundMet, Part, Stop, bounded, is_full, look
-from checker.reduction.paths import Paths
+from checker.reduction.cycle_proviso import Paths
 from semantics.state.configuration import Configuration, Transition
 from semantics.successors import Expansion, expand
 

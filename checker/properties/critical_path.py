@@ -7,7 +7,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, TypeVar
 
-from checker.engines.runs import Run
+from checker.engines.timed.first_runs import Run
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.timing.actor_clocks import Clock
 from semantics.timing.bounds import Bound, bound_of, going_on, running_in, timed_by

@@ -8,11 +8,11 @@ from dataclasses import replace
 from functools import cached_property
 
 from checker.engines.contract import Exploration
-from checker.engines.runs import Run
-from checker.engines.times import Times
+from checker.engines.timed.answers import Times
+from checker.engines.timed.first_runs import Run
 from checker.limits import BoundMet
 from checker.properties.critical_path import Leg, critical_path
-from checker.properties.durations import NEVER
+from checker.properties.longest_paths import NEVER
 from checker.properties.schedule import Milestone, Moments, Schedule, flights_of
 from checker.traces import Trace, dated_trace
 from checker.verdicts import Outcome, Verdict, Violation

@@ -7,8 +7,8 @@ from itertools import chain
 from operator import itemgetter
 from typing import ClassVar, NamedTuple
 
-from checker.properties.causes import causes
 from checker.properties.control_sites import common_sites
+from checker.properties.deadlock_causes import causes
 from checker.properties.findings import MOST_VIOLATIONS, Collected, Key, Seen
 from checker.properties.obstacles import lacking
 from checker.properties.vacuity import Valuations

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from checker.engines.times import NO_SPAN, TakenStep, Times
+from checker.engines.timed.answers import NO_SPAN, TakenStep, Times
 from semantics.behaviours.reaction_rules import moved
 from semantics.state.configuration import Configuration
 from semantics.state.requests import FLY

@@ -16,10 +16,10 @@ from typing import NamedTuple
 
 from checker.reduction.bounds import Bounds
 from checker.reduction.footprints import Footprints
-from checker.reduction.marks import Marks
 from checker.reduction.messages import Known, message_of
-from checker.reduction.roles import Roles
-from checker.reduction.slots import NOTHING, Footprint, joined
+from checker.reduction.possible_values import Roles
+from checker.reduction.race_footprints import Marks
+from checker.reduction.variables import NOTHING, Footprint, joined
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.program import reachable
 from semantics.behaviours.reaction_rules import Reaction

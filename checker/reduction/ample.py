@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from checker.properties.inspections import is_unfair
 from checker.reduction.actors import Acting, Actor, Actors
-from checker.reduction.paths import Parts, Paths, part_of, parts_of
+from checker.reduction.cycle_proviso import Parts, Paths, part_of, parts_of
 from checker.reduction.visible import Eyes
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition

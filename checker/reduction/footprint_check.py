@@ -11,14 +11,14 @@ from dataclasses import replace
 from typing import Any
 
 from checker.engines.fast.recording import Ask, Asked, Conclusion, Recorder, Source
-from checker.engines.fast.skeletons import settled
+from checker.engines.fast.value_templates import settled
 from checker.reduction.actors import Acting, Actor, Actors
 from checker.reduction.ample import Ample, disturbed
-from checker.reduction.marks import ANSWERS, MARKS, slot_of_mark
 from checker.reduction.messages import Known
+from checker.reduction.race_footprints import ANSWERS, MARKS, slot_of_mark
 from checker.reduction.renaming import Renaming
-from checker.reduction.slots import NOTHING, Footprint, Slot
 from checker.reduction.symmetry import Symmetry
+from checker.reduction.variables import NOTHING, Footprint, Slot
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Fact
 from semantics.control import applicable, obstacle

@@ -10,8 +10,8 @@ from typing import assert_never
 
 from checker.reduction.bounds import Bounds, Names
 from checker.reduction.messages import Known, Message, wakes
-from checker.reduction.roles import Roles
-from checker.reduction.slots import NOTHING, Footprint, Slot, Slots
+from checker.reduction.possible_values import Roles
+from checker.reduction.variables import NOTHING, Footprint, Slot, Slots
 from semantics.behaviours.observations import All, Nodes, Query, QueryOperator
 from semantics.behaviours.reaction_rules import (
     LinkTerm,

@@ -11,7 +11,7 @@ from functools import lru_cache
 from hashlib import blake2b
 from typing import Any
 
-from checker.engines.fast.skeletons import holes, put_together, taken_apart
+from checker.engines.fast.value_templates import holes, put_together, taken_apart
 from checker.reduction.renaming import Renaming, mentioned, spelled
 from semantics.behaviours.observations import NOTHING_SEEN, Observation
 from semantics.state.cells import AGENTS, NAMES, Cell, Row

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 
 from checker.reduction.ample import Ample, Followed, Reached
-from checker.reduction.paths import Paths
+from checker.reduction.cycle_proviso import Paths
 from checker.reduction.refusals import Reduction, refusal, refuse_partial_order, refuse_symmetry
 from checker.reduction.symmetry import Symmetry
 from semantics.properties.property import Property

@@ -8,7 +8,7 @@ from functools import lru_cache
 from itertools import combinations
 from typing import Any
 
-from checker.engines.fast.skeletons import mobile_names
+from checker.engines.fast.value_templates import mobile_names
 from checker.reduction.automorphisms import Automorphisms
 from checker.reduction.items import Class, Items
 from checker.reduction.order import ordered

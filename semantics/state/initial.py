@@ -51,7 +51,7 @@ def initial(
     for clause in setting.environment:
         contents |= _remembered(clause)
     if setting.timing is not None:
-        from semantics.timing.voyages import remembered_at_first  # noqa: PLC0415 - geometry takes its time to load
+        from semantics.timing.flight_history import remembered_at_first  # noqa: PLC0415 - geometry takes its time to load
 
         contents |= remembered_at_first(setting)
     for agent, (host, code) in sorted(agents.items()):

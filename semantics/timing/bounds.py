@@ -12,9 +12,9 @@ from semantics.state.requests import CTR, FLY, MGR, OBS, SND
 from semantics.state.setting import Setting
 from semantics.timing.actor_clocks import Clock, Sort, is_taken_up, word_of
 from semantics.timing.clocks import Situation, TimedStep
+from semantics.timing.flight_history import travelling
 from semantics.timing.intervals import ANY_TIME, Interval
 from semantics.timing.timing import ONE_HOST, Every, Sayable, Window
-from semantics.timing.voyages import travelling
 
 T = TypeVar("T")
 

@@ -18,9 +18,9 @@ from physical.extents import Extent, extent, greatest_distance, least_distance
 from semantics.state.configuration import Configuration
 from semantics.state.requests import FLY
 from semantics.state.signature import Name
+from semantics.timing.flight_history import Memory, Voyage, memory_cell, travelling, waypoints, whereabouts
 from semantics.timing.intervals import ANY_TIME, Interval
 from semantics.timing.timing import Motion
-from semantics.timing.voyages import Memory, Voyage, memory_cell, travelling, waypoints, whereabouts
 
 ROUNDING: Final = 1e-12
 """By what part a quotient of floating-point numbers may be off, generously."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from semantics.contingencies import Fallback, Precautions, TimeLimit
+from semantics.live_policy import Fallback, LivePolicy, TimeLimit
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.names import Names
 from specs.elaboration.statements import check_duration
 
 
-def elaborate_live(mission: s.Mission, names: Names) -> Precautions:
+def elaborate_live(mission: s.Mission, names: Names) -> LivePolicy:
     """Return the precautions of a mission: vehicles hold on a broken assumption where nothing else is said."""
     written = [item for section in mission.each(s.Live) for item in section.precautions]
     on_broken = [item for item in written if isinstance(item, s.OnBroken)]
@@ -18,7 +18,7 @@ def elaborate_live(mission: s.Mission, names: Names) -> Precautions:
         message = "'on broken assumption' is said twice"
         names.findings.add(Code.REPEATED_SETTING, again, message, "leave one of the two out")
     fallback = Fallback(on_broken[0].fallback) if on_broken else Fallback.HOLD
-    return Precautions(fallback, tuple(_limit(item, names) for item in _different(limits, names)))
+    return LivePolicy(fallback, tuple(_limit(item, names) for item in _different(limits, names)))
 
 
 def _limit(node: s.TimeLimit, names: Names) -> TimeLimit:

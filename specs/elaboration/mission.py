@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Final
 
 from physical import open_file
-from semantics.contingencies import Precautions
 from semantics.environment import Says
+from semantics.live_policy import LivePolicy
 from semantics.properties.property import Property, watched
 from semantics.state.brief import cut
 from semantics.state.configuration import Configuration
@@ -71,7 +71,7 @@ class ElaboratedMission:
     notes: tuple[str, ...]
     fixed: frozenset[Name]
     spans: Mapping[tuple[str, str], s.Span]
-    precautions: Precautions
+    precautions: LivePolicy
     warnings: tuple[Diagnostic, ...]
     begin: Callable[[Setting], Configuration] = field(repr=False)
     empty: bool

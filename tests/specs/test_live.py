@@ -1,6 +1,6 @@
 from pathlib import Path
 
-from semantics.contingencies import Fallback, Precautions, TimeLimit
+from semantics.live_policy import Fallback, LivePolicy, TimeLimit
 from specs.diagnostics import Source
 from specs.elaboration import elaborate
 from specs.parser import parse
@@ -14,12 +14,12 @@ def precautions_of(text):
 
 
 def test_without_a_live_section_vehicles_hold_when_an_assumption_breaks():
-    assert precautions_of("") == Precautions(Fallback.HOLD, ())
+    assert precautions_of("") == LivePolicy(Fallback.HOLD, ())
 
 
 def test_precautions_are_read_in_the_order_written():
     text = "live { on broken assumption: return FLY a within 1.5 min: return; anyone within 1 h: continue }"
-    assert precautions_of(text) == Precautions(
+    assert precautions_of(text) == LivePolicy(
         Fallback.RETURN,
         (TimeLimit("FLY", "a", 90.0, Fallback.RETURN), TimeLimit(None, None, 3600.0, Fallback.CONTINUE)),
     )

@@ -1,9 +1,9 @@
 /** What may be said and done, and what became of what was. */
 import { Field, html, memo, byName, useSections, useWatched } from "./ui.js";
-import { eachFate, fateOf } from "./plainly.js";
+import { eachFate, fateOf } from "./wording.js";
 import { HeldButton } from "./press.js";
 import { utc } from "./units.js";
-import { LONGEST_NAME } from "./who.js";
+import { LONGEST_NAME } from "./operator_name.js";
 
 export function Actions({ app }) {
   const [sayings, actions, vehicles, agents, mission] = useSections(app.store, ["sayings", "actions", "vehicles", "agents", "mission"], 200);

@@ -1,7 +1,7 @@
 /** The red line: what is wrong, until someone acknowledges it. It has its place when nothing is, so that nothing moves. */
 import { html, useEffect, useSections, useState, useWatched } from "./ui.js";
 import { Age } from "./clock.js";
-import { findingWords } from "./plainly.js";
+import { findingWords } from "./wording.js";
 import { utc } from "./units.js";
 
 /** What has other findings follow: an assumption breaks because a link is lost, or because somebody has taken over. */

@@ -1,5 +1,5 @@
 /** Tells people who don't see the screen what has changed, in one sentence every few seconds at the most. */
-import { fateOf } from "./plainly.js";
+import { fateOf } from "./wording.js";
 
 const PAUSE = 3000;
 const MOST = 4;

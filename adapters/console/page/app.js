@@ -4,7 +4,7 @@ import { Alert } from "./alert.js";
 import { Announcer } from "./announce.js";
 import { Brief, Cards, worstFirst } from "./cards.js";
 import { Clock } from "./clock.js";
-import { Door } from "./door.js";
+import { Door } from "./login.js";
 import { Help, listenForKeys } from "./keys.js";
 import { Link } from "./link.js";
 import { Mission, NotConnected } from "./mission.js";
@@ -14,7 +14,7 @@ import { Preflight } from "./preflight.js";
 import { Store } from "./store.js";
 import { openTab, Panel, PANELS, TabList, usePhone } from "./tabs.js";
 import { neighbour, SPEEDS, Timeline } from "./timeline.js";
-import { Who } from "./who.js";
+import { Who } from "./operator_name.js";
 
 /** Milliseconds in which a connection with a new name is made, or the action is not sent. */
 const CONNECTS = 10_000;

@@ -2,9 +2,9 @@
 import { html, memo, byName, useEffect, useRef, useSections, useWatched } from "./ui.js";
 import { Age, Ticking, say } from "./clock.js";
 import { distance, distanceToArea } from "./map/geodesy.js";
-import { fallbackWords, fateOf, isAstray, orderedWords, orderWords, requestWords, wayOf, whereabouts } from "./plainly.js";
+import { fallbackWords, fateOf, isAstray, orderedWords, orderWords, requestWords, wayOf, whereabouts } from "./wording.js";
 import { OnReturn, Orders } from "./orders.js";
-import { useStillness } from "./stillness.js";
+import { useStillness } from "./stable_list.js";
 import { angle, age, duration, metres, position, range, speed, system, utc } from "./units.js";
 
 const MARKS = ["●", "▲", "■", "✖"];

@@ -1,6 +1,6 @@
 /** What became of each action that this page asked for, until it is over; and short words that go by themselves. */
 import { html, useWatched, Watched } from "./ui.js";
-import { fateOf } from "./plainly.js";
+import { fateOf } from "./wording.js";
 
 const SHOWN = 6000;
 /** Notices at once: refusals stay until they are closed. */

@@ -19,12 +19,12 @@ from checker.engines.cluster.keys import Keys
 from checker.engines.cluster.transfer import Dictionary, Entry, Parcel, Told
 from checker.engines.fast import kernel as loops
 from checker.engines.fast.columns import WORD, Packing, shifts
+from checker.engines.fast.effects import Deeper, Varies
 from checker.engines.fast.kernel import AT, CROWDS, CUT, EXPANDED, GATHERED, LIMIT, SIZE
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.origins import Elsewhere
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import FIRST_ROWS, MOST_ROWS, Space
-from checker.engines.fast.writing import Deeper, Varies
 from checker.limits import memory_taken
 from semantics.state.configuration import Configuration
 

@@ -12,8 +12,22 @@ from typing import Any
 
 import numpy as np
 
+from checker.engines.fast.actor_tables import (
+    AGENTS_OWN,
+    EVERYBODY,
+    FAIR,
+    GOING_ON,
+    KINDS,
+    MEMBER,
+    MOST_HERE,
+    NOBODY_LEFT,
+    RECORD,
+    TRIED,
+    UNKNOWN,
+    Members,
+    meet,
+)
 from checker.engines.fast.bits import WORD, add, has
-from checker.engines.fast.folding import NO_ROOM, Folded, intern, unfold
 from checker.engines.fast.kernel import (
     AT,
     EXPANDED,
@@ -29,25 +43,11 @@ from checker.engines.fast.kernel import (
     code_at,
 )
 from checker.engines.fast.loops import inner, njit
-from checker.engines.fast.members import (
-    AGENTS_OWN,
-    EVERYBODY,
-    FAIR,
-    GOING_ON,
-    KINDS,
-    MEMBER,
-    MOST_HERE,
-    NOBODY_LEFT,
-    RECORD,
-    TRIED,
-    UNKNOWN,
-    Members,
-    meet,
-)
+from checker.engines.fast.path_ends import Trails, begin_row, end_of, lead_on
 from checker.engines.fast.persistent import find_set
 from checker.engines.fast.successors import list_steps, make, make_representative, without_repetitions
 from checker.engines.fast.table import Words, bits_for, entry_of, find
-from checker.engines.fast.trails import Trails, begin_row, end_of, lead_on
+from checker.engines.fast.tree_compression import NO_ROOM, Folded, intern, unfold
 
 
 @inner(cache=True)

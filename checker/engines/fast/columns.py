@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.recording import Ask
-from checker.engines.fast.skeletons import Family, Hole, holes, put_together, taken_apart
+from checker.engines.fast.value_templates import Family, Hole, holes, put_together, taken_apart
 from semantics.behaviours.observations import NOTHING_SEEN
 from semantics.state.cells import NAMES, Cell, Row
 from semantics.state.signature import Name

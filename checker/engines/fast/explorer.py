@@ -24,8 +24,8 @@ from checker.limits import Bound, BoundMet, Limits, Part, Stop, bounded, is_full
 from semantics.state.configuration import Configuration
 
 if TYPE_CHECKING:
-    from checker.engines.fast.exchanging import Exchanging
     from checker.engines.fast.partial_order import Choosing
+    from checker.engines.fast.symmetry_tables import Exchanging
 
 CHUNK = 1 << 15
 """Rows expanded between two checks of the clock."""
@@ -144,7 +144,7 @@ class _Explorer:
         symmetry = None if self.reduce is None else self.reduce.symmetry
         if symmetry is None:
             return None
-        from checker.engines.fast.exchanging import Exchanging  # noqa: PLC0415  # compiled only for symmetry
+        from checker.engines.fast.symmetry_tables import Exchanging  # noqa: PLC0415  # compiled only for symmetry
 
         return Exchanging(self.learner, symmetry.items)
 

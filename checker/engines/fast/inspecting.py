@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from checker.engines.contract import Inspect
 from checker.engines.fast.learner import Actor
 from checker.engines.fast.leaves import COPIES, COPIES_END, PAIR, PARTS, PARTS_END, STEP, WRITES, WRITES_END
-from checker.engines.fast.profiles import Profiles
+from checker.engines.fast.proposition_table import Profiles
 from checker.engines.fast.survey import Survey, distinct
 from checker.limits import look
 from checker.properties.findings import Collected, Key

@@ -12,22 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.folding import (
-    MEMORY,
-    NO_ROOM,
-    NOWHERE,
-    UNMET,
-    Folded,
-    fold,
-    intern,
-    leave_open,
-    put_piece,
-    put_sought,
-    seek_piece,
-    seek_piece_of_row,
-    step_left_open,
-    unfold,
-)
 from checker.engines.fast.leaves import (
     ALIKE,
     COPIES,
@@ -48,6 +32,22 @@ from checker.engines.fast.leaves import (
 from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.origins import most_origins, note_origin
 from checker.engines.fast.table import Words, bits_for, entry_of, fetch, find, hashed, most_in
+from checker.engines.fast.tree_compression import (
+    MEMORY,
+    NO_ROOM,
+    NOWHERE,
+    UNMET,
+    Folded,
+    fold,
+    intern,
+    leave_open,
+    put_piece,
+    put_sought,
+    seek_piece,
+    seek_piece_of_row,
+    step_left_open,
+    unfold,
+)
 from checker.engines.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
 
 Ints = NDArray[np.int32]

@@ -11,14 +11,14 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from checker.engines.fast.columns import Columns, Packing, Place, Writes
+from checker.engines.fast.effects import RecordedEffect, Relearn, Varies, Writing
+from checker.engines.fast.interchangeable import Likeness
 from checker.engines.fast.leaves import ALIKE, CROWDED, NO_TURN, STEP, UNLIKE, Effect, Leaves, Step
-from checker.engines.fast.lessons import Exchange, Kin, Outcome, Parts
-from checker.engines.fast.likeness import Likeness
 from checker.engines.fast.recording import Ask, Edited, Recorder, Scope, Source
-from checker.engines.fast.sharing import Learned, Sharing
-from checker.engines.fast.skeletons import agents_of, mobile_names, settled
+from checker.engines.fast.rule_cache import Exchange, Kin, Outcome, Parts
+from checker.engines.fast.rule_cache_lookup import Learned, Sharing
 from checker.engines.fast.trees import Trees
-from checker.engines.fast.writing import Concluded, Relearn, Varies, Writing
+from checker.engines.fast.value_templates import agents_of, mobile_names, settled
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Fact, Observation
 from semantics.environment import Clause
@@ -60,7 +60,7 @@ class Run:
 
     actor: Actor
     recorder: Recorder | None = None
-    concluded: list[Concluded] = field(default_factory=list)
+    concluded: list[RecordedEffect] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -267,7 +267,7 @@ class Learner:
     def _recorder(self, source: CodedSource) -> Recorder:
         return Recorder(source, self.still, self.varying.__contains__, self.columns.mobile)
 
-    def _outcome(self, each: Concluded, scope: Scope, exchange: Exchange) -> Outcome:
+    def _outcome(self, each: RecordedEffect, scope: Scope, exchange: Exchange) -> Outcome:
         columns, models = self.columns.all, self.likeness.models(each.apart, scope)
         return Outcome(
             general(each.step.label),

@@ -10,12 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.arrays import Growing
-from checker.engines.fast.bits import WORD
-from checker.engines.fast.columns import Packing
-from checker.engines.fast.learner import Learner
-from checker.engines.fast.leaves import LEAF
-from checker.engines.fast.members import (
+from checker.engines.fast.actor_tables import (
     AGENTS_OWN,
     FAIR,
     KINDS,
@@ -24,12 +19,17 @@ from checker.engines.fast.members import (
     RECORD,
     Members,
 )
-from checker.engines.fast.skeletons import agents_of
-from checker.engines.fast.trails import Paths
+from checker.engines.fast.arrays import Growing
+from checker.engines.fast.bits import WORD
+from checker.engines.fast.columns import Packing
+from checker.engines.fast.learner import Learner
+from checker.engines.fast.leaves import LEAF
+from checker.engines.fast.path_ends import Paths
+from checker.engines.fast.value_templates import agents_of
 from checker.properties.inspections import never_ends
 from checker.reduction.actors import Acting, Actor
 from checker.reduction.ample import Ample
-from checker.reduction.slots import Footprint
+from checker.reduction.variables import Footprint
 from checker.reduction.visible import Seen
 from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name

@@ -7,9 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from checker.engines.fast.bits import WORD, add, has, remove
-from checker.engines.fast.loops import inner, njit
-from checker.engines.fast.members import (
+from checker.engines.fast.actor_tables import (
     ASIDE,
     FOLLOWER,
     MEMBER,
@@ -19,12 +17,14 @@ from checker.engines.fast.members import (
     TRIED,
     Members,
 )
+from checker.engines.fast.bits import WORD, add, has, remove
+from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.table import Words
 
 
 @inner(cache=True)
 def compare(footprints: Words, disturbed: Any, count: int, one: int, other: int) -> int:
-    """Note whether one footprint disturbs another (see `checker.reduction.slots.Footprint`): 1 no, 2 yes."""
+    """Note whether one footprint disturbs another (see `checker.reduction.variables.Footprint`): 1 no, 2 yes."""
     words = len(footprints) // (PARTS * count)
     a, b = one * PARTS * words, other * PARTS * words
     found = 1

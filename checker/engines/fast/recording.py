@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from checker.engines.fast.skeletons import Hole, has_no_holes, put_together, taken_apart
+from checker.engines.fast.value_templates import Hole, has_no_holes, put_together, taken_apart
 from semantics.behaviours.observations import Fact
 from semantics.state.cells import Cell, Changes, Edit, Part, Question, Row, State, merged
 from semantics.state.signature import Name

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast import folding
+from checker.engines.fast import tree_compression
 from checker.engines.fast.kernel import repack
+from checker.engines.fast.mapped_arrays import Pages, more
 from checker.engines.fast.origins import OriginPages, Rising
-from checker.engines.fast.pages import Pages, more
 
 BLOCK = 1 << 12
 """The number of rows that are decompressed at once."""
@@ -30,7 +30,7 @@ class Rows:
         self.width = self.kept = width
         self._words = Pages(np.uint64, room * width)
         self.origins = origins(room)
-        self._folding: folding.Folding | None = None
+        self._folding: tree_compression.Folding | None = None
 
     @property
     def words(self) -> NDArray[np.uint64]:
@@ -38,12 +38,12 @@ class Rows:
         return self._words.room
 
     @property
-    def folded(self) -> folding.Folded | None:
+    def folded(self) -> tree_compression.Folded | None:
         """The tables of tree compression, None for plain rows. Growing replaces them: don't keep them."""
         return None if self._folding is None else self._folding.folded
 
     @property
-    def shown(self) -> folding.Folded | None:
+    def shown(self) -> tree_compression.Folded | None:
         """The same tables for reading threads, as last published."""
         return None if self._folding is None else self._folding.shown
 
@@ -94,7 +94,7 @@ class Rows:
         if self._folding is None:
             return kept
         words = np.zeros(len(kept) // self.kept * self.width, np.uint64)
-        folding.unfold_rows(self._folding.folded, kept, self.width, words)
+        tree_compression.unfold_rows(self._folding.folded, kept, self.width, words)
         return words
 
     # --- room -----------------------------------------------------------------------------------------------------
@@ -151,19 +151,23 @@ class Rows:
             self.widen(width)
             repack(self.words, size, moves, before, width)
             return
-        into, kept = folding.Folding(width), Pages(np.uint64, folding.PAIR * self.room)
+        into, kept = tree_compression.Folding(width), Pages(np.uint64, tree_compression.PAIR * self.room)
         for begin, block in self.blocks(size):
             count = len(block) // self.width
             words = np.zeros(count * width, np.uint64)
             words[: len(block)] = block
             repack(words, count, moves, self.width, width)
-            _fold(into, words, kept.room[folding.PAIR * begin : folding.PAIR * (begin + count)])
+            _fold(
+                into,
+                words,
+                kept.room[tree_compression.PAIR * begin : tree_compression.PAIR * (begin + count)],
+            )
         if self.spilled:
             self._words.grow(len(kept.room))  # rows may have had one word
-            self.words[: folding.PAIR * size] = kept.room[: folding.PAIR * size]
+            self.words[: tree_compression.PAIR * size] = kept.room[: tree_compression.PAIR * size]
         else:
             self._words = kept
-        self._folding, self.width, self.kept = into, width, folding.PAIR
+        self._folding, self.width, self.kept = into, width, tree_compression.PAIR
 
     @classmethod
     def of(
@@ -180,10 +184,10 @@ class Rows:
             ValueError: The rows have another width, pieces or nodes are missing or repeated, or no search has these
                 origins.
         """
-        into = folding.Folding(width, *interned) if any(map(len, interned)) else None
+        into = tree_compression.Folding(width, *interned) if any(map(len, interned)) else None
         found = cls(
-            width if into is None else folding.PAIR,
-            len(kept) // (width if into is None else folding.PAIR) or 1,
+            width if into is None else tree_compression.PAIR,
+            len(kept) // (width if into is None else tree_compression.PAIR) or 1,
         )
         if len(kept) != size * found.kept or not (into is None or into.are_rows(kept)):
             raise ValueError("it has other rows")
@@ -193,7 +197,9 @@ class Rows:
         return found
 
 
-def _fold(into: folding.Folding, words: NDArray[np.uint64], kept: NDArray[np.uint64]) -> None:
+def _fold(into: tree_compression.Folding, words: NDArray[np.uint64], kept: NDArray[np.uint64]) -> None:
     done = 0
-    while (done := folding.fold_rows(into.folded, words, into.width, kept, done)) < len(kept) // folding.PAIR:
+    while (done := tree_compression.fold_rows(into.folded, words, into.width, kept, done)) < len(
+        kept
+    ) // tree_compression.PAIR:
         into.reserve()

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from checker.engines.fast import kernel
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.columns import WORD, Packing, bits_of, packing, packing_in_order, shifts
+from checker.engines.fast.frontier_chunks import Slices
 from checker.engines.fast.kernel import (
     ALPHA,
     AT,
@@ -35,10 +36,9 @@ from checker.engines.fast.kernel import (
     WORDS,
 )
 from checker.engines.fast.learner import Actor, CodedSource, Learner
+from checker.engines.fast.mapped_arrays import Pages
 from checker.engines.fast.origins import OriginPages, Rising
-from checker.engines.fast.pages import Pages
 from checker.engines.fast.rows import Rows
-from checker.engines.fast.slices import Slices
 from checker.engines.fast.table import most_in, rebuild, slots_for, slots_within
 from checker.engines.fast.trees import RECORD
 from checker.limits import look
@@ -58,8 +58,8 @@ UNPLANTED = -1
 
 
 if TYPE_CHECKING:
-    from checker.engines.fast.exchanging import Exchanging
     from checker.engines.fast.partial_order import Choosing
+    from checker.engines.fast.symmetry_tables import Exchanging
 
 
 class Space:

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from checker.engines.fast.folding import NO_ROOM, Folded, fold, take
+from checker.engines.fast.actor_tables import MADE, REPRESENTED, UNKNOWN, Members
+from checker.engines.fast.canonicalise import represent
 from checker.engines.fast.kernel import (
     ALPHA,
     CROWDS,
@@ -44,9 +45,8 @@ from checker.engines.fast.leaves import (
 )
 from checker.engines.fast.leaves import PARTS as TREES_OF_PARTS
 from checker.engines.fast.loops import inner
-from checker.engines.fast.members import MADE, REPRESENTED, UNKNOWN, Members
-from checker.engines.fast.sorting import represent
 from checker.engines.fast.table import Words, hashed
+from checker.engines.fast.tree_compression import NO_ROOM, Folded, fold, take
 
 
 @inner(cache=True)

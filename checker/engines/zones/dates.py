@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.runs import Run
+from checker.engines.timed.first_runs import Run
 from checker.engines.zones.automaton import Automaton, Constraint, Edge
 from checker.engines.zones.bounds import FREE, close, restrict
 

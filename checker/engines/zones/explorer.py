@@ -10,11 +10,11 @@ import numpy as np
 
 from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError
 from checker.engines.fast.compiling import compilation_uncounted
+from checker.engines.timed.zone_answers import OfRows, ZoneTimes
 from checker.engines.zones.automaton import TooLargeError
 from checker.engines.zones.inspecting import inspect_zones
-from checker.engines.zones.network import Network
 from checker.engines.zones.search import CHUNK, Search
-from checker.engines.zones.zone_times import OfRows, ZoneTimes
+from checker.engines.zones.timed_automaton_of import Network
 from checker.limits import Bound, BoundMet, Limits, Stop, bounded, is_full
 from semantics.state.configuration import Configuration
 

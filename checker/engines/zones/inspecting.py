@@ -20,7 +20,8 @@ from checker.engines.fast.inspecting import (
     together,
 )
 from checker.engines.fast.learner import Actor
-from checker.engines.times import shown_to, without_sayings
+from checker.engines.timed.answers import shown_to, without_sayings
+from checker.engines.timed.zone_answers import ZoneTimes
 from checker.engines.zones.questions import (
     about_step,
     between,
@@ -29,7 +30,6 @@ from checker.engines.zones.questions import (
     left_to_run,
     passed_over,
 )
-from checker.engines.zones.zone_times import ZoneTimes
 from checker.properties.findings import Key
 from checker.properties.inspections import DeadlockFreedom, InTime
 from checker.properties.races import ControlRaces, StaleObservationRaces

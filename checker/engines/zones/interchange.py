@@ -14,10 +14,10 @@ from dataclasses import dataclass, field
 from itertools import count, islice
 from typing import Final, NamedTuple
 
+from checker.engines.timed.zone_answers import ZoneTimes
 from checker.engines.zones.automaton import Automaton, Constraint, Edge
-from checker.engines.zones.network import Network
 from checker.engines.zones.observers import Meter, Observer, Watch
-from checker.engines.zones.zone_times import ZoneTimes
+from checker.engines.zones.timed_automaton_of import Network
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 from semantics.timing.actor_clocks import Clock

@@ -5,8 +5,8 @@ layer, the zones of one row are expanded together, step by step, and rows in the
 another one of its location is dropped. A zone that includes others replaces them in later inclusion tests; those of its
 own layer are dropped.
 
-The search for the first run to a goal (`checker.engines.runs`) proceeds by groups instead. A group is the set of zones
-that one sequence of steps reaches, in the order of sequences within a layer; it drops no kept zone.
+The search for the first run to a goal (`checker.engines.timed.first_runs`) proceeds by groups instead. A group is the
+set of zones that one sequence of steps reaches, in the order of sequences within a layer; it drops no kept zone.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from checker.engines.zones.automaton import Automaton, Constraint, Edge, Location
 from checker.engines.zones.bounds import NONE
-from checker.engines.zones.network import NOWHERE, Network
+from checker.engines.zones.timed_automaton_of import NOWHERE, Network
 
 
 class Watch(Enum):

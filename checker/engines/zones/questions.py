@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from checker.engines.fast.skeletons import settled
+from checker.engines.fast.value_templates import settled
 from checker.properties.findings import Key
 from checker.properties.inspections import Excerpt, Inspection
 from checker.properties.visited import moment_of, passages

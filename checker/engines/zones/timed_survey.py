@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.survey import BLOCK, Survey
-from checker.engines.times import Times, shown_in_time
-from checker.engines.zones.network import Network
+from checker.engines.timed.answers import Times, shown_in_time
+from checker.engines.zones.timed_automaton_of import Network
 from checker.properties.inspections import InTime
 from semantics.state.configuration import Configuration
 from semantics.successors import Expansion

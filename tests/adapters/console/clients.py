@@ -10,8 +10,8 @@ import aiohttp
 from jsonschema import Draft202012Validator
 
 from adapters.console.access import Access
+from adapters.console.browser_session import Console
 from adapters.console.history import History
-from adapters.console.looker import Console
 from adapters.console.requests import PROTOCOL
 from adapters.console.server import Site, serving
 from bigactors.console import rules_of

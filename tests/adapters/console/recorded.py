@@ -4,10 +4,10 @@ from functools import cache
 
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, mission, plan_of, seen
 
-from adapters.console.draft import Draft
 from adapters.console.facts import Facts
 from adapters.console.fold import take, time_of
 from adapters.console.history import History
+from adapters.console.mutable_facts import Draft
 from adapters.console.sections import view_of
 from adapters.console.view import NOTHING
 from adapters.live.state import Saying

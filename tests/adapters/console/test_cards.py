@@ -9,7 +9,7 @@ from adapters.live.state import Acknowledging, GivingBack, Ordering
 from adapters.live.timing import flying
 from adapters.plugin import Accepted, GoTo, Hold, LinkLost, LinkRestored, Rejected, Sent, Status, TakenOver
 from bigactors.missions import digest_of
-from semantics.contingencies import Fallback
+from semantics.live_policy import Fallback
 
 RUN = {
     "schema": "bigactors.run/1",

@@ -13,9 +13,9 @@ from recorded import EAST, WEST, Tape, eventful, folded, messages, rules_of_once
 
 from adapters.camera.votes import share
 from adapters.console.arrivals import CHUNK, EVERY, MOST_CHUNKS, extended
-from adapters.console.draft import Draft
 from adapters.console.facts import Facts
 from adapters.console.history import History
+from adapters.console.mutable_facts import Draft
 from adapters.console.ticks import MOST, tick
 from adapters.recording.mcap_files import McapWriter
 from adapters.recording.schemas import SCHEMAS

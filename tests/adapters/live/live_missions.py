@@ -7,7 +7,7 @@ from adapters.live.state import Batch, Heard, LiveState, Plan
 from adapters.plugin import Accepted
 from bigactors.cli import main
 from physical import PhysicalProperty, point
-from semantics.contingencies import Precautions
+from semantics.live_policy import LivePolicy
 from semantics.state.setting import Control, Scheduler
 from specs.diagnostics import Source
 from specs.elaboration import Variation, elaborate
@@ -56,7 +56,7 @@ def mission(text, name="tour.mission"):
 
 def plan_of(text, precautions=None, strict=False):
     first = mission(text).initial
-    return Plan(first, {"uav0": "autopilot"}, precautions or Precautions(), strict)
+    return Plan(first, {"uav0": "autopilot"}, precautions or LivePolicy(), strict)
 
 
 def seen(entity, at, time, plugin="autopilot", kind="UAV", channels=("control:gcs0",), **more):

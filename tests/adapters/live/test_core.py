@@ -20,7 +20,7 @@ from adapters.plugin import (
     TakenOver,
 )
 from physical import PhysicalProperty, polygon
-from semantics.contingencies import Fallback, Precautions, TimeLimit
+from semantics.live_policy import Fallback, LivePolicy, TimeLimit
 from semantics.state.physical_model import InTransit, Placed
 from semantics.state.requests import FLY
 from semantics.successors import expand
@@ -151,7 +151,7 @@ def test_after_a_broken_assumption_no_control_is_served():
 
 
 def test_the_mission_may_say_that_it_goes_on():
-    run = Run(plan_of(TOUR + GO, Precautions(Fallback.CONTINUE)))
+    run = Run(plan_of(TOUR + GO, LivePolicy(Fallback.CONTINUE)))
     run.turn(0.0, boat(EAST, 0.0))
     run.turn(1.0, seen("uav0", WEST, 1.0))
     assert run.kinds() == ["broken assumption"]
@@ -159,7 +159,7 @@ def test_the_mission_may_say_that_it_goes_on():
 
 
 def test_an_entity_that_nobody_announced_is_seen_and_reported():
-    run = Run(plan_of(TOUR + GO, Precautions(Fallback.CONTINUE)))
+    run = Run(plan_of(TOUR + GO, LivePolicy(Fallback.CONTINUE)))
     run.turn(0.0, boat(EAST, 0.0, "mmsi123"))
     assert run.labels[0] == "⟨env : mmsi123 appears in east0⟩"
     assert run.kinds() == ["broken assumption"]
@@ -270,7 +270,7 @@ def test_a_refused_command_stays_pending():
 
 
 def test_a_flight_that_takes_too_long_falls_back_and_is_never_committed():
-    late = Precautions(limits=(TimeLimit("FLY", "a", 60.0, Fallback.RETURN),))
+    late = LivePolicy(limits=(TimeLimit("FLY", "a", 60.0, Fallback.RETURN),))
     run = Run(plan_of(TOUR + GO, late))
     run.turn(0.0, seen("uav0", WEST, 0.0))
     assert run.again == 60.0
@@ -330,7 +330,7 @@ def test_a_vehicle_that_may_have_been_taken_over_arrives_once_it_is_certain_that
 
 
 def test_a_vehicle_on_which_the_mission_falls_back_does_not_arrive_on_its_way_home():
-    run = Run(plan_of(TOUR + GO, Precautions(Fallback.RETURN)))
+    run = Run(plan_of(TOUR + GO, LivePolicy(Fallback.RETURN)))
     run.turn(0.0, seen("uav0", WEST, 0.0), boat((37.03, -8.63), 0.0))
     run.turn(1.0, boat(WEST, 1.0))
     assert told(run) == ["GoTo", "Return"]
@@ -340,7 +340,7 @@ def test_a_vehicle_on_which_the_mission_falls_back_does_not_arrive_on_its_way_ho
 
 def test_what_the_mission_falls_back_on_does_not_overrule_who_has_taken_a_vehicle_over():
     for fallback in (Fallback.HOLD, Fallback.RETURN):
-        run = Run(plan_of(TOUR, Precautions(fallback)))
+        run = Run(plan_of(TOUR, LivePolicy(fallback)))
         run.turn(0.0, seen("uav0", WEST, 0.0))
         run.turn(1.0, seen("uav0", BETWEEN, 1.0), reports=[TakenOver("uav0", 1.0, "it is in RTL")])
         assert run.kinds() == ["taken over", "broken assumption", "taken over"]
@@ -546,7 +546,7 @@ def test_what_is_too_old_leaves_p_and_so_does_what_is_said_to_be_gone():
 
 
 def test_what_grows_old_and_what_waits_has_longer_while_nobody_listens():
-    late = Precautions(limits=(TimeLimit("FLY", "a", 60.0, Fallback.RETURN),))
+    late = LivePolicy(limits=(TimeLimit("FLY", "a", 60.0, Fallback.RETURN),))
     run = Run(plan_of(TOUR + GO + "environment { boat0 vanishes }", late))
     run.turn(0.0, seen("uav0", WEST, 0.0), Heard("ais", Aged(boat((37.03, -8.63), 0.0).published, 60.0)))
     run.turn(150.0, missed=100.0)
@@ -646,7 +646,7 @@ def test_a_channel_that_nothing_shows_to_be_joined_is_never_committed():
 
 
 def test_an_operator_says_that_a_vehicle_is_heard_from_another_address():
-    run = Run(plan_of(TOUR, Precautions(Fallback.CONTINUE)))
+    run = Run(plan_of(TOUR, LivePolicy(Fallback.CONTINUE)))
     run.turn(0.0, reports=[LinkLost("uav0", 0.0, -5.0)])
     for number, at in enumerate(("127.0.0.1:5555", "home", "[::1]:99", "::1", "127.0.0.1:65536")):
         run.turn(float(number), sayings=[GivingBack("uav0", at)])
@@ -662,7 +662,7 @@ def test_an_operator_says_that_a_vehicle_is_heard_from_another_address():
 
 
 def test_who_was_taken_over_stays_so_though_an_operator_says_where_it_is():
-    run = Run(plan_of(TOUR, Precautions(Fallback.CONTINUE)))
+    run = Run(plan_of(TOUR, LivePolicy(Fallback.CONTINUE)))
     run.turn(0.0, reports=[TakenOver("uav0", 0.0, "it is in RTL"), LinkLost("uav0", 0.0, -5.0)])
     run.turn(1.0, sayings=[GivingBack("uav0", "127.0.0.1:5555")])
     assert run.state.taken == {"uav0": "it is in RTL"}
@@ -679,7 +679,7 @@ def test_a_vehicle_has_no_mailbox():
 
 
 def test_a_vehicle_is_believed_elsewhere_only_while_its_link_is_lost():
-    run = Run(plan_of(TOUR, Precautions(Fallback.CONTINUE)))
+    run = Run(plan_of(TOUR, LivePolicy(Fallback.CONTINUE)))
     said = GivingBack("uav0", "127.0.0.1:5555")
     run.turn(1.0, seen("uav0", WEST, 1.0), sayings=[said])
     run.turn(9.0, reports=[LinkLost("uav0", 9.0, 1.0)], sayings=[said])

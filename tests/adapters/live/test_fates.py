@@ -12,7 +12,7 @@ from adapters.plugin import Accepted, Arrived, Hold, Rejected, Sent, TakenOver
 from bigactors.commands.run import conclude
 from bigactors.exits import Exit
 from bigactors.vehicle_lines import standing, vehicle_line
-from semantics.contingencies import Precautions, TimeLimit
+from semantics.live_policy import LivePolicy, TimeLimit
 
 OBEYS = "it obeys system 252, not gcs0"
 REFUSES = f"refuses to hold, as {ANA} ordered: {OBEYS}"
@@ -78,7 +78,7 @@ def test_a_refused_order_is_told_again_until_it_is_confirmed():
 
 
 def test_a_refused_fall_back_is_owed_until_it_is_confirmed():
-    run = flying(precautions=Precautions(HOLD))
+    run = flying(precautions=LivePolicy(HOLD))
     run.turn(1.0, boat(EAST, 1.0))
     refused(run, "fallback-2")
     assert vehicle_line("uav0", run.state, None, 3.0).startswith(
@@ -97,14 +97,14 @@ def test_a_refused_fall_back_is_owed_until_it_is_confirmed():
 
 
 def test_a_fall_back_that_is_not_confirmed_is_in_the_last_line():
-    run = flying(precautions=Precautions(limits=(TimeLimit("FLY", "a", 60.0, RETURN),)))
+    run = flying(precautions=LivePolicy(limits=(TimeLimit("FLY", "a", 60.0, RETURN),)))
     run.turn(61.0, seen("uav0", BETWEEN, 61.0))
     assert standing(run.state) == "; uav0 told to return by the mission, not confirmed yet"
 
 
 @pytest.mark.parametrize("ends", ["taken over", "given back", "ordered"])
 def test_what_replaces_a_refused_fall_back_ends_it(ends):
-    run = flying(precautions=Precautions(limits=(TimeLimit("FLY", "a", 60.0, HOLD),)))
+    run = flying(precautions=LivePolicy(limits=(TimeLimit("FLY", "a", 60.0, HOLD),)))
     run.turn(61.0, seen("uav0", BETWEEN, 61.0))
     refused(run, "fallback-2", 62.0)
     if ends == "taken over":

@@ -20,7 +20,7 @@ from adapters.recording.schemas import SCHEMAS
 from adapters.recording.writing import Recorder
 from bigactors.missions import fixed_places
 from physical import box, read_geojson
-from semantics.contingencies import Fallback
+from semantics.live_policy import Fallback
 
 make_reader = import_module("mcap.reader").make_reader
 FENCE = box((36.5, -9), (37.5, -8)).ring

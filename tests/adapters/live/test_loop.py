@@ -12,7 +12,7 @@ from adapters.live.operator_socket import NobodyListens, acknowledge, listening,
 from adapters.live.state import Acknowledging, Answer, GivingBack, Ordering, Saying
 from adapters.plugin import Accepted, Aged, GoTo, HandOver, LinkLost, Refused
 from physical import PhysicalProperty, centroid, point
-from semantics.contingencies import Fallback
+from semantics.live_policy import Fallback
 
 GO = """
 BigActor a hosted_at uav0 with_behavior {

@@ -29,7 +29,7 @@ from adapters.plugin import (
 )
 from bigactors.vehicle_lines import vehicle_line
 from physical import PhysicalProperty, box
-from semantics.contingencies import Fallback, Precautions, TimeLimit
+from semantics.live_policy import Fallback, LivePolicy, TimeLimit
 from semantics.state.partition import Parting, parted
 
 GO = "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) observe(CHILDREN(east0)) }"
@@ -202,7 +202,7 @@ def test_an_order_does_not_overrule_who_has_taken_a_held_vehicle_just_now():
 
 
 def test_a_hand_over_that_a_fall_back_ends_is_told_again_if_its_agent_is_still_served():
-    run = Run(plan_of(TOUR + GO + HAND, Precautions(HOLD, (TimeLimit("FLY", "a", 5.0, HOLD),))))
+    run = Run(plan_of(TOUR + GO + HAND, LivePolicy(HOLD, (TimeLimit("FLY", "a", 5.0, HOLD),))))
     run.turn(0.0, seen("uav0", WEST, 0.0))
     assert sorted(told(run)) == ["GoTo", "HandOver"]
     run.turn(6.0, seen("uav0", BETWEEN, 6.0))
@@ -215,7 +215,7 @@ def test_a_hand_over_that_a_fall_back_ends_is_told_again_if_its_agent_is_still_s
 @pytest.mark.parametrize("fallback", [HOLD, RETURN])
 def test_what_the_mission_falls_back_on_does_not_overrule_an_operator(fallback):
     other = RETURN if fallback is HOLD else HOLD
-    run = flying(precautions=Precautions(fallback, (TimeLimit("FLY", None, 5.0, fallback),)))
+    run = flying(precautions=LivePolicy(fallback, (TimeLimit("FLY", None, 5.0, fallback),)))
     run.turn(1.0, sayings=[ordered(what=other)])
     run.turn(2.0, boat(WEST, 2.0))
     run.turn(10.0)
@@ -227,7 +227,7 @@ def test_what_the_mission_falls_back_on_does_not_overrule_an_operator(fallback):
 
 
 def test_an_operator_is_obeyed_while_the_mission_is_suspended():
-    run = flying(precautions=Precautions(HOLD))
+    run = flying(precautions=LivePolicy(HOLD))
     run.turn(1.0, boat(WEST, 1.0))
     assert run.state.suspended
     run.turn(2.0, sayings=[ordered(what=RETURN)])
@@ -307,7 +307,7 @@ def test_a_vehicle_that_is_given_back_after_its_time_limit_is_flown_by_the_fallb
     fallback,
 ):
     then = RETURN if fallback is Return else HOLD
-    run = flying(precautions=Precautions(limits=(TimeLimit("FLY", "a", 60.0, then),)))
+    run = flying(precautions=LivePolicy(limits=(TimeLimit("FLY", "a", 60.0, then),)))
     run.turn(10.0, seen("uav0", BETWEEN, 10.0), sayings=[ordered()])
     run.turn(100.0, seen("uav0", BETWEEN, 100.0))  # meanwhile the limit is over, and the operator is obeyed
     assert told(run)[-1] == "Hold"
@@ -320,7 +320,7 @@ def test_a_vehicle_that_is_given_back_after_its_time_limit_is_flown_by_the_fallb
 
 
 def test_a_vehicle_that_is_given_back_while_the_mission_is_suspended_does_what_a_broken_assumption_asks():
-    run = flying(TWO + GO, Precautions(RETURN))
+    run = flying(TWO + GO, LivePolicy(RETURN))
     run.turn(1.0, seen("uav0", BETWEEN, 1.0), sayings=[ordered()])
     run.turn(2.0, boat(WEST, 2.0))  # nothing lets the boat drift
     assert "broken assumption" in run.kinds()
@@ -329,8 +329,8 @@ def test_a_vehicle_that_is_given_back_while_the_mission_is_suspended_does_what_a
 
 
 SENT_HOME = [
-    (Precautions(RETURN, (TimeLimit("FLY", "a", 60.0, HOLD),)), 2.0),
-    (Precautions(HOLD, (TimeLimit("FLY", "a", 60.0, RETURN),)), 90.0),
+    (LivePolicy(RETURN, (TimeLimit("FLY", "a", 60.0, HOLD),)), 2.0),
+    (LivePolicy(HOLD, (TimeLimit("FLY", "a", 60.0, RETURN),)), 90.0),
 ]
 
 
@@ -350,7 +350,7 @@ def test_who_was_told_to_return_does_not_stop_on_its_way_home(precautions, drift
 
 
 def test_a_vehicle_that_was_told_to_return_breaks_no_assumption_on_its_way_home():
-    run = flying(TWO + GO, Precautions(RETURN))
+    run = flying(TWO + GO, LivePolicy(RETURN))
     run.turn(60.0, seen("uav0", EAST, 60.0))
     run.turn(61.0, seen("uav0", EAST, 61.0), boat(WEST, 61.0))
     assert run.kinds().count("broken assumption") == 1
@@ -364,7 +364,7 @@ def test_a_vehicle_that_was_told_to_return_breaks_no_assumption_on_its_way_home(
 
 
 def test_who_sends_a_vehicle_home_that_is_to_stay_is_told_what_follows_and_is_named_as_the_cause():
-    run = flying(TWO + GO, Precautions(HOLD))
+    run = flying(TWO + GO, LivePolicy(HOLD))
     run.turn(60.0, seen("uav0", EAST, 60.0))
     turn = run.turn(61.0, seen("uav0", EAST, 61.0), sayings=[ordered(what=RETURN)])
     (answer,) = turn.answers
@@ -374,6 +374,6 @@ def test_who_sends_a_vehicle_home_that_is_to_stay_is_told_what_follows_and_is_na
     run.turn(70.0, seen("uav0", BETWEEN, 70.0))
     (broken,) = (each.message for each in run.findings if each.kind == "broken assumption")
     assert broken.endswith("stayed where it was: told to return by the operator (Ana), not confirmed yet")
-    again = flying(TWO + GO, Precautions(HOLD))
+    again = flying(TWO + GO, LivePolicy(HOLD))
     (answer,) = again.turn(10.0, seen("uav0", BETWEEN, 10.0), sayings=[ordered(what=RETURN)]).answers
     assert answer.notes == ()

@@ -34,7 +34,7 @@ from adapters.stations.sharing import MOST_STRANGERS, Sharing
 from adapters.web import Listen
 from bigactors.watchers import Log, Tape, Terminal
 from physical import PhysicalProperty, Velocity, point
-from semantics.contingencies import Fallback, Precautions
+from semantics.live_policy import Fallback, LivePolicy
 
 HEADER = {"mission": "tour", "text": "", "digest": "", "version": "", "verified": False, "vehicles": {}}
 STAY = (
@@ -136,7 +136,7 @@ FULL = """
 import json, resource, sys
 sys.path[:0] = ["tests/adapters/live", "tests/adapters"]
 from test_outside import on_a_full_disk
-from semantics.contingencies import Fallback
+from semantics.live_policy import Fallback
 print(json.dumps(on_a_full_disk(sys.argv[1], Fallback(sys.argv[2]))))
 """
 
@@ -156,7 +156,7 @@ def on_a_full_disk(path, fallback):
 
     moves = "control(MOVE_HOST_TO east0) control(MOVE_HOST_TO west0)"
     loop = f"BigActor a hosted_at uav0 with_behavior {{ loop {{ {moves} }} }}"
-    precautions = Precautions(fallback)
+    precautions = LivePolicy(fallback)
     ending = fly(TOUR + loop, [vehicle], [tape, looker, terminal], fill, 4.0, precautions)
     told = [type(each).__name__ for each in vehicle.told]
     return {
@@ -206,7 +206,7 @@ def test_a_plugin_that_fails_in_flight_makes_vehicles_do_what_the_mission_says()
             raise OSError("no such device")
 
     vehicle, looker = Vehicle(), Looker()
-    ending = fly(TOUR + STAY, [vehicle, Failing()], [looker], _nothing, 0.6, Precautions(Fallback.RETURN))
+    ending = fly(TOUR + STAY, [vehicle, Failing()], [looker], _nothing, 0.6, LivePolicy(Fallback.RETURN))
     assert ending.state.suspended
     assert [type(told) for told in vehicle.told] == [Return]
     assert [finding.message for finding in looker.findings] == ["radar fails: no such device"]
@@ -232,7 +232,7 @@ def test_a_bug_of_a_plugin_is_told_and_makes_vehicles_do_what_the_mission_says(w
             run._orders.put_nowait(Hold("x", "boat0"))
 
     vehicle, looker = Vehicle(), Looker()
-    fly(TOUR + STAY, [vehicle, Wrong()], [looker], tell, 0.8, Precautions(Fallback.RETURN))
+    fly(TOUR + STAY, [vehicle, Wrong()], [looker], tell, 0.8, LivePolicy(Fallback.RETURN))
     assert [type(told) for told in vehicle.told] == [Return]
     assert [finding.message for finding in looker.findings] == ["radar fails: 'forgotten'"]
     assert "a bug of bigactors or of the plugin radar" in caplog.text

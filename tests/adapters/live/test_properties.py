@@ -11,7 +11,7 @@ from adapters.recording.encoding import step_json
 from checker import replay
 from checker.steps import candidates
 from checker.traces import SCHEMA
-from semantics.contingencies import Fallback, Precautions, TimeLimit
+from semantics.live_policy import Fallback, LivePolicy, TimeLimit
 from semantics.state.physical_model import Placed
 
 PLAN = plan_of(
@@ -38,7 +38,7 @@ environment {
   says "hand" to op at most 2 times
 }
 """,
-    Precautions(Fallback.CONTINUE, (TimeLimit("FLY", "a", 40.0, Fallback.HOLD),)),
+    LivePolicy(Fallback.CONTINUE, (TimeLimit("FLY", "a", 40.0, Fallback.HOLD),)),
 )
 
 PLACES = st.sampled_from([WEST, EAST, BETWEEN, (37.011, -8.612), (40.0, -8.0)])

@@ -20,7 +20,7 @@ from adapters.recording.writing import MOST_ARRIVALS, Recorder
 from checker import ReplayError, replay, to_json
 from checker.traces import SCHEMA
 from physical import Band, PhysicalProperty, Velocity, box
-from semantics.contingencies import Fallback, Precautions
+from semantics.live_policy import Fallback, LivePolicy
 
 FLIGHT = (
     TOUR
@@ -43,7 +43,7 @@ HEADER = {
 
 
 def fly(recorder):
-    run = Run(plan_of(FLIGHT, Precautions(Fallback.CONTINUE)))
+    run = Run(plan_of(FLIGHT, LivePolicy(Fallback.CONTINUE)))
     arrivals = (
         [seen("uav0", WEST, 0.0), boat((37.04, -8.7), 0.0)],
         [seen("uav0", BETWEEN, 1.0), boat(EAST, 1.0, "mmsi1")],
@@ -78,7 +78,7 @@ def test_members_of_families_and_routes_are_recorded_and_replay(tmp_path):
     """
     path = tmp_path / "run.mcap"
     recorder = Recorder(path, HEADER | {"text": TOUR + patrol}, 0.0)
-    run = Run(plan_of(TOUR + patrol, Precautions(Fallback.CONTINUE)))
+    run = Run(plan_of(TOUR + patrol, LivePolicy(Fallback.CONTINUE)))
     for now, place in enumerate((WEST, BETWEEN, EAST)):
         recorder.arrival(seen("uav0", place, float(now)), float(now))
         recorder.turn(run.turn(float(now), seen("uav0", place, float(now))), float(now), lambda _: ())

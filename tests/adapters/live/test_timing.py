@@ -12,7 +12,7 @@ from adapters.recording.writing import Recorder
 from bigactors.missions import digest_of
 from bigactors.recordings import resume
 from bigactors.vehicle_lines import vehicle_line
-from semantics.contingencies import Fallback, Precautions
+from semantics.live_policy import Fallback, LivePolicy
 from semantics.timing.actor_clocks import Sort
 
 FLIGHT = """
@@ -69,7 +69,7 @@ def test_a_flight_that_is_over_before_it_can_be_breaks_its_assumption():
 
 
 def test_a_flight_that_takes_too_long_breaks_its_assumption_at_once_and_only_once():
-    run = airborne(precautions=Precautions(on_broken=Fallback.RETURN))
+    run = airborne(precautions=LivePolicy(on_broken=Fallback.RETURN))
     run.turn(200.0, seen("uav0", BETWEEN, 200.0))
     assert run.again is not None
     assert 255.0 < run.again < 256.0

@@ -16,7 +16,7 @@ from adapters.mavlink.items import e7
 from adapters.plugin import Arrived, Follow
 from adapters.simulated import Disturbance, Kind, Vehicle
 from physical import PhysicalProperty, box, circle, contains, point, waypoint
-from semantics.contingencies import Fallback, Precautions
+from semantics.live_policy import Fallback, LivePolicy
 
 AIRFIELD = (37.147, -8.582, 20.0)
 GATES = ("northGate0", "southGate0")
@@ -141,7 +141,7 @@ def shape(name, ring, time):
 
 
 def flying(text=WORLD + GO):
-    run = Run(plan_of(text, Precautions(Fallback.CONTINUE)))
+    run = Run(plan_of(text, LivePolicy(Fallback.CONTINUE)))
     run.turn(0.0, seen("uav0", WEST, 0.0))
     return run
 

@@ -6,6 +6,7 @@ from semantics.environment import Appears, Drifts, Drops, Leaves, Says, Vanishes
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Setting
 from semantics.strategies import initial_configurations
+from semantics.timing.flight_history import remembered_at_first, vehicles
 from semantics.timing.intervals import ANY_TIME, Interval
 from semantics.timing.timing import (
     ONE_HOST,
@@ -17,7 +18,6 @@ from semantics.timing.timing import (
     Timing,
     Window,
 )
-from semantics.timing.voyages import remembered_at_first, vehicles
 
 SMALL = st.integers(0, 2)
 

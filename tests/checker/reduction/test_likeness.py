@@ -14,9 +14,9 @@ from shipped import UNTIMED
 from test_symmetry import swarm, swarms
 
 from checker import Engine, Limits, explore
-from checker.engines.fast.lessons import Exchange, Lesson, Lessons, NoImage, Stage
-from checker.engines.fast.likeness import Likeness
+from checker.engines.fast.interchangeable import Likeness
 from checker.engines.fast.recording import Ask
+from checker.engines.fast.rule_cache import Exchange, Lesson, Lessons, NoImage, Stage
 from checker.reduction.renaming import Renaming
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Nodes, agent_key

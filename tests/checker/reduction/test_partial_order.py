@@ -14,9 +14,9 @@ from shipped import UNTIMED
 
 from checker import Engine, Limits, Outcome, Reduction, RefusedError, check, explore
 from checker.reduction import Reduced
+from checker.reduction.cycle_proviso import NOWHERE, Lead, Paths
 from checker.reduction.footprints import Footprints
-from checker.reduction.paths import NOWHERE, Lead, Paths
-from checker.reduction.slots import NOTHING
+from checker.reduction.variables import NOTHING
 from checker.traces import replay, to_json
 from semantics import Control, Scheduler, strategies
 from semantics.properties.kinds import PropertyKind
@@ -388,7 +388,7 @@ def test_footprints_that_forget_marks_are_noticed(forgotten, monkeypatch):
     what, instead, text = FORGOTTEN[forgotten]
     initial = start(text)
     assert compared_races(initial) is not None
-    monkeypatch.setattr(f"checker.reduction.marks.{what}", instead)
+    monkeypatch.setattr(f"checker.reduction.race_footprints.{what}", instead)
     with pytest.raises(AssertionError):
         compared_races(initial)
 

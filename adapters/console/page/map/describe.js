@@ -1,6 +1,6 @@
 /** What the chart shows, in words: for readers of the screen, and for what is pointed at. */
 import { ageClass, FRESH } from "./ages.js";
-import { isAstray, orderWords, whereabouts } from "../plainly.js";
+import { isAstray, orderWords, whereabouts } from "../wording.js";
 import { age, angle, position, speed } from "../units.js";
 import { counted, drawable, plain } from "./words.js";
 

@@ -3,7 +3,7 @@ import { FRESH, LOST, OLD, OPACITY, ageClass } from "./ages.js";
 import { Boxes, placeLabels } from "./labels.js";
 import { lineOf } from "./projection.js";
 import { drawTrack } from "./still.js";
-import { isUnderWay, wayOf } from "../plainly.js";
+import { isUnderWay, wayOf } from "../wording.js";
 import { TRIANGLE, addTurned, pathOf, shapeOf } from "./symbols.js";
 import { drawable } from "./words.js";
 

@@ -19,7 +19,7 @@ from checker import Engine, Keeping, Limits, check, explore
 from checker.engines.cluster import explorer as cluster
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
-from checker.engines.fast import explorer, folding, kernel, pipeline, space
+from checker.engines.fast import explorer, kernel, pipeline, space, tree_compression
 from checker.engines.fast.rows import Rows
 from checker.reduction import Reduced, Reduction
 from semantics import Scheduler
@@ -102,8 +102,8 @@ def test_searches_go_on_from_every_size(tmp_path, name):
 @pytest.mark.parametrize("name", UNTIMED)
 def test_searches_of_folded_rows_go_on_from_every_size(tmp_path, monkeypatch, name, shallow):
     monkeypatch.setattr(space.Space, "PLAIN", 1)
-    monkeypatch.setattr(folding, "FIRST", 4)
-    monkeypatch.setattr(folding, "SHALLOW", shallow)
+    monkeypatch.setattr(tree_compression, "FIRST", 4)
+    monkeypatch.setattr(tree_compression, "SHALLOW", shallow)
     mission = load_mission(MISSIONS / f"{name}.mission")
     goes_on_from_every_size(mission.initial, tmp_path)
     assert seen(fast(mission.initial, threads=3)) == seen(fast(mission.initial))

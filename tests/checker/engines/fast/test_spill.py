@@ -11,7 +11,7 @@ import pytest
 import checker.engines.fast.explorer
 import checker.limits
 from checker import Engine, Limits, check, explore
-from checker.engines.fast.pages import Pages
+from checker.engines.fast.mapped_arrays import Pages
 from checker.limits import memory_taken
 from specs.elaboration import load_mission
 

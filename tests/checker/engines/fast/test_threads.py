@@ -17,7 +17,7 @@ from bigactors.cli import main
 from checker import Engine, Keeping, Limits, check, explore, report_text
 from checker.engines.archive import read_archive
 from checker.engines.contract import Options
-from checker.engines.fast import explorer, folding, pipeline, slices, space
+from checker.engines.fast import explorer, frontier_chunks, pipeline, space, tree_compression
 from checker.engines.fast.checkpoint import KINDS, SCHEMA
 from checker.engines.fast.explorer import explore_fast
 from checker.engines.fast.rows import Rows
@@ -35,8 +35,8 @@ def small_slices(monkeypatch):
     """Let small missions have many slices, some of which are too large for their batch, and rooms that grow."""
     monkeypatch.setattr(space, "FIRST_ROWS", 64)
     monkeypatch.setattr(space, "BATCH", 64)
-    monkeypatch.setattr(slices, "FEW", 4)
-    monkeypatch.setattr(slices, "LATER_ROWS", 3)
+    monkeypatch.setattr(frontier_chunks, "FEW", 4)
+    monkeypatch.setattr(frontier_chunks, "LATER_ROWS", 3)
     monkeypatch.setattr(pipeline, "WORTH", 1)
 
 
@@ -44,7 +44,7 @@ def small_slices(monkeypatch):
 def kept(request, monkeypatch):
     """Let rows be kept as they are, or fold them all into pieces whose room grows."""
     monkeypatch.setattr(space.Space, "PLAIN", request.param)
-    monkeypatch.setattr(folding, "FIRST", 4)
+    monkeypatch.setattr(tree_compression, "FIRST", 4)
 
 
 def start(name):
@@ -105,7 +105,7 @@ def fleet(uavs):
 @pytest.mark.parametrize("configurations", [40, 400, 2_000])
 def test_wide_missions_are_explored_alike_by_any_number_of_threads(monkeypatch, configurations):
     """Most pieces of a row are met by slices before they have a number: they get it where the slices are stored."""
-    monkeypatch.setattr(folding, "SHALLOW", 1)
+    monkeypatch.setattr(tree_compression, "SHALLOW", 1)
     limits = Limits(configurations=configurations)
     alone = seen(fleet(12), 1, limits=limits)
     assert configurations == 40 or len(alone[-1][1]) > 2  # nodes: by then rows are folded twice
@@ -126,13 +126,13 @@ def test_other_threads_expand_slices_and_sift_them(monkeypatch):
     done = set()
 
     def noted(name):
-        do = getattr(slices.Slices, name)
+        do = getattr(frontier_chunks.Slices, name)
 
         def note(self, part):
             done.add((name, threading.current_thread() is threading.main_thread()))
             do(self, part)
 
-        monkeypatch.setattr(slices.Slices, name, note)
+        monkeypatch.setattr(frontier_chunks.Slices, name, note)
 
     noted("_expand")
     noted("_sift")

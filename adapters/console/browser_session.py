@@ -1,0 +1,219 @@
+"""What one browser is shown, and what it asks for (docs/reference/console.md).
+
+It has the view that was sent to it last, and gets the next difference when the socket has taken that one: a slow
+browser gets fewer and larger steps, never a queue.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+from adapters.console.access import Access, Role
+from adapters.console.history import History, Moment
+from adapters.console.playhead import Playhead
+from adapters.console.requests import (
+    PROTOCOL,
+    Act,
+    Hello,
+    Live,
+    Pause,
+    Play,
+    Request,
+    Seek,
+    Unreadable,
+    read_request,
+)
+from adapters.console.run_client import Performing
+from adapters.console.view import View, difference
+from adapters.live.operator_socket import Outcome
+from adapters.rate_limit import Ration
+
+EVERY: Final = 0.1
+"""Seconds between two frames to a browser."""
+
+STALLED: Final = 30.0
+"""Seconds after which a browser that takes no frame is given up."""
+
+MOST_REQUESTS: Final = 50
+"""Requests of one connection in a second."""
+
+NO_ACTIONS: Final = "this console only watches: nothing runs here that would hear it"
+WATCHING: Final = "this link only watches: open the one that may act"
+NAMELESS: Final = "say who you are first: each action is recorded with a name"
+NOT_BEGUN: Final = "the run has not begun to write its recording"
+
+
+@dataclass(frozen=True, slots=True)
+class Console:
+    """What is served.
+
+    Attributes:
+        history: The recording.
+        access: Who may look and act.
+        version: Of this program.
+        perform: Has the run perform actions; None where there is none that could be reached.
+        live: Whether the recording is still being written.
+        tiles: A PMTiles file for the map.
+        recording: The recording's file, for people; empty where it is not kept.
+    """
+
+    history: History
+    access: Access
+    version: str
+    perform: Performing | None = None
+    live: bool = False
+    tiles: Path | None = None
+    recording: str = ""
+
+
+@dataclass(slots=True)
+class Looker:
+    """One browser: what it is shown, and what it says."""
+
+    console: Console
+    socket: Any
+    role: Role
+    name: str
+    playhead: Playhead = field(default_factory=Playhead)
+    sent: View = field(default_factory=lambda: View({}))
+    number: int = 0
+    _moment: Moment | None = None
+    _changed: asyncio.Event = field(default_factory=asyncio.Event)
+
+    # --- showing
+
+    async def show(self) -> None:
+        """Send the welcome and a snapshot, then what changes, until the browser is gone."""
+        mode = "live" if self.console.live else "replay"
+        await self._send(
+            {
+                "type": "welcome",
+                "protocol": PROTOCOL,
+                "version": self.console.version,
+                "role": self.role.value,
+                "mode": mode,
+                "tiles": self.console.tiles is not None,
+                "recording": self.console.recording,
+            }
+        )
+        told = ""
+        while not (first := self.console.history.newest()).sections:
+            why = self.console.history.trouble or NOT_BEGUN
+            if why != told:
+                told = why
+                await self._send({"type": "waiting", "message": why})
+            await asyncio.sleep(EVERY)
+        if not self.console.live:
+            self._begin()
+            first = self._view()
+        self.sent, self.number = self._with_clock(first), 1
+        await self._send({"type": "snapshot", "n": 1, "state": self.sent.sections})
+        while True:
+            began = time.monotonic()
+            await self._next_frame()
+            took = time.monotonic() - began
+            with suppress(TimeoutError):  # a seek is shown at once
+                await asyncio.wait_for(self._changed.wait(), max(EVERY - took, took, 0.02))
+            self._changed.clear()
+
+    def _begin(self) -> None:
+        """Begin a replay at its beginning, in motion."""
+        history = self.console.history
+        self.playhead = Playhead(history.begin, time.monotonic(), playing=True)
+
+    async def _next_frame(self) -> None:
+        view = self._with_clock(self._view())
+        changed, gone = difference(self.sent, view)
+        if changed or gone:
+            self.sent, self.number = view, self.number + 1
+            await self._send({"type": "changes", "n": self.number, "set": changed, "gone": gone})
+
+    def _view(self) -> View:
+        """Return what is to be seen at the play head."""
+        history, clock = self.console.history, time.monotonic()
+        if not history.behind:
+            ended = not self.console.live or history.ended is not None
+            self.playhead = self.playhead.caught_up(clock, history.now, ended=ended)
+        if self.playhead.live:
+            self._moment = None
+            return history.newest()
+        now = self.playhead.now(clock, history.now)
+        if self._moment is None:
+            self._moment = history.at(now)
+        return self._moment.forward(now)
+
+    def _with_clock(self, view: View) -> View:
+        """Return a view that says what is shown of the time line, too."""
+        history = self.console.history
+        head = self.playhead
+        shown = {
+            "now": head.now(time.monotonic(), history.now),
+            "live": head.live,
+            "playing": head.playing,
+            "speed": head.speed,
+            "unread": history.trouble or None,
+        }
+        return View({**view.sections, "clock": {**view.sections.get("clock", {}), **shown}})
+
+    async def _send(self, frame: dict[str, Any]) -> None:
+        text = json.dumps(frame, ensure_ascii=False, separators=(",", ":"), default=dict)
+        async with asyncio.timeout(STALLED):
+            await self.socket.send_str(text)
+
+    # --- hearing
+
+    async def hear(self) -> None:
+        """Do what the browser asks, until it is gone or asks too much."""
+        ration: Ration[str] = Ration(MOST_REQUESTS)
+        async for message in self.socket:
+            if not ration.takes("", time.monotonic()):
+                await self.socket.close(code=4429, message=b"too many requests")
+                return
+            if not isinstance(message.data, str):
+                await self._complain("only text frames are understood")
+                continue
+            try:
+                await self._do(read_request(message.data))
+            except Unreadable as error:
+                await self._complain(str(error))
+
+    async def _complain(self, why: str) -> None:
+        await self._send({"type": "error", "message": why})
+
+    async def _do(self, request: Request) -> None:
+        history, clock = self.console.history, time.monotonic()
+        match request:
+            case Act(name):
+                refusal, left_out, notes = await self._perform(request)
+                told = {"refusal": refusal, "left_out": left_out, "notes": notes}
+                await self._send({"type": "answer", "id": name, **told})
+                return
+            case Seek(at):
+                self.playhead = self.playhead.seek(at, clock, history.begin, history.now)
+            case Play(speed):
+                self.playhead = self.playhead.play(speed, clock, history.now)
+            case Pause():
+                self.playhead = self.playhead.pause(clock, history.now)
+            case Live():
+                self.playhead = Playhead()
+            case Hello():
+                await self._complain("hello was said already")
+                return
+        self._changed.set()
+
+    async def _perform(self, act: Act) -> Outcome:
+        if self.role is not Role.ACT:
+            return Outcome(WATCHING)
+        if self.console.perform is None or self.console.history.ended is not None:
+            return Outcome(NO_ACTIONS)
+        if not self.name:
+            return Outcome(NAMELESS)
+        if not self.playhead.live:
+            return Outcome("an earlier moment is shown: go to the newest one to act")
+        return await self.console.perform(act.action, self.name)

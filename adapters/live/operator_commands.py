@@ -1,0 +1,245 @@
+"""Input from operators: messages to agents, orders to vehicles, vehicles given back, findings acknowledged.
+
+An order is no rule of the calculus, and leaves the configuration as it is: the operator *takes over* the vehicle, which
+then holds or returns. The mission's requests of it stay pending until it is given back.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from ipaddress import ip_address
+
+from adapters.live.flying import ask_anew
+from adapters.live.orders import is_authority, stopping
+from adapters.live.state import (
+    Acknowledging,
+    Answer,
+    Bidden,
+    GivingBack,
+    Ordering,
+    Said,
+    Saying,
+    operator,
+)
+from adapters.live.turn import Turning
+from adapters.plugin import Follow, GiveBack, GoTo, HandOver, Hold, Rebind, Return
+from semantics.behaviours.values import show, spoken
+from semantics.environment import Says
+from semantics.extension import say
+from semantics.live_policy import Fallback
+from semantics.state.partition import is_here, station_of
+from semantics.state.signature import Name
+
+_ADDRESS = re.compile(r"\[?([0-9a-fA-F:.]+)\]?:([0-9]{1,5})")
+"""A vehicle's address: numeric, since the loop does not wait for name look-ups."""
+
+MOST_PORT = 65_535
+
+
+def answer(turning: Turning, said: Said) -> None:
+    """Take a message from outside, and answer it."""
+    match said:
+        case Saying():
+            say_to(turning, said)
+        case Ordering():
+            turning.answers.append(order(turning, said))
+        case GivingBack():
+            turning.answers.append(_take_back(turning, said))
+        case Acknowledging(number):
+            known = 0 < number <= turning.before.findings
+            refusal = "" if known else f"there is no finding {number}; there are {turning.before.findings}"
+            turning.answers.append(Answer(said, refusal))
+
+
+# --- orders
+
+
+def order(turning: Turning, said: Ordering) -> Answer:
+    """Order a vehicle, or all, to hold or to return: from now on the mission does not command it."""
+    named = sorted(turning.plan.vehicles) if said.vehicle is None else [said.vehicle]
+    left_out = {entity: why for entity in named if (why := _objection(turning, entity, said))}
+    told = [entity for entity in named if entity not in left_out]
+    if not told:
+        return Answer(said, "; ".join(left_out.values()) or "there is no vehicle")
+    notes = tuple(note for entity in told for note in _notes(turning, entity, said.fallback))
+    requests = {entity: _bid(turning, entity, said) for entity in told}
+    who, are = ", ".join(told), "is" if len(told) == 1 else "are"
+    message = f"{who} {are} told to {said.fallback.value} by {operator(said.by)}"
+    back = f"until `bigactors give-back {said.vehicle or 'VEHICLE'}`"
+    rest = "; ".join([*notes, *left_out.values(), f"the mission does not command {_it(told)} {back}"])
+    turning.find("ordered", said.vehicle or "", f"{message}; {rest}")
+    return Answer(said, "", requests, left_out, notes)
+
+
+def _it(told: list[Name]) -> str:
+    return "it" if len(told) == 1 else "them"
+
+
+def _objection(turning: Turning, entity: Name, said: Ordering) -> str:
+    """Return the reason why a vehicle does not get an order, or an empty text.
+
+    An order to all overrules no pilot and no fail-safe; an order to one overrules only a take-over from an
+    earlier turn, which the operator can know.
+    """
+    if entity not in turning.plan.vehicles:
+        return _no_vehicle(turning, entity)
+    if not turning.answers_for(entity):
+        return f"{entity} is under the authority of {_authority(turning, entity)}: order it there"
+    if not _is_foreign(turning, entity):
+        return ""
+    why = turning.taken[entity]
+    if said.vehicle is None:
+        return f"{entity} was taken over, and is not overruled: {why}"
+    if turning.before.taken.get(entity) != why:
+        return f"{entity} was taken over just now: {why}; order it again to overrule that"
+    return ""
+
+
+def _is_foreign(turning: Turning, entity: Name) -> bool:
+    """Return whether a pilot, another station or a fail-safe has taken a vehicle over."""
+    return entity in turning.taken and entity not in turning.bidden
+
+
+def _authority(turning: Turning, entity: Name) -> str:
+    """Return the stations that a vehicle obeys, according to P."""
+    channels = turning.before.configuration.structure.physical.channels(entity)
+    stations = (channel.partition(":")[2] for channel in channels if is_authority(channel))
+    return " and ".join(sorted(stations)) or "another station"
+
+
+def _notes(turning: Turning, entity: Name, what: Fallback) -> Iterator[str]:
+    """Yield remarks to the operator on a vehicle that gets an order."""
+    if _is_foreign(turning, entity):
+        yield f"that overrules who took {entity} over: {turning.taken[entity]}"
+    if entity in turning.lost or entity not in turning.seen:
+        yield f"{entity} is not heard: it is told as soon as it is, unless it was taken over by then"
+    if what is Fallback.RETURN:
+        yield from _of_leaving(turning, entity)
+
+
+def _of_leaving(turning: Turning, entity: Name) -> Iterator[str]:
+    """Yield the consequence if a vehicle flies home although the mission assumes that it stays."""
+    physical, then = turning.c.structure.physical, turning.plan.precautions.on_broken
+    if turning.suspended or then is Fallback.CONTINUE or entity not in physical or physical.transit(entity):
+        return
+    place = physical.abstract_parent(entity)
+    if place != turning.plan.first.structure.physical.abstract_parent(entity):
+        stays = f"the mission assumes that {entity} stays in {place}"
+        yield f"{stays}: when it leaves, all vehicles are told to {then.value}"
+
+
+def _bid(turning: Turning, entity: Name, said: Ordering) -> str:
+    """Take a vehicle over and order it, in place of this turn's other commands; return the request."""
+    flies = (GoTo, Follow, HandOver, Hold, Return)
+    turning.commands[:] = (c for c in turning.commands if c.entity != entity or not isinstance(c, flies))
+    if _is_foreign(turning, entity):
+        turning.commands.append(GiveBack(turning.request_of("operator"), entity))
+    command = stopping(said.fallback, turning.request_of("operator"), entity)
+    turning.owed.pop(entity, None)
+    turning.bidden[entity] = Bidden(command, said.by)
+    turning.taken[entity] = turning.bidden[entity].reason
+    turning.commands.append(command)
+    return command.request
+
+
+# --- vehicles given back
+
+
+def _take_back(turning: Turning, said: GivingBack) -> Answer:
+    """Take back a vehicle, or accept its messages from another address."""
+    if said.vehicle not in turning.plan.vehicles:
+        return Answer(said, _no_vehicle(turning, said.vehicle))
+    return Answer(said, _rebind(turning, said.vehicle, said.at)) if said.at else _give_back(turning, said)
+
+
+def _no_vehicle(turning: Turning, name: str) -> str:
+    vehicles = ", ".join(sorted(turning.plan.vehicles))
+    return f"there is no vehicle '{name:.60}'; there are {vehicles or 'none'}"
+
+
+def _give_back(turning: Turning, said: GivingBack) -> Answer:
+    """Command a vehicle again that was taken over or has refused."""
+    entity = said.vehicle
+    told = (turning.orders.get(entity), turning.handing.get(entity))
+    owed = turning.owed.pop(entity, None)
+    refused = any(order.refused for order in told if order is not None) or (owed is not None and owed.owed)
+    if entity not in turning.taken and not refused:
+        return Answer(said, f"{entity} was not taken over here, and has refused nothing")
+    turning.taken.pop(entity, None)
+    turning.bidden.pop(entity, None)
+    turning.quiet = None
+    turning.commands.append(GiveBack(turning.request_of("give-back"), entity))
+    ask_anew(turning, entity)
+    given = f"{entity} was given back{f' by {said.by}' if said.by else ''}"
+    fallback = turning.due_fallback(entity)
+    if fallback is Fallback.CONTINUE:
+        turning.find("given back", entity, f"{given}, and is commanded again")
+        return Answer(said)
+    note = f"what it was to do was given up: it is told to {fallback.value}"  # no one else flies it
+    turning.find("given back", entity, f"{given}; {note}")
+    turning.fall_back(fallback, (entity,))
+    return Answer(said, notes=(note,))
+
+
+def say_to(turning: Turning, saying: Saying) -> None:
+    """Put a message into a mailbox, if the environment section allows it, and not too often."""
+    agents = turning.c.alpha
+    if saying.agent in agents and not is_here(turning.c, saying.agent):
+        there = station_of(turning.c, saying.agent)
+        turning.answers.append(
+            Answer(saying, f"{saying.agent} runs at {there or 'no station'}: say it there")
+        )
+        return
+    clauses = [each for each in turning.c.setting.environment if isinstance(each, Says)]
+    for clause in _meant(saying, clauses):
+        found = tuple(say(turning.c, clause))
+        if found:
+            turning.take(found[0], found)
+            turning.idle.discard(clause.agent)
+            turning.answers.append(Answer(saying))
+            return
+    left = [f"{typed(each, clauses)} to {each.agent}" for each in clauses if turning.c.read(each.counter)]
+    is_vehicle = saying.agent in turning.plan.vehicles
+    nobody = f"there is no bigActor '{saying.agent:.60}'{', which is a vehicle' if is_vehicle else ''}; "
+    who = "" if saying.agent in agents else nobody
+    what = f"what may be said now: {', '.join(left)}" if left else "nothing may be said any more"
+    turning.answers.append(Answer(saying, f"{who}the mission does not say that this is said; {what}"))
+
+
+def _meant(saying: Saying, clauses: Iterable[Says]) -> Iterator[Says]:
+    """Yield the clauses that a message may be: first those printed so, then those printed so but for quotes."""
+    mine = [each for each in clauses if each.agent == saying.agent]
+    yield from (each for each in mine if saying.message == show(each.message))
+    plain = saying.message.replace('"', "")
+    yield from (each for each in mine if plain in (show(each.message).replace('"', ""), spoken(each.message)))
+
+
+def typed(clause: Says, clauses: Iterable[Says]) -> str:
+    """Return what an operator types to say a message: a text stands in quotes only where a name is said, too."""
+    others = (each for each in clauses if each.agent == clause.agent and each.message != clause.message)
+    short = spoken(clause.message)
+    return show(clause.message) if any(short == show(each.message) for each in others) else short
+
+
+def _rebind(turning: Turning, entity: Name, at: str) -> str:
+    """Accept a vehicle's messages from another address; return the reason of a refusal, or an empty text."""
+    found = _ADDRESS.fullmatch(at)
+    if found is None or not _is_number(found[1]) or int(found[2]) > MOST_PORT:
+        return (
+            f"'{at:.60}' is no HOST:PORT with HOST as a number, such as 192.168.1.7:14555 or [fd00::7]:14555"
+        )
+    if entity not in turning.lost:
+        return (
+            f"the link to {entity} is not lost; it can be believed elsewhere once it is silent where it was"
+        )
+    turning.commands.append(Rebind(turning.request_of("operator"), entity, at))
+    return ""
+
+
+def _is_number(host: str) -> bool:
+    try:
+        ip_address(host)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,167 @@
+"""The growing result of an exploration: numbered states, transitions and the queue of unexpanded states."""
+
+from __future__ import annotations
+
+from array import array
+from dataclasses import dataclass, field
+from typing import Final
+
+from bigraphs.columns import Column, Numbering, Texts
+from bigraphs.engine.frontier import Waiting
+from bigraphs.engine.machine import Machine
+from bigraphs.engine.occurrences import Spot
+from bigraphs.engine.state import Key
+from bigraphs.system import SystemKind
+from bigraphs.transitions import Kind, TransitionSystem
+
+MOST_REMEMBERED: Final = 200_000
+"""The largest number of cached state numbers; the cache saves the computation of canonical keys."""
+
+
+@dataclass(slots=True)
+class _Merged:
+    """The merged occurrences that lead to one state by one action."""
+
+    weight: float = 0.0
+    count: int = 0
+    rules: set[int] = field(default_factory=set)
+
+
+class Reached:
+    """States and transitions found so far, up to an optional limit of states.
+
+    Attributes:
+        visited: The states by their canonical keys.
+        remembered: A cache of state numbers by raw (non-canonical) keys.
+        keys: The raw key of each state when it was first found (`State.key`).
+        start: The initial state.
+        waiting: The unexpanded states, by number.
+
+    The other attributes are those of a `TransitionSystem`.
+    """
+
+    def __init__(self, machine: Machine, max_states: int | None = None) -> None:
+        self.machine, self.max_states = machine, max_states
+        self.visited = Numbering()
+        self.remembered: dict[Key, int] = {}
+        self.keys = self.visited.texts if machine.world.plain else Texts()
+        self.found_from = array("I")
+        self.holding: Column[tuple[int, ...]] = Column()
+        self.first, self.targets = array("Q", (0,)), array("I")
+        self.kinds: Column[Kind] = Column()
+        self.rule_sets: dict[frozenset[int], tuple[str, ...]] = {}
+        self.occurrences = 0
+
+    def __len__(self) -> int:
+        return len(self.keys)
+
+    @property
+    def expanded(self) -> int:
+        """The number of expanded states; these are the first ones."""
+        return len(self.first) - 1
+
+    def begin(self) -> None:
+        """Add the initial state."""
+        self.start, self.occurrences = self.machine.start()
+        self.waiting = Waiting(self.start)
+        self.number(self.start, 0)
+
+    def number(self, spot: Spot, source: int) -> int:
+        """Return the number of a state, a new one for a new state; -1 if it exceeds the limit."""
+        raw = spot.state.key()
+        if self.machine.world.plain:
+            found = self.visited.find(raw)
+            return found if found >= 0 else self._append(spot, raw, raw, source)
+        known = self.remembered.get(raw)
+        if known is not None:
+            return known
+        key = self.machine.labelling.canonical_of(raw)
+        found = self.visited.find(key)
+        if found < 0:
+            found = self._append(spot, key, raw, source)
+        if found >= 0:
+            self.remember(raw, found)
+        return found
+
+    def _append(self, spot: Spot, key: Key, raw: Key, source: int) -> int:
+        if self.full():
+            return -1
+        self.waiting.append(spot)
+        return self.add(key, raw, source, tuple(sorted(self.machine.holding(spot.state))))
+
+    def full(self) -> bool:
+        """Return whether the limit of states is reached."""
+        return self.max_states is not None and len(self.keys) >= self.max_states
+
+    def add(self, key: Key, raw: Key, source: int, holding: tuple[int, ...]) -> int:
+        """Number a new state."""
+        found = self.visited.add(key)
+        if self.keys is not self.visited.texts:
+            self.keys.append(raw)
+        self.found_from.append(source)
+        self.holding.append(holding)
+        return found
+
+    def remember(self, raw: Key, number: int) -> None:
+        """Cache the number of a state by its raw key."""
+        if len(self.remembered) >= MOST_REMEMBERED:
+            self.remembered.clear()
+        self.remembered[raw] = number
+
+    def expand(self, spot: Spot, state: int) -> bool:
+        """Add the transitions of a state; return whether the limit allowed all their targets."""
+        merged: dict[tuple[int, str | None], _Merged] = {}
+        occurrences = 0
+        for step in self.machine.steps(spot):
+            self.machine.pause()
+            target = self.number(step.target, state)
+            if target < 0:
+                return False
+            rule = step.reaction.rule
+            group = merged.setdefault((target, rule.action), _Merged())
+            group.weight += 1.0 if rule.weight is None else rule.weight
+            group.count += 1
+            group.rules.add(step.reaction.number)
+            occurrences += step.reactions
+        self.occurrences += occurrences
+        self._keep(merged)
+        return True
+
+    def _keep(self, merged: dict[tuple[int, str | None], _Merged]) -> None:
+        """Add merged transitions, with the weights that the kind of the system requires."""
+        kind, totals = self.machine.system.kind, dict[str | None, float]()
+        for (_, action), group in merged.items():
+            totals[action] = totals.get(action, 0.0) + group.weight
+        for (target, action), group in merged.items():
+            weight = group.weight
+            if kind is SystemKind.BRS:
+                weight = 1.0
+            elif kind is not SystemKind.SBRS:
+                weight /= totals[action]
+            self.targets.append(target)
+            self.kinds.append(Kind(weight, self._labels(frozenset(group.rules)), group.count, action))
+        self.first.append(len(self.targets))
+
+    def _labels(self, rules: frozenset[int]) -> tuple[str, ...]:
+        """Return the labels of rules, sorted."""
+        found = self.rule_sets.get(rules)
+        if found is None:
+            found = tuple(sorted(self.machine.reactions[rule].label for rule in rules))
+            self.rule_sets[rules] = found
+        return found
+
+    def result(self, seconds: float, reason: str) -> TransitionSystem:
+        """Return the transition system, found in `seconds`; a nonempty reason marks it as incomplete."""
+        return TransitionSystem(
+            system=self.machine.system,
+            world=self.machine.world,
+            keys=self.keys,
+            holding=self.holding,
+            first=self.first,
+            targets=self.targets,
+            kinds=self.kinds,
+            found_from=self.found_from,
+            occurrences=self.occurrences,
+            seconds=seconds,
+            reason=reason,
+        )

@@ -1,0 +1,1 @@
+"""Answers about durations: by whole ticks (digital clocks) and by zones."""

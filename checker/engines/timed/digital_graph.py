@@ -1,0 +1,110 @@
+"""The reachable states in whole ticks: a state is a configuration with the ages of its clocks.
+
+An edge is a step, which takes no time, or `delay`, which adds one to each clock.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+
+from checker.engines.timed.first_runs import DELAY, Edge
+from semantics.state.configuration import Configuration
+from semantics.timing.actor_clocks import Clock, Sort
+from semantics.timing.clocks import Passage, Situation, TimedStep
+
+Edges = tuple[Edge, ...]
+
+
+class Timeline:
+    """The reachable states in whole ticks.
+
+    Attributes:
+        situations: The situation of each configuration, in the order of discovery.
+        states: For each state the number of its configuration, and the ages of its clocks.
+        edges: The edges of each state; empty before its expansion.
+        order: The numbers of the reached configurations, in the order of their first runs (`first_run`).
+        taken: The steps that are taken at some time, as pairs of a configuration's number and a step's.
+    """
+
+    def __init__(self, initial: Configuration) -> None:
+        self.initial = initial
+        self.numbers: dict[Configuration, int] = {}
+        self.situations: list[Situation] = []
+        self.passages: dict[tuple[int, int], tuple[int, Passage]] = {}
+        self.constants: dict[Clock, int] = {}
+        self.caps: list[tuple[int, ...]] = []
+        self.order: list[int] = []
+        self.taken: set[tuple[int, int]] = set()
+        self.begin()
+
+    def begin(self) -> None:
+        """Discard the states and start again; keep the knowledge about configurations."""
+        self.grown = False
+        self.caps = [self._caps(each) for each in self.situations]
+        self.indices: dict[tuple[int, tuple[int, ...]], int] = {}
+        self.states: list[tuple[int, tuple[int, ...]]] = []
+        self.edges: list[Edges] = []
+        number = self.number(self.initial)
+        self.waiting: deque[int] = deque()
+        self.reach(number, self.situations[number].first_ages())
+
+    def number(self, c: Configuration) -> int:
+        """Return the number of a configuration, a new one at the first visit."""
+        number = self.numbers.get(c)
+        if number is None:
+            number = self.numbers[c] = len(self.situations)
+            situation = Situation(c)
+            self.situations.append(situation)
+            for clock, constant in zip(situation.clocks, situation.constants, strict=True):
+                before = self.constants.get(clock)
+                self.constants[clock] = max(before or 0, constant)
+                self.grown = self.grown or (before is not None and constant > before)
+            self.caps.append(self._caps(situation))
+        return number
+
+    def _caps(self, situation: Situation) -> tuple[int, ...]:
+        return tuple(0 if each.sort is Sort.WINDOW else self.constants[each] for each in situation.clocks)
+
+    def reach(self, number: int, ages: tuple[int, ...]) -> int:
+        """Return the index of a state, a new one at the first visit."""
+        state = (number, ages)
+        index = self.indices.get(state)
+        if index is None:
+            index = self.indices[state] = len(self.states)
+            self.states.append(state)
+            self.edges.append(())
+            self.waiting.append(index)
+        return index
+
+    def expand(self, index: int) -> None:
+        """Follow every enabled step of a state, and a tick if the deadlines allow it."""
+        number, ages = self.states[index]
+        situation = self.situations[number]
+        found: list[Edge] = []
+        for at, step in enumerate(situation.steps):
+            if step.in_turn and step.is_due(ages):
+                target, passage = self.passage(number, at, step)
+                found += (Edge(at, self.reach(target, each)) for each in passage.ages(ages))
+        if situation.slack(ages) != 0:
+            found.append(Edge(DELAY, self.reach(number, older(ages, self.caps[number]))))
+        self.edges[index] = tuple(found)
+
+    def passage(self, number: int, at: int, step: TimedStep) -> tuple[int, Passage]:
+        """Return the target of a step, and its effect on the clocks."""
+        known = self.passages.get((number, at))
+        if known is None:
+            target = self.number(step.transition.target)
+            known = target, Passage(self.situations[number], step, self.situations[target])
+            self.passages[number, at] = known
+        return known
+
+    # --- queries
+
+    def configuration(self, index: int) -> int:
+        """Return the number of a state's configuration."""
+        return self.states[index][0]
+
+
+def older(ages: tuple[int, ...], caps: tuple[int, ...]) -> tuple[int, ...]:
+    """Return the ages one tick later; the clocks of windows measure no time and stay."""
+    return tuple(age + 1 if age < cap else age for age, cap in zip(ages, caps, strict=True))

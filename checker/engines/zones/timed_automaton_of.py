@@ -1,0 +1,429 @@
+"""The timed automaton of a mission, unfolded on demand: the steps of configurations, with their clocks.
+
+A location is a row of the fast engine with the states of the windows' clocks, which measure no time. The rules and
+their clocks are learned from the few cells that they read; compiled loops then work out the edges of a location. The
+constants of a clock are the largest seen so far; the search restarts when one grows.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Hashable, Iterable, Iterator
+from functools import lru_cache, partial
+from itertools import islice
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.engines.fast.arrays import Growing
+from checker.engines.fast.kernel import AT, LIMIT
+from checker.engines.fast.learner import Learner
+from checker.engines.fast.leaves import LEAF
+from checker.engines.fast.origins import OriginPages
+from checker.engines.fast.space import Space
+from checker.engines.fast.table import most_in
+from checker.engines.fast.value_templates import settled
+from checker.engines.zones import location_successors
+from checker.engines.zones.automaton import (
+    CLOCKS,
+    DEADLINE,
+    DEADLINES,
+    EDGE,
+    LOCATION,
+    TEST,
+    Automaton,
+    Constraint,
+)
+from checker.engines.zones.bounds import NONE
+from checker.engines.zones.location_successors import ANSWER, CHOICE, Growth, Timed, View
+from checker.limits import look
+from semantics.environment import Clause
+from semantics.state.configuration import Configuration
+from semantics.state.signature import Name
+from semantics.successors import by_clause, moves, served
+from semantics.timing.actor_clocks import (
+    ActorClocks,
+    Clock,
+    Running,
+    Sort,
+    StepClocks,
+    lasting,
+    of_clause,
+    of_moves,
+    of_requests,
+    of_vehicle,
+    timing_of,
+)
+from semantics.timing.clocks import STRICT, Situation, TimedStep
+from semantics.timing.intervals import Interval
+from semantics.timing.timing import Window
+
+NOWHERE = (0, NONE)
+"""The deadline of a location in which no time passes."""
+
+MARGIN = 1 << 12
+"""The number of further locations, and edges, for which room is reserved."""
+
+
+class Place(NamedTuple):
+    """A location of a mission: the number of its row, and the states of the windows' clocks."""
+
+    number: int
+    windows: tuple[int, ...] = ()
+
+
+class Network(Space):
+    """The knowledge about a mission's configurations, and the automaton that they form.
+
+    Attributes:
+        automaton: The automaton; the edges of some locations may be unknown.
+        clocks_of: The measured subject of each of its clocks.
+        caps: The value of each clock beyond which no test distinguishes values.
+        outgrown: Whether the constant of a clock has grown.
+        first_ages: The clock values of the first location.
+    """
+
+    PLAIN = sys.maxsize  # its loops index into rows
+    ORIGINS = OriginPages  # origins are read in the order of the timed search
+
+    def __init__(self, initial: Configuration, pending: int) -> None:
+        self.initial = initial
+        self.timing = timing_of(initial)
+        self.automaton = Automaton()
+        self.numbers: dict[tuple[Clock, Hashable], int] = {}
+        self.clocks_of: list[Clock] = []
+        self.caps: dict[Clock, int] = {}
+        self.outgrown = False
+        self.windows = [
+            number for number, each in enumerate(self.timing.clauses) if isinstance(each.step, Window)
+        ]
+        self.records: dict[ActorClocks, list[int]] = {}
+        self.answers, self.running, self.times = (Growing(np.int32) for _ in range(3))
+        self.done, self.tested, self.served = (Growing(np.int32) for _ in range(3))
+        self.of_locations, self.of_rows, self.before = (Growing(np.int32) for _ in range(3))
+        self.automaton.rows = self.of_locations
+        self.said = Growing(np.int64)
+        self.noted = 0
+        self.counts_of = np.zeros(location_successors.DONE + 1, np.int64)
+        self.lasting = {each.clock: self._number(each) for each in lasting(self.timing)}
+        self.restored = [self._restoring(vehicle) for vehicle, _ in self.timing.endurances]
+        self.questions: dict[tuple[object, Name | int], int] = {}
+        self.timed: Timed
+        super().__init__(Learner(initial.setting, initial.state, pending), None)  # type: ignore[arg-type]  # a stored one
+        self.situation = lru_cache(1 << 12)(lambda number: Situation(self.configuration(number)))
+        situation = self.situation(0)
+        ages = situation.first_ages()
+        windows = [age for age, each in zip(ages, situation.clocks, strict=True) if each.sort is Sort.WINDOW]
+        code = sum(said * 3**at for at, said in enumerate(windows))
+        loop: Callable[..., int] = location_successors.begin
+        self._run(lambda *known: loop(*known, self.rows.words, code, self.state, self.counts_of))
+        self.first_ages = self.measured(situation, ages)
+
+    # --- learned clocks -------------------------------------------------------------------------------------------
+
+    def _see(self) -> None:
+        """Update the loops' view of the learned rules."""
+        super()._see()
+        known = len(self.questions)
+        vehicles = [self._question(of_vehicle, vehicle) for vehicle, _ in self.timing.endurances]
+        agents = [
+            self._question(of, a) for group in self.groups for of in (of_requests, of_moves) for a in group
+        ]
+        clauses = [self._question(of_clause, number) for number in range(len(self.clauses))]
+        if len(self.questions) > known:
+            super()._see()  # the trees of new questions
+        self._note_answers()
+        windows = [
+            each
+            for number in self.windows
+            for step in [self.timing.clause(number).step]
+            if isinstance(step, Window)
+            for each in (number, NONE if step.within is None else step.within)
+        ]
+        numbers = (agents, clauses, vehicles)
+        arrays = (self.answers, self.running, self.times, self.done, self.tested, self.served)
+        lasting = [number for number in self.lasting.values() if number >= 0]
+        always = (lasting, [each for several in self.restored for each in several], windows)
+        self.timed = Timed._make(
+            (
+                *(np.array(each, np.int32) for each in numbers),
+                *(each.room for each in arrays),
+                *(np.array(each, np.int32) for each in always),
+            )
+        )
+
+    def _question(self, of: Callable[..., ActorClocks], about: Name | int) -> int:
+        """Return the tree for the clocks of an actor."""
+        if (of, about) not in self.questions:
+            self.questions[of, about] = self.learner.question(partial(_asked, of, about))
+        return self.questions[of, about]
+
+    def _note_answers(self) -> None:
+        """Record the learned clocks of actors."""
+        missing = len(self.learner.leaves.leaves) // LEAF - len(self.answers) // ANSWER
+        self.answers.extend(missing * ANSWER, NONE)
+        new = len(self.learner.answers) - self.noted
+        for leaf, answer in reversed(list(islice(reversed(self.learner.answers.items()), new))):
+            if not isinstance(answer, ActorClocks):
+                continue  # the answer to another question
+            if answer not in self.records:
+                self.records[answer] = self._record(answer)
+            self.answers.room[ANSWER * leaf : ANSWER * (leaf + 1)] = self.records[answer]
+        self.noted = len(self.learner.answers)
+
+    def _record(self, answer: ActorClocks) -> list[int]:
+        """Record the clocks of an actor; return the ranges of its clocks and its steps."""
+        numbers = dict(self.lasting)
+        run = len(self.running) // location_successors.RUNNING
+        for each in answer.running:
+            number = numbers[each.clock] = self._number(each)
+            self.running.append(
+                number, each.interval.lo, NONE if each.interval.hi is None else each.interval.hi
+            )
+        step = len(self.times) // location_successors.TIMES
+        for done, tests in answer.steps:
+            ends = len(self.done), len(self.tested) // TEST
+            self.done.append(*(numbers[each] for each in done if each in numbers))
+            for clock, least, most in tests:
+                self.tested.append(numbers[clock], least, NONE if most is None else most)
+            self.times.append(ends[0], len(self.done), ends[1], len(self.tested) // TEST)
+        return [
+            run,
+            len(self.running) // location_successors.RUNNING,
+            step,
+            len(self.times) // location_successors.TIMES,
+        ]
+
+    def _number(self, running: Running) -> int:
+        """Return the number of a clock, a new one at its first use; below 0 for a window's clock."""
+        clock, interval, aim = running
+        if clock.sort is Sort.WINDOW:
+            assert isinstance(clock.of, int)
+            return -1 - self.windows.index(clock.of)
+        self.caps[clock] = max(self.caps.get(clock, 0), cap(clock, interval))
+        number = self.numbers.get((clock, aim))
+        if number is None:
+            number = self.numbers[clock, aim] = self.automaton.clock(*compared(clock, interval))
+            self.clocks_of.append(clock)
+            self.served.append(clock.sort is Sort.REQUEST)
+        elif self.automaton.compare(number, *compared(clock, interval)):
+            self.outgrown = True
+        return number
+
+    def _restoring(self, vehicle: Name) -> tuple[int, int, int]:
+        """Return the clocks RESTORED and ALOFT of a vehicle, and the time that its restoring takes."""
+        endurance = dict(self.timing.endurances)[vehicle]
+        restored = self._number(Running(Clock(Sort.RESTORED, vehicle), Interval(endurance.after)))
+        return (
+            restored,
+            self._number(Running(Clock(Sort.ALOFT, vehicle), Interval(endurance.lasts))),
+            endurance.after,
+        )
+
+    # --- unfolding ------------------------------------------------------------------------------------------------
+
+    def leave(self, locations: NDArray[np.int64]) -> None:
+        """Work out the edges of locations, and learn the rules that this requires."""
+        self.counts_of[location_successors.DONE] = 0
+        choices = np.zeros(CHOICE * (len(self.restored) + len(self.windows) + 1), np.int32)
+
+        def work(model: object, timed: Timed, growth: Growth, view: View) -> int:
+            other, arrays = self._view(), (self.rows.words, self.rows.origins.loops, self.table.room)
+            most = min(self.rows.room, most_in(len(self.table.room)), int(self.state[LIMIT]))
+            scratch = np.zeros(self.packing.words, np.uint64), np.zeros(2 * self.margin, np.int32), choices
+            loop: Callable[..., int] = location_successors.leave
+            known = (model, timed, growth, view, other)
+            return loop(*known, *arrays, most, *scratch, locations, self.state, self.counts_of)
+
+        self._run(work)
+
+    margin = MARGIN
+
+    def _run(self, loop: Callable[..., int]) -> None:
+        """Run a loop to its end, with more room and more learned rules where it stops."""
+        while True:
+            look()  # each location is recorded whole
+            self._reserve()
+            done = self.counts_of.copy()
+            why = loop(self.model, self.timed, self._growth(), self._view())
+            self._measure()
+            if why == location_successors.KNOWN:
+                return
+            if why == location_successors.MISS:
+                self._learn(int(self.state[AT]))
+            elif np.array_equal(done, self.counts_of):
+                self.margin *= 2
+
+    def _reserve(self) -> None:
+        self._make_room(self.margin)
+        missing = self.size + self.margin - len(self.of_rows)
+        if missing > 0:
+            self.of_rows.extend(missing, NONE)
+        widest = max(int(self.counts_of[location_successors.WIDEST]), 2 + len(self.numbers))
+        automaton = self.automaton
+        for each, size in (
+            (automaton.locations, LOCATION),
+            (automaton.edges, EDGE),
+            (automaton.tests, 4 * TEST),
+            (automaton.sources, min(widest, 64)),
+            (automaton.deadlines, 8 * DEADLINE),
+            (automaton.clocks, min(widest, 64)),
+            (self.of_locations, 1),
+            (self.before, 1),
+            (self.said, 1),
+        ):
+            each.reserve(size * self.margin)
+
+    def _growth(self) -> Growth:
+        automaton = self.automaton
+        arrays = (
+            automaton.locations,
+            automaton.edges,
+            automaton.tests,
+            automaton.sources,
+            automaton.deadlines,
+        )
+        known = (automaton.clocks, self.of_locations, self.said, self.of_rows, self.before)
+        return Growth(*(each.room for each in (*arrays, *known)))
+
+    def _view(self) -> View:
+        clocks = len(self.clocks_of)
+        actors = np.zeros(self.actors, np.int32), np.zeros(self.actors + len(self.restored), np.int32)
+        numbers = np.zeros(location_successors.CLOCKS + 1, np.int64)
+        return View(
+            *actors,
+            numbers,
+            np.zeros(clocks, np.int32),
+            np.zeros(clocks, np.int32),
+            np.zeros(clocks, np.int64),
+            np.zeros(clocks, np.int64),
+        )
+
+    def _measure(self) -> None:
+        """Read the new sizes of the automaton from the loops."""
+        located, leaving, tested, sourced, ended, clocked, widest, _ = self.counts_of.tolist()
+        automaton = self.automaton
+        automaton.locations.size, automaton.edges.size = LOCATION * located, EDGE * leaving
+        automaton.tests.size, automaton.sources.size = TEST * tested, sourced
+        automaton.deadlines.size, automaton.clocks.size = DEADLINE * ended, clocked
+        automaton.largest = max(automaton.largest, widest)
+        self.of_locations.size = self.before.size = self.said.size = located
+
+    # --- locations ------------------------------------------------------------------------------------------------
+
+    first = 0
+    """The first location."""
+
+    def place(self, location: int) -> Place:
+        """Return the row and the windows of a location."""
+        said = int(self.said.room[location])
+        return Place(
+            int(self.of_locations.room[location]), tuple(said // 3**at % 3 for at in range(len(self.windows)))
+        )
+
+    def locations(self, number: int) -> Iterator[int]:
+        """Yield the locations of a row."""
+        at = int(self.of_rows.room[number])
+        while at >= 0:
+            yield at
+            at = int(self.before.room[at])
+
+    def crowded(self, locations: NDArray[np.int64]) -> bool:
+        """Return whether in some location an agent has more pending than the limit."""
+        records = self.automaton.locations.used.reshape(-1, LOCATION)[locations]
+        ends = records[records[:, DEADLINES] < records[:, DEADLINES + 1]][:, DEADLINES]
+        return bool(np.any(self.automaton.deadlines.room[DEADLINE * ends + 1] < 0))
+
+    def clocks(self, location: int) -> tuple[Clock, ...]:
+        """Return the clocks of a location, from its first."""
+        return tuple(self.clocks_of[each] for each in self.automaton.location(location).clocks)
+
+    def index(self, location: int, clock: Clock) -> int:
+        """Return the index of a clock that runs in a location."""
+        return self.clocks(location).index(clock) + 1
+
+    def indices(self, clock: Clock) -> NDArray[np.int64]:
+        """Return the index of a clock without an aim in each location, 0 where it doesn't run."""
+        automaton = self.automaton
+        records = automaton.locations.used.reshape(-1, LOCATION)
+        at = np.flatnonzero(automaton.clocks.used == self.numbers[clock, None])[
+            ::-1
+        ]  # of equal clocks the first wins
+        locations = np.searchsorted(records[:, CLOCKS], at, side="right") - 1
+        found = np.zeros(len(records), np.int64)
+        found[locations] = at - records[locations, CLOCKS] + 1
+        return found
+
+    def measured(self, situation: Situation, ages: Iterable[int]) -> tuple[int, ...]:
+        """Return the values of the clocks that measure time, in the order of locations."""
+        return tuple(
+            age for age, clock in zip(ages, situation.clocks, strict=True) if clock.sort is not Sort.WINDOW
+        )
+
+    def capped(self, location: int, ages: Iterable[int]) -> tuple[int, ...]:
+        """Return clock values, capped where no test distinguishes them."""
+        return tuple(
+            min(age, self.caps[clock]) for age, clock in zip(ages, self.clocks(location), strict=True)
+        )
+
+    def tests(self, location: int, step: TimedStep) -> list[tuple[Constraint, ...]]:
+        """Return the guards of a step in a location, a disjunction of conjunctions."""
+        number, said = self.place(location)
+        if not step.guards:
+            return [()]
+        found: list[tuple[Constraint, ...]] = []
+        for at, least, most in step.guards:
+            clock = self.situation(number).clocks[at]
+            if clock.sort is Sort.WINDOW:
+                assert isinstance(clock.of, int)
+                found += [()] if said[self.windows.index(clock.of)] >= least else []
+            else:
+                index = self.index(location, clock)
+                found.append((Constraint(index, least, NONE if most is None else most),))
+        return found
+
+
+def _asked(of: Callable[..., ActorClocks], about: Name | int, c: Configuration) -> ActorClocks:
+    """Return the clocks of an actor, with the contents of observations in its requests filled in."""
+    if of is of_vehicle:
+        return of(c, about)
+    clause: Clause | None = c.setting.environment[about] if isinstance(about, int) else None
+    steps = (
+        by_clause(c, clause)
+        if clause is not None
+        else (served if of is of_requests else moves)(c, str(about))
+    )
+    found = of(c, about, list(steps))
+    return ActorClocks(
+        tuple(each._replace(clock=_settled(each.clock)) for each in found.running),
+        tuple(
+            StepClocks(
+                tuple(map(_settled, done)), tuple(each._replace(clock=_settled(each.clock)) for each in tests)
+            )
+            for done, tests in found.steps
+        ),
+    )
+
+
+def _settled(clock: Clock) -> Clock:
+    return clock._replace(of=settled(clock.of))
+
+
+def cap(clock: Clock, interval: Interval) -> int:
+    """Return the cap of a clock: its constant, plus one where a test may find it exceeded."""
+    return max(interval.lo, interval.hi or 0) + (clock.sort in STRICT)
+
+
+def compared(clock: Clock, interval: Interval) -> tuple[int, int]:
+    """Return the largest constants of a clock's lower and upper bounds."""
+    lo, hi = interval.lo or NONE, NONE if interval.hi is None else interval.hi
+    match clock.sort:
+        case Sort.MISSION:
+            return lo + 1, lo + 1
+        case Sort.ALOFT:
+            return interval.lo + 1, NONE
+        case Sort.RESTORED:
+            return interval.lo, interval.lo
+        case _:
+            return lo, hi

@@ -1,0 +1,139 @@
+"""Timelocks: states from which only steps that take no time can follow, for ever.
+
+Such steps only compare clocks with constants and reset them. So backward propagation finds the states from which time
+can pass, as unions of zones: first those where it passes at once, then their predecessors by steps. This is done only
+where steps may form a cycle through locations with deadlines.
+"""
+
+from __future__ import annotations
+
+import networkx as nx
+
+from checker.engines.timed.answers import Stop
+from checker.engines.timed.first_runs import Run
+from checker.engines.zones.automaton import Automaton, Constraint
+from checker.engines.zones.dates import (
+    Dates,
+    Moment,
+    Zone,
+    before_edge,
+    moved,
+    passes,
+    spread,
+    tested,
+    whole,
+    without,
+)
+from checker.engines.zones.first_run import first_run
+from checker.engines.zones.observers import Meter, Observer, Watch
+from checker.engines.zones.search import Search
+from checker.engines.zones.timed_automaton_of import Network
+from checker.limits import look
+from semantics.timing.actor_clocks import Sort
+
+
+def first_stop(network: Network) -> Stop | None:
+    """Return the first run to a timelock, None if there is none."""
+    risky = _risky(network.automaton)
+    if not risky:
+        return None
+    passing = _passing(network.automaton, risky)
+    observer = Observer(network, lambda _, __: Watch.OFF, Meter(), is_exact=True)
+    exact = Search(observer.automaton, 0, observer.first_ages())
+    exact.finish(look)
+    stopped = [_without(place, network, passing) for place, _ in observer.spots]
+    run = first_run(exact, stopped.__getitem__)
+    return None if run is None else _going_round(network, observer, run)
+
+
+def _risky(automaton: Automaton) -> set[int]:
+    """Return the locations that reach, through locations with deadlines, a cycle of such locations."""
+    graph = nx.DiGraph()
+    ending = {place for place in range(len(automaton)) if automaton.location(place).deadlines}
+    for place in ending:
+        graph.add_edges_from((place, edge.target) for edge in automaton.out(place) if edge.target in ending)
+    rounds = {
+        place
+        for component in nx.strongly_connected_components(graph)
+        for place in component
+        if len(component) > 1 or graph.has_edge(place, place)
+    }
+    return rounds.union(*(nx.ancestors(graph, place) for place in rounds))
+
+
+def _passing(automaton: Automaton, risky: set[int]) -> dict[int, list[Zone]]:
+    """Return for each risky location the clock values from which time can pass eventually."""
+    found = {place: _passing_at_once(automaton, place) for place in risky}
+    sources: dict[int, set[int]] = {place: set() for place in risky}
+    for place in risky:
+        for edge in automaton.out(place):
+            if edge.target in risky:
+                sources[edge.target].add(place)
+    waiting = dict.fromkeys(sorted(risky))
+    while waiting:
+        look()
+        place = next(iter(waiting))
+        del waiting[place]
+        size = len(automaton.location(place).clocks)
+        more = list(found[place])
+        for edge in automaton.out(place):
+            after = found[edge.target] if edge.target in risky else [whole(len(edge.sources))]
+            more += (zone for each in after for zone in [before_edge(edge, size, each)] if zone is not None)
+        grown = spread(more)
+        if _is_more(grown, found[place]):
+            found[place] = grown
+            waiting |= dict.fromkeys(sorted(sources[place]))
+    return found
+
+
+def _passing_at_once(automaton: Automaton, place: int) -> list[Zone]:
+    location = automaton.location(place)
+    if any(most < 0 for _, most in location.deadlines):
+        return [whole(len(location.clocks))]  # its successors are unknown
+    if any(most == 0 for _, most in location.deadlines):
+        return []
+    zone = tested(
+        whole(len(location.clocks)), [Constraint(clock, 0, most - 1) for clock, most in location.deadlines]
+    )
+    return [] if zone is None else [zone]
+
+
+def _is_more(zones: list[Zone], before: list[Zone]) -> bool:
+    """Return whether one union of zones holds more than another one."""
+    for zone in zones:
+        rest = [zone]
+        for each in before:
+            rest = without(rest, each)
+        if rest:
+            return True
+    return False
+
+
+def _without(place: int, network: Network, passing: dict[int, list[Zone]]) -> list[Zone]:
+    if place not in passing:
+        return []
+    rest = [whole(len(network.automaton.location(place).clocks))]
+    for each in passing[place]:
+        rest = without(rest, each)
+    return rest
+
+
+def _going_round(network: Network, observer: Observer, dates: Dates) -> Stop:
+    """Return the run to the timelock, extended by the first possible steps until a state repeats."""
+
+    def shown(moment: Moment) -> tuple[int, tuple[int, ...]]:
+        """Return a state in the form of `Timeline`."""
+        location = observer.spots[moment.location].location
+        place = network.place(location)
+        windows, ages = iter(place.windows), iter(network.capped(location, moment.ages))
+        clocks = network.situation(place.number).clocks
+        return place.number, tuple(next(windows if each.sort is Sort.WINDOW else ages) for each in clocks)
+
+    run: Run = dates.run()
+    state = min(dates.ends, key=shown)
+    seen: dict[object, int] = {}
+    while shown(state) not in seen:
+        seen[shown(state)] = len(run.steps)
+        edge = next(each for each in observer.automaton.out(state.location) if passes(each, state.ages))
+        run, state = run.then(edge.step), Moment(edge.target, moved(edge, state.ages))
+    return Stop(run, seen[shown(state)])
