@@ -11,7 +11,7 @@ from semantics.state.signature import REGION, Name
 
 
 class Stop(NamedTuple):
-    """A place that a vehicle is sent to or by, the waypoint there, and the vehicle's altitudes where it has any."""
+    """A place that a vehicle flies to or passes, the waypoint there, and the vehicle's altitudes, if known."""
 
     place: Name
     point: Geometry
@@ -19,9 +19,9 @@ class Stop(NamedTuple):
 
 
 def mobility_commands(c: Configuration, found: Realisation) -> tuple[MobilityCommand, ...]:
-    """Return what the vehicles of a realisation are told: where to go, and which channels to change.
+    """Return the mobility commands of a realisation: waypoints of its vehicles, and channel changes.
 
-    A vehicle keeps its altitude; one of which none is known is told that of the place.
+    A waypoint keeps the vehicle's altitude. A vehicle without one gets the altitude of the place.
     """
     physical = c.structure.physical
     told: list[MobilityCommand] = []
@@ -37,10 +37,10 @@ def mobility_commands(c: Configuration, found: Realisation) -> tuple[MobilityCom
 
 
 def stops(c: Configuration, found: Realisation, node: Name, place: Name) -> Iterator[Stop]:
-    """Yield where a vehicle of a realisation goes: through what it passes on the way, then to its place.
+    """Yield the stops of a vehicle in a realisation: the places of its VIA, then its destination.
 
-    The waypoint is the centroid of the target's polygon, or the point nearest to it at which the reactum is true; for
-    what is to go aboard, where the carrier is.
+    The waypoint of the destination is the centroid of its polygon, or the nearest point at which the reactum holds. A
+    vehicle that boards a carrier flies to the carrier's position.
     """
     physical = c.structure.physical
     placement = found.physical[placement_cell(node)]
@@ -53,7 +53,7 @@ def stops(c: Configuration, found: Realisation, node: Name, place: Name) -> Iter
 
 
 def passed(c: Configuration, found: Realisation) -> tuple[Geometry, ...]:
-    """Return the waypoints of the places that are passed on the way, as these are now."""
+    """Return the current waypoints of the places of the VIA."""
     places = map(c.structure.physical.position, found.via)
     return tuple(waypoint(place.geometry) for place in places if place is not None)
 

@@ -1,6 +1,6 @@
-"""Control requests in a configuration: their realisations, or the reason why there is none.
+"""Control requests in a configuration: their realisations, or the obstacle where there is none.
 
-Each premise is described once: it is the guard of the rules, and the finding where it does not hold.
+Each premise is defined once, as the guard of a rule together with the obstacle where it fails.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -29,14 +29,14 @@ from semantics.state.signature import Name
 
 @dataclass(frozen=True, slots=True)
 class Realisation:
-    """One way in which a control can be made true.
+    """One way to make a control true.
 
     Attributes:
-        match: What the redex's variables stand for.
+        match: The values of the redex's variables.
         logical: The writes of L[m(R) ↦ m(R′)].
         physical: The writes of P′.
-        flying: What has to travel for it, and where to.
-        via: The places that it passes on its way.
+        flying: The nodes that have to travel, each with its destination.
+        via: The places that they pass on the way.
     """
 
     match: Match
@@ -46,11 +46,11 @@ class Realisation:
     via: tuple[Name, ...] = ()
 
     def waits(self, c: Configuration) -> bool:
-        """Tell whether what moves, or what carries it, is in transit: then a command waits."""
+        """Whether a moving node, or its carrier, is in transit: then a command waits."""
         return any(c.structure.physical.transit(node) is not None for node, _ in self.flying)
 
     def departing(self, c: Configuration) -> Changes:
-        """Write P with what travels in transit."""
+        """Return the writes of P that put the travelling nodes in transit."""
         physical = c.structure.physical
         changes: Changes = {}
         for node, place in self.flying:
@@ -63,7 +63,7 @@ class Realisation:
 
 
 class Obstacle(Enum):
-    """Why a control next in line can't be made true; a later one is found only where the earlier ones are not."""
+    """Why the control next in line can't be made true; for one match, the first obstacle in this order counts."""
 
     UNMATCHED = "unmatched"
     INCONSISTENT = "inconsistent"
@@ -72,12 +72,12 @@ class Obstacle(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Premise:
-    """What a rule asks of a match m of R: its guard, and what is found where no match fulfils it.
+    """A premise of a rule on a match m of R: its guard, and the obstacle where no match fulfils it.
 
     Attributes:
-        text: As it stands above the bar of the rule.
-        holds: Whether it holds of a match.
-        otherwise: The finding.
+        text: Its text above the bar of the rule.
+        holds: Whether it holds for a match.
+        otherwise: The obstacle where it does not.
     """
 
     text: str
@@ -89,26 +89,26 @@ class Premise:
 
 
 def involves_host(c: Configuration, request: CTR | FLY, match: Match) -> bool:
-    """Tell whether the agent's host is a node of m(R)."""
+    """Whether the agent's host is a node of m(R)."""
     return c.alpha.host(request.agent) in match.nodes(request.reaction.redex)
 
 
 def leaves_forest(c: Configuration, request: CTR | FLY, match: Match) -> bool:
-    """Tell whether L with m(R′) for m(R) is a forest."""
+    """Whether L with m(R′) for m(R) is a forest."""
     return stays_forest(request.reaction, match, c.structure.logical)
 
 
 def is_consistent(c: Configuration, request: CTR | FLY, match: Match) -> bool:
-    """Tell whether S is locally consistent with respect to m(R), missing sites included."""
+    """Whether S is locally consistent with respect to m(R), missing sites included."""
     structure, redex = c.structure, request.reaction.redex
     full = is_full(match, redex, structure.physical)
     return full and structure.locally_consistent(match.relations(redex), match.nodes(redex))
 
 
 def is_under_way(c: Configuration, request: CTR | FLY, match: Match) -> bool:
-    """Tell whether P has all nodes of m(R), and what travels is on its way to where m(R′) has it, or carried.
+    """Whether P has all nodes of m(R), and each travelling node flies to its parent in m(R′), or is carried.
 
-    What has vanished and appeared since is on no way, or on that of another flight.
+    An entity that vanished and appeared again during the flight is in no transit, or in that of another flight.
     """
     physical, nodes = c.structure.physical, match.nodes(request.reaction.redex)
     travelling = ((node, to) for node, to in moved(request.reaction, match) if physical.carrier(node) is None)
@@ -116,7 +116,7 @@ def is_under_way(c: Configuration, request: CTR | FLY, match: Match) -> bool:
 
 
 def still_matches(c: Configuration, request: CTR | FLY, match: Match) -> bool:
-    """Tell whether R matches as it did, but for where what travels is now."""
+    """Whether R still matches, apart from the current parents of the travelling nodes."""
     structure, redex = c.structure, request.reaction.redex
     nodes = match.nodes(redex)
     believed = all(map(structure.believes, _unmoved(request, match)))
@@ -125,7 +125,7 @@ def still_matches(c: Configuration, request: CTR | FLY, match: Match) -> bool:
 
 
 def is_unmoved_consistent(c: Configuration, request: CTR | FLY, match: Match) -> bool:
-    """Tell whether S is consistent with respect to what of m(R) does not travel, missing sites included."""
+    """Whether S is consistent with respect to the part of m(R) that does not travel, missing sites included."""
     consistent = c.structure.consistent(_unmoved(request, match))
     return consistent and is_full(match, request.reaction.redex, c.structure.physical)
 
@@ -151,13 +151,14 @@ PREMISES: Final[Mapping[type[CTR | FLY], tuple[Premise, ...]]] = {
         Premise("its unmoved part is consistent", is_unmoved_consistent, Obstacle.INCONSISTENT),
     ),
 }
-"""What `actuate` and `command` ask of a CTR, `commit` of a FLY, in this order; then `drive` has to give P′."""
+"""The premises of `actuate` and `command` on a CTR, and of `commit` on a FLY, in this order; then `drive` must give P′.
+"""
 
 
 def _driven(
     c: Configuration, request: CTR | FLY, match: Match, reach: Reach | None = None
 ) -> Driven | Obstacle:
-    """Return P′ by a match, or the finding of the first premise that does not hold."""
+    """Return the P′ of a match, or the obstacle of the first premise that fails."""
     failed = (each.otherwise for each in PREMISES[type(request)] if not each.holds(c, request, match))
     obstacle = next(failed, None)
     return obstacle or drive(c, c.setting, request.reaction, match, reach) or Obstacle.UNREALISABLE
@@ -176,7 +177,7 @@ def applicable(c: Configuration, agent: Name, reaction: Reaction) -> Iterator[Ma
 
 
 def realisations(c: Configuration, request: CTR) -> Iterator[Realisation]:
-    """Yield the ways in which a requested control can be made true, in the order of the matches."""
+    """Yield the realisations of a requested control, in the order of the matches."""
     for match in matches(request.reaction.redex, c.structure.logical):
         driven = _driven(c, request, match)
         if isinstance(driven, Driven):
@@ -184,13 +185,13 @@ def realisations(c: Configuration, request: CTR) -> Iterator[Realisation]:
 
 
 def commits(c: Configuration, fly: FLY, reach: Reach | None = None) -> Realisation | None:
-    """Return what a flight comes to when it ends now, None where it can't; `reach` as `drive` has it."""
+    """Return the realisation of a flight that ends now, None if it can't; `reach` is the `observed` of `drive`."""
     driven = _driven(c, fly, fly.match, reach)
     return _realisation(c, fly, fly.match, driven) if isinstance(driven, Driven) else None
 
 
 def _realisation(c: Configuration, request: CTR | FLY, match: Match, driven: Driven) -> Realisation:
-    """Write L[m(R) ↦ m(R′)] beside P′: only the relations that R′ changes."""
+    """Return the realisation: P′, and for L[m(R) ↦ m(R′)] only the relations that R′ changes."""
     reaction, logical = request.reaction, c.structure.logical
     changes: Changes = {}
     for node, place in moved(reaction, match):
@@ -204,10 +205,10 @@ def _realisation(c: Configuration, request: CTR | FLY, match: Match, driven: Dri
 
 
 def obstacle(c: Configuration, request: CTR | FLY) -> Obstacle | None:
-    """Return why a control next in its agent's line can't be served, None where it can, or merely waits.
+    """Return why the control next in its agent's line can't be served, None if it can, or only waits.
 
-    Of several matches the one counts that comes furthest. It waits for an entity in transit (`control timed`): that is
-    not an inconsistency.
+    Of several matches, the one that fulfils the most premises counts. Waiting for an entity in transit (`control
+    timed`) is not an inconsistency.
     """
     if isinstance(request, FLY):
         driven = _driven(c, request, request.match)

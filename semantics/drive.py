@@ -1,4 +1,4 @@
-"""`drive(P, m(R'))`: make a reactum physically true, or tell that it is impossible."""
+"""`drive(P, m(R'))`: make a reactum physically true, where possible."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Driven:
-    """What a reaction takes physically: the writes of P', and who has to fly for it."""
+    """The physical effect of a reaction: the writes of P', and the nodes that have to fly, with their destinations."""
 
     changes: Changes
     flying: tuple[tuple[Name, Name], ...]
 
 
 Reach = Callable[[PhysicalModel, Name, Name], Placement | None]
-"""Where a node comes to stand that travels to a place: by computation, or as it was observed."""
+"""The placement of a node after its travel to a place: computed, or observed."""
 
 
 def drive(
@@ -33,11 +33,13 @@ def drive(
 ) -> Driven | None:
     """Return the P' in which m(R') is true, None where there is none.
 
-    A node that changed parent is placed at the point nearest the new parent's centroid (the paper's waypoint) at which
-    A(P') gives exactly that parent; what it carries goes along; a node put into a carrier is carried; what a carrier
-    holds may be put where the carrier is, at once. A node that changed links has its channels changed.
+    - A node with a new parent goes to the point nearest the new parent's centroid (the paper's waypoint) at which A(P')
+      gives exactly that parent. Its cargo goes along.
+    - A node whose new parent is a carrier is carried.
+    - A carrier's cargo may be put down at the carrier's position, without travel.
+    - A node with new links gets new channels.
 
-    Where `observed` is given, what travels is placed by it: live, P' is what was observed.
+    If `observed` is given, it places the travelling nodes: in a live mission, P' is the observed world.
     """
     travel = observed or reach
     changes: Changes = {}
@@ -62,13 +64,13 @@ def drive(
 
 
 def _arrives(before: PhysicalModel, node: Name, place: Name, placement: Placement) -> bool:
-    """Tell whether A(P') gives a node so placed exactly this parent."""
+    """Whether A(P') gives a node with this placement exactly this parent."""
     after = PhysicalModel(Written(before.cells, before.placing(node, placement)), before.sorting)
     return after.abstract_parent(node) == place
 
 
 def _put_down(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carried | None:
-    """Put what a carrier holds where the carrier is, if the place is there; into another carrier there likewise."""
+    """Return the placement of cargo put down at its carrier's position, or into another carrier there."""
     by = physical.carrier(node)
     if by is None or place in (REGION, node):
         return None
@@ -84,19 +86,19 @@ def _put_down(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carr
 
 
 def unloaded(carried: Carried, here: Placed) -> Placed:
-    """Return what is carried as it stands by itself where its carrier is."""
+    """Return the placement of cargo once it is unloaded at its carrier's position."""
     shape = carried.shape
     return Placed(translate_to(shape.geometry, centroid(here.geometry)), shape.altitude)
 
 
 def reach(physical: PhysicalModel, node: Name, place: Name) -> Placed | Carried | None:
-    """Bring what can be driven into a place, or aboard what carries it."""
+    """Return the placement of a driven node inside a place, or aboard a carrier; None where there is none."""
     setting = physical.sorting
     origin, target = physical.position(node), None if place == REGION else physical.position(place)
     if origin is None or target is None or not setting.signature[setting.kind(node)].driven:
         return None
     if node in physical.carriers(place):
-        return None  # what rides on it cannot hold it
+        return None  # a node can't enter its own cargo
     shape = _shape(physical, node, origin)
     if setting.carries(place, node):
         return Carried(place, shape)
@@ -113,5 +115,5 @@ def _shape(physical: PhysicalModel, node: Name, origin: Placed) -> Placed:
 
 
 def _holes(before: tuple[Placed, ...], shape: Placed) -> tuple[Geometry, ...]:
-    """Return what would swallow a node inside a place: the places that A(P) takes before it, at its altitude."""
+    """Return the geometries of the places that A(P) tries before a node's target place, at the node's altitude."""
     return tuple(sorted({at.geometry for at in before if band_contains(at.altitude, shape.altitude)}))

@@ -1,4 +1,4 @@
-"""The environment section: what `env : P'` and `say` may do, clause by clause."""
+"""The environment section: the effects of `env : P'` and `say`, clause by clause."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,20 +16,20 @@ from semantics.state.physical_model import (
 from semantics.state.signature import Name
 
 Effect = tuple[str, Changes]
-"""What happens in words, and what it writes into P."""
+"""A description of an event, and its writes to P."""
 
 
 @dataclass(frozen=True, slots=True)
 class Drifts:
-    """An entity drifts among placements; what it carries goes along.
+    """An entity drifts among placements; its cargo goes along.
 
     Attributes:
-        entity: Who drifts.
-        placements: Where it may be.
-        names: What each placement is called.
-        next: The placements that may follow each; from where it is none of them, `first` may follow.
-        first: What may follow where it was at first.
-        within: Whether the placements stand for all of a place, so that it may be anywhere in it.
+        entity: The entity that drifts.
+        placements: Its possible placements.
+        names: The name of each placement.
+        next: The possible successors of each placement; from any other placement, those in `first`.
+        first: The possible successors of the initial placement.
+        within: Whether the placements represent a whole place, so that the entity may be anywhere in it.
     """
 
     entity: Name
@@ -41,15 +41,15 @@ class Drifts:
 
     @property
     def words(self) -> tuple[str, ...]:
-        """What may happen, in words."""
+        """The descriptions of its possible events."""
         return tuple(map(self.word, range(len(self.names))))
 
     def word(self, index: int) -> str:
-        """Say in words that it drifts to a placement."""
+        """Return the description of a drift to a placement."""
         return f"{self.entity} drifts to {self.names[index]}"
 
     def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
-        """Yield each drift; what is absent, carried or under command does not drift."""
+        """Yield each drift; an entity that is absent, carried or in transit does not drift."""
         here = physical.placement(self.entity)
         if not isinstance(here, Placed):
             return
@@ -61,14 +61,14 @@ class Drifts:
 
 @dataclass(frozen=True, slots=True)
 class Drops:
-    """A channel drops, and returns if it says so."""
+    """A channel drops, and returns if `returns` is set."""
 
     channel: Name
     returns: bool
 
     @property
     def words(self) -> tuple[str, ...]:
-        """What may happen, in words."""
+        """The descriptions of its possible events."""
         return (f"{self.channel} drops", f"{self.channel} returns")[: 1 + self.returns]
 
     def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
@@ -81,7 +81,7 @@ class Drops:
 
 @dataclass(frozen=True, slots=True)
 class Leaves:
-    """One entity leaves a channel, and returns to it if it says so."""
+    """One entity leaves a channel, and returns to it if `returns` is set."""
 
     entity: Name
     channel: Name
@@ -89,17 +89,17 @@ class Leaves:
 
     @property
     def left(self) -> Cell:
-        """The cell that says whether it was by leaving that the entity is off the channel."""
+        """The cell that records whether the entity is off the channel because it left."""
         return left_cell(self.entity, self.channel)
 
     @property
     def words(self) -> tuple[str, ...]:
-        """What may happen, in words."""
+        """The descriptions of its possible events."""
         both = (f"{self.entity} leaves {self.channel}", f"{self.entity} returns to {self.channel}")
         return both[: 1 + self.returns]
 
     def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
-        """Yield the entity's leaving; its return only where it has left, and has not joined since."""
+        """Yield the entity's leaving; its return only if it has left and has not joined since."""
         channels = frozenset(physical.channels(self.entity))
         if self.entity not in physical:
             return
@@ -120,13 +120,13 @@ class Appears:
 
     @property
     def words(self) -> tuple[str, ...]:
-        """What may happen, in words."""
+        """The descriptions of its possible events."""
         several = len(self.placements) > 1
         numbers = range(1, len(self.placements) + 1)
         return tuple(f"{self.entity} appears" + (f" ({number})" if several else "") for number in numbers)
 
     def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
-        """Yield each place where it may appear, if it is absent."""
+        """Yield each placement at which the entity may appear, if it is absent."""
         if self.entity in physical:
             return
         for words, placement in zip(self.words, self.placements, strict=True):
@@ -137,13 +137,13 @@ class Appears:
 
 @dataclass(frozen=True, slots=True)
 class Vanishes:
-    """An entity vanishes, with what it carries; L keeps their nodes."""
+    """An entity vanishes with its cargo; L keeps their nodes."""
 
     entity: Name
 
     @property
     def words(self) -> tuple[str, ...]:
-        """What may happen, in words."""
+        """The descriptions of its possible events."""
         return (f"{self.entity} vanishes",)
 
     def effects(self, physical: PhysicalModel) -> Iterator[Effect]:
@@ -158,7 +158,7 @@ class Vanishes:
 
 @dataclass(frozen=True, slots=True)
 class Says:
-    """Someone outside says a message to an agent, at most so many times (`say`, not `env`)."""
+    """An outside sender sends a message to an agent, at most `times` times (rule `say`, not `env`)."""
 
     message: Value
     agent: Name
@@ -167,33 +167,33 @@ class Says:
 
     @property
     def counter(self) -> Cell:
-        """The cell that counts how often it may still be said."""
+        """The cell that counts the remaining messages."""
         return ("says", str(self.number))
 
     @property
     def words(self) -> tuple[str, ...]:
-        """What may happen, in words."""
+        """The descriptions of its possible events."""
         return (f"{show(self.message)} to {self.agent}",)
 
 
 @dataclass(frozen=True, slots=True)
 class Observed:
-    """What telemetry and feeds have shown: live, the environment allows it since it has happened.
+    """An event shown by telemetry or feeds: in a live mission the environment allows it, since it has happened.
 
     Attributes:
-        words: What happened.
-        changes: The cells of P that it writes, sorted.
+        words: The description of the event.
+        changes: The cells of P that it writes, sorted, with their values.
     """
 
     words: str
     changes: tuple[tuple[Cell, Any], ...]
 
     def effects(self, physical: PhysicalModel) -> Iterator[Effect]:  # noqa: ARG002 - as the clauses have it
-        """Yield what was observed."""
+        """Yield the observed event."""
         yield self.words, dict(self.changes)
 
 
 Clause = Drifts | Drops | Leaves | Appears | Vanishes | Says
 
 Placing = Drifts | Appears
-"""The clauses that say where an entity may come to be: in their `placements`."""
+"""The clauses that give an entity new placements, in their `placements`."""

@@ -1,6 +1,6 @@
-"""The bigActor extension (paper, 3.1): messages, migration, spawning, and what someone outside says.
+"""The bigActor extension (paper, 3.1): messages, migration, spawning, and messages from outside.
 
-Written like the seven rules.
+Its rules have the form of the seven rules.
 """
 
 from collections.abc import Iterator
@@ -36,11 +36,11 @@ from semantics.state.requests import MGR, READY, SND
 from semantics.state.signature import Name
 
 MOST_AGENTS = 64
-"""How many agents a mission may spawn."""
+"""The largest number of agents in a mission, spawned ones included."""
 
 
 def linked(c: Configuration, here: Name, there: Name) -> bool:
-    """Tell whether two hosts are one node, or share a link in L and in P."""
+    """Whether two hosts are one node, or share a link in L and in P."""
     return here == there or any(True for _ in channels_between(c, here, there))
 
 
@@ -53,7 +53,7 @@ def channels_between(c: Configuration, here: Name, there: Name) -> Iterator[Name
 
 
 def req_snd(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Request a message to be delivered.
+    """Request the delivery of a message.
 
     a is at send(m, b)
     ───────────────────────────────────────────────────  ⟨req_snd : a, send(m, b)⟩
@@ -114,7 +114,7 @@ def rcv_msg(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def timeout(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Stop waiting: nothing that a case takes has come. What has come stays where it is.
+    """Stop waiting: no case takes any observation or message that has come. These stay where they are.
 
     a is at a react with a branch after d
     no case takes a READY(a, q, L_q) ∈ η, in line, or an m ∈ mailbox(a)
@@ -133,7 +133,7 @@ def timeout(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def _refused(c: Configuration, a: Name, cases: tuple[Case, ...]) -> Tried | None:
-    """Return the guards that refuse all that an agent may receive; None where a case takes some of it, or fails."""
+    """Return the guards that refuse everything an agent could receive, None if a case takes some of it, or fails."""
     watch, tests = c.alpha.watch(a), list[tuple[int, Provenance]]()
     mailbox = c.alpha.mailbox(a)
     posted = zip(mailbox, watch.mailbox if watch else (NOTHING,) * len(mailbox), strict=True)
@@ -141,7 +141,7 @@ def _refused(c: Configuration, a: Name, cases: tuple[Case, ...]) -> Tried | None
     for value, rests_on in (*ready, *posted):
         try:
             rank, tried = first_fitting(process_of(c, a), cases, value, rests_on)
-        except Fault:  # told of where it is received
+        except Fault:  # `rcv_obs` or `rcv_msg` reports it
             return None
         if rank is not None:
             return None
@@ -203,7 +203,7 @@ def spawn(c: Configuration, a: Name) -> Iterator[Transition]:
     parent = process_of(c, a)
     host, chosen = evaluated(statement.host, parent.scope)
     behaviour = c.setting.program.behaviours[statement.behaviour]
-    bound = parent.fork()  # the parent may be running this very behaviour: its own parameters stay
+    bound = parent.fork()  # the parent may be running the same behaviour: its own parameters must stay
     bind_parameters(bound, behaviour, statement.arguments, parent.rests_on[0])
     child = new_process(c.setting, statement.name, node_named(c, host), behaviour.body)
     for name in behaviour.parameters:
@@ -220,7 +220,7 @@ def node_named(c: Configuration, value: Value) -> Name:
     """Return the node that a value names.
 
     Raises:
-        Fault: It names none.
+        Fault: The value names no node.
     """
     name = name_in(value)
     if name not in c.setting.kinds:
@@ -246,4 +246,4 @@ def say(c: Configuration, clause: Clause) -> Iterator[Transition]:
 
 
 EXTENSION: tuple[Rule, ...] = (req_snd, snd, rcv_msg, timeout, req_mgr, migrate, spawn)
-"""The rules of an agent that the extension adds; `say` stands apart, as `env` does."""
+"""The extension's rules of agents; `say` is separate, as `env` is."""

@@ -1,4 +1,4 @@
-"""The live section's responses: to a broken assumption, and to a request that takes too long."""
+"""The responses of a mission's `live` section: to a broken assumption, and to a request that takes too long."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -7,7 +7,7 @@ from semantics.state.signature import Name
 
 
 class Fallback(Enum):
-    """What vehicles are told then; `continue` tells the operator only."""
+    """The command that a response gives the vehicles; `continue` only notifies the operator."""
 
     HOLD = "hold"
     RETURN = "return"
@@ -16,13 +16,13 @@ class Fallback(Enum):
 
 @dataclass(frozen=True, slots=True)
 class TimeLimit:
-    """How long a request may stand at the head of its agent's line.
+    """The longest time that a request may stay at the head of its agent's line.
 
     Attributes:
-        request: Its kind (`OBS`, `CTR`, `FLY`, `SND`, `MGR`), None for any.
-        agent: Whose, None for anyone's.
-        seconds: How long.
-        fallback: What happens then.
+        request: The kind of request (`OBS`, `CTR`, `FLY`, `SND`, `MGR`), None for any.
+        agent: The agent, None for any.
+        seconds: The limit in seconds.
+        fallback: The response when the limit is exceeded.
     """
 
     request: str | None
@@ -31,7 +31,7 @@ class TimeLimit:
     fallback: Fallback
 
     def covers(self, request: str, agent: Name) -> bool:
-        """Tell whether the limit is about such a request of an agent."""
+        """Whether the limit applies to such a request of an agent."""
         return self.request in (None, request) and self.agent in (None, agent)
 
 

@@ -1,7 +1,7 @@
-"""Steps decided by the world: an observation causes `env` and `commit`, and is kept to replay them.
+"""Steps decided by the world: an observation causes `env` or `commit`, and is stored so that they can be replayed.
 
-Live, nobody computes where a vehicle or a spill is. An observation names cells of P with what was seen there; the
-rules are those that were checked, and say whether it is a step.
+In a live mission, positions of vehicles and spills are observed, not computed. An observation maps cells of P to
+observed values. The rules are the verified ones; they decide whether an observation is a step.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -29,17 +29,17 @@ from semantics.state.signature import Name
 from semantics.successors import remembered
 
 WRITABLE = frozenset({"placement", "channels", "left", "down"})
-"""What an observation may write: P, and what the environment's clauses remember of it."""
+"""The first words of the cells that an observation may write: those of P, and of the environment's clauses."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sight:
-    """What was observed at once.
+    """One observation: changes of P seen together.
 
     Attributes:
-        words: What happened, as labels of `env` say it.
-        writes: Cells of P with what was seen there.
-        admits: The kinds of entities that the mission does not name, and that have come into sight.
+        words: The description, as in labels of `env`.
+        writes: The observed cells of P, with their values.
+        admits: The kinds of new entities: seen now, and not named by the mission.
     """
 
     words: str
@@ -48,7 +48,7 @@ class Sight:
 
 
 def happening(c: Configuration, sight: Sight) -> Iterator[Transition]:
-    """Yield the `env` of an observation; what is under command is nobody's but `commit`'s to place."""
+    """Yield the `env` step of an observation; only `commit` may place an entity in transit."""
     there = admitting(c, sight.admits)
     if all(_is_free(there, cell, value) for cell, value in sight.writes.items()):
         observed = Observed(sight.words, tuple(sorted(sight.writes.items(), key=_by_cell)))
@@ -56,12 +56,12 @@ def happening(c: Configuration, sight: Sight) -> Iterator[Transition]:
 
 
 def arriving(c: Configuration, a: Name, sight: Sight) -> Iterator[Transition]:
-    """Yield the `commit` of an agent's flight that ends where it was observed."""
+    """Yield the `commit` step of an agent's flight that ends at its observed placement."""
     yield from (remembered(c, step) for step in commit(c, a, reaching(sight.writes)))
 
 
 def steps_seen(c: Configuration, sight: Sight | Elsewhere, agents: Iterable[Name]) -> Iterator[Transition]:
-    """Yield what an observation may mean: what happens, the ends of agents' flights, what passes between stations."""
+    """Yield the steps that an observation may cause: events, the ends of agents' flights, messages between stations."""
     if not isinstance(sight, Sight):
         yield from passing(c, sight)
         return
@@ -72,7 +72,7 @@ def steps_seen(c: Configuration, sight: Sight | Elsewhere, agents: Iterable[Name
 
 
 def reaching(writes: Mapping[Cell, Any]) -> Reach:
-    """Return what places a traveller where it was seen, nowhere where it was not."""
+    """Return a `Reach` that places a traveller at its observed placement, and nowhere if it was not observed."""
 
     def reach(_physical: PhysicalModel, node: Name, place: Name) -> Placement | None:
         placement: Placement | None = writes.get(placement_cell(node))
@@ -82,7 +82,7 @@ def reaching(writes: Mapping[Cell, Any]) -> Reach:
 
 
 def admitting(c: Configuration, kinds: Mapping[Name, str]) -> Configuration:
-    """Return the configuration in a setting that names more entities, which are absent from L and P as yet."""
+    """Return the configuration with more entities in its setting; they are still absent from L and P."""
     new = {name: kind for name, kind in sorted(kinds.items()) if name not in c.setting.kinds}
     if not new:
         return c

@@ -58,7 +58,7 @@ Variables = tuple[str, ...]
 
 
 class _Writer:
-    """Draws statements and numbers them; every variable has a name of its own."""
+    """Draws statements and numbers them; each variable has a unique name."""
 
     def __init__(self, choose: Callable[[int], int], names: Sequence[Name]) -> None:
         self.choose = choose
@@ -82,7 +82,7 @@ class _Writer:
         return len(self.statements) - 1
 
     def block(self, scope: Variables, depth: int, least: int = 0) -> Block:
-        """Draw statements that follow each other; what one binds, those after it may read."""
+        """Draw a sequence of statements; later ones may read the variables of earlier ones."""
         block: list[int] = []
         for _ in range(self.pick(range(least, 4))):
             statement = self.statement(scope, depth)
@@ -100,7 +100,7 @@ class _Writer:
     # expressions
 
     def spelled(self) -> Text:
-        """Return a text that is spelled like an entity."""
+        """Return a text that equals an entity's name."""
         return Text(self.names[0])
 
     def leaf(self, scope: Variables) -> Expression:
@@ -239,10 +239,10 @@ _NESTED = ("if", "match", "for", "choose", "choose_from", "loop", "while")
 def random_program(
     choose: Callable[[int], int], names: Sequence[Name], agents: int = 1
 ) -> tuple[Program, tuple[Code, ...]]:
-    """Write a well-scoped program of all statements over these names, and the code of so many agents.
+    """Return a well-scoped program of all statements over these names, and the code of its agents.
 
-    `choose` returns a number below the one that it is given; 0 always gives the simplest program. Some of a program's
-    computations are faults.
+    `choose(n)` returns a number below n; the constant 0 gives the simplest program. Some of a program's computations
+    are faults.
     """
     writer = _Writer(choose, names)
     if choose(2):

@@ -1,7 +1,7 @@
-"""The seven inference rules, and the two that take `actuate` apart when control takes time.
+"""The seven inference rules, and the two that split `actuate` when control takes time.
 
-Each is a pure function of a configuration and an agent that yields the transitions which the rule allows (`env` is
-given a clause of the environment instead). Above the bar of each docstring stand the premises, below it the conclusion.
+Each is a pure function of a configuration and an agent that yields the transitions of the rule; `env` takes a clause of
+the environment instead of an agent. Each docstring shows the premises above the bar, the conclusion below it.
 """
 
 from collections.abc import Callable, Iterator
@@ -117,12 +117,12 @@ def req_ctr(c: Configuration, a: Name) -> Iterator[Transition]:
     assert isinstance(reaction, Reaction)
     rests_on = resting_on(process, process.scope.placed, *(kept for _, kept in arguments))
     process.leave()
-    request = c.eta.adding(CTR(a, reaction), held(deciding(rests_on), a, ()))  # nobody is told of it
+    request = c.eta.adding(CTR(a, reaction), held(deciding(rests_on), a, ()))  # no agent inherits it
     yield Transition(Label("req_ctr", a, f"control({reaction})"), c.with_(continuing(c, process), request))
 
 
 def actuate(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Control in one step: everything under `control atomic`, and what needs no flight under `control timed`.
+    """Control in one step: every control under `control atomic`, and under `control timed` those without a flight.
 
     CTR(a, R ⇒ R′) ∈ η, in line      m a match of R in L
     a's host in m(R)      L[m(R) ↦ m(R′)] a forest
@@ -162,7 +162,7 @@ def command(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def commit(c: Configuration, a: Name, reach: Reach | None = None) -> Iterator[Transition]:
-    """Arrive (`control timed`): the destination is where it is now, and R must still match.
+    """Arrive (`control timed`): at the destination's current position, and R must still match.
 
     FLY(a, m, R′) ∈ η, in line      m(R) in P, what travels in transit there
     R still matches, but for where the moved node is now      L[m(R) ↦ m(R′)] a forest
@@ -170,7 +170,7 @@ def commit(c: Configuration, a: Name, reach: Reach | None = None) -> Iterator[Tr
     ──────────────────────────────────────────────────────────────────────────────  ⟨commit : FLY(a, m, R′)⟩
     ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L[m(R) ↦ m(R′)], P′, β, γ) | η − FLY(a, m, R′)⟩
     """
-    # Live, `reach` places the vehicle where it was observed: P′ is what is, not what is computed.
+    # In a live mission, `reach` places the vehicle where it was observed: P′ is the observed world.
     for pending in c.eta.in_line(a):
         if not isinstance(pending.request, FLY):  # premise: FLY(a, m, R′) ∈ η, in line
             continue
@@ -196,7 +196,7 @@ def env(c: Configuration, clause: Clause | Observed) -> Iterator[Transition]:
 
 
 RULES: tuple[Rule, ...] = (fun, req_obs, sense, rcv_obs, req_ctr, actuate)
-"""The paper's rules of an agent, in its order; `env` stands apart, since it is nobody's."""
+"""The paper's rules of agents, in its order; `env` is separate, since it belongs to no agent."""
 
 TIMED_RULES: tuple[Rule, ...] = (command, commit)
-"""What takes the place of `actuate` where control takes time."""
+"""The rules that replace `actuate` where control takes time."""

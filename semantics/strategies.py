@@ -1,8 +1,8 @@
 """Hypothesis strategies for the values of `semantics/`, for tests of missions and rules.
 
-Worlds stand near Portimão. Places are boxes in slots of a 3 × 3 grid of the place (or the water) around them, so they
-nest or lie apart by construction; what moves is a point or a small polygon in a slot of its own. Everything shrinks
-towards few entities, L = A(P), few statements and short runs. Needs the extra `strategies`.
+Worlds are near Portimão. Places are boxes in slots of a 3 × 3 grid of the surrounding place (or the water), so they
+nest or are disjoint by construction. Movers are points or small polygons in slots of their own. Examples shrink towards
+few entities, L = A(P), few statements and short runs. The module needs the extra `strategies`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -50,7 +50,7 @@ T = TypeVar("T")
 
 
 def pick(draw: st.DrawFn, options: Sequence[T]) -> T:
-    """Draw one of some options, the first where it shrinks; cheaper than a strategy made on the spot."""
+    """Draw one of some options, shrinking to the first; cheaper than building a strategy for each draw."""
     return options[draw(_numbers(len(options)))]
 
 
@@ -61,14 +61,14 @@ def _numbers(count: int) -> st.SearchStrategy[int]:
 
 @dataclass(frozen=True)
 class World:
-    """A signature, entities with their kinds, P₀, and free slots in which something may be put.
+    """A signature, entities with their kinds, P₀, and free slots for further entities.
 
     Attributes:
         signature: The kinds.
         kinds: The kind of each entity, present or absent.
-        placements: P₀ of those that are there.
+        placements: P₀: the placements of the present entities.
         channels: Their channels.
-        free: Points that nothing takes up.
+        free: Unoccupied points.
     """
 
     signature: Signature
@@ -83,7 +83,7 @@ class World:
         agents: Mapping[Name, tuple[Name, Code]] | None = None,
         beliefs: Beliefs | None = None,
     ) -> Configuration:
-        """Return the configuration that starts in this world."""
+        """Return the initial configuration of this world."""
         return initial(setting or self.setting(), self.placements, self.channels, agents or {}, beliefs)
 
     def setting(self, program: Program | None = None, environment: tuple[Clause, ...] = ()) -> Setting:
@@ -96,7 +96,7 @@ class World:
 
 @dataclass(frozen=True)
 class _Slot:
-    """A square of the earth: its south-west corner, and its side in degrees."""
+    """A square of the earth's surface: its south-west corner, and its side in degrees."""
 
     south: float = 37.0
     west: float = -8.8
@@ -123,7 +123,7 @@ class _Slot:
 
 @dataclass
 class _Ground:
-    """What is built so far: each place's slot, how many of its nine are taken, and who carries."""
+    """The world built so far: each place's slot, how many of its nine inner slots are taken, and all placements."""
 
     slots: dict[Name, _Slot] = field(default_factory=lambda: {REGION: _Slot()})
     taken: dict[Name, int] = field(default_factory=lambda: {REGION: 0})
@@ -133,14 +133,14 @@ class _Ground:
         return [place for place in self.slots if self.taken[place] < 8]
 
     def take(self, place: Name) -> _Slot:
-        # The slot in the middle stays free: it is where a waypoint goes.
+        # The middle slot stays free for waypoints.
         number = (0, 2, 6, 8, 1, 3, 5, 7)[self.taken[place]]
         self.taken[place] += 1
         return self.slots[place].inner(number)
 
 
 def signatures() -> st.SearchStrategy[Signature]:
-    """Yield signatures of Place, Uav, Vessel, Crate and Station: who contains, carries, is driven or passive."""
+    """Yield signatures of Place, Uav, Vessel, Crate and Station, with random containment, carrying and driving."""
     everyone = frozenset(KIND_OF.values())
     cargo = st.frozensets(st.sampled_from(["Crate", "Uav", "Station", "Vessel"]))
     return st.builds(
@@ -162,7 +162,7 @@ def signatures() -> st.SearchStrategy[Signature]:
 
 @st.composite
 def worlds(draw: st.DrawFn, signature: st.SearchStrategy[Signature] | None = None) -> World:
-    """Yield small worlds: nested places, vehicles, carriers with cargo, links, absent entities; uav0 is there."""
+    """Yield small worlds: nested places, vehicles, carriers with cargo, links, absent entities; uav0 is present."""
     of = draw(signatures() if signature is None else signature)
     ground = _Ground()
     places = [f"place{number}" for number in range(pick(draw, [1, 2, 3]))]
@@ -220,7 +220,7 @@ def _draw_placement(draw: st.DrawFn, signature: Signature, ground: _Ground, name
 
 @st.composite
 def beliefs(draw: st.DrawFn, world: World) -> Beliefs:
-    """Yield what L₀ holds where it lags behind P₀: nodes elsewhere, unknown or of other links; always a forest."""
+    """Yield an L₀ that may lag behind P₀: nodes with other parents, unknown nodes, other links; always a forest."""
     logical = world.initial().structure.logical
     parents = {name: logical.parent(name) for name in sorted(world.kinds)}
     names = st.sampled_from(sorted(world.kinds))
@@ -245,14 +245,14 @@ def _believe(parents: dict[Name, Name | None], name: Name, place: Name | None) -
 
 @st.composite
 def structures(draw: st.DrawFn, lagging: bool | None = None) -> Structure:
-    """Yield structures: with L = A(P), or with L that lags behind P; both where `lagging` is None."""
+    """Yield structures with L = A(P), or with an L that lags behind P; both if `lagging` is None."""
     world = draw(worlds())
     lags = pick(draw, [False, True]) if lagging is None else lagging
     return world.initial(beliefs=draw(beliefs(world)) if lags else None).structure
 
 
 def queries(names: Sequence[Name]) -> st.SearchStrategy[Query]:
-    """Yield queries over these names, at most three operators deep or so."""
+    """Yield queries over these names, about three operators deep at most."""
     leaves: st.SearchStrategy[Query] = st.lists(
         st.sampled_from(names), min_size=1, max_size=2, unique=True
     ).map(lambda found: Nodes(tuple(sorted(found))))
@@ -280,7 +280,7 @@ def commands(host: Name, names: Sequence[Name]) -> st.SearchStrategy[Reaction]:
 
 @st.composite
 def patterns(draw: st.DrawFn, names: Sequence[Name], host: Name | None = None) -> Pattern:
-    """Yield redexes: names, node, place and link variables, closed nodes; the host among the nodes if it is given."""
+    """Yield redexes: names, node, place and link variables, closed nodes; and the host as a node, if given."""
     kinds = st.none() | st.sampled_from(sorted(KIND_OF.values()))
     variables = [NodeVariable(f"n{number}", draw(kinds)) for number in range(draw(st.integers(0, 2)))]
     fixed = draw(st.lists(st.sampled_from(names), max_size=2, unique=True))
@@ -324,7 +324,7 @@ def _elsewhere(draw: st.DrawFn, redex: Pattern, node: NodeTerm, place: PlaceTerm
 
 @st.composite
 def programs(draw: st.DrawFn, names: Sequence[Name], agents: int = 1) -> tuple[Program, tuple[Code, ...]]:
-    """Yield a well-scoped program of all statements over these names, and the code of so many agents.
+    """Yield a well-scoped program of all statements over these names, and the code of its agents.
 
     Some of its computations are faults.
     """
@@ -336,7 +336,7 @@ def programs(draw: st.DrawFn, names: Sequence[Name], agents: int = 1) -> tuple[P
 
 @st.composite
 def environments(draw: st.DrawFn, world: World) -> tuple[Clause, ...]:
-    """Yield environment sections of at most three clauses of all kinds."""
+    """Yield environment sections of at most two clauses of any kinds."""
     placed = [name for name, at in sorted(world.placements.items()) if isinstance(at, Placed)]
     clauses: list[st.SearchStrategy[Clause]] = [
         st.builds(Drops, st.sampled_from(CHANNELS), st.booleans()),
@@ -374,16 +374,16 @@ def initial_configurations(
     monitored: bool | None = False,
     lagging: bool | None = None,
 ) -> Configuration:
-    """Yield whole first configurations, with programs, an environment, any of the schedulers and controls.
+    """Yield initial configurations with programs, an environment, and any scheduler and control.
 
-    Some compute what fails: `expand` has their faults, `successors` raises one.
+    Some computations fail: `expand` reports their faults, `successors` raises one.
 
     Args:
         draw: Given by hypothesis.
         schedulers: The schedulers to draw from.
         controls: The controls to draw from.
-        monitored: Whether observations are remembered; both where it is None.
-        lagging: Whether L₀ may differ from A(P₀); both where it is None.
+        monitored: Whether the race monitor is on; both if None.
+        lagging: Whether L₀ may differ from A(P₀); both if None.
     """
     world = draw(worlds())
     number = draw(st.integers(1, 2))
@@ -401,12 +401,12 @@ def initial_configurations(
 
 @dataclass(frozen=True)
 class GeneratedMission:
-    """A mission without a text: what `check` takes.
+    """A mission without a text, as input of `check`.
 
     Attributes:
-        initial: The first configuration.
-        properties: One of each kind that needs no formula.
-        notes: None.
+        initial: The initial configuration.
+        properties: One property of each kind that needs no formula.
+        notes: Empty.
     """
 
     initial: Configuration
@@ -415,7 +415,7 @@ class GeneratedMission:
 
 
 def missions(start: st.SearchStrategy[Configuration] | None = None) -> st.SearchStrategy[GeneratedMission]:
-    """Yield missions that ask for every property without a formula; many have no end: check them within limits."""
+    """Yield missions with every property that needs no formula; many never end, so check them within limits."""
     kinds = asked_by(Asked.BY_DEFAULT, Asked.BY_NAME, Asked.ALWAYS)
     properties = tuple(Property(kind, kind.value) for kind in kinds)
     first = initial_configurations() if start is None else start
@@ -426,9 +426,9 @@ def missions(start: st.SearchStrategy[Configuration] | None = None) -> st.Search
 def configurations(
     draw: st.DrawFn, start: st.SearchStrategy[Configuration] | None = None, steps: int = 16
 ) -> Configuration:
-    """Yield configurations reached by a random run of at most so many steps; `successors` of none raises a Fault.
+    """Yield configurations reached by a random run of at most `steps` steps; `successors` raises no Fault on them.
 
-    A first configuration in which something fails at once is drawn anew.
+    An initial configuration with a fault is drawn anew.
     """
     c = draw(initial_configurations() if start is None else start)
     allowed = _steps(c)
@@ -437,7 +437,7 @@ def configurations(
     for turn in [draw(_numbers(16)) for _ in range(pick(draw, range(steps + 1)))]:
         if not allowed:
             break
-        after = allowed[max(0, turn - 6) % len(allowed)].target  # often the first: what serves a request
+        after = allowed[max(0, turn - 6) % len(allowed)].target  # often the first, which serves a request
         following = _steps(after)
         if following is None:
             break
@@ -446,7 +446,7 @@ def configurations(
 
 
 def _steps(c: Configuration) -> Sequence[Transition] | None:
-    """Return what can happen, None where a computation fails."""
+    """Return the successors, None where a computation fails."""
     try:
         return successors(c)
     except Fault:

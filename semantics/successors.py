@@ -15,7 +15,7 @@ from semantics.state.setting import Control, Scheduler
 from semantics.state.signature import Name
 
 SERVING: frozenset[Rule] = frozenset({sense, actuate, command, commit, snd, migrate})
-"""The rules that serve a pending request; the others are an agent's own next step."""
+"""The rules that serve a pending request; the others are an agent's own steps."""
 
 
 @cache
@@ -25,16 +25,16 @@ def rules_of(control: Control) -> tuple[Rule, ...]:
 
 
 def steps(c: Configuration, a: Name) -> Iterator[Transition | Fault]:
-    """Yield what one agent's rules allow, apart from others' turns, and each fault in the place of what it hinders.
+    """Yield an agent's transitions regardless of turns, and each fault in the place of the failed rule's transitions.
 
-    What the agent had asked for is served first, as in the paper's run; a failed computation hinders only its own rule.
+    Pending requests are served first, as in the paper's run. A failed computation disables only its own rule.
     """
     yield from served(c, a)
     yield from moves(c, a)
 
 
 def served(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Yield what is done about an agent's pending requests."""
+    """Yield the transitions that serve an agent's pending requests."""
     if c.eta.in_line(a):
         for rule in rules_of(c.setting.control):
             if rule in SERVING:
@@ -42,7 +42,7 @@ def served(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def moves(c: Configuration, a: Name) -> Iterator[Transition | Fault]:
-    """Yield an agent's own next steps."""
+    """Yield the transitions of an agent's own next step, and its faults."""
     for rule in rules_of(c.setting.control):
         if rule in SERVING:
             continue
@@ -55,12 +55,12 @@ def moves(c: Configuration, a: Name) -> Iterator[Transition | Fault]:
 
 @dataclass(frozen=True, slots=True)
 class Expansion:
-    """Everything that one configuration allows.
+    """All transitions and faults of one configuration.
 
     Attributes:
-        by_agents: The transitions of agents, in their turn.
-        by_environment: Those of `env` and `say`.
-        out_of_turn: What is enabled, but for the scheduler's turn (`fcfs`).
+        by_agents: The transitions of agents that are in their turn.
+        by_environment: The transitions of `env` and `say`.
+        out_of_turn: Transitions of agents that are enabled but not in their turn (`fcfs`).
         faults: The agents' computations that fail or diverge here.
     """
 
@@ -76,30 +76,30 @@ class Expansion:
 
     @property
     def enabled(self) -> tuple[Transition, ...]:
-        """The transitions of agents apart from the scheduler's turn."""
+        """The transitions of agents, in their turn or not."""
         return self.by_agents + self.out_of_turn
 
 
 def expand(c: Configuration) -> Expansion:
-    """Return everything that a configuration allows: rule by rule, agent by agent, clause by clause."""
+    """Return all transitions and faults of a configuration: rule by rule, agent by agent, clause by clause."""
     return expand_by(c, c.alpha.names())
 
 
 def expand_by(c: Configuration, agents: Iterable[Name]) -> Expansion:
-    """Return what a configuration allows some agents and the environment."""
+    """Return the transitions and faults of some agents and of the environment."""
     by_agents = [step for a in agents for step in steps(c, a)]
     return expansion_of(c, by_agents, [t for clause in c.setting.environment for t in by_clause(c, clause)])
 
 
 def by_clause(c: Configuration, clause: Clause) -> Iterator[Transition]:
-    """Yield what one clause of the environment allows."""
+    """Yield the transitions of one clause of the environment."""
     for rule in (env, say):
         for transition in rule(c, clause):
             yield remembered(c, transition)
 
 
 def remembered(c: Configuration, transition: Transition) -> Transition:
-    """Return the transition with what has to be remembered of flights, where a mission says how long they take."""
+    """Return the transition with the memory of flights updated, where the mission has a `timing` section."""
     if c.setting.timing is None:
         return transition
     from semantics.timing.flight_history import remembering  # noqa: PLC0415 - geometry takes its time to load
@@ -110,7 +110,7 @@ def remembered(c: Configuration, transition: Transition) -> Transition:
 def expansion_of(
     c: Configuration, by_agents: Iterable[Transition | Fault], by_environment: Iterable[Transition]
 ) -> Expansion:
-    """Return what the rules gave, marked for the monitor, in one order, once each, in the scheduler's turn."""
+    """Return the rules' transitions marked for the monitor, in one order, without duplicates, and split by turn."""
     steps_found = list(by_agents)
     faults = tuple(step for step in steps_found if isinstance(step, Fault))
     found = [step for step in steps_found if not isinstance(step, Fault)]
@@ -126,7 +126,7 @@ def expansion_of(
 
 
 def _in_turn(found: tuple[Transition, ...]) -> tuple[tuple[Transition, ...], tuple[Transition, ...]]:
-    """Divide transitions into those whose turn it is under `fcfs` (the enabled request asked first), and the others."""
+    """Return the transitions in their turn under `fcfs` (those of the oldest enabled request), and the others."""
     turns = [turn_of(transition) for transition in found]
     first = min((turn for turn in turns if turn is not None), default=None)
     allowed = tuple(t for t, turn in zip(found, turns, strict=True) if turn in (None, first))
@@ -134,13 +134,13 @@ def _in_turn(found: tuple[Transition, ...]) -> tuple[tuple[Transition, ...], tup
 
 
 def turn_of(transition: Transition) -> int | None:
-    """Return the place in the queue of `fcfs` of what a transition serves, None where it takes no turn."""
+    """Return the position in the `fcfs` queue of the request that a transition serves, None if it takes no turn."""
     served = transition.served
     return served.position if served is not None and served.cell == QUEUE else None
 
 
 def successors(c: Configuration) -> tuple[Transition, ...]:
-    """Return every transition of a configuration, once each, in one order.
+    """Return every transition of a configuration, without duplicates, in one order.
 
     Raises:
         Fault: An agent's computation fails or diverges.

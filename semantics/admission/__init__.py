@@ -1,1 +1,1 @@
-"""Whether the text of a mission can produce an agent that comes from another station."""
+"""Admission of agents from other stations: whether the text of a mission can have produced them."""

@@ -13,7 +13,7 @@ from semantics.behaviours.values import Route, Text, Truth, Value
 from semantics.state.signature import REGION, Name
 
 DEEPEST: Final = 6
-"""Abstract values that are nested deeper stand for every value: so the analysis ends."""
+"""The greatest depth of an abstract value; deeper ones widen to `ANYTHING`, so the analysis ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,13 +23,13 @@ class Abstract:
     Attributes:
         words: These names and texts.
         kinds: Every entity of these kinds.
-        agents: Whether every bigActor's name is in it.
+        agents: Whether it contains the names of all bigActors.
         plain: Every number (`int`), truth value (`Truth`) or observation (`Observation`).
-        tuples: For each shape, what the items of its tuples may be.
-        lists: What the items of its tuples of any length may be; None where it has none.
-        sets: What the members of its sets may be; None where it has none.
-        routes: What the stops of its routes may be; None where it has none.
-        anything: Whether it has every value.
+        tuples: Tuples of fixed length: for each shape, the abstract values of its items.
+        lists: The items of tuples of any length; None if it contains no such tuple.
+        sets: The members of sets; None if it contains no set.
+        routes: The stops of routes; None if it contains no route.
+        anything: Whether it contains every value.
     """
 
     words: frozenset[Name | Text] = frozenset()
@@ -62,7 +62,7 @@ class Abstract:
 
     @property
     def parts(self) -> Iterator[Abstract]:
-        """The abstract values of its parts."""
+        """The abstract values of its items, members and stops."""
         yield from (item for items in self.tuples for item in items)
         yield from (each for each in (self.lists, self.sets, self.routes) if each is not None)
 
@@ -75,7 +75,7 @@ OBSERVATION: Final = Abstract(plain=frozenset({Observation}))
 
 
 def join(several: Iterable[Abstract]) -> Abstract:
-    """Return what is in any of several."""
+    """Return the union of several abstract values."""
     return reduce(Abstract.__or__, several, NOTHING)
 
 
@@ -85,12 +85,12 @@ def tuple_of(items: tuple[Abstract, ...]) -> Abstract:
 
 
 def word(value: Name | Text) -> Abstract:
-    """Return one name or text."""
+    """Return the abstract value of one name or text."""
     return Abstract(words=frozenset({value}))
 
 
 def constant(value: Value) -> Abstract:
-    """Return what stands for a constant."""
+    """Return the abstract value of a constant."""
     match value:
         case str() | Text():
             return word(value)
@@ -121,7 +121,7 @@ def _either(one: Abstract | None, other: Abstract | None) -> Abstract | None:
 
 
 def _shape(items: tuple[Abstract, ...]) -> tuple[int, Name | Text | None]:
-    """Return the length of tuples and the name or text that is their first item, if that is fixed."""
+    """Return the length of tuples, and their first item if that is a single name or text."""
     first = items[0] if items else NOTHING
     is_fixed = len(first.words) == 1 and first == Abstract(first.words)
     return len(items), next(iter(first.words)) if is_fixed else None
@@ -137,7 +137,7 @@ def _merged(tuples: Iterable[tuple[Abstract, ...]]) -> frozenset[tuple[Abstract,
     return frozenset(found.values())
 
 
-# --- what a value may be ----------------------------------------------------------------------------------
+# --- membership ----------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,14 +146,14 @@ class Vocabulary:
 
     Attributes:
         kinds: The kind of each entity.
-        agents: Every bigActor that may ever exist.
+        agents: All bigActors that may ever exist.
     """
 
     kinds: Callable[[Name], str | None]
     agents: frozenset[Name]
 
     def fits(self, value: Value, abstract: Abstract) -> bool:
-        """Tell whether a value is in a set of values; an observation has to speak of what there is."""
+        """Whether a value is in a set of values; an observation may only mention existing entities and bigActors."""
         if isinstance(value, Observation):
             return (abstract.anything or Observation in abstract.plain) and self.observes(value)
         if isinstance(value, str):
@@ -184,7 +184,7 @@ class Vocabulary:
         return members is not None and all(self.fits(each, members) for each in within)
 
     def observes(self, seen: Observation) -> bool:
-        """Tell whether an observation speaks of this mission's entities and bigActors alone."""
+        """Whether an observation mentions only this mission's entities and bigActors."""
         return all(self._says(name, fact) for name, fact in seen.facts)
 
     def _says(self, name: Name, fact: Fact) -> bool:
@@ -197,7 +197,7 @@ class Vocabulary:
 
 
 def members(value: Abstract, observed: Abstract) -> Abstract:
-    """Return what the members of sets, routes and observations may be; `observed` is what any observation shows."""
+    """Return the possible members of sets, routes and observations; `observed` are those of any observation."""
     if value.anything:
         return ANYTHING
     inside = [each for each in (value.sets, value.routes) if each is not None]
@@ -205,7 +205,7 @@ def members(value: Abstract, observed: Abstract) -> Abstract:
 
 
 def named(value: Abstract) -> Abstract:
-    """Return the names that a value stands for: itself, or its members."""
+    """Return the names that a value denotes: itself, or its members."""
     if value.anything:
         return ANYTHING
     words = frozenset(each for each in value.words if isinstance(each, str))
@@ -217,7 +217,7 @@ def named(value: Abstract) -> Abstract:
 
 
 def bound(pattern: Pattern, value: Abstract, known: Vocabulary) -> dict[str, Abstract] | None:
-    """Return what a pattern binds of a value; None where it takes no such value."""
+    """Return the variables that a pattern binds to parts of a value; None if it never matches."""
     match pattern:
         case Anything(variable, of):
             taken = _of_sort(value, of)

@@ -1,4 +1,4 @@
-"""Control points: what may be left of a bigActor to run, as its text is nested."""
+"""Control points: the code that a bigActor may have left to run, according to the nesting of its text."""
 
 from collections.abc import Iterable, Iterator
 
@@ -15,16 +15,16 @@ from semantics.behaviours.statements import (
 )
 
 Point = tuple[Block, int]
-"""A block, and how many of its statements were taken or are being taken."""
+"""A block, and the number of its statements that have been taken or entered."""
 
 STAYING = (Loop, While, ForEach)
-"""Statements that stay what comes next while their body runs."""
+"""Statements that stay next in the code while their body runs."""
 
 
 def is_point(program: Program, starts: Iterable[Block], code: tuple[int, ...]) -> bool:
-    """Tell whether a run that began with one of some blocks can have this left to run.
+    """Whether a run that starts with one of these blocks can have this code left to run.
 
-    What is left is read from its end: the rest of the outermost block, then of what it has entered, and so on.
+    The code is read backwards: first the rest of the outermost block, then that of the block entered in it, and so on.
     """
     if code and isinstance(_statement(program, code[0]), Loop | None):
         return False  # the jump of a loop belongs to the step before it
@@ -40,7 +40,7 @@ def _statement(program: Program, number: int) -> Statement | None:
 
 
 def _entered(program: Program, points: set[Point]) -> set[Point]:
-    """Return the points, and the ends of all blocks that may have been entered from there."""
+    """Return the points, and the ends of all blocks that may have been entered from them."""
     found, waiting = set(points), list(points)
     while waiting:
         for block in _blocks(program, *waiting.pop()):
@@ -52,7 +52,7 @@ def _entered(program: Program, points: set[Point]) -> set[Point]:
 
 
 def _blocks(program: Program, block: Block, at: int) -> Iterator[Block]:
-    """Yield the blocks that may come before the rest of a block."""
+    """Yield the blocks whose code may precede the rest of a block."""
     taken = program.statements[block[at - 1]] if at else None
     match taken:
         case None | Loop() | While() | ForEach():
@@ -69,7 +69,7 @@ def _blocks(program: Program, block: Block, at: int) -> Iterator[Block]:
 
 
 def once(program: Program, starts: Iterable[Block]) -> frozenset[int]:
-    """Return the statements that no run of an agent takes twice: in no loop, in no behaviour called from two places."""
+    """Return the statements that no run takes twice: outside every loop, and in no behaviour with two calls."""
     again: set[int] = set()
     seen: set[int] = set()
     waiting = [number for block in starts for number in block]

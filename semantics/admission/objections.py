@@ -1,4 +1,4 @@
-"""Why a parcel does not enter: the text of this mission cannot have produced what is in it."""
+"""Reasons to refuse a parcel: the text of this mission cannot have produced its contents."""
 
 from collections.abc import Iterator, Sequence
 
@@ -18,22 +18,22 @@ from semantics.state.setting import Setting
 from semantics.state.signature import Name
 
 MOST_REQUESTS = 1_000
-"""How many requests of one agent enter: each is compared with the statements that may have made it."""
+"""The largest number of requests of an admitted agent; each is compared with the statements that may have made it."""
 
 
 def text_objection(setting: Setting, flow: ValueFlow, parcel: Parcel) -> str:
-    """Say what of a parcel the text of a mission cannot have produced; nothing where it can have produced all."""
+    """Return the first part of a parcel that the mission's text cannot have produced; empty if there is none."""
     return next(_Reading(setting, flow, parcel.agent).objections(parcel), "")
 
 
 def may_be_hosted(setting: Setting, flow: ValueFlow, agent: Name, host: Name) -> bool:
-    """Tell whether the text of a mission may host an agent at a node."""
+    """Whether the text of a mission may host an agent at a node."""
     role = flow.roles.get(agent)
     return role is not None and host in setting.kinds and flow.vocabulary_of(setting).fits(host, role.hosts)
 
 
 class _Reading:
-    """What one parcel is held against."""
+    """The setting, value flow and role that one parcel is compared with."""
 
     def __init__(self, setting: Setting, flow: ValueFlow, agent: Name) -> None:
         self.setting = setting
@@ -108,7 +108,7 @@ class _Reading:
             yield "it asks more often than its statements ask"
 
     def _makes(self, number: int, request: Asked) -> bool:
-        """Tell whether a statement can have made a request."""
+        """Whether a statement can have made a request."""
         statement: Statement = self.program.statements[number]
         match statement, request:
             case Observe(template), OBS(_, query):
@@ -127,7 +127,7 @@ class _Reading:
         return False
 
     def _is_made(self, request: Asked) -> bool:
-        """Tell whether a command or rule takes what it is given."""
+        """Whether a command or rule accepts its arguments."""
         try:
             requested(self.program, request)
         except Fault:
@@ -147,7 +147,7 @@ class _Reading:
         return isinstance(query, Nodes) and self._names(query.names, self.flow.value(self.agent, argument))
 
     def _names(self, given: tuple[Name, ...], value: Abstract) -> bool:
-        """Tell whether names are those that a value stands for: its own, or its members in their order."""
+        """Whether a query has the names that a value denotes: the value itself, or its members in order."""
         if len(given) == 1 and self.names.fits(given[0], value):
             return True
         several = (frozenset(given), Route(given))
@@ -155,7 +155,7 @@ class _Reading:
 
 
 def _have_each_their_own(several: Sequence[Sequence[int]]) -> bool:
-    """Tell whether each can have one of its numbers that no other has: by augmenting paths."""
+    """Whether each sequence can get a number of its own (a bipartite matching by augmenting paths)."""
     holders: dict[int, int] = {}
 
     def finds(index: int, tried: set[int]) -> bool:

@@ -1,6 +1,6 @@
-"""Value flow: what each bigActor's variables, hosts and messages may be, over its text and not over runs.
+"""Value flow: an over-approximation, from the text, of each bigActor's variables, hosts and messages.
 
-A least fixpoint: whatever a reachable statement may give to a variable, the variable may hold.
+It is a least fixpoint: a variable may hold every value that a reachable statement may assign to it.
 """
 
 from __future__ import annotations
@@ -64,13 +64,13 @@ from semantics.state.signature import NO_ENTITIES, REGION, Name
 
 @dataclass(slots=True)
 class Role:
-    """What one bigActor may come to.
+    """The possible behaviour of one bigActor.
 
     Attributes:
         starts: The blocks that it may begin with.
         statements: The statements that it may reach.
         hosts: Its possible hosts.
-        given: What each of its variables may be.
+        given: The possible values of each variable.
     """
 
     starts: set[Block] = field(default_factory=set)
@@ -80,7 +80,7 @@ class Role:
 
 
 class ValueFlow:
-    """The roles of all bigActors that the text begins with or spawns, and the messages that it sends."""
+    """The roles of all bigActors that the text declares or spawns, and the messages that it sends."""
 
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
@@ -98,15 +98,15 @@ class ValueFlow:
 
     @property
     def agents(self) -> frozenset[Name]:
-        """Every bigActor that may ever exist."""
+        """All bigActors that may ever exist."""
         return frozenset(self.roles)
 
     def vocabulary_of(self, setting: Setting) -> Vocabulary:
-        """Return the names of the mission, in a setting that may name what came into sight since."""
+        """Return the vocabulary of the mission, in a setting that may name entities first seen later."""
         return Vocabulary(setting.kinds.get, self.agents)
 
     def variable(self, agent: Name, name: str) -> Abstract:
-        """Return what a variable of an agent may be, or one that is kept for a property."""
+        """Return the possible values of an agent's variable, or of one kept for a property."""
         role = self.roles[agent]
         kept = (
             role.given.get(variable, NOTHING)
@@ -116,11 +116,11 @@ class ValueFlow:
         return join((role.given.get(name, NOTHING), *kept))
 
     def once(self, agent: Name) -> frozenset[int]:
-        """Return the statements that an agent takes once at the most."""
+        """Return the statements that an agent takes at most once."""
         return once(self.program, self.roles[agent].starts)
 
     def messages(self, agent: Name) -> Abstract:
-        """Return the messages that may be sent or said to an agent."""
+        """Return the possible messages to an agent, from agents and from outside."""
         found = (
             self.value(sender, statement.message)
             for sender in sorted(self.roles)
@@ -131,11 +131,11 @@ class ValueFlow:
         return join((*found, *said))
 
     def names(self, agent: Name, expression: Expression) -> Abstract:
-        """Return the names that an expression may stand for."""
+        """Return the names that an expression may denote."""
         return named(self.value(agent, expression))
 
     def value(self, agent: Name, expression: Expression) -> Abstract:
-        """Return what an expression may be."""
+        """Return the possible values of an expression."""
         match expression:
             case Literal(value):
                 return constant(value)
@@ -158,7 +158,7 @@ class ValueFlow:
                 return _RESULTS[operator](self, *given) if operator in _RESULTS else ANYTHING
 
     def members(self, value: Abstract) -> Abstract:
-        """Return what the members of a set, a route or an observation may be."""
+        """Return the possible members of a set, a route or an observation."""
         return members(value, replace(self.entities, agents=True, words=frozenset({REGION})))
 
     # --- the fixpoint -----------------------------------------------------------------------------------------
@@ -235,7 +235,7 @@ class ValueFlow:
 
 @dataclass(frozen=True, slots=True)
 class _Held:
-    """A setting beside what it is looked up by."""
+    """A setting that is not part of the cache's key."""
 
     setting: Setting = field(compare=False)
 
@@ -246,7 +246,7 @@ def _flow_of(_program: Program, _says: tuple[Says, ...], held: _Held) -> ValueFl
 
 
 def flow_of(setting: Setting) -> ValueFlow:
-    """Return the value flow of a mission's text; entities that come into sight later change nothing of it."""
+    """Return the value flow of a mission's text; entities that come into sight later do not change it."""
     return _flow_of(setting.program, _says(setting), _Held(setting))
 
 
@@ -270,7 +270,7 @@ def _sum(flow: ValueFlow, left: Abstract, right: Abstract) -> Abstract:
 
 
 def _part(flow: ValueFlow, left: Abstract, *_: Abstract) -> Abstract:
-    """Return what may be left of a collection: of an observation a set."""
+    """Return the possible parts of a collection; a part of an observation is a set."""
     if left.anything:
         return ANYTHING
     seen = Observation in left.plain
@@ -346,4 +346,4 @@ _RESULTS: Final[Mapping[str, Callable[..., Abstract]]] = {
     "element": _element,
     "[]": _of_family,
 }
-"""What operators return, given what their arguments may be."""
+"""The results of operators on abstract arguments."""

@@ -1,7 +1,7 @@
-"""The commands of the language: one table, which all that knows commands by their names is derived from.
+"""The commands of the language: one table, from which everything that knows commands by name is derived.
 
-Grammar, reserved words, hints, the reference, what is checked before a run, the formatter and the printed reactions
-read it; footprints and the live loop read the reactions. `docs/how-to/extending.md` says how one is added.
+Grammar, reserved words, hints, the reference, the checks before a run, the formatter and the printed reactions read it.
+Footprints and the live loop read the reactions. `docs/how-to/extending.md` explains how to add one.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -20,24 +20,24 @@ from semantics.behaviours.reaction_rules import (
 from semantics.state.signature import Name
 
 HOST: Final = "HOST"
-"""Stands for the agent's host where a reaction is still open in it; no entity has this name: it is reserved."""
+"""Stands for the agent's host in an open reaction; the word is reserved, so no entity has this name."""
 
 VIA: Final = "VIA"
 WAY: Final = ("gate0", "gate1")
-"""What is passed where a hint or the reference shows how that is written."""
+"""The example of a VIA in hints and in the reference."""
 
 MOST_VIA: Final = 20
-"""Places that a move may name on its way: a longer path is several moves."""
+"""The most places of one VIA; a longer path is several moves."""
 
 
 @dataclass(frozen=True)
 class Command:
-    """How a command is written, and the reaction that it requests.
+    """The syntax of a command, and the reaction that it requests.
 
     Attributes:
-        form: Words of the language in capitals, operands in small letters: each another one, and each a node.
-        sides: R and R', given the agent's host and the operands; its docstring stands in the reference.
-        travels: Whether places to be passed may stand behind it: `VIA gate0, gate1`.
+        form: Words of the language in capitals, and operands in small letters: all different, each a node.
+        sides: The function from the agent's host and the operands to R and R'; its docstring appears in the reference.
+        travels: Whether it may end with places to pass: `VIA gate0, gate1`.
     """
 
     form: str
@@ -46,44 +46,44 @@ class Command:
 
     @cached_property
     def parts(self) -> tuple[str, ...]:
-        """The words and operands, in the order in which they are written."""
+        """The words and operands, in written order."""
         return tuple(self.form.split())
 
     @cached_property
     def name(self) -> str:
-        """The word that it begins with."""
+        """Its first word."""
         return self.parts[0]
 
     @cached_property
     def words(self) -> tuple[str, ...]:
-        """The words of the language in it."""
+        """Its words of the language."""
         return tuple(part for part in self.parts if part.isupper())
 
     @cached_property
     def operands(self) -> tuple[str, ...]:
-        """What the operands are called."""
+        """The names of its operands."""
         return tuple(part for part in self.parts if not part.isupper())
 
     @cached_property
     def open(self) -> Reaction:
-        """The reaction with `HOST` and the operands' own names in it: what it moves is known before any run."""
+        """The reaction over `HOST` and the operands' own names: its moves are known before any run."""
         return self(HOST, *self.operands)
 
     def __call__(self, host: Name, *arguments: Name) -> Reaction:
-        """Return R ⇒ R'. What stands behind the operands is passed: context, nodes with sites on both sides."""
+        """Return R ⇒ R'. Further arguments are the VIA: context, nodes with sites on both sides."""
         operands, via = arguments[: len(self.operands)], arguments[len(self.operands) :]
         redex, reactum = self.sides(host, *operands)
         return Reaction(self.write(operands, via), redex.beside(via), reactum.beside(via), via)
 
     def made_from(self, reaction: Reaction, host: Name) -> tuple[Name, ...] | None:  # noqa: ARG002 - a rule needs it
-        """Return the host and the operands of a reaction; None where another command or rule has made it."""
+        """Return the host and the operands of a reaction; None if another command or rule made it."""
         given = tuple(node for node in reaction.redex.nodes if isinstance(node, str))
         if len(given) <= len(self.operands):
             return None
         return given if self(*given) == reaction else None
 
     def write(self, operands: Iterable[str], via: Iterable[str] = ()) -> str:
-        """Return the command as it is written with these operands."""
+        """Return the text of the command with these operands."""
         left = iter(operands)
         text = " ".join(part if part.isupper() else next(left) for part in self.parts)
         way = ", ".join(via)
@@ -91,7 +91,7 @@ class Command:
 
 
 def move_host_to(host: Name, place: Name) -> Sides:
-    """Move the agent's host into a place. Where it is there already this is the identity."""
+    """Move the agent's host into a place. If it is there already, this is the identity."""
     anywhere, nodes = PlaceVariable("x"), (host, place)
     return Pattern(nodes, ((host, anywhere),)), Pattern(nodes, ((host, place),))
 
@@ -104,7 +104,7 @@ def move(host: Name, entity: Name, place: Name) -> Sides:
 
 
 def put(host: Name, entity: Name, place: Name) -> Sides:
-    """Put what the host holds, `h.(x | $0)`, where the host is, or into a carrier there."""
+    """Put a child of the host, `h.(x | $0)`, where the host is, or into a carrier there."""
     nodes = (host, entity, place)
     return Pattern(nodes, ((entity, host),)), Pattern(nodes, ((entity, place),))
 
@@ -144,4 +144,4 @@ COMMANDS: Final[Mapping[str, Command]] = {
 }
 
 COMMAND_WORDS: Final = frozenset(word for command in COMMANDS.values() for word in command.words) | {VIA}
-"""All words that commands are written with: none of them is a name."""
+"""All words of commands; none of them may be a name."""

@@ -1,8 +1,8 @@
 """Internal computation: one step of `fun` runs from one command, `react` or `choose` to the next.
 
-What is left of an agent to run is a tuple of statement numbers, the next one first. Loops unroll when they come first
-(their jump belongs to the step they stand before), so the first statement is always a command, a `react`, a `choose`
-or internal.
+The code that an agent has left to run is a tuple of statement numbers, the next one first. A loop that comes first is
+unrolled: its jump belongs to the step before it. So the first statement is always a command, a `react`, a `choose` or
+internal.
 """
 
 from collections.abc import Iterable, Iterator
@@ -45,30 +45,29 @@ from semantics.races.provenance import NOTHING, Provenance, asking, deciding
 from semantics.state.agents import Code, Store
 
 MOST_STEPS: Final = 10_000
-"""Internal steps after which a computation that reached no command is said to diverge."""
+"""The most internal steps before a command; a longer computation counts as divergent."""
 
 
 Passage = tuple[int, int]
-"""A statement and which of its branches was taken, `STEPPED` for the statement itself."""
+"""A statement and the branch taken, `STEPPED` for the statement itself."""
 
 STEPPED: Final = -1
 
 
 @dataclass(slots=True)
 class Process:
-    """One agent's code and variables while it computes, with what each rests on, and what it displays.
+    """One agent's code and variables during a computation, with their provenance and its output.
 
     Attributes:
-        program: What it runs.
-        code: What is left of it to run.
-        rests_on: What each statement that is left rests on.
+        program: The program.
+        code: The code left to run.
+        rests_on: The provenance of each statement of the code.
         scope: Its variables.
-        shown: What it has displayed.
-        passed: What it and its forks have stepped over, and which branches they took: for coverage alone, and in no
-            configuration.
-        left: The statement that it has left last.
-        begun: Of the loops that it is in, how many statements stand behind each: what one turn had to pass says nothing
-            of the next, which looks anew.
+        shown: The output of `display`.
+        passed: The statements and branches that it and its forks have passed; only for coverage, in no configuration.
+        left: The last statement that it left.
+        begun: The loops that it is in, each by the number of statements behind it. Tests in one turn of a loop do not
+            affect the next.
     """
 
     program: Program
@@ -82,42 +81,42 @@ class Process:
 
     @property
     def next(self) -> Statement | None:
-        """The statement that comes next, None where nothing is left."""
+        """The next statement, None if no code is left."""
         return self.program.statements[self.code[0]] if self.code else None
 
     def leave(self) -> Provenance:
-        """Drop the first statement and return what got the agent there."""
+        """Drop the first statement and return its provenance."""
         here, self.rests_on = self.rests_on[0], self.rests_on[1:]
         self.left, self.code = self.code[0], self.code[1:]
         self.begun -= {len(self.code)}
         return here
 
     def took(self, branch: int) -> None:
-        """Note which branch is taken of the statement that was left last."""
+        """Record the branch taken of the statement left last."""
         self.passed.append((self.left, branch))
 
     def enter(self, block: Block, rests_on: Provenance) -> None:
-        """Put a block before what is left."""
+        """Prepend a block to the code."""
         self.code = block + self.code
         self.rests_on = (rests_on,) * len(block) + self.rests_on
 
     def turn(self, body: Block, here: Provenance) -> None:
-        """Put the body of the loop that comes next before it: from now on it is one that has begun."""
+        """Prepend the body of the loop that comes next, and mark the loop as begun."""
         self.begun |= {len(self.code) - 1}
         self.enter(body, here)
 
     def passing(self, tests: Provenance) -> None:
-        """Let the rest of the program depend on the tests that led there; the next turn of a loop does not."""
+        """Add tests to the provenance of all code except loops that have begun."""
         if tests:
             behind = range(len(self.code) - 1, -1, -1)
             kept = zip(self.rests_on, behind, strict=True)
             self.rests_on = tuple(each if rank in self.begun else each | tests for each, rank in kept)
 
     def might(self, ways: Iterable[Block], tests: Provenance, *, waits: bool = False) -> None:
-        """Let what follows rest on tests as far as another answer would have led another of these ways.
+        """Record the control dependence on tests whose other answers lead to one of these alternatives.
 
-        Where one of them may not come to its end, or the agent waits, all that is left rests on the tests. Else only
-        what one of them may change does: variables, and the host.
+        If an alternative may not end, or the agent would wait, all remaining code depends on the tests. Otherwise only
+        the variables and the host that an alternative may change do.
         """
         if not tests:
             return
@@ -145,18 +144,18 @@ class Process:
                 raise Fault("a loop without a command runs for ever", diverges=True)
 
     def evaluate(self, expression: Expression) -> tuple[Value, Provenance]:
-        """Return a value with what it rests on."""
+        """Return the value of an expression with its provenance."""
         return evaluated(expression, self.scope)
 
     def members(self, expression: Expression) -> tuple[tuple[Value, ...], Provenance]:
-        """Return what to go through, with what it rests on: of an observation, which names it showed."""
+        """Return the members to iterate over, with their provenance: for an observation, the question for its names."""
         value, rests_on = self.evaluate(expression)
         return members_of(value), asking(rests_on, members_asked(value))
 
     def variables(self) -> tuple[Store, tuple[Provenance, ...]]:
-        """Return the variables that what is left may read or that are watched, sorted, with what each rests on.
+        """Return the variables that the code may read or that properties watch, sorted, with their provenance.
 
-        Nothing rests on what is only watched.
+        A variable that is only watched has no provenance.
         """
         live, scope = self.program.live(self.code), self.scope
         alive = sorted(live.union(*scope.kept.values()).intersection(scope.store))
@@ -204,7 +203,7 @@ def _choose(process: Process, statement: Choice) -> Iterator[Process]:
     members, rests_on = process.members(statement.members)
     if not members:
         raise Fault("there is nothing to choose from")
-    for member in dict.fromkeys(members):  # a route may pass one twice
+    for member in dict.fromkeys(members):  # a route may contain one twice
         chosen = process.fork()
         chosen.scope.binding({statement.variable: member}, rests_on)
         chosen.enter(statement.body, chosen.leave() | deciding(rests_on))
@@ -213,10 +212,10 @@ def _choose(process: Process, statement: Choice) -> Iterator[Process]:
 
 
 def members_of(value: Value) -> tuple[Value, ...]:
-    """Return what a `for` or `choose` goes through: the stops of a route, or the members of a set or an observation.
+    """Return the members for a `for` or `choose`: the stops of a route, or the members of a set or an observation.
 
     Raises:
-        Fault: It is none of these.
+        Fault: The value is none of these.
     """
     try:
         return in_turn(value)
@@ -272,7 +271,7 @@ def _step_while(process: Process, test: Expression, body: Block) -> None:
         process.turn(body, here | deciding(rests_on))
         return
     process.leave()
-    process.might((body,), deciding(rests_on), waits=True)  # what follows runs only because the test failed
+    process.might((body,), deciding(rests_on), waits=True)  # the code behind runs only since the test failed
 
 
 def _step_for(process: Process, variable: str, rest: str, body: Block) -> None:
@@ -296,11 +295,13 @@ def enter_case(
     asked: Provenance,
     otherwise: Block | None,
 ) -> bool:
-    """Leave a `match` or `react` for the first case whose pattern and guard take a value; False where none does.
+    """Leave a `match` or `react` for the first case whose pattern and guard take a value; False if none does.
 
-    The body rests on what was `asked` of the value or made it come, and on the guards that were tried; what the pattern
-    binds, on what the value rests on. What follows rests on each of these where another answer would have led elsewhere
-    (`Process.might`): to another case or, where no case takes it, to `otherwise`; without that the agent waits.
+    The body depends on the tests in `asked`, which led to the value, and on the guards tried. The variables of the
+    pattern depend on the provenance of the value.
+
+    The code behind depends on these tests if another answer would have led elsewhere (`Process.might`): to another
+    case, or to `otherwise` if no case takes the value. Without `otherwise` the agent waits.
     """
     rank, tried = first_fitting(process, cases, value, rests_on)
     if rank is None:
@@ -310,7 +311,7 @@ def enter_case(
     process.scope.binding(bind(cases[rank].pattern, value) or {}, rests_on)
     rest = () if otherwise is None else (otherwise,)
     others = [case.body for case in cases if case is not cases[rank]] if look_into(cases) else []
-    process.might((*others, *rest), asked - there, waits=otherwise is None)  # else it would not be there
+    process.might((*others, *rest), asked - there, waits=otherwise is None)  # else the value may not come
     for each, tests in tried:
         if each == rank:
             after = _fitting(cases[rank + 1 :], value)
@@ -324,7 +325,7 @@ def enter_case(
 
 
 def look_into(cases: tuple[Case, ...]) -> bool:
-    """Tell whether which case is taken depends on what a value is, apart from guards."""
+    """Whether the choice of a case depends on the value, apart from guards."""
     return any(looks_into(case.pattern) for case in cases)
 
 
@@ -333,7 +334,7 @@ def _takes_all(cases: tuple[Case, ...]) -> bool:
 
 
 def _fitting(cases: tuple[Case, ...], value: Value) -> list[Case]:
-    """Return the cases that may take a value, down to the first that surely does."""
+    """Return the cases that may take a value, up to the first that certainly does."""
     found: list[Case] = []
     for case in cases:
         if bind(case.pattern, value) is not None:
@@ -344,11 +345,11 @@ def _fitting(cases: tuple[Case, ...], value: Value) -> list[Case]:
 
 
 Tried = tuple[tuple[int, Provenance], ...]
-"""The guards that were tried: the rank of each case, and what its guard rests on."""
+"""The guards tried: the rank of each case, and the provenance of its guard."""
 
 
 def give_up(process: Process, cases: tuple[Case, ...], after: After, refused: Tried) -> None:
-    """Leave a `react` for its `after` branch, given the guards that refused what is there."""
+    """Leave a `react` for its `after` branch, given the guards that refused all values."""
     here = process.leave()
     for rank, tests in refused:
         process.might((cases[rank].body,), tests)
@@ -359,7 +360,7 @@ def give_up(process: Process, cases: tuple[Case, ...], after: After, refused: Tr
 def first_fitting(
     process: Process, cases: tuple[Case, ...], value: Value, rests_on: Provenance
 ) -> tuple[int | None, Tried]:
-    """Return the rank of the first case whose pattern and guard take a value, and the guards that were tried."""
+    """Return the rank of the first case whose pattern and guard take a value, and the guards tried."""
     tried: list[tuple[int, Provenance]] = []
     for rank, case in enumerate(cases):
         binding = bind(case.pattern, value)
@@ -379,7 +380,7 @@ def first_fitting(
 def bind_parameters(
     process: Process, behaviour: Behaviour, arguments: Iterable[Expression], here: Provenance
 ) -> None:
-    """Give a behaviour's parameters the values of the arguments, all evaluated before."""
+    """Bind a behaviour's parameters to the values of the arguments, all evaluated first."""
     values = [process.evaluate(argument) for argument in arguments]
     for parameter, (value, rests_on) in zip(behaviour.parameters, values, strict=True):
         process.scope.binding({parameter: value}, rests_on | here)

@@ -1,9 +1,10 @@
-"""Endings: which blocks of a program surely come to their end, and what they may leave behind; static.
+"""Termination: the blocks of a program that certainly end, and their possible effects; static.
 
-What follows a test rests on it where another answer leads to a block that may wait or loop for ever. Whatever is asked
-for is taken to be served, so a `react` surely ends where an observation was asked for before it in the same block, and
-some case without a guard takes any observation. A message may never come. A `while` surely ends where it counts up to a
-constant.
+The code behind a test depends on it if another answer leads to a block that may wait or loop forever.
+
+Requests are assumed to be served. So a `react` certainly ends if an observation was requested before it in the same
+block, and a case without a guard takes any observation. A message may never come. A `while` certainly ends if it counts
+up to a constant.
 """
 
 from collections.abc import Iterable
@@ -37,27 +38,27 @@ NONE: Calls = frozenset()
 
 @lru_cache(maxsize=1 << 12)
 def ends(program: Program, block: Block) -> bool:
-    """Tell whether a block surely comes to its end, whatever its tests answer."""
+    """Whether a block certainly ends, for any results of its tests."""
     return _behind(program, block, 0, NONE) is not None
 
 
 @lru_cache(maxsize=1 << 12)
 def assigned(program: Program, block: Block) -> frozenset[str]:
-    """Return the variables to which a block may give a value."""
+    """Return the variables that a block may assign."""
     found = (program.statements[number] for number in reachable(program, block))
     return frozenset(each.variable for each in found if isinstance(each, Assign))
 
 
 @lru_cache(maxsize=1 << 12)
 def migrates(program: Program, block: Block) -> bool:
-    """Tell whether a block may ask for another host."""
+    """Whether a block may request a migration."""
     return any(isinstance(program.statements[number], Migrate) for number in reachable(program, block))
 
 
 def _behind(program: Program, block: Block, owed: int, calls: Calls) -> int | None:
-    """Return how many observations are surely to be received behind a block, None where its end may never come.
+    """Return how many observations are certainly still to be received behind a block, None if it may not end.
 
-    `owed` is how many are before it; `calls` are the behaviours that it stands in.
+    `owed` is the number before the block; `calls` are the behaviours that enclose it.
     """
     left: int | None = owed
     for number in block:
@@ -98,7 +99,7 @@ def _passed(program: Program, statement: Statement, owed: int, calls: Calls) -> 
 
 
 def _received(program: Program, react: React, owed: int, calls: Calls) -> int | None:
-    """Return what is owed behind a `react`."""
+    """Return the number owed behind a `react`."""
     surely = owed > 0 and any(each.guard is None and _is_any(each.pattern) for each in react.cases)
     if react.after is None and not surely:
         return None
@@ -118,7 +119,7 @@ def _is_any(pattern: Pattern) -> bool:
 
 
 def _repeated(program: Program, body: Block, owed: int, calls: Calls) -> int | None:
-    """Return what is owed behind any number of turns."""
+    """Return the number owed behind any number of turns."""
     once = _behind(program, body, owed, calls)
     if once is None or once >= owed:
         return None if once is None else owed
@@ -131,7 +132,7 @@ def _least(ways: Iterable[int | None]) -> int | None:
 
 
 def counts_up(program: Program, test: Expression, body: Block) -> bool:
-    """Tell whether each turn of a loop adds to a number that its test keeps below a constant."""
+    """Whether each turn of a loop adds to a number that its test keeps below a constant."""
     match test:
         case Apply("<" | "<=", (Variable(name), Literal(int()))):
             ups = [number for number in body if _is_step(program.statements[number], name)]
@@ -151,7 +152,7 @@ def _is_step(statement: Statement, name: str) -> bool:
 
 
 def begun_loops(program: Program, code: Block) -> tuple[int, ...]:
-    """Return the loops in whose first turn code begins, by how many statements stand behind each, sorted."""
+    """Return the loops in whose first turn the code begins, each by the number of statements behind it, sorted."""
     numbered = enumerate(code)
     begun = (at for at, number in numbered if _is_first_turn(program, program.statements[number], code[:at]))
     return tuple(sorted(len(code) - 1 - at for at in begun))

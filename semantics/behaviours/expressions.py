@@ -1,4 +1,4 @@
-"""Expressions of the host language, and their evaluation with the observations that a value depends on."""
+"""Expressions of the host language, and their evaluation with the provenance of the value."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -23,11 +23,11 @@ from semantics.state.signature import UNKNOWN, Name
 
 
 class Fault(Exception):
-    """An agent's computation fails or diverges: the mission's mistake, found on the way that leads there.
+    """An agent's computation fails or diverges: an error of the mission, found on a run.
 
     Attributes:
-        agent: Whose computation.
-        diverges: Whether it reaches no command, instead of failing.
+        agent: The agent.
+        diverges: Whether the computation reaches no command, instead of failing.
     """
 
     def __init__(self, message: str, *, diverges: bool = False) -> None:
@@ -52,7 +52,7 @@ class Variable:
 
 @dataclass(frozen=True, slots=True)
 class Host:
-    """`HOST`: the node that the agent is hosted at now."""
+    """`HOST`: the current host of the agent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class Apply:
 
 @dataclass(frozen=True, slots=True)
 class Either:
-    """`a or b` (`stop_at` true) and `a and b` (`stop_at` false): the second is evaluated only where it matters."""
+    """`a or b` (`stop_at` true) and `a and b` (`stop_at` false), with short-circuit evaluation."""
 
     stop_at: bool
     first: "Expression"
@@ -100,7 +100,7 @@ class RouteOf:
 
 @dataclass(frozen=True, slots=True)
 class QueryOf:
-    """A query with expressions at its leaves; `operator` None stands for the nodes that the expression names."""
+    """A query with expressions at its leaves; without an operator it denotes the nodes that the expression names."""
 
     operator: QueryOperator | None
     argument: "Expression | QueryOf | None"
@@ -111,15 +111,15 @@ Expression = Literal | Variable | Host | Self | Apply | Either | TupleOf | SetOf
 
 @dataclass(slots=True)
 class Scope:
-    """What an expression may read, and what its evaluation has rested on so far.
+    """The environment of an expression, and the provenance of its evaluation so far.
 
     Attributes:
         store: Variables.
-        rests_on: What each variable was computed from; empty where nobody monitors.
+        rests_on: The provenance of each variable; empty if the race monitor is off.
         kinds: The kind of each entity.
-        kept: Under which names what a variable is given is kept to the end of the run (`Program.kept`).
-        placed: What the host was chosen by.
-        used: Grows with each variable or host read and each observation tested.
+        kept: The names under which each variable's values are kept to the end of the run (`Program.kept`).
+        placed: The provenance of the choice of the host.
+        used: The provenance of the variables, hosts and observations read so far.
     """
 
     agent: Name
@@ -132,7 +132,7 @@ class Scope:
     used: Provenance = field(default=NOTHING)
 
     def binding(self, names: Mapping[str, Value], provenance: Provenance) -> None:
-        """Give variables values that rest on something."""
+        """Assign values with one provenance to variables."""
         self.rests_on.update(dict.fromkeys(names, provenance))
         for name, value in names.items():
             self.store[name] = value
@@ -143,7 +143,7 @@ def evaluate(expression: Expression, scope: Scope) -> Value:
     """Return the value of an expression.
 
     Raises:
-        Fault: An operator was given what it doesn't take.
+        Fault: An operator was given arguments that it does not accept.
     """
     match expression:
         case Literal(value):
@@ -170,7 +170,7 @@ def evaluate(expression: Expression, scope: Scope) -> Value:
 
 
 def evaluated(expression: Expression, scope: Scope) -> tuple[Value, Provenance]:
-    """Return the value of an expression with what it rests on."""
+    """Return the value of an expression with its provenance."""
     before, scope.used = scope.used, NOTHING
     value = evaluate(expression, scope)
     provenance, scope.used = scope.used, before | scope.used
@@ -199,7 +199,7 @@ def truth(value: Value) -> bool:
     """Return the Python boolean of a truth value.
 
     Raises:
-        Fault: It is another value.
+        Fault: The value is no truth value.
     """
     if isinstance(value, Truth):
         return bool(value)
@@ -210,7 +210,7 @@ def query_of(template: QueryOf, scope: Scope) -> Query:
     """Return the query with `HOST`, variables and other expressions resolved.
 
     Raises:
-        Fault: A leaf is no name, and no set or route of names.
+        Fault: A leaf is neither a name nor a set or route of names.
     """
     argument = template.argument
     if argument is None:
@@ -224,10 +224,10 @@ def query_of(template: QueryOf, scope: Scope) -> Query:
 
 
 def names_in(value: Value) -> tuple[Name, ...]:
-    """Return the names that a value stands for: itself, or its members.
+    """Return the names that a value denotes: itself, or its members.
 
     Raises:
-        Fault: It stands for none.
+        Fault: It denotes none.
     """
     members = in_order(_members(value)) if isinstance(value, frozenset | Route) else (value,)
     if not all(isinstance(member, str) for member in members):
@@ -236,10 +236,10 @@ def names_in(value: Value) -> tuple[Name, ...]:
 
 
 def name_in(value: Value) -> Name:
-    """Return the one name that a value stands for.
+    """Return the one name that a value denotes.
 
     Raises:
-        Fault: It stands for none or several.
+        Fault: It denotes none or several.
     """
     names = names_in(value)
     if len(names) != 1:
@@ -255,10 +255,10 @@ class Operator:
     """One operator or function of the language.
 
     Attributes:
-        arity: How many arguments it takes.
+        arity: The number of its arguments.
         summary: One line for the reference page.
-        apply: Its meaning, given the scope and the values.
-        asks: What it asks of the observations among its arguments.
+        apply: Its meaning, as a function of the scope and the values.
+        asks: The questions that it asks of the observations among its arguments.
     """
 
     arity: int
@@ -276,12 +276,12 @@ def _members(value: Value) -> frozenset[Value]:
 
 
 def _each(value: Value) -> Collection[Value]:
-    """Return the members of a set or an observation; of a route each as often as it stands there, in its order."""
+    """Return the members of a set or an observation, or the stops of a route in order, repetitions included."""
     return value.stops if isinstance(value, Route) else _members(value)
 
 
 def _only(value: Value, wanted: Callable[[Value], bool]) -> Value:
-    """Return the members that are wanted: of a route as a route."""
+    """Return the collection of the wanted members; that of a route is a route."""
     kept = filter(wanted, _each(value))
     return Route(tuple(kept)) if isinstance(value, Route) else frozenset(kept)
 
@@ -342,7 +342,7 @@ def _first(_: Scope, value: Value) -> Value:
 
 
 def in_turn(value: Value) -> tuple[Value, ...]:
-    """Return the members of a set or an observation in canonical order, those of a route in its own."""
+    """Return the members of a set or an observation in canonical order, or the stops of a route in order."""
     return value.stops if isinstance(value, Route) else in_order(_members(value))
 
 
@@ -371,15 +371,15 @@ def _linked(_: Scope, a: Value, b: Value, seen: Value) -> Value:
 
 
 def members_asked(*values: Value, key: Key = MEMBERS) -> tuple[Key, ...]:
-    """Return what is asked where only the members of values matter: of an observation inside another value, everything.
+    """Return the questions asked by an operator on members: the whole observation if one is inside another value.
 
-    `ANY` stands for a value that is not known yet: either may be asked.
+    `ANY` stands for an unknown value: either question may be asked.
     """
     return _asked(key, ANY in values, any(map(_holds_observation, values)))
 
 
 def _in_asked(name: Value, _: Value) -> tuple[Key, ...]:
-    """Return what `in` asks: to find an observation in a set compares it with all that others say."""
+    """Return the questions of `in`: finding an observation in a set compares its whole contents."""
     return _asked(("in", str(name)), name == ANY, _holds_observation((name,)))
 
 
@@ -390,7 +390,7 @@ def _asked(key: Key, either: bool, everything: bool) -> tuple[Key, ...]:
 
 
 def _holds_observation(value: Value) -> bool:
-    """Tell whether an observation is among the parts of a tuple, a set or a route."""
+    """Whether an observation is part of a tuple, a set or a route."""
     return any(isinstance(part, Observation) or _holds_observation(part) for part in within(value))
 
 
@@ -485,12 +485,12 @@ def free(expression: Any) -> frozenset[str]:
 
 
 def reads_host(expression: Any) -> bool:
-    """Tell whether an expression or a query reads `HOST`."""
+    """Whether an expression or a query reads `HOST`."""
     return any(isinstance(leaf, Host) for leaf in leaves(expression))
 
 
 def leaves(expression: Any) -> Iterator[Expression]:
-    """Yield the constants, variables and names of which an expression or a query is made."""
+    """Yield the constants, variables and names in an expression or a query."""
     match expression:
         case Apply(_, parts) | TupleOf(parts) | SetOf(parts) | RouteOf(parts):
             for part in parts:

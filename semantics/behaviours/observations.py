@@ -10,7 +10,7 @@ from semantics.state.signature import REGION, Name
 
 
 class QueryOperator(StrEnum):
-    """What can be asked of the nodes that a query denotes, by the word that it is written with."""
+    """The operators on the nodes that a query denotes, by their words."""
 
     PARENT = "PARENT"
     CHILDREN = "CHILDREN"
@@ -20,7 +20,7 @@ class QueryOperator(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Nodes:
-    """The nodes of these names; `HOST` resolved, a name, or the value of a variable."""
+    """The nodes of these names: the resolved `HOST`, a name, or the value of a variable."""
 
     names: tuple[Name, ...]
 
@@ -38,7 +38,7 @@ class All:
 
 @dataclass(frozen=True, slots=True)
 class Of:
-    """An operator applied to what another query denotes."""
+    """An operator applied to the nodes that another query denotes."""
 
     operator: QueryOperator
     of: "Query"
@@ -52,12 +52,12 @@ Query = Nodes | All | Of
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """What an observation says of one node, or of an agent.
+    """The part of an observation about one node, or one agent.
 
     Attributes:
-        shown: Whether it was denoted.
-        parent: The parent that was seen of it.
-        links: The links on which it was seen, sorted.
+        shown: Whether the query denotes it.
+        parent: Its observed parent.
+        links: The links on which it was observed, sorted.
     """
 
     shown: bool = False
@@ -70,13 +70,13 @@ NOTHING_SEEN = Fact()
 
 @dataclass(frozen=True, slots=True)
 class Swept:
-    """What an observation looked through to the end: who was not seen there is not there.
+    """The exhaustively listed parts of an observation: a node not seen there is absent.
 
     Attributes:
-        places: Places whose children were all listed; sorted, as the others are.
-        nodes: Nodes whose links were all listed.
-        links: Links whose points were all listed.
-        around: Places whose children are the answer; they are shown, too, and are no members of it by themselves.
+        places: Places with all children listed; sorted, as the others are.
+        nodes: Nodes with all links listed.
+        links: Links with all points listed.
+        around: Places whose children are the answer; they are shown too, but are not members of it by themselves.
     """
 
     places: tuple[Name, ...] = ()
@@ -89,11 +89,11 @@ NOTHING_SWEPT = Swept()
 
 
 class Observation:
-    """L_q: what a query showed, with the answers it got, name by name.
+    """L_q: the result of a query, with its answers name by name.
 
     Attributes:
-        family: What it says of each name; agents under `agent_key`.
-        swept: What it looked through to the end.
+        family: The fact about each name; agents under `agent_key`.
+        swept: The exhaustively listed parts.
     """
 
     __slots__ = ("_facts", "_places", "family", "swept")
@@ -111,7 +111,7 @@ class Observation:
         relations: Iterable[Relation] = (),
         swept: Swept = NOTHING_SWEPT,
     ) -> "Observation":
-        """Make an observation of everything that it says."""
+        """Return the observation of these names, agents and relations."""
         facts: dict[Name, Fact] = {}
 
         def say(name: Name, **news: Any) -> None:
@@ -129,14 +129,14 @@ class Observation:
 
     @property
     def facts(self) -> tuple[tuple[Name, Fact], ...]:
-        """All that it says of names, sorted."""
+        """All facts, sorted by name."""
         if self._facts is None:
             told = ((name, self.family[name]) for name in sorted(self.family))
             self._facts = tuple((name, fact) for name, fact in told if fact != NOTHING_SEEN)
         return self._facts
 
     def fact(self, name: Name) -> Fact:
-        """Return what it says of one name."""
+        """Return the fact about one name."""
         return self.family.get(name, NOTHING_SEEN)
 
     def __eq__(self, other: object) -> bool:
@@ -156,16 +156,16 @@ class Observation:
 
     @property
     def shown(self) -> tuple[Name, ...]:
-        """The nodes denoted, with the places whose children were asked for; sorted."""
+        """The nodes denoted, and the places whose children were requested; sorted."""
         return tuple(name for name, fact in self.facts if fact.shown and not name.startswith(AGENT))
 
     @property
     def members(self) -> tuple[Name, ...]:
-        """The nodes that answer the query, sorted: of `CHILDREN(x)` the children, and not x."""
+        """The nodes that answer the query, sorted: for `CHILDREN(x)` the children, without x."""
         return tuple(filter(self.has_member, self.shown))
 
     def has_member(self, node: Name) -> bool:
-        """Tell whether a node is shown, and not only as a place whose children were asked for."""
+        """Whether a node is shown as an answer, and not only as a place whose children were requested."""
         fact = self.fact(node)
         return fact.shown and (node not in self.swept.around or fact.parent in self.swept.around)
 
@@ -183,17 +183,18 @@ class Observation:
         return tuple(sorted(pairs, key=str))
 
     def parent(self, node: Name) -> Name | None:
-        """Return the parent that was seen of a node."""
+        """Return the observed parent of a node."""
         return self.fact(node).parent
 
     def children(self, place: Name) -> frozenset[Name]:
-        """Return the children that were seen of a place."""
+        """Return the observed children of a place."""
         return frozenset(name for name, fact in self.facts if fact.parent == place)
 
     def is_parent(self, place: Name, of: Iterable[Name]) -> bool:
-        """Tell whether any of some nodes, which are all that it speaks of, was seen in a place.
+        """Whether a place is the observed parent of one of these nodes, which must be all nodes of the observation.
 
-        A plain family is looked through once for all places. Another one notes who is asked: it is asked for each.
+        A plain family is indexed once for all places. A recording family is read node by node, so that each read is
+        recorded.
         """
         if not isinstance(self.family, dict):
             return any(self.parent(node) == place for node in of)
@@ -202,21 +203,21 @@ class Observation:
         return place in self._places
 
     def links(self, node: Name) -> frozenset[Name]:
-        """Return the links on which a node was seen."""
+        """Return the links on which a node was observed."""
         return frozenset(self.fact(node).links)
 
     def nodes(self) -> tuple[Name, ...]:
-        """Return dom(L_q), sorted: what was shown, and every node of a pair."""
+        """Return dom(L_q), sorted: the shown nodes, and every node of a pair."""
         places = {fact.parent for _, fact in self.facts if fact.parent is not None} - {REGION}
         return tuple(sorted(places.union(name for name, _ in self.facts if not name.startswith(AGENT))))
 
 
 AGENT = "agent "
-"""How the name begins under which an observation says of an agent that it was denoted."""
+"""The prefix of an agent's name in an observation."""
 
 
 def agent_key(agent: Name) -> Name:
-    """Return the name under which an observation speaks of an agent: a node of the same name is another."""
+    """Return the key of an agent in an observation, distinct from that of a node with the same name."""
     return AGENT + agent
 
 
@@ -224,11 +225,11 @@ Applied = QueryOperator | Literal["", "ALL"]
 
 
 class Step(NamedTuple):
-    """One operator of a query, with what it is applied to.
+    """One operator of a query, with its argument.
 
     Attributes:
-        operator: Which; `ALL`, or empty, for the nodes that a query begins with.
-        names: The nodes, sorted.
+        operator: The operator; `ALL`, or empty, for the nodes at the start of a query.
+        names: The argument: nodes, sorted.
     """
 
     operator: Applied
@@ -236,4 +237,4 @@ class Step(NamedTuple):
 
 
 Steps = tuple[Step, ...]
-"""A query as it was resolved when it was evaluated: its operators, innermost first, hence the slots it looked at."""
+"""A query as resolved at its evaluation: its operators, innermost first, and hence the slots that it looked at."""

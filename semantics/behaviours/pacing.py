@@ -1,4 +1,4 @@
-"""Pacing: loops that ask and never wait, so that what they ask for piles up; static."""
+"""Pacing: loops that make requests without ever waiting, so that the requests pile up; static."""
 
 from collections.abc import Iterable
 
@@ -20,14 +20,14 @@ from semantics.behaviours.statements import (
 )
 
 REQUESTS = (Observe, ControlBy, Migrate, Send)
-"""The statements that ask for something and go on."""
+"""The statements that make a request and continue."""
 
 Requests = frozenset[int]
 NONE: Requests = frozenset()
 
 
 def unpaced(program: Program, number: int) -> Requests:
-    """Return what a loop asks for in turns in which it waits for nothing; nothing of one that surely ends."""
+    """Return the requests of a loop in turns without a wait; empty if the loop certainly ends."""
     match program.statements[number]:
         case Loop(body):
             return _unheard(program, body, frozenset()) or NONE
@@ -38,7 +38,7 @@ def unpaced(program: Program, number: int) -> Requests:
 
 
 def _unheard(program: Program, block: Block, calls: frozenset[str]) -> Requests | None:
-    """Return the requests on ways through a block on which nothing is waited for; None where there is no such way."""
+    """Return the requests on paths through a block without a wait, None if there is no such path."""
     found = NONE
     for number in block:
         passed = _passed(program, number, calls)

@@ -1,4 +1,4 @@
-"""Patterns of `react` and `match`: what they match, and what they bind."""
+"""Patterns of `react` and `match`: matching and binding."""
 
 from dataclasses import dataclass
 from typing import Literal as Choice
@@ -34,7 +34,7 @@ Binding = dict[str, Value]
 
 
 def bind(pattern: Pattern, value: Value) -> Binding | None:
-    """Return the variables that a pattern binds to parts of a value, None where it doesn't take it.
+    """Return the variables that a pattern binds to parts of a value, None if it does not match.
 
     >>> bind(Elements((Exactly("found"), Anything("place"))), ("found", "spill0"))
     {'place': 'spill0'}
@@ -63,7 +63,7 @@ def _bind_all(items: tuple[Pattern, ...], value: Value) -> Binding | None:
 
 
 def looks_into(pattern: Pattern) -> bool:
-    """Tell whether it depends on what a value is, beyond being an observation or a message, if a pattern takes it."""
+    """Whether a match depends on the value itself, and not only on its being an observation or a message."""
     return not isinstance(pattern, Anything)
 
 

@@ -42,7 +42,7 @@ NONE: Names = frozenset()
 
 @dataclass(frozen=True, slots=True)
 class Behaviour:
-    """`def name(parameters) = { body }`; parameters have names of their own in the whole program."""
+    """`def name(parameters) = { body }`; the parameters' names are unique in the whole program."""
 
     name: str
     parameters: tuple[str, ...]
@@ -51,11 +51,11 @@ class Behaviour:
 
 @dataclass(frozen=True, slots=True)
 class VariableOf:
-    """`a.x`: what bigActor a last gave to a variable that is written x.
+    """`a.x`: the last value that bigActor a assigned to a variable written x.
 
     Attributes:
         agent: The bigActor.
-        variables: All of that name in what it may run, sorted; each binding is one by itself.
+        variables: All its variables with that written name, sorted; each binding is a separate variable.
     """
 
     agent: Name
@@ -63,7 +63,7 @@ class VariableOf:
 
     @property
     def key(self) -> str:
-        """Under which name it is kept: its own, or one more where several variables share what is written."""
+        """The name under which its value is kept: its own, or a shared one for several with the same written name."""
         return self.variables[0] if len(self.variables) == 1 else f"{written(self.variables[0])}#"
 
     def __str__(self) -> str:
@@ -77,11 +77,11 @@ class ReactionMaker(Protocol):
         """Return R ⇒ R'."""
 
     def made_from(self, reaction: "Reaction", host: Name) -> tuple[Name, ...] | None:
-        """Return the host and the arguments of which a reaction was made; None where it was made by another.
+        """Return the host and the arguments of a reaction, None if another command or rule made it.
 
         Args:
             reaction: The reaction.
-            host: The host, where the reaction does not depend on it.
+            host: The host, in case the reaction does not depend on it.
         """
 
 
@@ -93,13 +93,13 @@ class Program:
         statements: The statements.
         behaviours: The parametrised behaviours.
         reactions: Commands and named rules: from the host and the arguments to a `Reaction`, and back.
-        lines: The line of the mission's text that each statement stands in (from 1), as far as there is one.
-        branch_lines: The same of cases and alternatives, by statement and rank.
-        declared: The line in which each rule and behaviour is declared, by sort (`rule`, `behaviour`) and name.
-        bodies: What each bigActor of the text begins with.
-        homes: Where each bigActor of the text is hosted at first.
-        copies: Of the statements of a family's members after the first, which one of the first's each repeats.
-        watched: The variables that properties name: they are kept to the end of the run.
+        lines: The line of each statement in the mission's text (from 1), if it has one.
+        branch_lines: The lines of cases and alternatives, by statement and rank.
+        declared: The line of each declaration, by sort (`rule`, `behaviour`) and name.
+        bodies: The initial code of each declared bigActor.
+        homes: The initial host of each declared bigActor.
+        copies: For each statement of a family's later members, the statement of the first member that it repeats.
+        watched: The variables that properties mention; they are kept to the end of the run.
     """
 
     statements: tuple[Statement, ...] = ()
@@ -114,11 +114,11 @@ class Program:
     watched: frozenset[VariableOf] = frozenset()
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the attributes alone: functions that remember can't be sent to another process."""
+        """Return the fields only: the cached functions can't be sent to another process."""
         return {each.name: getattr(self, each.name) for each in fields(self)}
 
     def line(self, number: int) -> int:
-        """Return the line of a statement, 0 where there is none."""
+        """Return the line of a statement, 0 if it has none."""
         return self.lines[number] if number < len(self.lines) else 0
 
     def branch_line(self, number: int, rank: int) -> int:
@@ -129,7 +129,7 @@ class Program:
 
     @cached_property
     def _reads(self) -> list[Names]:
-        """What each statement may read before it binds it; a least fixpoint, since loops lead back."""
+        """The variables that each statement may read before it binds them: a least fixpoint, since loops lead back."""
         reads = [NONE] * len(self.statements)
         grown = True
         while grown:
@@ -139,7 +139,7 @@ class Program:
 
     @cached_property
     def live(self) -> Callable[[Block], Names]:
-        """Return the function from what is left to run to the variables that it may read: others are forgotten."""
+        """Return the function from code to the variables that it may read; all others are forgotten."""
         return lru_cache(maxsize=1 << 14)(lambda code: _live(code, self._reads, self.statements))
 
     def watching(self, variables: frozenset[VariableOf]) -> "Program":
@@ -148,7 +148,7 @@ class Program:
 
     @cached_property
     def kept(self) -> Mapping[Name, Mapping[str, Names]]:
-        """For each bigActor, under which names what a variable is given is kept to the end of the run."""
+        """For each bigActor and variable, the names under which its values are kept to the end of the run."""
         found: dict[Name, dict[str, Names]] = {}
         for each in self.watched:
             keys = found.setdefault(each.agent, {})
@@ -207,13 +207,13 @@ def _reads(  # noqa: PLR0912  # one case for each kind of statement
 
 @lru_cache(maxsize=1 << 12)
 def reachable(program: Program, code: Block) -> frozenset[int]:
-    """Return the statements that code may come to; those of whom it spawns not included."""
+    """Return the statements that code may reach, without those of the agents it spawns."""
     return frozenset[int]().union(*(_within(program, number) for number in code))
 
 
 @lru_cache(maxsize=1 << 12)
 def _within(program: Program, first: int) -> frozenset[int]:
-    """Return the statements that one may come to, itself among them."""
+    """Return the statements that a statement may reach, itself included."""
     seen: set[int] = set()
     waiting = [first]
     while waiting:
@@ -225,7 +225,7 @@ def _within(program: Program, first: int) -> frozenset[int]:
 
 
 def leads_to(program: Program, statement: Statement) -> Iterator[int]:
-    """Yield the statements that stand in a statement, or in the behaviour that it calls."""
+    """Yield the statements inside a statement, or in the behaviour that it calls."""
     match statement:
         case If(_, then, otherwise):
             yield from (*then, *otherwise)
@@ -242,7 +242,7 @@ def leads_to(program: Program, statement: Statement) -> Iterator[int]:
 
 
 def expressions_of(statement: Statement) -> Iterable[Expression]:
-    """Return the expressions whose value decides something, or is kept, sent or used."""
+    """Return the expressions whose value decides a step, or is kept, sent or used."""
     match statement:
         case Assign(_, expression) | If(expression, _, _) | While(expression, _) | For(expression, _, _):
             return (expression,)

@@ -1,7 +1,7 @@
 """q(A(P)), the observation L_q that a query yields, and L ⊕ L_q.
 
-A query denotes a set of nodes of A(P), composed pointwise. Its observation says what is shown, and every answer that
-was got on the way: a yes is a pair, a no follows from a place or link that was enumerated.
+A query denotes a set of nodes of A(P), composed pointwise. Its observation has the shown nodes, and every answer found
+on the way: a yes is a pair, a no follows from an exhaustively listed place or link.
 """
 
 from collections.abc import Iterable, Mapping
@@ -33,7 +33,7 @@ from semantics.state.signature import REGION, Name
 
 
 def evaluate(query: Query, physical: PhysicalModel, alpha: Agents) -> Observation:
-    """Return q(A(P)): what is asked within the query as sets, its answers name by name.
+    """Return q(A(P)): inner queries denote sets of nodes, and the answers are collected name by name.
 
     An absent host gives the empty observation.
     """
@@ -41,7 +41,7 @@ def evaluate(query: Query, physical: PhysicalModel, alpha: Agents) -> Observatio
 
 
 def resolve(query: Query, physical: PhysicalModel, alpha: Agents) -> Steps:
-    """Return the steps of a query, as they are resolved in A(P)."""
+    """Return the steps of a query, resolved in A(P)."""
     match query:
         case Of(operator, inner):
             steps = resolve(inner, physical, alpha)
@@ -53,7 +53,7 @@ def resolve(query: Query, physical: PhysicalModel, alpha: Agents) -> Steps:
 
 
 def denoted(steps: Steps, physical: PhysicalModel, alpha: Agents) -> tuple[Name, ...]:
-    """Return what resolved steps denote, sorted."""
+    """Return the names that resolved steps denote, sorted."""
     operator, names = steps[-1]
     if operator in ("", "ALL"):
         return names
@@ -64,7 +64,7 @@ def denoted(steps: Steps, physical: PhysicalModel, alpha: Agents) -> tuple[Name,
 
 
 def answers(steps: Steps, physical: PhysicalModel, alpha: Agents) -> Observation:
-    """Return what the slots that a resolved query looks at say in A(P), name by name."""
+    """Return the observation of a resolved query: the values in A(P) of the slots that it looks at."""
     looking = _Looking(steps, physical, alpha)
     agents = alpha.names() if any(step.operator == QueryOperator.HOSTED_AT for step in steps) else ()
     names = (*looking.names, *map(agent_key, agents))
@@ -85,7 +85,7 @@ class _Looking:
         self.followed = self._links_of_all(inner if operator == QueryOperator.LINKED_TO else ())
 
     def _to(self, operator: QueryOperator) -> frozenset[Name]:
-        """Return all that an operator is applied to."""
+        """Return all arguments of an operator."""
         all_too = operator in (QueryOperator.CHILDREN, QueryOperator.LINKED_TO)
         both: tuple[Applied, ...] = (operator, "ALL") if all_too else (operator,)
         return frozenset[Name]().union(*(names for applied, names in self.applied if applied in both))
@@ -101,7 +101,7 @@ class _Looking:
         return Swept(*(tuple(sorted(each)) for each in listed))
 
     def fact(self, name: Name) -> Fact:
-        """Return what is answered of one name."""
+        """Return the fact about one name."""
         if name.startswith(AGENT):
             return Fact(self.alpha.host(name.removeprefix(AGENT)) in self.to[QueryOperator.HOSTED_AT])
         parent = self.parent(name)
@@ -109,7 +109,7 @@ class _Looking:
         return Fact(self.shows(name, parent), parent, links)
 
     def shows(self, name: Name, parent: Name | None) -> bool:
-        """Tell whether the outermost operator denotes a node or the region; `parent` as far as that was asked."""
+        """Whether the outermost operator denotes a node or the region; `parent` may be None if it was not requested."""
         operator, inner = self.applied[-1]
         match operator:
             case "" | "ALL":
@@ -128,7 +128,7 @@ class _Looking:
                 assert_never(operator)
 
     def parent(self, name: Name) -> Name | None:
-        """Return the parent of a node in A(P), as far as it was asked for: its own, or among children."""
+        """Return the parent of a node in A(P), as far as the query requests it: by `PARENT`, or by `CHILDREN`."""
         if name == REGION:
             return None
         if name in self.to[QueryOperator.PARENT]:
@@ -152,18 +152,18 @@ class _Looking:
 
 
 def overlay(logical: LogicalModel, seen: Observation) -> Mapping[Name, Changes]:
-    """Return the writes of L ⊕ L_q, node by node: the answers that the query got, and no more.
+    """Return the writes of L ⊕ L_q, node by node: exactly the answers of the query.
 
-    A yes sets the relation. A no removes only the relation denied: a node believed under an enumerated place and not
-    seen there goes to the region, a link looked at and seen without n loses n. A new node that was not placed goes to
-    the region; where a cycle would arise, its nodes whose slot was not looked at do. So L_q ⊆ L ⊕ L_q.
+    A yes sets the relation. A no removes only the denied relation. A node believed under a listed place, and not seen
+    there, goes to the region. A link that was listed without n loses n. A new node without an observed parent goes to
+    the region. On a cycle, the nodes whose parent was not observed go to the region. So L_q ⊆ L ⊕ L_q.
     """
     learning = _Learning(logical, seen)
     return logical.cells.each(learning.names, learning.of)
 
 
 class _Learning:
-    """What one observation teaches L of each node."""
+    """The update of L by one observation."""
 
     def __init__(self, logical: LogicalModel, seen: Observation) -> None:
         self.logical = logical
@@ -178,7 +178,7 @@ class _Learning:
         return nested if links is None else nested | self.logical.linking(name, links)
 
     def place(self, name: Name) -> Name | None:
-        """Return the new parent of a node, None where it keeps what it had."""
+        """Return the new parent of a node, None if it keeps its parent."""
         answered = self.seen.parent(name)
         if answered is not None:
             return answered
@@ -187,15 +187,15 @@ class _Learning:
         return REGION if self.is_denied(name) or self.is_on_cycle(name) else None
 
     def is_node(self, name: Name) -> bool:
-        """Tell whether a node is in dom(L_q)."""
+        """Whether a node is in dom(L_q)."""
         return self.seen.fact(name) != NOTHING_SEEN or self.seen.is_parent(name, self.names)
 
     def is_denied(self, name: Name) -> bool:
-        """Tell whether a node is believed in a place where it was not seen."""
+        """Whether a node's believed parent is a listed place in which it was not seen."""
         return any(self.logical.is_in(name, place) for place in self.seen.swept.places)
 
     def is_on_cycle(self, name: Name) -> bool:
-        """Tell whether the new parents lead from a node back to it; never where its kind holds nothing."""
+        """Whether the new parents lead from a node back to it; never if its kind holds nothing."""
         sorting = self.logical.sorting
         if not sorting.signature[sorting.kind(name)].holds:
             return False
@@ -209,7 +209,7 @@ class _Learning:
         return False
 
     def links(self, name: Name) -> frozenset[Name] | None:
-        """Return the new links of a node, None where it keeps what it had."""
+        """Return the new links of a node, None if it keeps its links."""
         swept = self.seen.swept
         if name in self.looked_at:
             return self.seen.links(name)

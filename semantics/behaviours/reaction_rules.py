@@ -1,7 +1,7 @@
 """Reactions R ⇒ R' of missions: patterns of relations over names and variables, and their matches in L.
 
-Matching is by relations: injective on nodes, and the image of one redex region may lie inside another's site. (Milner's
-own disjointness is kept by `bigraphs.matching`, for `.big` systems.)
+Matching is by relations: injective on nodes, and the image of one redex region may lie inside another's site.
+(`bigraphs.matching` keeps Milner's own disjointness, for `.big` systems.)
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 from semantics.state.relations import Linked, Parent, Relation
 from semantics.state.signature import REGION, Name
 
-if TYPE_CHECKING:  # the language's words are known by reactions, and need no geometry
+if TYPE_CHECKING:  # reactions are also loaded for the language's words, without geometry
     from semantics.state.logical_model import LogicalModel
     from semantics.state.physical_model import PhysicalModel
 
 CONTROL_AUTHORITY = "control"
-"""The kind of the channels that say who commands a vehicle: `control:gcs0`."""
+"""The kind of the channels that represent control authority over a vehicle: `control:gcs0`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class NodeVariable:
 
 @dataclass(frozen=True, slots=True)
 class PlaceVariable:
-    """Stands for any place, node or region; need not differ from what another term stands for."""
+    """Stands for any place, node or region, possibly the same as another term."""
 
     name: str
 
@@ -82,7 +82,7 @@ class Pattern:
     closed: tuple[NodeTerm, ...] = ()
 
     def beside(self, nodes: tuple[NodeTerm, ...]) -> Pattern:
-        """Return the pattern with more nodes beside: context, of which it says nothing else."""
+        """Return the pattern with more nodes as context, without relations."""
         return replace(self, nodes=(*self.nodes, *nodes)) if nodes else self
 
 
@@ -95,10 +95,10 @@ class Reaction:
     """R ⇒ R', printed as the programmer wrote it.
 
     Attributes:
-        text: What was written.
+        text: The written text.
         redex: R.
         reactum: R'.
-        via: The places that what travels passes on its way, in their order; R and R' name them, and change nothing.
+        via: The places that the travelling nodes pass, in order; R and R' contain them unchanged.
     """
 
     text: str
@@ -107,21 +107,21 @@ class Reaction:
     via: tuple[Name, ...] = ()
 
     def __hash__(self) -> int:
-        return hash(self.text)  # which strings remember; requests are hashed with every step
+        return hash(self.text)  # strings cache their hash; each step hashes requests
 
     def __str__(self) -> str:
         return self.text
 
     @property
     def moves(self) -> tuple[tuple[NodeTerm, PlaceTerm], ...]:
-        """What it moves and where to, as far as its patterns tell; `moved` says it of a match."""
+        """The moved nodes and their new places, as terms of the patterns; `moved` gives those of a match."""
         before = dict(self.redex.parents)
         return tuple((node, place) for node, place in self.reactum.parents if before.get(node) != place)
 
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """m: what each variable of a redex stands for, sorted by variable."""
+    """m: the value of each variable of a redex, sorted by variable."""
 
     binding: tuple[tuple[Term, Name], ...] = ()
 
@@ -136,20 +136,20 @@ class Match:
         return tuple(self[node] for node in pattern.nodes)
 
     def relations(self, pattern: Pattern) -> tuple[Relation, ...]:
-        """Return m(R): the pairs of σ_L that a pattern says of the images."""
+        """Return m(R): the pairs of σ_L between the images, according to the pattern."""
         return (
             *(Parent(self[node], self[place]) for node, place in pattern.parents),
             *(Linked(self[link], self[node]) for link, node in pattern.links),
         )
 
     def closed(self, pattern: Pattern) -> Iterator[tuple[Name, frozenset[Name]]]:
-        """Yield the image of each closed node with all the children that it may have."""
+        """Yield the image of each closed node with all children that it may have."""
         for node in pattern.closed:
             inside = frozenset(self[child] for child, place in pattern.parents if place == node)
             yield self[node], inside
 
     def rebound(self, changes: Mapping[Term, Name]) -> Match:
-        """Return the match with these variables standing for something else."""
+        """Return the match with new values of these variables."""
         return make_match({**dict(self.binding), **changes})
 
 
@@ -169,9 +169,9 @@ def moved(reaction: Reaction, match: Match) -> tuple[tuple[Name, Name], ...]:
 
 
 def in_flight(reaction: Reaction, match: Match) -> Match:
-    """Return what `commit` still asks of a match: a place where only what moves was is forgotten, as if unknown.
+    """Return the match that `commit` tests: places that occur only as origins of moving nodes become the region.
 
-    Wherever that is by then, it is put for where it was; and nothing moves to the region.
+    So those origins are forgotten. `commit` uses the node's current place instead, and nothing moves to the region.
     """
     redex, gone = reaction.redex, {node for node, _ in moved(reaction, match)}
     places = [place for side in (redex, reaction.reactum) for _, place in side.parents]
@@ -184,7 +184,8 @@ def relinked(
 ) -> tuple[tuple[Name, frozenset[Name], frozenset[Name]], ...]:
     """Return (node, links lost, links gained) for each node whose links the reaction changes.
 
-    A node that is on all that it would gain already loses nothing: handing over to who has authority is the identity.
+    A node that already has all links that it would gain loses nothing: handing over to the present authority is the
+    identity.
     """
     before = {(match[link], match[node]) for link, node in reaction.redex.links}
     after = {(match[link], match[node]) for link, node in reaction.reactum.links}
@@ -216,18 +217,18 @@ def _fits(match: Match, redex: Pattern, logical: LogicalModel) -> bool:
 
 
 def is_active(nodes: Iterable[Name], logical: LogicalModel) -> bool:
-    """Tell whether no node lies, at any depth, in one of a passive kind."""
+    """Whether no node lies, at any depth, in a node of a passive kind."""
     signature, kind = logical.sorting.signature, logical.sorting.kind
     return not any(signature[kind(place)].passive for node in nodes for place in logical.ancestors(node))
 
 
 def is_full(match: Match, redex: Pattern, model: LogicalModel | PhysicalModel) -> bool:
-    """Tell whether nodes written without a site have no other child, in L or in A(P)."""
+    """Whether nodes written without a site have no other child, in L or in A(P)."""
     return all(inside.issuperset(model.children(node)) for node, inside in match.closed(redex))
 
 
 def stays_forest(reaction: Reaction, match: Match, logical: LogicalModel) -> bool:
-    """Tell whether making the reactum true leaves L a forest."""
+    """Whether L is still a forest when the reactum is true."""
     parents = dict(moved(reaction, match))
     for start in parents:
         seen: set[Name] = set()
@@ -245,14 +246,14 @@ Binding = dict[Term, Name]
 
 
 class _Search:
-    """Solve the constraints of a redex one after another, each against the relations of L."""
+    """Solves the constraints of a redex one after another, each against the relations of L."""
 
     def __init__(self, redex: Pattern, logical: LogicalModel) -> None:
         self.redex = redex
         self.logical = logical
 
     def constraints(self) -> tuple[Constraint, ...]:
-        """Put what mentions a name first: it has the fewest answers."""
+        """Return the constraints, those with a name first: they have the fewest solutions."""
         related: list[Constraint] = [("parent", node, place) for node, place in self.redex.parents]
         related += [("linked", node, link) for link, node in self.redex.links]
         related.sort(key=lambda constraint: not any(isinstance(term, str) for term in constraint[1:]))
@@ -297,7 +298,7 @@ class _Search:
                 yield bound
 
     def bind(self, binding: Binding, term: Name | Term, value: Name) -> Binding | None:
-        """Return the binding with term standing for value, None where it can't."""
+        """Return the binding with a value for a term, None if it conflicts."""
         if isinstance(term, str):
             return binding if term == value else None
         if term in binding:

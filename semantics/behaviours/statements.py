@@ -8,10 +8,10 @@ from semantics.behaviours.patterns import Pattern
 from semantics.state.signature import Name
 
 Block = tuple[int, ...]
-"""The numbers of statements that follow each other."""
+"""The numbers of consecutive statements."""
 
 
-# --- commands: each is one rule's --------------------------------------------------------------------------------
+# --- commands: one rule each -------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +23,7 @@ class Observe:
 
 @dataclass(frozen=True, slots=True)
 class ControlBy:
-    """`control(R ⇒ R')`: `name` is a command of `reactions.COMMANDS`, or a rule of the mission."""
+    """`control(R ⇒ R')`: `name` is a command of `commands.COMMANDS`, or a rule of the mission."""
 
     name: str
     arguments: tuple[Expression, ...]
@@ -40,9 +40,9 @@ class Case:
 
 @dataclass(frozen=True, slots=True)
 class After:
-    """`after 10 min => body`: how long a `react` waits, and what is done then."""
+    """`after 10 min => body`: the longest wait of a `react`, and the code that follows it."""
 
-    seconds: float  # no int: that would be the number of a statement
+    seconds: float  # not int: a statement number is an int
     body: Block = ()
 
     def __str__(self) -> str:
@@ -51,9 +51,9 @@ class After:
 
 @dataclass(frozen=True, slots=True)
 class React:
-    """`react { cases after d => body }`: for one observation or message the first case that fits takes it.
+    """`react { cases after d => body }`: the first case that matches takes one observation or message.
 
-    Where none takes anything that is there, the `after` branch may be taken.
+    The `after` branch may be taken if no case takes any value that has come.
     """
 
     cases: tuple[Case, ...]
@@ -98,7 +98,7 @@ class Assign:
 
 @dataclass(frozen=True, slots=True)
 class Display:
-    """`display(e)`: shown to the operator; changes nothing."""
+    """`display(e)`: shown to the operator, without effect on the configuration."""
 
     value: Expression
 
@@ -127,9 +127,9 @@ class While:
 
 @dataclass(frozen=True, slots=True)
 class For:
-    """`for x in e { ... }`: evaluates e, and goes through its members in turn by `each`, a `ForEach`.
+    """`for x in e { ... }`: evaluates e, and iterates over its members by `each`, a `ForEach`.
 
-    The turn of a route is its own, that of a set or an observation canonical.
+    The stops of a route keep their order; the members of a set or an observation have the canonical order.
     """
 
     members: Expression
@@ -148,7 +148,7 @@ class ForEach:
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """`match e { cases }`: the first case that fits; none is a fault."""
+    """`match e { cases }`: the first case that matches; a fault if there is none."""
 
     value: Expression
     cases: tuple[Case, ...]
@@ -193,7 +193,7 @@ Statement = Command | Choice | Internal | Loop
 
 
 def branches(statement: Statement) -> tuple[Block, ...]:
-    """Return the blocks of which a statement takes one: of what may be passed over, only the block itself."""
+    """Return the blocks of which a statement takes one; of a loop that may be skipped, only its body."""
     match statement:
         case If(_, then, otherwise):
             return (then, otherwise)
@@ -210,5 +210,5 @@ def branches(statement: Statement) -> tuple[Block, ...]:
 
 
 def at_internal(statement: Statement | None) -> bool:
-    """Tell whether the next step is internal: `fun`."""
+    """Whether the next step is internal: `fun`."""
     return isinstance(statement, Internal | Choice)

@@ -1,4 +1,4 @@
-"""Move agents between configurations and processes: start a computation, and write its result back."""
+"""Conversion between the agents of configurations and processes: starting a computation, and writing its result."""
 
 from semantics.behaviours.computation import Process
 from semantics.behaviours.expressions import Scope
@@ -25,13 +25,13 @@ from semantics.state.signature import Name
 
 
 def next_statement(c: Configuration, a: Name) -> Statement | None:
-    """Return the statement that an agent is at, None where it has ended."""
+    """Return the next statement of an agent, None if it has ended."""
     code = c.alpha.code(a)
     return c.setting.program.statements[code[0]] if code else None
 
 
 def waits(code: Code | None, program: Program) -> bool:
-    """Ask whether code is at a `react`."""
+    """Whether code is at a `react`; a question about a cell."""
     return bool(code) and isinstance(program.statements[code[0]], React)  # type: ignore[index]  # not None
 
 
@@ -49,7 +49,7 @@ def process_of(c: Configuration, a: Name) -> Process:
 
 
 def continuing(c: Configuration, process: Process) -> Changes:
-    """Write α[a ↦ a']: what is left to run after the jumps before it, and the variables that it may read."""
+    """Return the writes of α[a ↦ a']: the code after the jumps before it, and the variables that it may read."""
     process.unroll()
     a = process.scope.agent
     store, rests_on = _variables(process)
@@ -61,7 +61,7 @@ def continuing(c: Configuration, process: Process) -> Changes:
 
 
 def _variables(process: Process) -> tuple[Store, tuple[Provenance, ...]]:
-    """Return the variables, with what each rests on: what nobody is told of decides at the most what is done."""
+    """Return the variables with their provenance; without `computed` for variables that are never passed on."""
     store, rests_on = process.variables()
     told = told_by(process.program, process.code)
     kept = zip(store, rests_on, strict=True)
@@ -75,12 +75,12 @@ def _watch(process: Process, store: tuple[Provenance, ...], mailbox: tuple[Prove
 
 
 def _held(process: Process, provenance: Provenance) -> Provenance:
-    """Return what something rests on as the agent that computes holds it."""
+    """Return a provenance as the computing agent holds it."""
     return held(provenance, process.scope.agent, heirs(process.program, process.code))
 
 
 def placed(process: Process, provenance: Provenance) -> Provenance:
-    """Return what is remembered of what an agent's host was chosen by: only while what is left to run uses it."""
+    """Return the provenance of the choice of an agent's host; empty if its code never uses the host."""
     tested = frozenset(each for each in provenance if each.asked is not None)
     if not tested or not uses_host(process.program, process.code):
         return NOTHING
@@ -93,7 +93,7 @@ def _untold(provenance: Provenance) -> Provenance:
 
 
 def starting(setting: Setting, a: Name, host: Name, process: Process) -> Changes:
-    """Write the cells of a new agent, but for its name among the agents."""
+    """Return the cells of a new agent, except the list of agents."""
     process.unroll()
     store, rests_on = _variables(process)
     lines = [line_cell(a)]
@@ -118,15 +118,15 @@ def new_process(setting: Setting, a: Name, host: Name, code: tuple[int, ...]) ->
 def scope_of(
     setting: Setting, a: Name, host: Name, store: dict[str, Value], rests_on: dict[str, Provenance]
 ) -> Scope:
-    """Return what an agent may read, in a mission."""
+    """Return the scope of an agent in a mission."""
     return Scope(a, host, store, rests_on, setting.kinds, setting.program.kept.get(a, {}))
 
 
 def joining(c: Configuration, a: Name) -> Changes:
-    """Write α + a."""
+    """Return the writes of α + a."""
     return {AGENTS: tuple(sorted({*c.alpha.names(), a}))}
 
 
 def resting_on(process: Process, *parts: Provenance) -> Provenance:
-    """Return what a request rests on: the way to the statement that makes it, and its arguments."""
+    """Return the provenance of a request: that of its statement, and of its arguments."""
     return _held(process, process.rests_on[0].union(*parts))

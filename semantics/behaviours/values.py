@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class Truth(Enum):
-    """A truth value of the host language, kept apart from the numbers (in Python `True == 1`)."""
+    """A truth value of the host language, distinct from the numbers (in Python `True == 1`)."""
 
     FALSE = "false"
     TRUE = "true"
@@ -19,51 +19,51 @@ class Truth(Enum):
 
     @staticmethod
     def of(value: bool) -> "Truth":
-        """Lift a Python boolean."""
+        """Return the truth value of a Python boolean."""
         return Truth.TRUE if value else Truth.FALSE
 
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A text of the mission, such as `"handover"`; never equal to a name, however it is spelled."""
+    """A text of the mission, such as `"handover"`; never equal to a name, even with the same characters."""
 
     characters: str
 
 
 @dataclass(frozen=True, slots=True)
 class Route:
-    """`[a, b, a]`: values in their order, each as often as it is written; never equal to a tuple."""
+    """`[a, b, a]`: values in order, with repetitions; never equal to a tuple."""
 
     stops: tuple["Value", ...]
 
 
 Value = Union[str, Text, int, Truth, tuple["Value", ...], frozenset["Value"], Route, "Observation"]
-"""A Python string is the name of an entity, a bigActor or a kind; what a mission writes in quotes is a `Text`."""
+"""A Python string is the name of an entity, a bigActor or a kind; a quoted text of the mission is a `Text`."""
 
 ESCAPES: Final = str.maketrans({'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t"})
-"""How the characters are written that do not stand for themselves in a text."""
+"""The escape sequences of a text."""
 
 LARGEST_NUMBER = 10**18
-"""Numbers lie between this and its negative: what is printed, compared and stored stays small."""
+"""The bound on the absolute value of numbers: printing, comparing and storing them stays cheap."""
 
 MOST_PARTS = 1000
-"""How many parts a tuple, set or route may have, parts of parts included."""
+"""The most parts of a tuple, set or route, nested parts included."""
 
 
 def parts(value: Value) -> int:
-    """Count a value and its parts, as often as they occur."""
+    """Return the number of a value and its nested parts, with repetitions."""
     return 1 + sum(map(parts, within(value)))
 
 
 def within(value: Value) -> "tuple[Value, ...] | frozenset[Value]":
-    """Return the parts of a tuple, a set or a route; nothing of another value."""
+    """Return the parts of a tuple, a set or a route; empty for any other value."""
     if isinstance(value, Route):
         return value.stops
     return value if isinstance(value, tuple | frozenset) else ()
 
 
 def order_key(value: Value) -> tuple[str, str]:
-    """Order values of any types canonically, the same in every process."""
+    """Return a key that orders values of any types canonically, the same in every process."""
     if isinstance(value, frozenset):
         return ("frozenset", repr(sorted(order_key(item) for item in value)))
     if isinstance(value, tuple):
@@ -76,7 +76,7 @@ def order_key(value: Value) -> tuple[str, str]:
         return (type(value).__name__, str(value))
     if isinstance(value, Text):
         return ("text", value.characters)
-    return (type(value).__name__, repr(value))  # an observation shows less than it holds
+    return (type(value).__name__, repr(value))  # an observation's text omits some of its contents
 
 
 def in_order(values: "frozenset[Value] | tuple[Value, ...]") -> tuple[Value, ...]:
@@ -89,7 +89,7 @@ def in_order(values: "frozenset[Value] | tuple[Value, ...]") -> tuple[Value, ...
 
 
 def show(value: Value) -> str:
-    """Print a value in the notation of the mission language: a name as it is, a text in quotes.
+    """Return a value in the notation of the mission language: a name as it is, a text in quotes.
 
     >>> show((Text("found"), frozenset({"b0", "a0"})))
     '("found", {a0, b0})'
@@ -110,7 +110,7 @@ def show(value: Value) -> str:
 
 
 def spoken(value: Value) -> str:
-    """Print a value as people say and read it: a text, if it is nothing else, without its quotes.
+    """Return a value as a reader expects it: a single text without its quotes, all else in the language's notation.
 
     >>> spoken(Text("no answer")), spoken((Text("go"), "base"))
     ('no answer', '("go", base)')

@@ -1,4 +1,4 @@
-"""The kinds of properties: one table, which grammar, defaults, reports and refusals are derived from."""
+"""The kinds of properties: one table, from which grammar, defaults, reports and refusals are derived."""
 
 from dataclasses import dataclass
 from enum import Enum, StrEnum, auto
@@ -6,35 +6,35 @@ from typing import Final
 
 
 class Asked(Enum):
-    """How a mission asks for a property."""
+    """The way in which a mission asks for a property."""
 
     BY_DEFAULT = auto()
-    """By its name; and where a mission asks for nothing, it asks for this."""
+    """By its name, or by naming no property at all."""
     BY_NAME = auto()
     ALWAYS = auto()
-    """Not at all: it goes without saying."""
+    """Without being asked."""
     OF_CONFIGURATIONS = auto()
     """With a proposition about configurations."""
     OF_RUNS = auto()
-    """With a clause of its own about runs."""
+    """With a formula about runs."""
     OF_TIMES = auto()
-    """With a clause of its own about when something is true."""
+    """With a clause about the time at which a proposition becomes true."""
     OF_TIMED_MISSIONS = auto()
-    """By its name, in a mission that says how long things take."""
+    """By its name, in a mission with a `timing` section."""
 
 
 @dataclass(frozen=True, slots=True)
 class About:
-    """What there is to be known of a kind of properties.
+    """The description of a kind of properties.
 
     Attributes:
-        says: What such a property says, in a sentence.
-        asked: How a mission asks for it.
-        examined: What is examined for it, one and several; empty where that is not told.
-        reducible: Whether reductions keep it: they may leave out nothing that decides it (`checker.reduction`).
-        nothing: What it means that nothing was examined, where that is no shortcoming.
-        vacuous: What it means that nothing was examined, where a verdict that holds says nothing then.
-        counted: Whether violations are counted, and not one looked for.
+        says: The meaning of such a property, in a sentence.
+        asked: The way in which a mission asks for it.
+        examined: The singular and plural of the items that are examined for it; empty if they are not reported.
+        reducible: Whether reductions preserve it: they may omit nothing that decides it (`checker.reduction`).
+        nothing: The meaning of an empty examination, if that is no shortcoming.
+        vacuous: The meaning of an empty examination, if a verdict that holds is then vacuous.
+        counted: Whether all violations are counted, instead of searching for one.
     """
 
     says: str
@@ -68,17 +68,17 @@ class PropertyKind(StrEnum):
 
     @property
     def about(self) -> About:
-        """What there is to be known of it."""
+        """The description of the kind."""
         return ABOUT[self]
 
     @property
     def is_of_runs(self) -> bool:
-        """Whether it is about runs, and not about configurations one by one."""
+        """Whether it is about runs, and not about single configurations."""
         return self.about.asked is Asked.OF_RUNS
 
     @property
     def is_of_time(self) -> bool:
-        """Whether it is about when: a mission has to say how long things take."""
+        """Whether it is about time: a mission then needs a `timing` section."""
         return self.about.asked in (Asked.OF_TIMES, Asked.OF_TIMED_MISSIONS)
 
     @property
@@ -176,5 +176,5 @@ ABOUT: Final = {
 
 
 def asked_by(*ways: Asked) -> tuple[PropertyKind, ...]:
-    """Return the kinds that a mission asks for in some ways, in order."""
+    """Return the kinds that a mission asks for in one of these ways, in order."""
     return tuple(kind for kind in PropertyKind if kind.about.asked in ways)

@@ -16,24 +16,26 @@ TRUE: Final = Always(True)
 
 
 Ranges = tuple[tuple[Name, ...], ...]
-"""What quantifiers go through; names are sorted."""
+"""The ranges of quantifiers; names are sorted."""
 
 
 @dataclass(frozen=True, slots=True)
 class Property:
-    """What is to be checked.
+    """A property to check.
 
     Attributes:
-        kind: What sort of property it is.
-        name: Its name; that of its kind where the mission gives none.
-        formula: Of an invariant, or of what is to be reachable.
-        line: Where it stands in the mission's text, from 1; 0 where it was not written.
+        kind: Its kind.
+        name: Its name; the word of its kind if the mission gives none.
+        formula: The proposition of an invariant, or of reachability.
+        line: Its line in the mission's text, from 1; 0 if it was not written.
         temporal: The formula of `ltl` and `ctl`.
-        fairness: Which runs count, for `ltl`, `ctl`, `progress` and `deadlock_freedom`: all where it is empty.
-        ranges: What the quantifiers of its formula go through.
-        written: Its formula as it stands in the mission's text; empty where it was not written.
-        bound: How many ticks `within` allows.
-        then: What has to follow the formula within them (`F leads to G`); None where the formula itself has to hold.
+        fairness: The fairness of the runs considered, for `ltl`, `ctl`, `progress` and `deadlock_freedom`; all runs if
+            empty.
+        ranges: The ranges of the quantifiers in its formula.
+        written: Its formula as written in the mission's text; empty if it was not written.
+        bound: The deadline of `within`, in ticks.
+        then: The proposition that has to follow the formula within the bound (`F leads to G`); None if the formula
+            itself has to become true.
     """
 
     kind: PropertyKind
@@ -52,17 +54,17 @@ class Property:
 
     @property
     def shown(self) -> str:
-        """Its formula for people: as it was written, with its quantifiers, else what it comes to."""
+        """Its formula for people: as written, with its quantifiers; otherwise the expanded formula."""
         return self.written or str(self.formula if self.temporal is None else self.temporal)
 
     @property
     def is_of_runs(self) -> bool:
-        """Whether it is about runs: its kind is, or which runs count matters."""
+        """Whether it is about runs: its kind is, or it has a fairness condition."""
         return self.kind.is_of_runs or bool(self.fairness)
 
 
 def watched(properties: Iterable[Property]) -> frozenset[VariableOf]:
-    """Return the variables that properties name, wherever it is."""
+    """Return the variables that the properties mention, at any depth."""
     found: set[VariableOf] = set()
     waiting: list[object] = list(properties)
     while waiting:
@@ -77,9 +79,9 @@ def watched(properties: Iterable[Property]) -> frozenset[VariableOf]:
 
 
 def watching(c: Configuration, properties: Iterable[Property]) -> Configuration:
-    """Return a configuration from which on what properties name is kept to the end of the run, and timed.
+    """Return the configuration with the properties' variables kept to the end of the run, and the clocks they need.
 
-    How long vehicles are aloft is timed for `endurance` alone: the clocks of several multiply what is told apart.
+    Endurance is timed only for a property `endurance`, since the clocks of several vehicles multiply the states.
     """
     asked, setting = tuple(properties), c.setting
     program, timing = setting.program.watching(watched(asked)), setting.timing

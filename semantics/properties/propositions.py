@@ -1,4 +1,4 @@
-"""Propositions about one configuration, and the properties made of them."""
+"""Propositions about one configuration."""
 
 import operator
 import re
@@ -54,11 +54,11 @@ class Present:
 
 @dataclass(frozen=True, slots=True)
 class Exists:
-    """`present a`: there is a bigActor a, from the first or since it was spawned.
+    """`present a`: there is a bigActor a, declared or spawned so far.
 
     Attributes:
-        agent: Which.
-        implied: Whether a quantifier says it, of a bigActor that may not be there yet, and not the mission.
+        agent: The bigActor.
+        implied: Whether a quantifier added the atom, for a bigActor that may not exist yet, and not the mission's text.
     """
 
     agent: Name
@@ -80,7 +80,7 @@ class Known:
 
 @dataclass(frozen=True, slots=True)
 class HasPending:
-    """`pending CTR a`: a has such a request in η; any request without the word."""
+    """`pending CTR a`: a has such a request in η; without the word, any request."""
 
     agent: Name
     request: str | None = None
@@ -91,7 +91,7 @@ class HasPending:
 
 @dataclass(frozen=True, slots=True)
 class Ended:
-    """`ended a`: nothing is left of a to run."""
+    """`ended a`: a has no code left to run."""
 
     agent: Name
 
@@ -122,14 +122,14 @@ class HostedAt:
 
 @dataclass(frozen=True, slots=True)
 class VariableIs:
-    """`a.x == v`, `a.x < v` and so on: how a's variable x compares with a value.
+    """`a.x == v`, `a.x < v` and so on: a comparison of a's variable x with a value.
 
     Attributes:
-        variable: Which.
-        value: With what it is compared.
-        operator: How.
-        unbound: Whether it is true where the variable has no value, or none that can be compared so. What has no value
-            neither violates nor fulfils a property, so that depends on where the comparison stands in it.
+        variable: The variable.
+        value: The value that it is compared with.
+        operator: The operator.
+        unbound: The truth value if the variable has no value, or none that can be compared. An unbound variable neither
+            violates nor fulfils a property, so this depends on the polarity of the comparison in the formula.
     """
 
     variable: VariableOf
@@ -163,7 +163,7 @@ class Always:
 
 @dataclass(frozen=True, slots=True)
 class Same:
-    """`x == y` below a quantifier that isn't written out: a name's instance says whether it is the other."""
+    """`x == y` below a quantifier that is not expanded; an instance of x and y decides it."""
 
     name: Name
     other: Name
@@ -227,17 +227,17 @@ Atom = (
 Proposition = Atom | Not | And | Or
 
 
-# --- quantifiers that are not written out ----------------------------------------------------------------------
+# --- quantifiers that are not expanded --------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Range:
-    """What a quantified name goes through.
+    """The range of a quantified name.
 
     Attributes:
         variable: The name, as the author wrote it.
-        kind: Of what it goes through, as the author wrote it.
-        names: What it stands for, sorted.
+        kind: The kind or collection that it ranges over, as the author wrote it.
+        names: The names in the range, sorted.
     """
 
     variable: str
@@ -246,22 +246,22 @@ class Range:
 
     @cached_property
     def members(self) -> frozenset[Name]:
-        """The names, to look one up in."""
+        """The names, as a set for lookups."""
         return frozenset(self.names)
 
 
 @dataclass(frozen=True, slots=True)
 class Instances(Sequence["Proposition"]):
-    """The operands that a quantifier comes to, each made when it is asked for.
+    """The instances of a quantified formula, each created on demand.
 
     Attributes:
-        variable: Stands in `body` for the quantified name; no name of a mission begins with a question mark.
-        range: What it goes through.
-        body: What is said of each.
-        anchor: `x in v` of the quantified v, where an instance of which that is false says nothing: true below
-            `forall`, false below `exists`. So only places that x is in need be looked at.
-        are_kept: Whether an instance is made once; the instances of what is long are made each time.
-        made: Those that were made.
+        variable: The quantified name in `body`; it begins with a question mark, as no name of a mission does.
+        range: Its range.
+        body: The quantified formula.
+        anchor: An atom `x in v` about the quantified v that decides the instances in which it is false: to true below
+            `forall`, to false below `exists`. So only instances for places around x need be evaluated.
+        are_kept: Whether created instances are kept; those of long formulas are created each time.
+        made: The instances that are kept.
     """
 
     variable: Name
@@ -275,7 +275,7 @@ class Instances(Sequence["Proposition"]):
     def of(
         variable: Name, range_: Range, body: "Proposition", *, every: bool, are_kept: bool = True
     ) -> "Instances":
-        """Return the operands of `forall` or `exists`, with their anchor if there is one."""
+        """Return the instances of `forall` or `exists`, with their anchor if there is one."""
         unknown = {variable, *_quantified_in(body)}
         places = (
             each for each in _written_atoms(body) if isinstance(each, Inside) and each.place == variable
@@ -291,14 +291,14 @@ class Instances(Sequence["Proposition"]):
         return found
 
     def worth_asking(self, c: Configuration) -> "Iterable[Proposition]":
-        """Return the instances that may say something of a configuration."""
+        """Return the instances that may decide the formula in a configuration."""
         if self.anchor is None:
             return self
         around = places_around(c, self.anchor.node, actually=self.anchor.actually)
         return [self.of_name(place) for place in around if place in self.range.members]
 
     def with_(self, variable: Name, name: Name) -> "Instances":
-        """Return the operands in which another quantified name stands for something."""
+        """Return the instances with another quantified name replaced."""
         anchor = None if self.anchor is None else instance(self.anchor, variable, name)
         assert anchor is None or isinstance(anchor, Inside)
         return Instances(
@@ -330,12 +330,12 @@ Formulas = tuple["Proposition", ...] | Instances
 
 
 def is_variable(name: Name) -> bool:
-    """Tell whether a name stands for a quantified one."""
+    """Whether a name is a quantified one."""
     return name.startswith("?")
 
 
 def instance(formula: "Proposition", variable: Name, name: Name) -> "Proposition":
-    """Return a proposition in which a quantified name stands for another."""
+    """Return a proposition with a quantified name replaced by another name."""
     match formula:
         case Not(inner):
             return Not(instance(inner, variable, name))
@@ -357,7 +357,7 @@ def _members(atom: Any) -> list[Any]:
 
 
 def atoms_of(formula: "Proposition") -> "Iterator[Atom]":
-    """Yield the atoms of a formula, but for `true` and `false`; of a quantifier, those of its instances, once each."""
+    """Yield the atoms of a formula except `true` and `false`; of a quantifier, those of its instances, once each."""
     for atom in _written_atoms(formula, of_instances=True):
         if not isinstance(atom, Same):
             yield atom
@@ -403,7 +403,7 @@ def _each_instance(atoms: "Iterable[Atom]", instances: Instances) -> "Iterator[A
 
 
 def _without(formula: "Proposition", atom: "Atom") -> bool | None:
-    """Return what a formula says where an atom is false, None where that depends on others."""
+    """Return the truth value of a formula in which one atom is false, None if it depends on other atoms."""
     match formula:
         case Not(inner):
             said = _without(inner, atom)
@@ -435,13 +435,13 @@ ORDERS: Mapping[str, Callable[[int, int], bool]] = {
     ">": operator.gt,
     ">=": operator.ge,
 }
-"""The comparisons of numbers, and of nothing else."""
+"""The comparisons of numbers; other values cannot be ordered."""
 
 # --- truth ----------------------------------------------------------------------------------------------------
 
 
 def holds(formula: Proposition, c: Configuration) -> bool:
-    """Tell whether a proposition is true of a configuration."""
+    """Whether a proposition is true of a configuration."""
     match formula:
         case Not(inner):
             return not holds(inner, c)
@@ -454,10 +454,10 @@ def holds(formula: Proposition, c: Configuration) -> bool:
 
 
 def told_by(formula: Proposition, c: Configuration) -> tuple[tuple[str, Name], ...]:
-    """Return for which names a proposition that is false of a configuration is so: of each `forall` over entities.
+    """Return a counterexample to a false proposition: the names at which its `forall` quantifiers over entities fail.
 
     Returns:
-        What each quantified name stands for, from without; nothing of names below `not` and `exists`.
+        The name for each quantified variable, the outermost first; names below `not` and `exists` are left out.
     """
     match formula:
         case And(Instances(range=among) as parts):
@@ -480,7 +480,7 @@ def _inside(atom: Inside, c: Configuration) -> bool:
 
 
 def places_around(c: Configuration, node: Name, *, actually: bool) -> Iterator[Name]:
-    """Yield the places around a node, from within: in A(P), or in L."""
+    """Yield the places around a node in A(P) or in L, the innermost first."""
     return _actual_places(c, node) if actually else _believed_places(c, node)
 
 
@@ -514,10 +514,10 @@ def _is_agent(c: Configuration, agent: Name) -> bool:
 
 
 def _about_variable(atom: VariableIs | IsBound, c: Configuration) -> bool:
-    """Tell whether an atom about a variable is true.
+    """Whether an atom about a variable is true.
 
     Raises:
-        ValueError: The configuration is one of a setting that forgets the variable.
+        ValueError: The configuration's setting does not keep the variable.
     """
     variable = atom.variable
     if variable not in c.setting.program.watched:
@@ -528,7 +528,7 @@ def _about_variable(atom: VariableIs | IsBound, c: Configuration) -> bool:
 
 
 def is_true_of(store: Store | None, atom: VariableIs | IsBound) -> bool:
-    """Ask whether an atom about a variable is true of the store in which it is kept."""
+    """Whether an atom about a variable is true of the store that keeps it; a question about a cell."""
     held = dict(store or ()).get(atom.variable.key)
     if isinstance(atom, IsBound):
         return held is not None
@@ -557,6 +557,3 @@ _TRUTH: dict[type, Callable[[Any, Configuration], bool]] = {
     HostedAt: lambda atom, c: _is_agent(c, atom.agent) and c.alpha.host(atom.agent) == atom.node,
     Always: lambda atom, _: atom.value,
 }
-
-
-# --- properties -----------------------------------------------------------------------------------------------

@@ -8,23 +8,23 @@ from semantics.state.configuration import Label
 from semantics.state.signature import Name
 
 ENVIRONMENTS = ("env", "say")
-"""The rules that are nobody's."""
+"""The rules that belong to no agent."""
 
 SERVES = ("sense", "actuate", "command", "commit", "snd", "migrate")
-"""The rules that serve a request, and are labelled with it."""
+"""The rules that serve a request; their labels show it."""
 
 # --- steps ----------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Steps:
-    """A set of steps: of some rules (all where none is named), of one bigActor (of any where none is named)."""
+    """A set of steps: of some rules (of all if none is named), of one bigActor (of any if none is named)."""
 
     rules: tuple[str, ...] = ()
     agent: Name | None = None
 
     def has(self, label: Label) -> bool:
-        """Tell whether a step of that label is one of them; the environment's are, where their rule is named."""
+        """Whether a step with that label is in the set; the environment's steps are only if their rule is named."""
         if self.rules and label.rule not in self.rules:
             return False
         if self.agent is None:
@@ -38,13 +38,15 @@ class Steps:
 
 @dataclass(frozen=True, slots=True)
 class Fairness:
-    """What a fair run owes to some steps: to take them.
+    """A fairness condition: a fair run takes the steps that it covers.
 
     Attributes:
-        strong: Where they are enabled infinitely often; else only where they are so from some time on.
-        steps: Which.
-        per: What tells apart those that each are owed: any of `agent`, `rule` and `label`. Nothing: all are one.
-        word: How the mission calls them.
+        strong: Whether steps enabled infinitely often must be taken; otherwise only those enabled forever from some
+            point.
+        steps: The steps.
+        per: The attributes by which steps are grouped, among `agent`, `rule` and `label`; each group is owed by itself.
+            If empty, all steps are one group.
+        word: The mission's name for them.
     """
 
     strong: bool
@@ -143,7 +145,7 @@ class Eventually:
 
 @dataclass(frozen=True, slots=True)
 class Globally:
-    """`[] f`: f now and ever after."""
+    """`[] f`: f now and forever."""
 
     formula: "Temporal"
 
@@ -153,7 +155,7 @@ class Globally:
 
 @dataclass(frozen=True, slots=True)
 class Until:
-    """`f U g`: g now or later, and f as long as it isn't."""
+    """`f U g`: g now or later, and f until then."""
 
     left: "Temporal"
     right: "Temporal"
@@ -164,7 +166,7 @@ class Until:
 
 @dataclass(frozen=True, slots=True)
 class Release:
-    """`f R g`: g ever after, or until f and g are true together."""
+    """`f R g`: g forever, or until f and g are true together."""
 
     left: "Temporal"
     right: "Temporal"
@@ -175,7 +177,7 @@ class Release:
 
 @dataclass(frozen=True, slots=True)
 class WeakUntil:
-    """`f W g`: f until g, or f ever after."""
+    """`f W g`: f until g, or f forever."""
 
     left: "Temporal"
     right: "Temporal"
@@ -186,7 +188,7 @@ class WeakUntil:
 
 @dataclass(frozen=True, slots=True)
 class OnAllPaths:
-    """`A f`: f of every run from here; in branching time only."""
+    """`A f`: f on every run from here; in branching time only."""
 
     formula: "Temporal"
 
@@ -196,7 +198,7 @@ class OnAllPaths:
 
 @dataclass(frozen=True, slots=True)
 class OnSomePath:
-    """`E f`: f of some run from here; in branching time only."""
+    """`E f`: f on some run from here; in branching time only."""
 
     formula: "Temporal"
 
@@ -221,7 +223,7 @@ def _chained(formula: Temporal, sort: type) -> str:
 
 
 def parts(formula: Temporal) -> tuple[Temporal, ...]:
-    """Return the formulas that a formula is made of."""
+    """Return the direct subformulas of a formula."""
     if isinstance(formula, State):
         return ()
     return tuple(getattr(formula, each.name) for each in fields(formula))

@@ -1,1 +1,1 @@
-"""Stale observations: what a control rests on, and what other agents have changed in it since."""
+"""Stale observations: the provenance of controls, and other agents' changes to it since."""

@@ -1,6 +1,6 @@
-"""The race monitor's memory: which parts of an agent's observations others have changed, and who.
+"""The race monitor's memory: the parts of an agent's observations that others have changed, and the authors.
 
-Rules only carry along what values rest on; here it is marked what has changed in that since.
+The rules only propagate provenance; this module marks the changes in it.
 """
 
 from collections.abc import Callable
@@ -47,22 +47,22 @@ from semantics.state.requests import CTR, FLY, MGR, SND, Request
 from semantics.state.signature import Name
 
 CONTROLS = frozenset({"actuate", "command", "commit"})
-"""The rules by which an agent changes P. (The paper knows `actuate`; `command` takes an entity out of its place.)"""
+"""The rules by which an agent changes P. (The paper has `actuate`; `command` takes an entity out of its place.)"""
 
 
 def marked(c: Configuration, transition: Transition) -> Transition:
-    """Return the transition with what it changed marked in what agents rest on, where that is monitored.
+    """Return the transition with its changes marked in the provenance of all agents, if the race monitor is on.
 
-    What an agent changes itself it knows: it makes nothing stale that the agent does. It is remembered of values that
-    it may tell others, since who is told doesn't know it. A message on its way is its receiver's, so what the sender
-    changes after sending is another's doing.
+    An agent knows its own changes, so they make none of its own actions stale. They are remembered for values that it
+    may pass on, since a receiver does not know them. A message in transit belongs to its receiver, so later changes by
+    the sender count as another agent's.
     """
     if not c.setting.monitored or transition.label.rule not in CONTROLS:
         return transition
     after, author = transition.target, str(transition.label.agent)
 
     def marking(holder: Name) -> Changes:
-        """Return the marks in the memory of one agent and in its requests; nobody's are those of the common queue."""
+        """Return the marks in one agent's memory and requests; `NOBODY` stands for the shared queue."""
         again = cache(partial(asked_again, c, after))
         memory = {} if holder == NOBODY else _mark_memory(after, holder, author, again)
         return memory | merged(
@@ -73,15 +73,15 @@ def marked(c: Configuration, transition: Transition) -> Transition:
 
 
 NOBODY: Name = ""
-"""Whose requests are those of the queue that all agents share under `fcfs`."""
+"""The holder of the queue that all agents share under `fcfs`."""
 
 
 class Again(NamedTuple):
-    """What comes of asking again.
+    """The result of asking again.
 
     Attributes:
-        changed: Which of some questions have another answer: slots of A(P), and answers to a query.
-        steps: The steps of the query, resolved anew where another set is denoted.
+        changed: The keys with a new answer: slots of A(P), and answers to a query.
+        steps: The steps of the query, resolved anew where a denoted set has changed.
     """
 
     changed: frozenset[Key]
@@ -89,7 +89,7 @@ class Again(NamedTuple):
 
 
 def asked_again(before: Configuration, after: Configuration, steps: Steps, asked: Questions) -> Again:
-    """Ask the slots that a query looked at again, after a transition."""
+    """Ask again, after a transition, the slots and answers of a query."""
     names = touched(before, after)
     slots = changed_slots(before, after, names, asked)
     anew = resolved_anew(before, after, steps, names)
@@ -104,9 +104,9 @@ def asked_again(before: Configuration, after: Configuration, steps: Steps, asked
 def resolved_anew(
     before: Configuration, after: Configuration, steps: Steps, names: tuple[Name, ...]
 ) -> Steps:
-    """Return the steps of a query, resolved anew behind one that a transition of these entities lets denote others.
+    """Return the steps of a query, resolved anew behind the first whose denotation these entities have changed.
 
-    Where its holder has gone itself since the `sense` doesn't matter: each step asks of what it was applied to.
+    A migration of the holder since the `sense` does not matter: each step stores the nodes that it was applied to.
     """
     anew = steps[:1]
     for step in steps[1:]:
@@ -130,7 +130,7 @@ def _denotes_the_same(
 
 
 def _turns_on(steps: Steps, names: tuple[Name, ...]) -> bool:
-    """Tell whether what a query says of all the others may turn on the places and links of some entities."""
+    """Whether the query's answers about other entities may depend on the places and links of these."""
     return any(
         step.operator not in ("", QueryOperator.CHILDREN, QueryOperator.HOSTED_AT)
         and set(names).intersection(step.names)
@@ -139,13 +139,13 @@ def _turns_on(steps: Steps, names: tuple[Name, ...]) -> bool:
 
 
 def _answers_about(names: tuple[Name, ...]) -> Questions:
-    """Return the answers to a query that may differ where only what it says of these entities does."""
+    """Return the answers of a query that may change if only its facts about these entities change."""
     answers_to = {(kind, name) for kind in ("in", "parent", "links") for name in names}
     return frozenset(answers_to | {("children", ANY), MEMBERS, SIZE, EVERYTHING})
 
 
 def touched(before: Configuration, after: Configuration) -> tuple[Name, ...]:
-    """Return the entities whose place or links in A(P) may have changed, sorted."""
+    """Return the entities whose parent or links in A(P) may have changed, sorted."""
     everyone, setting = tuple(sorted(before.setting.kinds)), before.setting
     names: set[Name] = set()
     for cell in after.state.changed(before.state):
@@ -160,9 +160,10 @@ def touched(before: Configuration, after: Configuration) -> tuple[Name, ...]:
 def changed_slots(
     before: Configuration, after: Configuration, names: tuple[Name, ...], asked: Questions
 ) -> frozenset[Key]:
-    """Return which of some slots of A(P) differ after a control, where only those of these entities may.
+    """Return those of some slots of A(P) that a control has changed; only slots of these entities can differ.
 
-    A control lets nothing come or go and no channel drop: links differ only with the channels of what is on them.
+    A control neither adds nor removes entities, and drops no channel. So links differ only with the channels of their
+    own entities.
     """
     old, new = before.structure.physical, after.structure.physical
     relinked = {cell[-1] for cell in after.state.changed(before.state) if cell[0] == "channels"}
@@ -186,7 +187,7 @@ def slots_used(relations: tuple[Relation, ...], closed: tuple[Name, ...]) -> fro
 
 
 def stale_tests(request: Request, rests_on: Provenance, used: frozenset[Key]) -> tuple[Dependency, ...]:
-    """Return what a control rests on that others have changed since it was observed: a test, or a relation it uses."""
+    """Return the stale dependencies of a control: others have changed a tested answer, or a relation that it uses."""
     if not isinstance(request, CTR | FLY):
         return ()
     stale = (
@@ -198,18 +199,18 @@ def stale_tests(request: Request, rests_on: Provenance, used: frozenset[Key]) ->
 
 
 Asking = Callable[[Steps, Questions], Again]
-"""Asks again, after a transition, some questions about an observation."""
+"""Asks some questions about an observation again, after a transition."""
 
 
 class Marker(NamedTuple):
-    """How a control marks what one agent rests on.
+    """Marks the changes of one control in the provenance of one agent.
 
     Attributes:
-        author: Whose control it is.
-        holder: Who rests on it.
-        heirs: Who may come to hold it too.
-        asked: What may matter of it.
-        again: How that is asked again.
+        author: The agent of the control.
+        holder: The agent that holds the provenance.
+        heirs: The agents that may come to hold it too.
+        asked: The questions that may matter.
+        again: The function that asks them again.
     """
 
     author: Name
@@ -219,14 +220,14 @@ class Marker(NamedTuple):
     again: Asking
 
     def mark(self, provenance: Provenance) -> Provenance:
-        """Return what the holder rests on with what was changed in it marked."""
+        """Return the holder's provenance with the changes marked."""
         return frozenset(each if self._is_idle(each) else self._mark(each) for each in provenance)
 
     def _is_idle(self, each: Dependency) -> bool:
         return each.stale or (self.author == self.holder and not each.computed)
 
     def _mark(self, each: Dependency) -> Dependency:
-        """Mark one dependency; what its holder does leaves alone what was asked."""
+        """Return one dependency with the changes marked; the holder's own control does not change the query's steps."""
         asked = self.asked if each.asked is None else frozenset(filter(is_slot, self.asked)) | {each.asked}
         changed, anew = self.again(each.steps, asked)
         steps = each.steps if self.author == self.holder else anew
@@ -251,7 +252,7 @@ def _mark_memory(c: Configuration, holder: Name, author: Name, again: Asking) ->
 
 
 def _passes_on(c: Configuration, agent: Name, what: Name) -> bool:
-    """Tell whether others may be told what an agent receives (`HEARD`), or where it is hosted (`HOSTED`)."""
+    """Whether an agent may pass on the messages that it receives (`HEARD`), or its host (`HOSTED`)."""
     return what in told_by(c.setting.program, c.alpha.code(agent))
 
 
@@ -279,14 +280,14 @@ def _holder(request: Request) -> Name:
 
 
 def _asked_by(c: Configuration, request: Request) -> Questions:
-    """Return what may matter of what a request rests on: for a control its own redex, for a message who gets it."""
+    """Return the questions that may matter to a request: for a control its redex, for a message those of any agent."""
     if isinstance(request, CTR | FLY):
         return slots_of(request.reaction.redex)
     return anybodys(c) if isinstance(request, SND) else questions_of(c, request.agent)
 
 
 def _heirs_of(c: Configuration, request: Request) -> Names:
-    """Return who may come to hold what a request rests on: of a control nobody, of a message whoever is ever told."""
+    """Return the later holders of a request's provenance: none for a control, all possible receivers for a message."""
     program = c.setting.program
     if isinstance(request, CTR | FLY):
         return frozenset()
@@ -294,7 +295,7 @@ def _heirs_of(c: Configuration, request: Request) -> Names:
 
 
 def monitored(c: Configuration) -> Configuration:
-    """Return a configuration in which the monitor begins to remember; nothing rests on anything yet."""
+    """Return the configuration with the monitor on; all provenance is still empty."""
     setting = c.setting.with_(monitored=True)
     cells: Changes = {}
     for agent in c.alpha.names():

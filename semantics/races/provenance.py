@@ -1,6 +1,6 @@
-"""Provenance: the observations that a value or a step rests on, and who has changed what in them since.
+"""Provenance: the observations that a value or a step depends on, and the changes to them since, with their authors.
 
-The race monitor's memory. A stored observation is a dependency with no question yet; testing it asks one.
+It is the race monitor's memory. A stored observation is a dependency without a question; a test adds the question.
 """
 
 from collections.abc import Collection, Iterable
@@ -10,40 +10,40 @@ from semantics.behaviours.observations import AGENT, Observation, Query, Steps
 from semantics.state.signature import Name
 
 Key = tuple[str, ...]
-"""One thing that an observation may be asked, or one slot of A(P): `("in", "uav0")`, `("parent", "uav0")`."""
+"""A question to an observation, or a slot of A(P): `("in", "uav0")`, `("parent", "uav0")`."""
 
 SLOT = "slot "
-"""How the first word of a key begins that names a slot of A(P) instead of an answer."""
+"""The prefix of a key that names a slot of A(P) instead of a question."""
 
 EVERYTHING: Key = ("all",)
-"""The question whose answer is the whole observation."""
+"""The question for the whole observation."""
 
 MEMBERS: Key = ("members",)
-"""The question which names the observation shows, wherever and on whichever links they were seen."""
+"""The question for the names that the observation shows, regardless of their places and links."""
 
 SIZE: Key = ("size",)
-"""The question how many they are."""
+"""The question for the number of these names."""
 
 ANY: Name = "*"
 """Stands, in a key or among agents, for every name."""
 
 OTHERS: Name = ""
-"""Stands, as an author, for whoever will never hold what rests on what it has changed."""
+"""The author of changes by any agent that can never hold the dependency itself."""
 
 Mark = tuple[Key, Name]
-"""What was changed, and by whom."""
+"""A changed key, and the author of the change."""
 
 
 @dataclass(frozen=True, slots=True)
 class Dependency:
-    """One observation, by its query.
+    """A dependency on one observation.
 
     Attributes:
-        query: What was asked of A(P).
-        steps: The query as it was resolved at the `sense`: `PARENT(HOST)` is the place where the host was then.
-        changed: Which answers and slots of A(P) have been changed since the `sense`, and by whom; sorted.
-        asked: What was tested of it; None for the observation as it is stored.
-        computed: Whether a value was computed from it, or is it; otherwise it only decided what was done.
+        query: The query about A(P).
+        steps: The query as resolved at the `sense`: `PARENT(HOST)` is the host's place at that time.
+        changed: The answers and slots of A(P) changed since the `sense`, with the authors; sorted.
+        asked: The tested question; None for a stored observation.
+        computed: Whether a value was computed from it, or is it; otherwise it only decided a step.
     """
 
     query: Query
@@ -54,7 +54,7 @@ class Dependency:
 
     @property
     def stale(self) -> bool:
-        """Whether another has changed the tested answer, whoever may come to hold this: nothing else matters then."""
+        """Whether an agent that can never hold it has changed the tested answer; no other change matters then."""
         return (self.asked, OTHERS) in self.changed
 
     def testing(self, key: Key) -> "Dependency":
@@ -62,9 +62,9 @@ class Dependency:
         return replace(self, asked=key).having(self.changed)
 
     def having(self, marks: Iterable[Mark]) -> "Dependency":
-        """Return the dependency with these marks, forgetting what nobody asks any more.
+        """Return the dependency with these marks, without those that no later question needs.
 
-        Of what was tested that is all but the answer itself and the slots, which a redex may use.
+        A tested dependency keeps only the marks of the tested answer, and of slots, which a redex may use.
         """
         changed = tuple(sorted({mark for mark in marks if self.asked in (None, mark[0]) or is_slot(mark[0])}))
         if self.asked is not None and (self.asked, OTHERS) in changed:
@@ -72,14 +72,14 @@ class Dependency:
         return replace(self, changed=changed)
 
     def deciding(self) -> "Dependency":
-        """Return the dependency of what was only done because of it."""
+        """Return the dependency of a step that it only decided."""
         return replace(self, computed=False)
 
     def held(self, holder: Name, heirs: Collection[Name]) -> "Dependency":
-        """Return the dependency as an agent holds it, from whom its heirs may come to hold it.
+        """Return the dependency as its holder keeps it, given the heirs: the agents that may come to hold it too.
 
-        What it has changed itself it knows: that is remembered only of answers that a value was computed from, for who
-        is told that value. Who else changed something matters only if that is one of the heirs.
+        The holder knows its own changes. Their marks are kept only for answers that a value was computed from, for
+        receivers of that value. The name of any other author is kept only if it is an heir.
         """
         named = {holder, *heirs}
         return self.having(
@@ -94,42 +94,42 @@ NOTHING: Provenance = frozenset()
 
 
 def is_slot(key: Key) -> bool:
-    """Tell whether a key names a slot of A(P), and no answer."""
+    """Whether a key names a slot of A(P), and not a question."""
     return key[0].startswith(SLOT)
 
 
 def asking(provenance: Provenance, keys: tuple[Key, ...]) -> Provenance:
-    """Return what a test rests on: of stored observations the answers asked, of computed values all they came from."""
+    """Return the provenance of a test: tested answers of stored observations, all dependencies of computed values."""
     stored = [each for each in provenance if each.asked is None]
     return provenance.difference(stored) | {each.testing(key) for each in stored for key in keys}
 
 
 def deciding(provenance: Provenance) -> Provenance:
-    """Return what a decision rests on: only answers, since an observation that is merely held decides nothing."""
+    """Return the provenance of a decision: only tested answers, since a merely stored observation decides nothing."""
     return frozenset(each.deciding() for each in provenance if each.asked is not None)
 
 
 def computed(provenance: Provenance) -> Provenance:
-    """Return what a value rests on, as what it was computed from."""
+    """Return the provenance of a value that is computed from dependencies."""
     return frozenset(replace(each, computed=True) for each in provenance)
 
 
 def told_because(provenance: Provenance) -> Provenance:
-    """Return what it rests on that a message was sent, or an observation asked for, whatever it says."""
+    """Return the dependencies that only caused a message or an observation, regardless of its content."""
     return frozenset(each for each in provenance if not each.computed)
 
 
 def held(provenance: Provenance, holder: Name, heirs: Collection[Name]) -> Provenance:
-    """Return what something rests on in the hands of an agent, from whom its heirs may come to hold it."""
+    """Return the provenance as its holder keeps it, given the heirs (`Dependency.held`)."""
     return frozenset(each.held(holder, heirs) for each in provenance)
 
 
 def differences(
     before: Observation, after: Observation, names: Iterable[Name] | None = None
 ) -> frozenset[Key]:
-    """Return the questions that two observations of one query answer differently.
+    """Return the questions with different answers in two observations of one query.
 
-    Where it is known about which `names` alone they may differ, if they swept the same, only those are compared.
+    If both swept the same and can differ only about `names`, only those names are compared.
     """
     everywhere = names is None or before.swept != after.swept
     about = {name for name, _ in (*before.facts, *after.facts)} if everywhere else frozenset(names or ())

@@ -1,7 +1,7 @@
-"""Relevance: what an agent may ever ask of an observation, and which slots its controls may use; static.
+"""Relevance: the questions that an agent may ever ask of an observation, and the slots its controls may use; static.
 
-The race monitor remembers of what others change only what may matter to who holds it. So it multiplies configurations
-no more than it must.
+The race monitor marks a change only if it may matter to the holder, so it multiplies configurations as little as
+possible.
 """
 
 from collections.abc import Iterable, Iterator
@@ -53,12 +53,12 @@ from semantics.state.signature import Name
 
 Names = frozenset[Name]
 Questions = frozenset[Key]
-"""Keys; one about `ANY` stands for those about every name."""
+"""Keys; a key about `ANY` stands for those about every name."""
 
 SLOTS: Questions = frozenset((f"{SLOT}{kind}", ANY) for kind in ("parent", "links", "children"))
 
 MOST_INSTANCES = 5_000
-"""A control whose arguments may come to more combinations than these is taken for one that may use any slot."""
+"""The most argument combinations of a control that are examined; with more, it may use any slot."""
 
 
 def relevant(keys: Iterable[Key], questions: Questions) -> frozenset[Key]:
@@ -67,7 +67,7 @@ def relevant(keys: Iterable[Key], questions: Questions) -> frozenset[Key]:
 
 
 def meet(some: Questions, others: Questions) -> bool:
-    """Tell whether some questions and others have any in common."""
+    """Whether two sets of questions intersect."""
     return any(
         key in others
         or (key[0], ANY) in others
@@ -77,27 +77,27 @@ def meet(some: Questions, others: Questions) -> bool:
 
 
 def questions_of(c: Configuration, agent: Name) -> Questions:
-    """Return what an agent may come to ask; if it may tell others what it saw, what anybody may."""
+    """Return the questions that an agent may ask; if it may pass on its observations, those of any agent."""
     program = c.setting.program
     reach = reachable(program, c.alpha.code(agent))
     return anybodys(c) if tells(program, reach) else questions_in(c.setting, reach, hosts_of(c, agent))
 
 
 def anybodys(c: Configuration) -> Questions:
-    """Return what any agent may ever come to ask."""
+    """Return the questions that any agent may ever ask."""
     every = frozenset(range(len(c.setting.program.statements)))
     return questions_in(c.setting, every, frozenset[Name]().union(*(hosts_of(c, a) for a in c.alpha.names())))
 
 
 HEARD: Name = ""
-"""Stands, among variables, for what an agent receives."""
+"""Stands, among variables, for received observations and messages."""
 
 HOSTED: Name = "HOST"
-"""Stands, among variables, for where an agent is hosted."""
+"""Stands, among variables, for the host of an agent."""
 
 
 def told_by(program: Program, code: Code) -> Names:
-    """Return the variables whose values may get into what somebody with so much left to run tells others."""
+    """Return the variables whose values may flow into messages or spawned agents of the code that is left to run."""
     return _told(program, reachable(program, code))
 
 
@@ -113,7 +113,7 @@ def _told(program: Program, reach: frozenset[int]) -> Names:
 
 
 def uses_host(program: Program, code: Code) -> bool:
-    """Tell whether somebody with so much left to run may use its host: a control does, whatever its arguments."""
+    """Whether the code that is left to run may use the agent's host; every control uses it, for any arguments."""
     return _host_used(program, reachable(program, code))
 
 
@@ -126,12 +126,12 @@ def _host_used(program: Program, reach: frozenset[int]) -> bool:
 
 
 def _read(expression: Expression | QueryOf) -> Names:
-    """Return the variables that an expression or a query reads, and whether it reads the host."""
+    """Return the variables that an expression or a query reads, with `HOSTED` if it reads the host."""
     return free(expression) | {HOSTED} if reads_host(expression) else free(expression)
 
 
 def _passed_on(program: Program, statement: Statement, told: Names) -> Names:
-    """Return what a statement tells, or computes what is told from."""
+    """Return the variables that a statement passes on, or from which it computes values that are passed on."""
     match statement:
         case Send(message, _):
             return _read(message)
@@ -161,18 +161,18 @@ def _binds(cases: Iterable[Case], told: Names) -> bool:
 
 
 def tells(program: Program, reach: Iterable[int]) -> bool:
-    """Tell whether some statements may let others know what was observed."""
+    """Whether some statements may pass observations on to other agents."""
     return _may(program, reach, Send, Spawn)
 
 
 def heirs(program: Program, code: Code) -> Names:
-    """Return who may come to hold what somebody with so much left to run rests on: nobody if it tells nobody."""
+    """Return the heirs of an agent's provenance: possible receivers if its remaining code may send or spawn."""
     return told_ever(program) if tells(program, reachable(program, code)) else frozenset()
 
 
 @lru_cache(maxsize=1 << 8)
 def told_ever(program: Program) -> Names:
-    """Return the agents that anybody may ever tell anything; `ANY` where a run decides whom."""
+    """Return the agents that may ever receive a message or be spawned; `ANY` if a run decides the receiver."""
     return frozenset[Name]().union(*map(_whom, program.statements))
 
 
@@ -189,7 +189,7 @@ def _whom(statement: Statement) -> Names:
 
 
 def hosts_of(c: Configuration, agent: Name) -> Names:
-    """Return where an agent may ever be hosted."""
+    """Return the possible hosts of an agent."""
     program = c.setting.program
     if _may(program, range(len(program.statements)), Migrate, Spawn):
         return frozenset(c.setting.kinds)
@@ -197,7 +197,7 @@ def hosts_of(c: Configuration, agent: Name) -> Names:
 
 
 def slots_of(redex: Pattern) -> Questions:
-    """Return the slots that a redex may use, in whichever match."""
+    """Return the slots that a redex may use, over all matches."""
     used = [("parent", node) for node, _ in redex.parents] + [("links", node) for _, node in redex.links]
     return frozenset(
         (f"{SLOT}{kind}", _name(node)) for kind, node in (*used, *(("children", n) for n in redex.closed))
@@ -214,7 +214,7 @@ def _may(program: Program, reach: Iterable[int], *statements: type) -> bool:
 
 @lru_cache(maxsize=1 << 12)
 def questions_in(setting: Setting, reach: frozenset[int], hosts: Names) -> Questions:
-    """Return what some statements may ask, and which slots their controls may use, at some hosts."""
+    """Return the questions that some statements may ask, and the slots that their controls may use, at some hosts."""
     found: set[Key] = set()
     for number in sorted(reach):
         statement = setting.program.statements[number]
@@ -245,7 +245,7 @@ def _asked(expression: Expression | QueryOf | None) -> Iterator[Key]:
 
 
 def _slots(setting: Setting, control: ControlBy, hosts: Names) -> Questions:
-    """Return the slots that a control may use, whatever its arguments come to."""
+    """Return the slots that a control may use, for any values of its arguments."""
     found = instances(setting, control, hosts)
     if found is None:
         return SLOTS
@@ -253,14 +253,14 @@ def _slots(setting: Setting, control: ControlBy, hosts: Names) -> Questions:
 
 
 def instances(setting: Setting, control: ControlBy, hosts: Names) -> tuple[Reaction, ...] | None:
-    """Return the reactions that a control may request, whatever its arguments may name; None if too many."""
+    """Return the reactions that a control may request, for any names as arguments; None if there are too many."""
     ranges = _ranges(setting, control, hosts)
     if prod(map(len, ranges)) > MOST_INSTANCES:
         return None
     make = setting.program.reactions[control.name]
     found = []
     for host, *names in product(*map(sorted, ranges)):
-        with suppress(Fault):  # not every name is one that the command takes
+        with suppress(Fault):  # the command may reject some names
             found.append(make(host, *names))
     return tuple(found)
 

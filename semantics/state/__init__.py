@@ -1,1 +1,1 @@
-"""Configurations ⟨α | S | η⟩ as values: cells, the views over them, and how they are printed, compared and written."""
+"""Configurations ⟨α | S | η⟩ as values: cells, views over them, printing, comparison and serialization."""

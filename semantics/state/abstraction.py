@@ -15,10 +15,10 @@ from semantics.state.signature import Name, Signature
 
 
 def merged(*sources: Iterable[PhysicalProperty]) -> tuple[PhysicalProperty, ...]:
-    """Return the newest property of each entity, sorted by entity: a property seen again replaces the one before.
+    """Return the newest property of each entity, sorted by entity.
 
-    One without a time is older than any with one; of two equally new the one whose source comes last by name is kept,
-    so that every station keeps the same.
+    A property without a time is older than any with one. Of two equally new ones, the last by source name is kept, so
+    that every station keeps the same.
     """
     newest: dict[str, PhysicalProperty] = {}
     for each in (each for source in sources for each in source):
@@ -33,7 +33,7 @@ def _age(seen: PhysicalProperty) -> tuple[float, str]:
 
 
 def world(properties: Iterable[PhysicalProperty], signature: Signature) -> Configuration:
-    """Return the configuration without agents whose P these properties are, and whose L is A(P)."""
+    """Return the configuration without agents that has these properties as P, and A(P) as L."""
     seen = merged(properties)
     setting = Setting(signature, {each.entity: each.kind for each in seen}, Program())
     placements = {each.entity: placement_of(each) for each in seen}
@@ -41,24 +41,24 @@ def world(properties: Iterable[PhysicalProperty], signature: Signature) -> Confi
 
 
 def placement_of(seen: PhysicalProperty) -> Placement:
-    """Return where a property says that its entity is."""
+    """Return the placement that a property gives its entity."""
     placed = Placed(seen.geometry, seen.altitude)
     return placed if seen.carried_by is None else Carried(seen.carried_by, placed)
 
 
 def abstraction(properties: Iterable[PhysicalProperty], signature: Signature) -> Bigraph:
-    """Return A(P) as a bigraph: each node in its smallest total container, or in what carries it."""
+    """Return A(P) as a bigraph: each node in its smallest total container, or in its carrier."""
     return world(properties, signature).structure.logical.bigraph()
 
 
 def as_it_is(c: Configuration) -> Configuration:
-    """Return a configuration in which L is A(P), the belief of an observer of everything."""
+    """Return the configuration with L = A(P), the belief of an omniscient observer."""
     physical = c.structure.physical
     return _with_parents(c, physical.abstract_parent)
 
 
 def all_as_it_is(c: Configuration) -> Configuration:
-    """Return what `as_it_is` does; thousands of places are quick, but every placement is read."""
+    """Return the result of `as_it_is`, fast for thousands of places; it reads every placement."""
     return _with_parents(c, c.structure.physical.abstract_parents().__getitem__)
 
 

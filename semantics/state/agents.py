@@ -9,14 +9,14 @@ from semantics.state.signature import Name
 from semantics.state.views import View
 
 Code = tuple[int, ...]
-"""What is left to run: statements by number in the program, the next one first."""
+"""The code left to run: statements by number in the program, the next one first."""
 
 Store = tuple[tuple[str, Value], ...]
-"""The variables that what is left to run may read, or that properties name, sorted."""
+"""The variables that the code may read, or that properties mention, sorted."""
 
 
 def written(variable: str) -> str:
-    """Return a variable as the programmer wrote it; nothing of one that no programmer wrote.
+    """Return a variable's name as the programmer wrote it; empty for a generated variable.
 
     >>> written("obs#2"), written("#1")
     ('obs', '')
@@ -26,15 +26,15 @@ def written(variable: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """What an agent's control flow, variables, mail and host rest on; each part runs beside its cell.
+    """The provenance of an agent's code, variables, mail and host; each part is parallel to its cell.
 
     Attributes:
-        code: For each statement that is left to run, what was tested to get there.
-        store: For each variable of the store, what it was computed from.
-        mailbox: For each message of the mailbox, what its sender had computed it from.
-        host: What the node that it is hosted at was chosen by.
-        begun: Of the loops that it is in, how many statements stand behind each, sorted: a loop that has begun looks
-            anew in its next turn.
+        code: For each statement left to run, the provenance of the tests that led to it.
+        store: For each variable, the provenance of its value.
+        mailbox: For each message, the provenance of its content and its sending.
+        host: The provenance of the choice of its host.
+        begun: The loops that it is in, each by the number of statements behind it in the code, sorted. The next turn of
+            such a loop does not depend on the tests of this turn.
     """
 
     code: tuple[Provenance, ...] = ()
@@ -45,17 +45,17 @@ class Watch:
 
 
 def host_cell(agent: Name) -> Cell:
-    """Address the node that an agent is hosted at."""
+    """Address the host of an agent."""
     return ("host", agent)
 
 
 def code_cell(agent: Name) -> Cell:
-    """Address what is left of an agent to run."""
+    """Address the code that an agent has left to run."""
     return ("code", agent)
 
 
 def is_over(code: Code | None) -> bool:
-    """Ask whether nothing is left to run."""
+    """Whether no code is left to run; a question about a cell."""
     return not code
 
 
@@ -65,7 +65,7 @@ def store_cell(agent: Name) -> Cell:
 
 
 def mailbox_cell(agent: Name) -> Cell:
-    """Address the messages that an agent has got and not received: a sorted tuple."""
+    """Address the messages delivered to an agent and not yet received: a sorted tuple."""
     return ("mailbox", agent)
 
 
@@ -92,12 +92,12 @@ class Agents(View):
         return self.cells.test(AGENTS, has, agent)
 
     def host(self, agent: Name) -> Name:
-        """Return the node that an agent is hosted at."""
+        """Return the host of an agent."""
         host: Name = self.cells.read(host_cell(agent))
         return host
 
     def code(self, agent: Name) -> Code:
-        """Return what is left of an agent to run; empty for one that has ended."""
+        """Return the code that an agent has left to run; empty if it has ended."""
         code: Code = self.cells.read(code_cell(agent))
         return code
 
@@ -112,7 +112,7 @@ class Agents(View):
         return mailbox
 
     def watch(self, agent: Name) -> Watch | None:
-        """Return what the monitor remembers of an agent, None where nobody asked for it."""
+        """Return the monitor's memory of an agent, None if the monitor is off."""
         watch: Watch | None = self.cells.read(watch_cell(agent))
         return watch
 
@@ -121,13 +121,13 @@ class Agents(View):
         return tuple(agent for agent in self.names() if self.host(agent) == node)
 
     def hosting(self, agent: Name, host: Name, rests_on: Provenance = NOTHING) -> Changes:
-        """Write host(agent) ↦ host."""
+        """Return the writes of host(agent) ↦ host."""
         watch = self.watch(agent)
         changes: Changes = {host_cell(agent): host}
         return changes if watch is None else {**changes, watch_cell(agent): replace(watch, host=rests_on)}
 
     def posting(self, agent: Name, message: Value, rests_on: Provenance = NOTHING) -> Changes:
-        """Write mailbox(agent) + message."""
+        """Return the writes of mailbox(agent) + message."""
         watch = self.watch(agent)
         mail = (
             list(zip(self.mailbox(agent), watch.mailbox, strict=True))
@@ -137,7 +137,7 @@ class Agents(View):
         return self._mail(agent, [*mail, (message, rests_on)])
 
     def taking(self, agent: Name, position: int) -> Changes:
-        """Write mailbox(agent) less one message."""
+        """Return the writes of mailbox(agent) without the message at a position."""
         watch = self.watch(agent)
         kept = watch.mailbox if watch else (NOTHING,) * len(self.mailbox(agent))
         mail = list(zip(self.mailbox(agent), kept, strict=True))

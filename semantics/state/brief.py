@@ -1,4 +1,4 @@
-"""Text on one line of bounded length: what `repr` shows of large values."""
+"""Text on one line of bounded length, for the `repr` of large values."""
 
 from typing import Final
 
@@ -6,7 +6,7 @@ MOST: Final = 120
 
 
 def cut(text: object, most: int = MOST) -> str:
-    r"""Return a text on one line, cut where it is longer than so many characters.
+    r"""Return a text on one line, cut to at most `most` characters.
 
     >>> cut("observe(ALL)", 9), cut("one\ntwo")
     ('observe(…', 'one two')

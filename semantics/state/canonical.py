@@ -1,4 +1,4 @@
-"""The canonical encoding of values, the same in every process; digests are computed from it."""
+"""The canonical encoding of values, the same in every process, and digests of it."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import fields, is_dataclass
@@ -11,11 +11,11 @@ from semantics.state.cells import Cell, Row
 from semantics.state.configuration import Configuration
 
 SLICE = 64
-"""How many values are compared at once."""
+"""The number of values compared at once."""
 
 
 def canonical(value: Any) -> str:
-    """Write a value so that equal values, and only those, are written alike in every process.
+    """Return the canonical text of a value: the same in every process for equal values, different for others.
 
     >>> canonical({("b",): frozenset({2, 1}), ("a",): None})
     "{('a',): None, ('b',): {1, 2}}"
@@ -35,24 +35,24 @@ def canonical(value: Any) -> str:
 
 
 def digest(value: Any) -> str:
-    """Return the SHA-256 of a value as it is written canonically."""
+    """Return the SHA-256 of a value's canonical text."""
     return "sha256:" + sha256(canonical(value).encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def written(before: Configuration, after: Configuration) -> dict[Cell, Any]:
-    """Return the cells that a step wrote, with their new values; both configurations are stored ones."""
+    """Return the cells that a step changed, with their new values; both states must be rows."""
     old, new = before.state, after.state
     assert isinstance(old, Row)
     assert isinstance(new, Row)
     cells, known = new.layout.cells, old.layout.cells
-    if cells is not known and cells[: len(known)] != known:  # the new row has not grown from the old one
+    if cells is not known and cells[: len(known)] != known:  # the layouts are unrelated
         return {cell: value for cell, value in new.items() if old.read(cell) != value}
     was = old.values + (None,) * (len(new.values) - len(old.values))
     return {cells[at]: new.values[at] for at in _differing(was, new.values)}
 
 
 def _differing(old: tuple[Any, ...], new: tuple[Any, ...]) -> Iterator[int]:
-    """Yield where two tuples differ, which is mostly nowhere: slices are compared before their members are."""
+    """Yield the positions at which two tuples differ; slices are compared first, since most of them are equal."""
     for first in range(0, len(new), SLICE):
         one, other = old[first : first + SLICE], new[first : first + SLICE]
         if one != other:
@@ -62,14 +62,14 @@ def _differing(old: tuple[Any, ...], new: tuple[Any, ...]) -> Iterator[int]:
 
 
 def digest_of_step(before: Configuration, after: Configuration) -> str:
-    """Return a digest of what a step wrote: of a line of requests, what has come in the place of what."""
+    """Return a digest of a step's writes; of a line of requests only the changed part counts."""
     return digest(
         {cell: _changed(before.read(cell), value) for cell, value in written(before, after).items()}
     )
 
 
 def _changed(old: Any, new: Any) -> Any:
-    """Return what of a tuple has changed: how many parts before and behind it have not, and the others."""
+    """Return the change of a tuple: the numbers of unchanged members before and behind it, and its new members."""
     if not isinstance(old, tuple) or type(new) is not tuple:
         return new
     shorter = min(len(old), len(new))

@@ -1,7 +1,7 @@
 """Cells: a configuration maps cells to values; agents, structure and requests are views over it.
 
-Rules see a configuration only through `read` and `test`, and answer with `Changes`. To record what a rule reads, pass
-another `Cells` instead of a configuration: no code in `semantics/` can tell the difference.
+Rules access a configuration only through the methods of `Cells`, and return `Changes`. To record the reads of a rule,
+pass another `Cells` instead of a configuration; no code in `semantics/` depends on the difference.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
@@ -14,81 +14,81 @@ from weakref import WeakValueDictionary
 Part = TypeVar("Part")
 
 Cell = tuple[str, ...]
-"""The address of one value: what it is, then whose (`("parent", "uav0")`)."""
+"""The address of one value: its sort, then its owner (`("parent", "uav0")`)."""
 
 Changes = dict[Cell, Any]
-"""What a rule writes."""
+"""The writes of a rule."""
 
 AGENTS: Cell = ("agents",)
 NAMES: Cell = ("names",)
 QUEUE: Cell = ("queue",)
 
 MONITOR = "watch"
-"""Cells whose first word begins so belong to the race monitor; configurations are counted without them."""
+"""The first word of the race monitor's cells; configurations are counted without them."""
 
 VOYAGE = "voyage"
-"""Cells whose first word begins so remember where vehicles may be, where a mission says how long flights take.
+"""The first word of the cells that remember the possible positions of vehicles, in missions with a `timing` section.
 
 They bound durations; the rules neither read nor write them.
 """
 
 
 Question = Callable[..., Any]
-"""What may be asked of a cell's value, and some constants; of None too, where there is no such cell (yet)."""
+"""A question about a cell's value, with constants; the value is None if there is no such cell (yet)."""
 
 Edit = Callable[..., Any]
-"""What makes another value of a cell's value and some constants."""
+"""A function from a cell's value and some constants to a new value."""
 
 
 def is_(value: object, constant: object) -> bool:
-    """Ask whether a cell's value is this one."""
+    """Whether a cell's value is this one."""
     return value == constant
 
 
 def is_something(value: object) -> bool:
-    """Ask whether a cell has a value."""
+    """Whether a cell has a value."""
     return value is not None
 
 
 def has(value: tuple[object, ...], member: object) -> bool:
-    """Ask whether something is among a cell's members."""
+    """Whether a cell's value has a member."""
     return member in value
 
 
 class Cells(Protocol):
-    """What a rule may do with a configuration."""
+    """The access of a rule to a configuration."""
 
     def read(self, cell: Cell) -> Any:
         """Return the value of a cell, None where it has none."""
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
-        """Ask one question of a cell: only the yes or no is learned."""
+        """Return the answer to a yes-or-no question about a cell; the caller learns nothing else of its value."""
 
     def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
-        """Ask one question of a cell that has an answer other than yes or no: only that is learned."""
+        """Return the answer to any other question about a cell; the caller learns nothing else of its value."""
 
     def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
-        """Return what an edit makes of a cell's value, to be written back there: nothing is learned of the value."""
+        """Return an edited value of a cell, to be written back there; the caller learns nothing of the value."""
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
-        """Return what a pointwise definition says of each name: no part depends on another."""
+        """Return the part of each name in a pointwise definition: no part depends on another."""
 
 
 class State(Cells, Protocol):
-    """Cells that a rule's conclusion may be written over."""
+    """Cells that a rule's conclusion can write."""
 
     def with_(self, changes: Mapping[Cell, Any]) -> "State":
         """Return the cells with these values."""
 
     def with_each(self, parts: Mapping[str, Changes]) -> "State":
-        """Return the cells with what each part of a pointwise definition writes."""
+        """Return the cells with the writes of each part of a pointwise definition."""
 
     def changed(self, since: "State") -> Set[Cell]:
-        """Return the cells that were written since, as far as these cells come from those."""
+        """Return the cells written since an earlier state, from which these cells must derive."""
 
 
 class Written:
-    """Cells with some changes before them: what a conclusion, or a P' that is being built, is read from."""
+    """Cells with some changes over them: the reads of a conclusion, or of a P' under construction."""
 
     __slots__ = ("cells", "changes")
 
@@ -97,37 +97,37 @@ class Written:
         self.changes = changes
 
     def read(self, cell: Cell) -> Any:
-        """Return what was written, else what was there."""
+        """Return the written value, else the underlying one."""
         return self.changes[cell] if cell in self.changes else self.cells.read(cell)
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
-        """Ask what was written, else what was there."""
+        """Return the answer for the written value, else for the underlying one."""
         if cell in self.changes:
             return bool(question(self.changes[cell], *constants))
         return self.cells.test(cell, question, *constants)
 
     def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
-        """Ask what was written, else what was there."""
+        """Return the answer for the written value, else for the underlying one."""
         if cell in self.changes:
             return question(self.changes[cell], *constants)
         return self.cells.ask(cell, question, *constants)
 
     def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
-        """Return what an edit makes of what was written, else of what was there."""
+        """Return the edited value, from the written one, else from the underlying one."""
         if cell in self.changes:
             return edit(self.changes[cell], *constants)
         return self.cells.edited(cell, edit, *constants)
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
-        """Return what a pointwise definition says of each name."""
+        """Return the part of each name in a pointwise definition."""
         return {name: part(name) for name in names}
 
     def with_(self, changes: Mapping[Cell, Any]) -> "Written":
-        """Return the cells with more written over them."""
+        """Return the cells with more changes over them."""
         return Written(self.cells, {**self.changes, **changes})
 
     def with_each(self, parts: Mapping[str, Changes]) -> "Written":
-        """Return the cells with what each part writes."""
+        """Return the cells with the writes of each part."""
         return self.with_(merged(parts.values()))
 
     def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # all that was written is known
@@ -145,7 +145,7 @@ class Layout:
         self.index = {cell: position for position, cell in enumerate(cells)} if index is None else index
 
     def growing(self, cells: Iterable[Cell]) -> "Layout":
-        """Return a layout with more cells at its end, which no other row has."""
+        """Return a layout with more cells at its end; no other row shares it."""
         more = tuple(cells)
         return Layout(self.cells + more, self.index | dict(zip(more, count(len(self.cells)), strict=False)))
 
@@ -157,15 +157,16 @@ _LAYOUTS: WeakValueDictionary[tuple[Cell, ...], Layout] = WeakValueDictionary()
 
 
 def layout_of(cells: tuple[Cell, ...]) -> Layout:
-    """Return the one layout of these cells in this order; it is kept as long as a row has it."""
+    """Return the shared layout of these cells in this order; it lives as long as a row uses it."""
     layout = _LAYOUTS.get(cells)
     return _LAYOUTS.setdefault(cells, Layout(cells)) if layout is None else layout
 
 
 class Row:
-    """An immutable map from cells to values with a hash that is kept up to date by what changes (Zobrist).
+    """An immutable map from cells to values, with an incrementally updated hash (Zobrist).
 
-    Its cells are sorted unless it has grown: that costs no sorting, but rows that have grown compare by their contents.
+    Its cells are sorted unless it has grown. Growing avoids the sorting, but rows that have grown compare by their
+    contents.
     """
 
     __slots__ = ("_hash", "layout", "values")
@@ -177,7 +178,7 @@ class Row:
 
     @staticmethod
     def of(contents: Mapping[Cell, Any]) -> "Row":
-        """Make a row of a mapping."""
+        """Return the row of a mapping."""
         cells = tuple(sorted(contents))
         return Row(layout_of(cells), tuple(contents[cell] for cell in cells))
 
@@ -187,19 +188,19 @@ class Row:
         return None if position is None else self.values[position]
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
-        """Ask one question of a cell."""
+        """Return the answer to a yes-or-no question about a cell."""
         return bool(question(self.read(cell), *constants))
 
     def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
-        """Ask one question of a cell."""
+        """Return the answer to a question about a cell."""
         return question(self.read(cell), *constants)
 
     def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
-        """Return what an edit makes of a cell's value."""
+        """Return an edited value of a cell."""
         return edit(self.read(cell), *constants)
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
-        """Return what a pointwise definition says of each name."""
+        """Return the part of each name in a pointwise definition."""
         return {name: part(name) for name in names}
 
     def items(self) -> Iterator[tuple[Cell, Any]]:
@@ -207,7 +208,7 @@ class Row:
         return zip(self.layout.cells, self.values, strict=True)
 
     def with_(self, changes: Mapping[Cell, Any]) -> "Row":
-        """Return the row with these values; the same object where nothing changes."""
+        """Return the row with these values; the same object if nothing changes."""
         index = self.layout.index
         if any(cell not in index for cell in changes):
             return Row.of({**dict(self.items()), **changes})
@@ -224,7 +225,7 @@ class Row:
         return Row(self.layout, tuple(values), digest) if changed else self
 
     def growing(self, changes: Mapping[Cell, Any]) -> "Row":
-        """Return the row with these values, new cells at its end: nothing is sorted, and no old value is hashed."""
+        """Return the row with these values and new cells at its end, without sorting or hashing old values."""
         new = {cell: value for cell, value in changes.items() if cell not in self.layout.index}
         if not new:
             return self.with_(changes)
@@ -233,11 +234,11 @@ class Row:
         return Row(row.layout.growing(new), (*row.values, *new.values()), digest)
 
     def with_each(self, parts: Mapping[str, Changes]) -> "Row":
-        """Return the row with what each part writes."""
+        """Return the row with the writes of each part."""
         return self.with_(merged(parts.values()))
 
     def changed(self, since: State) -> Set[Cell]:
-        """Return the cells that have another value."""
+        """Return the cells whose value differs."""
         return {cell for cell, value in self.items() if since.read(cell) != value}
 
     def __eq__(self, other: object) -> bool:
@@ -261,7 +262,7 @@ class Row:
 
 
 def merged(parts: Iterable[Changes]) -> Changes:
-    """Return several writes as one; the later win."""
+    """Return the union of several writes; later ones win."""
     changes: Changes = {}
     for each in parts:
         changes |= each
@@ -269,5 +270,5 @@ def merged(parts: Iterable[Changes]) -> Changes:
 
 
 def _digest(items: Iterable[tuple[Cell, Any]]) -> int:
-    """Return a hash of cells with their values that does not depend on their order."""
+    """Return a hash of cells and values that does not depend on their order."""
     return reduce(xor, map(hash, items), 0)

@@ -21,7 +21,7 @@ class Configuration:
         alpha: The agents.
         structure: The structure S = (L, P, β, γ).
         eta: The pending requests.
-        setting: What stays the same in the mission.
+        setting: The constants of the mission.
         state: The cells.
     """
 
@@ -36,7 +36,7 @@ class Configuration:
 
     @staticmethod
     def of(setting: Setting, contents: Mapping[Cell, Any]) -> "Configuration":
-        """Make a configuration of the values of its cells."""
+        """Return the configuration with these cells."""
         return Configuration(setting, Row.of(contents))
 
     def read(self, cell: Cell) -> Any:
@@ -44,15 +44,15 @@ class Configuration:
         return self.state.read(cell)
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
-        """Ask one question of a cell."""
+        """Return the answer to a yes-or-no question about a cell."""
         return self.state.test(cell, question, *constants)
 
     def ask(self, cell: Cell, question: Question, *constants: Any) -> Any:
-        """Ask one question of a cell that has an answer other than yes or no."""
+        """Return the answer to a question about a cell."""
         return self.state.ask(cell, question, *constants)
 
     def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
-        """Return what an edit makes of a cell's value."""
+        """Return an edited value of a cell."""
         return self.state.edited(cell, edit, *constants)
 
     def with_(self, *changes: Changes) -> "Configuration":
@@ -60,15 +60,15 @@ class Configuration:
         return Configuration(self.setting, self.state.with_(merged(changes)))
 
     def each(self, names: Iterable[Name], part: Callable[[Name], Part]) -> Mapping[Name, Part]:
-        """Return what a pointwise definition says of each name: no part depends on another."""
+        """Return the part of each name in a pointwise definition: no part depends on another."""
         return self.state.each(names, part)
 
     def with_each(self, parts: Mapping[Name, Changes]) -> "Configuration":
-        """Return the configuration with what each part of a pointwise definition writes."""
+        """Return the configuration with the writes of each part of a pointwise definition."""
         return Configuration(self.setting, self.state.with_each(parts))
 
     def unmonitored(self) -> "Configuration":
-        """Return the configuration without the monitor's cells: what is counted."""
+        """Return the configuration without the monitor's cells, as it is counted."""
         assert isinstance(self.state, Row)
         kept = {cell: value for cell, value in self.state.items() if cell[0] != MONITOR}
         return Configuration.of(self.setting, kept)
@@ -97,12 +97,12 @@ class Configuration:
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """What a transition is called: `⟨rule : ...⟩`.
+    """The label of a transition: `⟨rule : ...⟩`.
 
     Attributes:
         rule: The name of the inference rule.
-        agent: Whose rule it is; None for the environment's.
-        about: The request served, the observation received, or the words after the agent.
+        agent: The agent of the rule; None for the environment's rules.
+        about: The request served, the observation received, or the text after the agent.
     """
 
     rule: str
@@ -119,13 +119,13 @@ class Label:
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """One step that a rule allows.
+    """One transition of a rule.
 
     Attributes:
-        label: What it is called.
+        label: Its label.
         target: The configuration after it.
-        shown: What `display` showed.
-        served: The pending request that was served, where it stood.
+        shown: The output of `display`.
+        served: The pending request that it serves, with its position.
     """
 
     label: Label

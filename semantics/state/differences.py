@@ -1,7 +1,7 @@
 """The differences between two configurations, such as an added request or a removed link.
 
-`printing.print_changes` prints whole cells, as they are after a step; here only what is new in them is told, so that a
-run can be read by what each step did.
+`printing.print_changes` prints whole cells after a step. This module lists only the changes within them, so that a run
+reads as the effects of its steps.
 """
 
 from collections import Counter
@@ -21,12 +21,12 @@ from semantics.state.signature import Name
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """One thing that differs.
+    """One difference.
 
     Attributes:
-        part: Where: `α`, `L`, `P` or `η`; `E` for what the environment may still say.
-        whose: The agent, node or channel that it is about.
-        text: What, in words and signs.
+        part: Its part: `α`, `L`, `P` or `η`; `E` for the messages that may still come from outside.
+        whose: The agent, node or channel concerned.
+        text: Its description.
     """
 
     part: str
@@ -38,11 +38,11 @@ class Difference:
 
 
 PARTS = ("α", "L", "P", "η", "E")
-"""The parts of a configuration, in the order in which differences are told."""
+"""The parts of a configuration, in the order in which differences are listed."""
 
 
 def differences(before: Configuration, after: Configuration) -> tuple[Difference, ...]:
-    """Return what differs, part by part, the monitor's cells left out."""
+    """Return the differences, part by part, without the monitor's cells."""
     changed = sorted({*written_cells(before, after), *written_cells(after, before)})
     found = [each for cell in changed for each in _of_cell(before, after, cell)]
     return tuple(sorted(found, key=lambda each: PARTS.index(each.part)))
@@ -87,7 +87,7 @@ def _at(c: Configuration, a: Name) -> str:
 
 
 def _variables(old: Iterable[tuple[str, object]], new: Iterable[tuple[str, object]]) -> Iterator[str]:
-    """Yield the variables that are new or have another value; what is merely forgotten is no news."""
+    """Yield the variables that are new or have a new value; forgotten variables are not reported."""
     before = dict(old)
     for name, value in new:
         if before.get(name) != value and written(name):

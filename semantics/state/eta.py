@@ -1,4 +1,4 @@
-"""The pending requests η as a view over cells, and the queues in which the three schedulers serve them."""
+"""The pending requests η as a view over cells, and the queues of the three schedulers."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 
 
 def line_cell(agent: Name) -> Cell:
-    """Address one agent's requests: in the order asked, sorted where the scheduler knows no order."""
+    """Address one agent's requests: in the order of asking, or sorted if the scheduler has no order."""
     return ("line", agent)
 
 
 def sends_cell(agent: Name) -> Cell:
-    """Address one agent's messages on their way, sorted: they stand in no line."""
+    """Address one agent's messages in transit, sorted: they are in no line."""
     return ("sends", agent)
 
 
 class Pending(NamedTuple):
-    """A request where it stands: its cell, its position there, and what it rests on."""
+    """A pending request: its cell, its position there, and its provenance."""
 
     request: Request
     cell: Cell
@@ -36,8 +36,8 @@ class Pending(NamedTuple):
 class Eta(View):
     """η over the cells of a configuration.
 
-    Under `program_order` each agent has a line, under `unordered` a multiset. Under `fcfs` all share one queue of
-    requests. READY and FLY are not served from it and stay in their agent's own line, since their position among
+    Under `program_order` each agent has a line, under `unordered` a multiset. Under `fcfs` all agents share one queue
+    of requests. READY and FLY are not served from it. They stay in their agent's own line, since their position among
     others' requests is not observable.
     """
 
@@ -49,33 +49,33 @@ class Eta(View):
         self.setting = setting
 
     def of(self, agent: Name) -> tuple[Pending, ...]:
-        """Return an agent's requests, in line where there is one."""
+        """Return an agent's requests, in line if there is one."""
         return tuple(each for cell in self._cells(agent) for each in self._at(cell, agent))
 
     def all(self) -> tuple[Pending, ...]:
-        """Return every pending request: the agents' in order of their names, then the queue of `fcfs` as asked."""
+        """Return all pending requests: the agents' by name, then the queue of `fcfs` in order of asking."""
         agents: tuple[Name, ...] = self.cells.read(AGENTS)
         if self._shares:
             return tuple(each for cell in (*map(line_cell, agents), QUEUE) for each in self._at(cell))
         return tuple(each for agent in agents for each in self.of(agent))
 
     def queued(self) -> tuple[Pending, ...]:
-        """Return what stands in the queue of `fcfs`, as asked."""
+        """Return the queue of `fcfs`, in order of asking."""
         return tuple(self._at(QUEUE))
 
     def own(self, agent: Name) -> tuple[Pending, ...]:
-        """Return the requests that stand in an agent's own line: all that are READY or FLY do."""
+        """Return the requests in an agent's own line, which has all READY and FLY."""
         return tuple(self._at(line_cell(agent)))
 
     def count(self, agent: Name) -> int:
-        """Return how many requests an agent has."""
+        """Return the number of an agent's requests."""
         if not self._shares:
             return len(self.of(agent))
         in_queue: int = self.cells.ask(QUEUE, count_of, agent)
         return len(self.own(agent)) + in_queue
 
     def in_line(self, agent: Name) -> tuple[Pending, ...]:
-        """Return the requests of an agent that may be served next (under `fcfs` apart from others' turns)."""
+        """Return the requests of an agent that may be served next (under `fcfs` regardless of others' turns)."""
         asked = (*self.own(agent), *self._first_in_queue(agent)) if self._shares else self.of(agent)
         waiting = [each for each in asked if not isinstance(each.request, READY)]
         if self.setting.scheduler is Scheduler.UNORDERED:
@@ -84,7 +84,7 @@ class Eta(View):
         return (*line[:1], *(each for each in waiting if isinstance(each.request, SND)))
 
     def _first_in_queue(self, agent: Name) -> Iterator[Pending]:
-        """Yield an agent's messages in the queue, and the first of its other requests: no rule asks for more of it."""
+        """Yield an agent's messages in the queue, and the first of its other requests; rules need no more of it."""
         found: tuple[tuple[int, Request], ...] = self.cells.ask(QUEUE, first_of, agent)
         for position, request in found:
             kept = self.cells.read((MONITOR, *QUEUE))[position] if self.setting.monitored else NOTHING
@@ -96,21 +96,21 @@ class Eta(View):
         return ready if self.setting.scheduler is Scheduler.UNORDERED else ready[:1]
 
     def adding(self, request: Request, rests_on: Provenance = NOTHING) -> Changes:
-        """Write η + request."""
+        """Return the writes of η + request."""
         cell = self._cell(request)
         if cell == QUEUE:
             return self._edit(appended, (request,), (rests_on,))
         return self._write(cell, [*self._at(cell), Pending(request, cell, -1, rests_on)])
 
     def removing(self, pending: Pending) -> Changes:
-        """Write η − request."""
+        """Return the writes of η − request."""
         if pending.cell == QUEUE:
             return self._edit(without, (pending.position,), (pending.position,))
         line = list(self._at(pending.cell))
         return self._write(pending.cell, line[: pending.position] + line[pending.position + 1 :])
 
     def replacing(self, pending: Pending, request: Request, rests_on: Provenance | None = None) -> Changes:
-        """Write η with another request in the place of one, or behind it in the line that the other one stands in."""
+        """Return the writes that replace a request: in its place, or at the end of the new request's own line."""
         kept = pending.rests_on if rests_on is None else rests_on
         if self._cell(request) != pending.cell:
             return self.removing(pending) | self.adding(request, kept)
@@ -128,14 +128,14 @@ class Eta(View):
         return (line_cell(agent), *more.get(self.setting.scheduler, ()))
 
     def _cell(self, request: Request) -> Cell:
-        """Return where a request stands."""
+        """Return the cell of a request."""
         if self._shares and not isinstance(request, READY | FLY):
             return QUEUE
         is_message = self.setting.scheduler is Scheduler.PROGRAM_ORDER and isinstance(request, SND)
         return sends_cell(request.agent) if is_message else line_cell(request.agent)
 
     def _at(self, cell: Cell, agent: Name | None = None) -> Iterator[Pending]:
-        """Yield what stands in a cell, everybody's or one agent's: what others asked for, an agent does not read."""
+        """Yield the requests of a cell, of all agents or of one; a queue without requests of that agent is not read."""
         if cell == QUEUE and agent is not None and not self.cells.test(cell, is_asked_by, agent):
             return
         requests: tuple[Request, ...] = self.cells.read(cell)
@@ -149,7 +149,7 @@ class Eta(View):
                 yield Pending(request, cell, position, kept)
 
     def _edit(self, edit: Edit, of_requests: tuple[Any, ...], of_provenance: tuple[Any, ...]) -> Changes:
-        """Write the queue with an edit, which need not know what others asked for."""
+        """Return the writes of a queue edit, which need not read the requests of others."""
         changes: Changes = {QUEUE: self.cells.edited(QUEUE, edit, *of_requests)}
         if self.setting.monitored:
             watch = (MONITOR, *QUEUE)
@@ -168,27 +168,27 @@ class Eta(View):
 
 
 def is_asked_by(queue: tuple[Request, ...] | None, agent: Name) -> bool:
-    """Ask of a queue whether an agent has a request there."""
+    """Whether an agent has a request in a queue; a question about a cell."""
     return any(each.agent == agent for each in queue or ())
 
 
 def count_of(queue: tuple[Request, ...] | None, agent: Name) -> int:
-    """Ask of a queue how many requests of an agent it has."""
+    """Return the number of an agent's requests in a queue; a question about a cell."""
     return sum(each.agent == agent for each in queue or ())
 
 
 def first_of(queue: tuple[Request, ...] | None, agent: Name) -> tuple[tuple[int, Request], ...]:
-    """Ask of a queue for an agent's messages, and the first of its other requests, each with its position."""
+    """Return an agent's messages in a queue, and the first of its other requests, each with its position."""
     own = [(position, each) for position, each in enumerate(queue or ()) if each.agent == agent]
     first = next((each for each in own if not isinstance(each[1], SND)), None)
     return tuple(each for each in own if each is first or isinstance(each[1], SND))
 
 
 def appended(line: tuple[Any, ...] | None, member: object) -> tuple[Any, ...]:
-    """Return a line with one more at its end."""
+    """Return a line with one more member at its end."""
     return (*(line or ()), member)
 
 
 def without(line: tuple[Any, ...], position: int) -> tuple[Any, ...]:
-    """Return a line without what stands at a position."""
+    """Return a line without the member at a position."""
     return line[:position] + line[position + 1 :]

@@ -1,4 +1,4 @@
-"""The first configuration of a mission: L₀ = A(P₀), unless the mission declares beliefs."""
+"""The initial configuration of a mission: L₀ = A(P₀), unless the mission declares beliefs."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -17,10 +17,10 @@ from semantics.state.signature import Name
 
 @dataclass(frozen=True, slots=True)
 class Beliefs:
-    """What L₀ holds where it differs from A(P₀).
+    """The differences of L₀ from A(P₀).
 
     Attributes:
-        parents: The believed parent of a node, None where the node is not in L₀.
+        parents: The believed parent of a node, None if the node is not in L₀.
         links: The believed links of a node.
     """
 
@@ -35,14 +35,14 @@ def initial(
     agents: Mapping[Name, tuple[Name, Code]],
     beliefs: Beliefs | None = None,
 ) -> Configuration:
-    """Return the configuration that a mission starts in.
+    """Return the initial configuration of a mission.
 
     Args:
-        setting: What stays the same.
-        placements: P₀ of the entities that are there; the setting's other entities are absent.
-        channels: The channels of entities, those of absent ones left out.
-        agents: For each agent its host and the code that it starts with.
-        beliefs: Where L₀ differs from A(P₀).
+        setting: The constants of the mission.
+        placements: P₀ of the present entities; the setting's other entities are absent.
+        channels: The channels of the present entities.
+        agents: The host and the initial code of each agent.
+        beliefs: The differences of L₀ from A(P₀).
     """
     contents: Changes = {NAMES: tuple(sorted(setting.kinds)), AGENTS: tuple(sorted(agents))}
     for name in setting.kinds:
@@ -63,7 +63,7 @@ def initial(
 
 
 def _remembered(clause: Clause) -> Changes:
-    """Return the cells of a clause of the environment, as they are at first."""
+    """Return the initial cells of a clause of the environment."""
     match clause:
         case Drops(channel):
             return {down_cell(channel): False}

@@ -9,7 +9,7 @@ from semantics.state.views import View
 
 
 def parent_cell(node: Name) -> Cell:
-    """Address the slot `parent(n)`; None there means that n is not in dom(L)."""
+    """Address the slot `parent(n)`; None means that n is not in dom(L)."""
     return ("parent", node)
 
 
@@ -29,7 +29,7 @@ class LogicalModel(View):
         self.sorting = sorting
 
     def parent(self, node: Name) -> Name | None:
-        """Return `parent(n)`: a node, the region, or None where n is not in dom(L)."""
+        """Return `parent(n)`: a node, the region, or None if n is not in dom(L)."""
         parent: Name | None = self.cells.read(parent_cell(node))
         return parent
 
@@ -49,30 +49,30 @@ class LogicalModel(View):
         return tuple(name for name in self.cells.read(NAMES) if self.is_in(name, place))
 
     def is_in(self, node: Name, place: Name) -> bool:
-        """Tell whether `parent(n)` is a place."""
+        """Whether `parent(n)` is a place."""
         return self.cells.test(parent_cell(node), is_, place)
 
     def ancestors(self, node: Name) -> Iterator[Name]:
-        """Yield the places around a node, innermost first, the region left out."""
+        """Yield the places around a node, innermost first, without the region."""
         place = self.parent(node)
         while place is not None and place != REGION:
             yield place
             place = self.parent(place)
 
     def linked(self, node: Name, other: Name) -> bool:
-        """Tell whether two nodes share a link."""
+        """Whether two nodes share a link."""
         return not set(self.links(node)).isdisjoint(self.links(other))
 
     def nesting(self, node: Name, place: Name) -> Changes:
-        """Write parent[node ↦ place]."""
+        """Return the writes of parent[node ↦ place]."""
         return {parent_cell(node): place}
 
     def linking(self, node: Name, links: frozenset[Name]) -> Changes:
-        """Write links[node ↦ links]."""
+        """Return the writes of links[node ↦ links]."""
         return {links_cell(node): tuple(sorted(links))}
 
     def bigraph(self) -> Bigraph:
-        """Return L as a concrete bigraph whose support is names; its signature is the mission's, whatever is there."""
+        """Return L as a concrete bigraph whose support is names; its signature has all kinds of the mission."""
         nodes, kinds = self.nodes(), self.sorting.kinds
         links = sorted({link for node in nodes for link in self.links(node)})
         parents = {node: self.parent(node) for node in nodes}

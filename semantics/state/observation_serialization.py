@@ -16,7 +16,7 @@ MOST_WRITES = 10_000
 
 
 def sight_json(sight: Sight | Elsewhere) -> dict[str, Any]:
-    """Return an observation, or what passes between stations, as plain data."""
+    """Return an observation, or a passage between stations, as plain data."""
     if not isinstance(sight, Sight):
         return elsewhere_json(sight)
     data: dict[str, Any] = {"words": sight.words}
@@ -42,7 +42,7 @@ def value_json(value: Any) -> Any:
 
 
 def geometry_json(geometry: Geometry) -> dict[str, Any]:
-    """Return a geometry as plain data: its ring in whole numbers of 1e-7 degree, and what it was moved from."""
+    """Return a geometry as plain data: its ring in whole numbers of 1e-7 degree, its template and its anchor."""
     data: dict[str, Any] = {"ring": [list(vertex) for vertex in geometry.ring]}
     if geometry.template is not None and geometry.anchor is not None:
         data |= {"of": [list(vertex) for vertex in geometry.template.ring], "anchor": list(geometry.anchor)}
@@ -50,10 +50,10 @@ def geometry_json(geometry: Geometry) -> dict[str, Any]:
 
 
 def sight_of(data: Any) -> Sight | Elsewhere:
-    """Read an observation, or what passes between stations.
+    """Return the observation, or the passage between stations, of plain data.
 
     Raises:
-        ValueError: The data are none; GeometryError, which is one, for what is no geometry.
+        ValueError: The data are malformed; its subclass GeometryError for a malformed geometry.
     """
     if not isinstance(data, dict) or not isinstance(data.get("words"), str):
         raise ValueError("an observation should have 'words' and 'writes'")
@@ -87,7 +87,7 @@ def _value(what: str, value: Any) -> Any:
 
 
 def placement_of(data: Any) -> Placement:
-    """Read a placement."""
+    """Return the placement of plain data; raises ValueError."""
     match data:
         case {"from": origin, "to": str(to)}:
             start = placement_of(origin)
@@ -103,7 +103,7 @@ def placement_of(data: Any) -> Placement:
 
 
 def band_of(data: Any) -> Band | None:
-    """Read a band of altitudes."""
+    """Return the band of altitudes of plain data; raises ValueError."""
     match data:
         case None:
             return None
@@ -113,7 +113,7 @@ def band_of(data: Any) -> Band | None:
 
 
 def geometry_of(data: Any) -> Geometry:
-    """Read a geometry."""
+    """Return the geometry of plain data; raises ValueError."""
     ring = _ring(data.get("ring") if isinstance(data, dict) else None)
     if len(ring) == 1:
         return point(ring[0][0] / E7, ring[0][1] / E7)

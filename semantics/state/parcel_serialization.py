@@ -1,7 +1,7 @@
 """Parcels as plain data: written, and read back within bounds by the types of their parts.
 
-A value of the mission language is written by its form; of everything else the type says what is read. No type of a
-reaction is among them: what a control asks for is made of the text of the mission that takes the parcel in.
+A value of the mission language is encoded by its form; every other part is read by its declared type. Reactions are not
+encoded: a control's reaction is rebuilt from the text of the receiving mission.
 """
 
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from semantics.state.partition import Belief, Elsewhere, Passage, Whereabouts
 from semantics.state.requests import MGR, OBS, READY, SND
 
 MOST_ITEMS = 10_000
-"""The most parts of one list."""
+"""The greatest length of one list."""
 
 MOST_MAIL = 10_000
 DEEPEST = 40
@@ -30,7 +30,7 @@ NAMES: Mapping[str, Any] = {**TYPES, "Query": Query, "Observation": Observation}
 
 
 def elsewhere_json(seen: Elsewhere) -> dict[str, Any]:
-    """Return what other stations have a part in as plain data."""
+    """Return an event between stations as plain data."""
     if isinstance(seen, Whereabouts):
         data: dict[str, Any] = {"words": f"{seen.agent} is at {seen.host}", "writes": []}
         return {**data, "agent": seen.agent, "host": seen.host}
@@ -44,7 +44,7 @@ def elsewhere_json(seen: Elsewhere) -> dict[str, Any]:
 
 
 def elsewhere_of(data: Any) -> Elsewhere:
-    """Read what other stations have a part in; raises ValueError."""
+    """Return the event between stations of plain data; raises ValueError."""
     match data:
         case {"node": str(node), "slot": "parent" | "links" as slot, "names": [*names]}:
             return Belief(node, slot, _tuple((str, ...), names, 0))
@@ -62,10 +62,10 @@ def parcel_json(parcel: Parcel) -> Any:
 
 
 def parcel_of(data: Any) -> Parcel:
-    """Read a parcel.
+    """Return the parcel of plain data.
 
     Raises:
-        ValueError: The data are none.
+        ValueError: The data are malformed.
     """
     parcel: Parcel = _read(Parcel, data, 0)
     if len(parcel.mail) > MOST_MAIL:
@@ -102,10 +102,10 @@ def _plain(value: Any) -> Any:
 
 
 def _read(hint: Any, data: Any, depth: int) -> Any:
-    """Read what a type says should be there."""
+    """Return the value of a type that the data encode."""
     if depth > DEEPEST:
         raise ValueError("a parcel is nested too deep")
-    if Truth in get_args(hint):  # a `Value`, whose own parts are values again
+    if Truth in get_args(hint):  # a `Value`, whose parts are values again
         return _value(data, depth)
     if hint is Observation:
         return _observation(data, depth)

@@ -1,7 +1,7 @@
-"""Parcels: what goes from one station to another of a bigActor, in the words of the mission's text.
+"""Parcels: the parts of a bigActor that pass from one station to another, in terms of the mission's text.
 
-A parcel holds no reaction. A control that is asked for goes as the command or rule that made it, with its host and its
-arguments; who takes it in makes the reaction anew from the text of its own mission.
+A parcel holds no reaction. A requested control travels as its command or rule with host and arguments. The receiver
+rebuilds the reaction from the text of its own mission.
 """
 
 from dataclasses import dataclass
@@ -15,12 +15,12 @@ from semantics.state.signature import Name
 
 @dataclass(frozen=True, slots=True)
 class Controls:
-    """`control(R ⇒ R')`, asked for and not served: what made it.
+    """A pending `control(R ⇒ R')`, by the command or rule that made it.
 
     Attributes:
-        agent: Who asked.
+        agent: The agent that requested it.
         name: The command or rule.
-        host: The host that it was asked for.
+        host: The agent's host at the request.
         arguments: Its arguments.
     """
 
@@ -31,19 +31,19 @@ class Controls:
 
 
 Asked = OBS | READY | SND | MGR | Controls
-"""What a bigActor on its way may have asked for; a flight ends where it began."""
+"""The pending requests of a travelling bigActor; a flight ends where it began, so it has no FLY."""
 
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """A bigActor on its way.
+    """A travelling bigActor.
 
     Attributes:
-        host: Where it goes.
-        code: What is left of it to run.
+        host: Its new host.
+        code: Its code left to run.
         store: Its variables.
-        requests: What it has asked for.
-        says: How often each thing may still be said to it, in the order of the environment's clauses.
+        requests: Its pending requests.
+        says: The remaining number of each message from outside, in the order of the environment's clauses.
     """
 
     host: Name
@@ -55,7 +55,7 @@ class Running:
 
 @dataclass(frozen=True, slots=True)
 class Parcel:
-    """What goes from one station to another: messages for an agent, or the agent itself with its messages."""
+    """The contents of a passage between stations: messages for an agent, or the agent itself with its messages."""
 
     agent: Name
     mail: tuple[Value, ...] = ()
@@ -63,7 +63,7 @@ class Parcel:
 
 
 def asked(program: Program, request: Request, host: Name) -> Asked:
-    """Return a pending request as it goes to another station; raises ValueError where the text cannot have made it."""
+    """Return a pending request in the form of a parcel; raises ValueError if the text cannot have made it."""
     if not isinstance(request, CTR | FLY):
         return request
     for name, make in sorted(program.reactions.items()) if isinstance(request, CTR) else ():
@@ -74,7 +74,7 @@ def asked(program: Program, request: Request, host: Name) -> Asked:
 
 
 def requested(program: Program, given: Asked) -> Request:
-    """Return what was asked for as it is served here: the reaction of a control is made of this program.
+    """Return the pending request of a parcel's request; a control's reaction is rebuilt from this program.
 
     Raises:
         Fault: The command or rule does not take its arguments.

@@ -1,8 +1,8 @@
-"""A configuration partitioned among stations: each runs its hosts' bigActors, and knows where the others are.
+"""A configuration partitioned among stations: each runs the bigActors of its hosts, and knows the hosts of the others.
 
-The whole is what the stations have together, and what is on its way between them. It moves by the rules of this
-package alone: `snd`, `migrate` and `spawn` are taken where the agent runs whose rules they are. What they put into an
-agent that runs elsewhere then *leaves* in a parcel, and *enters* there: which changes nothing of the whole.
+The whole configuration is the union of the stations' parts and the parcels between them. It changes only by the rules
+of this package: `snd`, `migrate` and `spawn` are applied at the station of the agent whose rules they are. Their effect
+on an agent of another station then *leaves* in a parcel and *enters* there, which does not change the whole.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -23,7 +23,7 @@ from semantics.state.signature import REGION, Name
 Station = str
 
 HERE: Cell = ("here",)
-"""Which station a part is of; nothing in a configuration that is not parted."""
+"""The cell with the station of this part; absent in a configuration that is not partitioned."""
 
 
 def station_cell(host: Name) -> Cell:
@@ -32,24 +32,24 @@ def station_cell(host: Name) -> Cell:
 
 
 def sent_cell(station: Station) -> Cell:
-    """Address how many parcels have left for a station."""
+    """Address the number of parcels that have left for a station."""
     return ("sent", station)
 
 
 def took_cell(station: Station) -> Cell:
-    """Address how many parcels of a station have entered."""
+    """Address the number of parcels from a station that have entered."""
     return ("took", station)
 
 
 @dataclass(frozen=True, slots=True)
 class Parting:
-    """How a configuration is parted.
+    """The partition of a configuration, seen from one station.
 
     Attributes:
-        here: Whose part is meant.
-        hosts: For each node whose agents a station runs, that station.
-        sent: How many parcels had left for each other station when the run began.
-        took: How many of theirs had entered.
+        here: The station of this part.
+        hosts: The station of each host.
+        sent: The number of parcels that had left for each other station when the run began.
+        took: The number of parcels from each other station that had entered by then.
     """
 
     here: Station
@@ -60,13 +60,13 @@ class Parting:
 
 @dataclass(frozen=True, slots=True)
 class Passage:
-    """A parcel that passes between stations, as a step says it; where it leaves, the configuration says what is in it.
+    """The passage of a parcel between stations; a leaving parcel's contents are in the configuration.
 
     Attributes:
-        agent: Whose it is.
-        station: Where it goes to or comes from.
-        number: The how-many-th it is, between these two.
-        parcel: What enters; None for what leaves.
+        agent: The agent of the parcel.
+        station: Its destination, or its origin.
+        number: Its number in the sequence from one station to the other.
+        parcel: The entering parcel; None for a leaving one.
     """
 
     agent: Name
@@ -77,7 +77,7 @@ class Passage:
 
 @dataclass(frozen=True, slots=True)
 class Whereabouts:
-    """Another station says where an agent is hosted."""
+    """Another station's report of an agent's host."""
 
     agent: Name
     host: Name
@@ -85,12 +85,12 @@ class Whereabouts:
 
 @dataclass(frozen=True, slots=True)
 class Belief:
-    """Another station says what it has written into a slot of L.
+    """Another station's report of its write to a slot of L.
 
     Attributes:
-        node: Of which node.
+        node: The node.
         slot: `parent` or `links`.
-        names: Where it is, nothing for what L does not have; or on which links.
+        names: The parent, empty for a node outside L; or the links.
     """
 
     node: Name
@@ -99,11 +99,11 @@ class Belief:
 
 
 Elsewhere = Passage | Whereabouts | Belief
-"""What other stations have a part in: as steps say it."""
+"""The events that involve other stations, as steps record them."""
 
 
 def parted(c: Configuration, parting: Parting) -> Configuration:
-    """Return a station's part of a configuration: of agents that run elsewhere it has their hosts alone."""
+    """Return a station's part of a configuration; of agents at other stations it has only the hosts."""
     cells: Changes = {HERE: parting.here}
     for host, station in parting.hosts.items():
         cells[station_cell(host)] = station
@@ -118,23 +118,23 @@ def parted(c: Configuration, parting: Parting) -> Configuration:
 
 
 def is_parted(c: Configuration) -> bool:
-    """Tell whether a configuration is one station's part of a whole."""
+    """Whether a configuration is one station's part of a whole."""
     return c.read(HERE) is not None
 
 
 def station_of(c: Configuration, a: Name) -> Station | None:
-    """Return the station that runs an agent, None where no station does."""
+    """Return the station that runs an agent, None if no station does."""
     station: Station | None = c.read(station_cell(c.alpha.host(a)))
     return station
 
 
 def is_here(c: Configuration, a: Name) -> bool:
-    """Tell whether an agent runs here: everywhere, where nothing is parted."""
+    """Whether an agent runs at this station; always true in a configuration that is not partitioned."""
     return not is_parted(c) or station_of(c, a) == c.read(HERE)
 
 
 def parcel_of(c: Configuration, a: Name) -> Parcel | None:
-    """Return what is here of an agent, None where nothing is; raises ValueError while it flies a vehicle."""
+    """Return this station's contents of an agent, None if empty; raises ValueError while it flies a vehicle."""
     code, store, mail = c.alpha.code(a), c.alpha.store(a), c.alpha.mailbox(a)
     host, program = c.alpha.host(a), c.setting.program
     requests = tuple(asked(program, pending.request, host) for pending in c.eta.of(a))
@@ -144,13 +144,13 @@ def parcel_of(c: Configuration, a: Name) -> Parcel | None:
 
 
 def _counters(c: Configuration, a: Name) -> tuple[Cell, ...]:
-    """Return the cells that count how often something may still be said to an agent: they go where it goes."""
+    """Return the cells that count the remaining messages from outside to an agent; they travel with it."""
     clauses = c.setting.environment
     return tuple(each.counter for each in clauses if isinstance(each, Says) and each.agent == a)
 
 
 def leave(c: Configuration, a: Name) -> Iterator[Transition]:
-    """Send away what this station has of an agent that runs elsewhere.
+    """Send away an agent that runs at another station: its remaining code, mail and requests.
 
     a runs at station s, which is not this one      something of a is here      no FLY of a ∈ η
     ─────────────────────────────────────────────────────────────────────────────────────────  ⟨leave : a, s⟩
@@ -168,7 +168,7 @@ def leave(c: Configuration, a: Name) -> Iterator[Transition]:
 
 
 def enter(c: Configuration, station: Station, number: int, parcel: Parcel) -> Iterator[Transition]:
-    """Take in what another station had of an agent: each parcel once, and in order.
+    """Take in a parcel from another station: each parcel once, and in order.
 
     the number-th parcel from station s has mail for a, or a itself      number − 1 parcels from s have entered
     the text can have produced it: a at a statement of it, values that fit, requests that its statements make
@@ -189,7 +189,7 @@ def enter(c: Configuration, station: Station, number: int, parcel: Parcel) -> It
 
 
 def objection(c: Configuration, parcel: Parcel) -> str:
-    """Say why a parcel cannot enter: its agent runs here already, or this mission's text cannot have produced it."""
+    """Return why a parcel cannot enter (its agent runs here, or the text cannot have produced it); else empty."""
     a, running = parcel.agent, parcel.running
     if running is None and a not in c.alpha:
         return f"there is no bigActor {a:.60} here"
@@ -204,7 +204,7 @@ def objection(c: Configuration, parcel: Parcel) -> str:
 
 
 def learn(c: Configuration, a: Name, host: Name) -> Iterator[Transition]:
-    """Learn the host of an agent that runs at another station; nothing else of it is known here.
+    """Learn the host of an agent that runs at another station; this station knows nothing else of it.
 
     a does not run here      h is a host of another station, where the text may host a, and not the one known
     ─────────────────────────────────────────────────────────────────────────────────────────  ⟨learn : a, h⟩
@@ -222,7 +222,7 @@ def learn(c: Configuration, a: Name, host: Name) -> Iterator[Transition]:
 
 
 def believe(c: Configuration, belief: Belief) -> Iterator[Transition]:
-    """Take over what another station's `sense`, `actuate` or `commit` has written into L: all stations share one L.
+    """Adopt the writes of another station's `sense`, `actuate` or `commit` to L: all stations share one L.
 
     station s has written parent(n) = p, or links(n) = l      L stays a forest
     ──────────────────────────────────────────────────────────────────────────  ⟨believe : n⟩
@@ -243,7 +243,7 @@ def believe(c: Configuration, belief: Belief) -> Iterator[Transition]:
 
 
 def _nesting(c: Configuration, node: Name, parent: Name | None) -> Changes:
-    """Write parent(node), and keep L a forest: what would be in itself is in the region, and so is what is new."""
+    """Return the writes of parent(node) that keep L a forest: new places and nodes on a cycle go to the region."""
     logical = c.structure.logical
     if parent is None or parent == REGION:
         return {parent_cell(node): parent}
@@ -253,11 +253,11 @@ def _nesting(c: Configuration, node: Name, parent: Name | None) -> Changes:
 
 
 PASSING: tuple[Callable[..., Iterator[Transition]], ...] = (leave, enter, learn, believe)
-"""What happens between stations."""
+"""The rules between stations."""
 
 
 def passing(c: Configuration, passage: Elsewhere) -> Iterator[Transition]:
-    """Yield the step that something of other stations is."""
+    """Yield the transition of an event that involves other stations."""
     if isinstance(passage, Whereabouts):
         yield from learn(c, passage.agent, passage.host)
         return
@@ -283,7 +283,7 @@ def _arriving(c: Configuration, a: Name, running: Running) -> Configuration:
 
 
 def _without(c: Configuration, a: Name) -> Configuration:
-    """Return a configuration in which nothing of an agent is left but its host."""
+    """Return a configuration without an agent's code, variables, mail and requests; its host stays."""
     while pending := c.eta.of(a):
         c = c.with_(c.eta.removing(pending[0]))
     return c.with_({code_cell(a): (), store_cell(a): (), mailbox_cell(a): ()})

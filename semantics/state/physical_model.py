@@ -14,7 +14,7 @@ from semantics.state.views import View
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A geometry on the earth, with the band of altitudes (metres) that it takes up, if it has one."""
+    """A geometry on the earth, with its band of altitudes (metres) if it has one."""
 
     geometry: Geometry
     altitude: Band | None = None
@@ -22,9 +22,10 @@ class Placed:
 
 @dataclass(frozen=True, slots=True)
 class Carried:
-    """Carried by another entity, wherever that is; `shape` is what it takes up once it is put down.
+    """Carried by another entity, at the carrier's position; `shape` is the placed form once it is put down.
 
-    Where a shape was before means nothing while it is carried: it is kept as it was first given, a point as any point.
+    The position of a carried shape has no meaning. So the shape is normalised to its template, and a point to the
+    origin.
     """
 
     by: Name
@@ -38,7 +39,7 @@ class Carried:
 
 @dataclass(frozen=True, slots=True)
 class InTransit:
-    """Commanded from `origin` to a node (`control timed`): it may be anywhere between the two."""
+    """Commanded from `origin` to a node (`control timed`), and possibly anywhere between the two."""
 
     origin: Placed
     to: Name
@@ -48,7 +49,7 @@ Placement = Placed | Carried | InTransit
 
 
 class Holder(NamedTuple):
-    """What may contain others: its area in square metres, its name, and where it stands."""
+    """A possible container: its area in square metres, its name, and its placement."""
 
     area: float
     place: Name
@@ -56,7 +57,7 @@ class Holder(NamedTuple):
 
 
 def placement_cell(entity: Name) -> Cell:
-    """Address where an entity is; None there means that it is not in P."""
+    """Address the placement of an entity; None means that it is not in P."""
     return ("placement", entity)
 
 
@@ -66,7 +67,7 @@ def channels_cell(entity: Name) -> Cell:
 
 
 def left_cell(entity: Name, channel: Name) -> Cell:
-    """Address whether it was by leaving that an entity is off a channel (`environment.Leaves`)."""
+    """Address whether an entity is off a channel because it left (`environment.Leaves`)."""
     return ("left", entity, channel)
 
 
@@ -75,35 +76,35 @@ def down_cell(channel: Name) -> Cell:
     return ("down", channel)
 
 
-@lru_cache(maxsize=1 << 12)  # live, what moves is at each place once: more would only be in the way
+@lru_cache(maxsize=1 << 12)  # small: in a live mission each position occurs once
 def encloses(outer: Placed, inner: Placed) -> bool:
-    """Tell interior containment, and that of altitude where both have a band."""
+    """Whether the interior contains a placement, and its band of altitudes does too if both have one."""
     levels = band_contains(outer.altitude, inner.altitude)
     return levels and not outer.geometry.is_point and contains(outer.geometry, inner.geometry)
 
 
 def is_carried(placement: Placement | None) -> bool:
-    """Ask whether something is carried."""
+    """Whether an entity is carried; a question about a cell."""
     return isinstance(placement, Carried)
 
 
 def is_aboard(placement: Placement | None, carriers: frozenset[Name]) -> bool:
-    """Ask whether something is carried by one of some others."""
+    """Whether an entity is carried by one of some carriers; a question about a cell."""
     return isinstance(placement, Carried) and placement.by in carriers
 
 
 def is_placed(placement: Placement | None) -> bool:
-    """Ask whether something stands by itself, not in transit."""
+    """Whether an entity is placed: neither absent, carried nor in transit; a question about a cell."""
     return isinstance(placement, Placed)
 
 
 def stands_within(placement: Placement | None, at: Placed) -> bool:
-    """Ask whether what stands there is within a place that stands so."""
+    """Whether an entity is placed within a place; a question about a cell."""
     return isinstance(placement, Placed) and encloses(at, placement)
 
 
 def stands_outside(placement: Placement | None, places: tuple[Placed, ...]) -> bool:
-    """Ask whether something stands by itself within none of some places."""
+    """Whether an entity is placed within none of some places; a question about a cell."""
     return isinstance(placement, Placed) and not any(encloses(at, placement) for at in places)
 
 
@@ -118,7 +119,7 @@ class PhysicalModel(View):
         self.sorting = sorting
 
     def placement(self, entity: Name) -> Placement | None:
-        """Return what P says of an entity's whereabouts, None where it has no image."""
+        """Return the placement of an entity, None if it has no image in P."""
         placement: Placement | None = self.cells.read(placement_cell(entity))
         return placement
 
@@ -134,21 +135,21 @@ class PhysicalModel(View):
         return tuple(name for name in self.cells.read(NAMES) if name in self)
 
     def carrier(self, entity: Name) -> Name | None:
-        """Return what carries an entity."""
+        """Return the carrier of an entity, None if nothing carries it."""
         if not self.cells.test(placement_cell(entity), is_carried):
             return None
         placement = self.placement(entity)
         return placement.by if isinstance(placement, Carried) else None
 
     def carriers(self, entity: Name) -> Iterator[Name]:
-        """Yield what carries an entity, then what carries that, and so on."""
+        """Yield the carrier of an entity, then the carrier of that, and so on."""
         by = self.carrier(entity)
         while by is not None:
             yield by
             by = self.carrier(by)
 
     def cargo(self, entity: Name) -> frozenset[Name]:
-        """Return everything that an entity carries, at any depth."""
+        """Return all cargo of an entity, at any depth."""
         aboard, names = frozenset({entity}), self.cells.read(NAMES)
         while more := {name for name in names if name not in aboard and self._is_aboard(name, aboard)}:
             aboard |= more
@@ -158,35 +159,36 @@ class PhysicalModel(View):
         return self.cells.test(placement_cell(entity), is_aboard, carriers)
 
     def position(self, entity: Name) -> Placed | None:
-        """Return where an entity is: where its outermost carrier is, or was when it took off."""
+        """Return the position of an entity: that of its outermost carrier, or that before its takeoff."""
         placement = self.placement(entity)
         while isinstance(placement, Carried):
             placement = self.placement(placement.by)
         return placement.origin if isinstance(placement, InTransit) else placement
 
     def going_to(self, entity: Name) -> Name:
-        """Return where an entity itself was sent; nothing for what is not under way."""
+        """Return the destination of an entity in transit; empty otherwise."""
         placement = self.placement(entity)
         return placement.to if isinstance(placement, InTransit) else ""
 
     def transit(self, entity: Name) -> InTransit | None:
-        """Return the flight of an entity, or of what carries it."""
+        """Return the flight of an entity, or of its carrier."""
         placement = self.placement(entity)
         while isinstance(placement, Carried):
             placement = self.placement(placement.by)
         return placement if isinstance(placement, InTransit) else None
 
     def contains(self, place: Name, entity: Name) -> bool:
-        """Tell σ_P's `contains`.
+        """Whether σ_P has the pair `contains(place, entity)`.
 
-        An entity in transit is contained only by what contains both ends of its flight, the destination itself
-        excepted, so no agent sees it arrive early. A carried entity contains nothing: it has no area of its own.
+        A place contains an entity in transit only if it contains both ends of the flight; the destination itself does
+        not, so no agent sees the entity arrive early. A carried entity contains nothing, since it has no area of its
+        own.
         """
         at = None if place == entity else self._standing(place)
         return at is not None and self._is_within(entity)(place, at)
 
     def _is_within(self, entity: Name) -> Callable[[Name, Placed], bool]:
-        """Return whether an entity is contained by a place that stands somewhere."""
+        """Return the predicate that decides whether a place with a placement contains an entity."""
         inner, flight = self.position(entity), self.transit(entity)
         destination = None if flight is None or flight.to == REGION else self.position(flight.to)
 
@@ -200,15 +202,15 @@ class PhysicalModel(View):
         return is_within
 
     def carries(self, carrier: Name, entity: Name) -> bool:
-        """Tell σ_P's `carries`."""
+        """Whether σ_P has the pair `carries(carrier, entity)`."""
         return self._is_aboard(entity, frozenset({carrier}))
 
     def connected(self, channel: Name, entity: Name) -> bool:
-        """Tell σ_P's `connected`: the entity is there, on the channel, and the channel is up."""
+        """Whether σ_P has `connected(channel, entity)`: the entity is present and on the channel, which is up."""
         return channel in self.channels(entity) and not self.is_down(channel) and entity in self
 
     def is_down(self, channel: Name) -> bool:
-        """Tell whether a channel that may drop has dropped."""
+        """Whether a channel that may drop has dropped."""
         return bool(self.cells.read(down_cell(channel)))
 
     def abstract_parent(self, entity: Name) -> Name:
@@ -223,7 +225,7 @@ class PhysicalModel(View):
         return next((place for _, place, at in holders if is_within(place, at)), REGION)
 
     def abstract_parents(self) -> dict[Name, Name]:
-        """Return the parents in A(P) of all entities that are there: an index tells which places are near each."""
+        """Return the parents in A(P) of all present entities; a spatial index finds the places near each."""
         entities = self.entities()
         standing = ((name, self._standing(name)) for name in entities)
         places = {name: at for name, at in standing if at is not None and not at.geometry.is_point}
@@ -238,7 +240,7 @@ class PhysicalModel(View):
         index: PlaceIndex,
         containers: Callable[[Name], frozenset[Name]],
     ) -> Name:
-        """Return what `abstract_parent` does, of places that stand by themselves."""
+        """Return the result of `abstract_parent`, given the places with an area of their own."""
         if (by := self.carrier(entity)) is not None:
             return by
         inner = self.position(entity)
@@ -250,7 +252,7 @@ class PhysicalModel(View):
         return min(around, key=lambda name: (measure(places[name].geometry), name), default=REGION)
 
     def is_in(self, entity: Name, place: Name) -> bool:
-        """Tell whether an entity's parent in A(P) is a place; only that is asked of where it stands."""
+        """Whether an entity's parent in A(P) is a place; the entity's placement is tested, not read."""
         where = placement_cell(entity)
         if place != REGION and place not in self.sorting.containers(self.sorting.kind(entity)):
             return self.carries(place, entity)
@@ -258,11 +260,11 @@ class PhysicalModel(View):
             return entity in self and self.abstract_parent(entity) == place
         at = None if place in (REGION, entity) else self._standing(place)
         if place != REGION and (at is None or not self.cells.test(where, stands_within, at)):
-            return False  # most places: the others that may contain it need not be looked at
+            return False  # most places: no other holder has to be examined
         return self.cells.test(where, stands_outside, self.before(entity, place, at))
 
     def _standing(self, place: Name) -> Placed | None:
-        """Return where a place stands that has room of its own: what is carried has none."""
+        """Return the placement of a place with an area of its own; a carried place has none."""
         match self.placement(place):
             case Carried():
                 return None
@@ -272,16 +274,16 @@ class PhysicalModel(View):
                 return placement
 
     def before(self, entity: Name, place: Name, at: Placed | None) -> tuple[Placed, ...]:
-        """Return where those stand that A(P) takes before a place that an entity is in, which stands there itself."""
+        """Return the placements of smaller holders, which A(P) tries before a place; only those overlapping `at`."""
         smaller = (
             each for _, _, each in takewhile(lambda holder: holder.place != place, self.holders(entity))
         )
         return tuple(each for each in smaller if at is None or share_interior(each.geometry, at.geometry))
 
     def holders(self, entity: Name) -> tuple[Holder, ...]:
-        """Return what may contain an entity, in the order of A(P): the smallest first, of equal ones by name.
+        """Return the possible containers of an entity, in the order of A(P): by area, then by name.
 
-        What is carried has no room of its own.
+        A carried entity contains nothing.
         """
         places = self.sorting.containers(self.sorting.kind(entity))
         standing = [(place, self._standing(place)) for place in places if place != entity]
@@ -301,11 +303,11 @@ class PhysicalModel(View):
         return tuple(name for name in self.cells.read(NAMES) if self.connected(channel, name))
 
     def placing(self, entity: Name, placement: Placement | None) -> Changes:
-        """Write P[entity ↦ placement]."""
+        """Return the writes of P[entity ↦ placement]."""
         return {placement_cell(entity): placement}
 
     def joining(self, entity: Name, channels: frozenset[Name]) -> Changes:
-        """Write the channels that an entity is on; where it joins one, it has not left that any more."""
+        """Return the writes of an entity's channels; a channel that it joins is no longer one that it has left."""
         joined = sorted(channels.difference(self.channels(entity)))
         back = {left_cell(entity, each): False for each in joined if self.cells.read(left_cell(entity, each))}
         return {channels_cell(entity): tuple(sorted(channels))} | back

@@ -1,4 +1,4 @@
-"""Configurations in the paper's notation: ⟨α | S | η⟩, and what changed between two."""
+"""Configurations in the paper's notation: ⟨α | S | η⟩, and the changes between two."""
 
 from collections.abc import Iterator
 from textwrap import indent
@@ -16,7 +16,7 @@ from semantics.state.signature import Name
 
 
 def print_agent(c: Configuration, a: Name) -> str:
-    """Print an agent: its name, host, what it is at, variables and mailbox."""
+    """Return an agent as text: its name, host, next statement, variables and mailbox."""
     agents, code = c.alpha, c.alpha.code(a)
     line = c.setting.program.lines[code[0]] if code and c.setting.program.lines else None
     at = word_of(c.setting.program.statements[code[0]]) if code else "ended"
@@ -30,7 +30,7 @@ def print_agent(c: Configuration, a: Name) -> str:
 
 
 def word_of(statement: Statement) -> str:
-    """Return the word of the language that a statement begins with."""
+    """Return the keyword that a statement begins with."""
     words = {
         "ControlBy": "control",
         "Tested": "guard",
@@ -43,7 +43,7 @@ def word_of(statement: Statement) -> str:
 
 
 def print_configuration(c: Configuration) -> str:
-    """Print a configuration in three parts: the agents, the logical model as a tree, the pending requests."""
+    """Return a configuration as text in three parts: the agents, the logical model as a tree, the pending requests."""
     alpha = "\n".join(f"  {print_agent(c, a)}" for a in c.alpha.names())
     eta = "\n".join(f"  {each.request}" for each in c.eta.all()) or "  ∅"
     tree = indent(draw_text(c.structure.logical.bigraph()), "  ")
@@ -55,7 +55,7 @@ LONGEST_PART = 60
 
 
 def print_briefly(c: Configuration) -> str:
-    """Print a configuration on one line of bounded length: who is at what, what is believed to be where, what pends."""
+    """Return a configuration on one line of bounded length: agents, believed parents, pending requests."""
     nodes = c.structure.logical.bigraph().nodes
     alpha = ", ".join(print_agent(c, a) for a in c.alpha.names())
     within = ", ".join(f"{node.name} in {nodes[at].name}" for node in nodes for at in node.parents if at >= 0)
@@ -64,7 +64,7 @@ def print_briefly(c: Configuration) -> str:
 
 
 def print_changes(before: Configuration, after: Configuration) -> tuple[str, ...]:
-    """Print what differs between two configurations, a line for each cell, the monitor's left out."""
+    """Return the differences between two configurations, a line for each cell, without the monitor's cells."""
     lines: list[str] = []
     for cell, value in sorted(_cells(after).items()):
         old = before.read(cell)

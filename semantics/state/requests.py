@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class OBS:
-    """`OBS(a, q)`: a asked to observe q; HOST was resolved when it asked."""
+    """`OBS(a, q)`: a asked to observe q, with HOST resolved at the request."""
 
     agent: Name
     query: "Query"
@@ -24,7 +24,7 @@ class OBS:
 
 @dataclass(frozen=True, slots=True)
 class READY:
-    """`READY(a, q, L_q)`: the observation that a asked for waits to be received."""
+    """`READY(a, q, L_q)`: the observation that a asked for is ready to be received."""
 
     agent: Name
     query: "Query"
@@ -59,7 +59,7 @@ class FLY:
 
 @dataclass(frozen=True, slots=True)
 class SND:
-    """`SND(a, b, m)`: a message on its way."""
+    """`SND(a, b, m)`: a message in transit."""
 
     agent: Name
     to: Name
@@ -82,7 +82,7 @@ class MGR:
 
 @dataclass(frozen=True, slots=True)
 class Received:
-    """What `rcv_obs` is about: an observation, printed only where somebody looks at it."""
+    """The subject of a `rcv_obs` label: an observation, printed only on demand."""
 
     observation: "Observation"
 
@@ -95,7 +95,7 @@ REQUESTS: tuple[type, ...] = (OBS, READY, CTR, FLY, SND, MGR)
 
 
 def request_key(request: Request) -> tuple[str, str]:
-    """Order requests canonically, the same in every process: a message may hold sets, whose `repr` has no order."""
+    """Return a canonical sort key, the same in every process: a message may hold sets, whose `repr` has no order."""
     if isinstance(request, SND):
         return ("SND", repr((request.agent, request.to, order_key(request.message))))
     return (type(request).__name__, repr(request))

@@ -10,9 +10,9 @@ from semantics.timing.timing import Timing
 
 
 class Scheduler(Enum):
-    """Which pending request may be served next; each refines the one before where no `react` has an `after`.
+    """The order in which pending requests are served; without `after` branches, each member refines the one before.
 
-    A timeout asks that nothing in line fits, and under an order less is in line.
+    A timeout requires that no case takes anything in line, and an order leaves less in line.
     """
 
     UNORDERED = "unordered"
@@ -29,19 +29,19 @@ class Control(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Setting(Sorting):
-    """Hold what a mission declares.
+    """The declarations of a mission.
 
     Attributes:
         signature: Its kinds.
-        kinds: The kind of each entity that it names, present at first or not.
+        kinds: The kind of each entity that it names, whether present at first or not.
         program: The statements of all behaviours.
-        environment: What `env` and `say` may do.
-        scheduler: Which requests are in line.
+        environment: The clauses of `env` and `say`.
+        scheduler: The order of service.
         control: Whether control takes time.
         arriving: Entities whose flights always end: their `commit` is fair.
-        monitored: Whether what observations rest on is remembered, for stale-observation races.
-        clause_lines: The line of the mission's text that each clause of the environment stands in, from 1.
-        timing: How long everything takes; None where the mission says nothing of time.
+        monitored: Whether the race monitor tracks the provenance of observations.
+        clause_lines: The line in the mission's text of each clause of the environment, from 1.
+        timing: The durations of steps; None if the mission has no `timing` section.
     """
 
     program: Program

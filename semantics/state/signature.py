@@ -12,7 +12,7 @@ REGION: Final = "region"
 """The outermost place of L and of A(P): it contains everything, and has no physical image of its own."""
 
 UNKNOWN: Final = "unknown"
-"""What an observation calls the place of a node that it has not seen anywhere."""
+"""The place, in an observation, of a node that it has not seen anywhere."""
 
 NO_ENTITIES: Final = frozenset({REGION, UNKNOWN})
 """The names of places that no entity may have."""
@@ -20,7 +20,7 @@ NO_ENTITIES: Final = frozenset({REGION, UNKNOWN})
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """Describe one control: what it may contain, whether it carries, can be driven, lets rules act inside it."""
+    """One control: the kinds that it may contain or carry, whether it can be driven, and whether it is passive."""
 
     name: str
     contains: frozenset[str] = frozenset()
@@ -30,17 +30,17 @@ class Kind:
 
     @property
     def holds(self) -> bool:
-        """Whether anything may be a child of such a node."""
+        """Whether a node of this kind may have children."""
         return bool(self.contains or self.carries)
 
     def may_contain(self, kind: str) -> bool:
-        """Tell whether a node of `kind` may be a child; what is carried is contained."""
+        """Whether a node of `kind` may be a child; carried nodes are children too."""
         return kind in self.contains or kind in self.carries
 
 
 @dataclass(frozen=True)
 class Signature:
-    """Hold the kinds of a mission by name; an unknown kind is one that does and holds nothing."""
+    """The kinds of a mission by name; an unknown name is a kind without any abilities."""
 
     kinds: Mapping[str, Kind] = field(default_factory=dict)
 
@@ -48,7 +48,7 @@ class Signature:
         return self.kinds.get(kind) or Kind(kind)
 
     def within(self, kind: str, *, directly: bool = False) -> frozenset[str]:
-        """Return the kinds that may be inside one: its children, and unless `directly` theirs too."""
+        """Return the kinds that may be inside one: its possible children, and unless `directly` their descendants."""
         found: set[str] = set()
         waiting = [kind]
         while waiting:
@@ -60,7 +60,7 @@ class Signature:
 
     @staticmethod
     def of(kinds: Iterable[Kind]) -> "Signature":
-        """Collect kinds, sorted by name.
+        """Return the signature of some kinds, sorted by name.
 
         >>> Signature.of([Kind("Sea", frozenset({"Boat"})), Kind("Boat", driven=True)])["Sea"].may_contain("Boat")
         True
@@ -70,11 +70,11 @@ class Signature:
 
 @dataclass(frozen=True, eq=False)
 class Sorting:
-    """Hold what P and L need to know of a mission: its kinds, and of which each of its entities is.
+    """The part of a mission that P and L need: its kinds, and the kind of each of its entities.
 
     Attributes:
         signature: The kinds.
-        kinds: The kind of each entity that the mission names, present at first or not.
+        kinds: The kind of each entity that the mission names, whether present at first or not.
     """
 
     signature: Signature
@@ -85,7 +85,7 @@ class Sorting:
         return self.kinds[name]
 
     def naming(self, kinds: Mapping[Name, str]) -> Self:
-        """Return the sorting with more entities; only where one of them is a place the containers are found anew."""
+        """Return the sorting with more entities; the containers are recomputed only if one of them is a place."""
         more = replace(self, kinds={**self.kinds, **kinds})
         if not any(self.signature[kind].contains for kind in kinds.values()):
             vars(more)["_containers"] = self._containers
@@ -100,9 +100,9 @@ class Sorting:
         return {kind: tuple(names) for kind, names in found.items()}
 
     def containers(self, kind: str) -> tuple[Name, ...]:
-        """Return the names of all that may contain an entity of a kind, sorted."""
+        """Return the possible containers of entities of a kind, sorted."""
         return self._containers.get(kind, ())
 
     def carries(self, carrier: Name, name: Name) -> bool:
-        """Tell whether a kind carries another: what is put into it goes along."""
+        """Whether an entity's kind carries the kind of another."""
         return self.kind(name) in self.signature[self.kind(carrier)].carries

@@ -1,4 +1,4 @@
-"""The structure S = (L, P, β, γ), and when it is consistent."""
+"""The structure S = (L, P, β, γ), and its consistency."""
 
 from collections.abc import Iterable
 
@@ -27,11 +27,11 @@ class Structure:
         return hash((self.logical, self.physical))
 
     def beta(self, node: Name) -> Name | None:
-        """Return β(node): the naming service gives an entity its node's name; what vanished has no image."""
+        """Return β(node): the naming service gives an entity its node's name; a vanished entity has no image."""
         return node if node in self.physical else None
 
     def gamma(self, relation: Relation) -> bool:
-        """Tell whether P relates the β-images as γ says.
+        """Whether P relates the β-images by the image of the relation under γ.
 
         γ(parent) = contains or carries, γ(linked) = connected.
         """
@@ -47,7 +47,7 @@ class Structure:
         )
 
     def believes(self, relation: Relation) -> bool:
-        """Tell whether L has a pair."""
+        """Whether L has a pair."""
         if isinstance(relation, Linked):
             return relation.link in self.logical.links(relation.node)
         return self.logical.parent(relation.node) == relation.place
@@ -59,11 +59,11 @@ class Structure:
         return (*parents, *(Linked(link, node) for node in nodes for link in self.logical.links(node)))
 
     def consistent(self, relations: Iterable[Relation], nodes: Iterable[Name] = ()) -> bool:
-        """Tell whether (L', P, β, γ) is consistent, L' given by its pairs and its nodes; costs the size of L'."""
+        """Whether (L', P, β, γ) is consistent, for L' given by its pairs and nodes; the cost is the size of L'."""
         return all(self.beta(node) is not None for node in nodes) and all(map(self.gamma, relations))
 
     def locally_consistent(self, relations: Iterable[Relation], nodes: Iterable[Name] = ()) -> bool:
-        """Tell local consistency with respect to L': L' ⊆ L, and (L', P, β, γ) is consistent."""
+        """Whether S is locally consistent with respect to L': L' ⊆ L, and (L', P, β, γ) is consistent."""
         relations, nodes = tuple(relations), tuple(nodes)
         contained = all(node in self.logical for node in nodes) and all(map(self.believes, relations))
         return contained and self.consistent(relations, nodes)

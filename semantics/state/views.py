@@ -1,4 +1,4 @@
-"""Views compare by what they say, as configurations do."""
+"""Views compare by their contents, as configurations do."""
 
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -7,12 +7,12 @@ from semantics.state.cells import Cell, Row
 
 
 class View:
-    """A part of a configuration over its cells; two are equal if all of their cells say the same.
+    """A part of a configuration over its cells; two views are equal if all of their cells are.
 
-    A rule that is recorded reads cells one by one. There a comparison would read all of them unseen, so it raises.
+    Within a recorded rule a comparison raises TypeError, since it would read all cells without recording them.
 
     Attributes:
-        SORTS: The cells that it is over, by their first words.
+        SORTS: The first words of its cells.
     """
 
     __slots__ = ()
@@ -25,9 +25,9 @@ class View:
         return hash(frozenset(self.contents().items()))
 
     def contents(self) -> Mapping[Cell, Any]:
-        """Return the values of its cells but those of what is not there; raises TypeError within a rule."""
+        """Return the values of its cells, except None; raises TypeError within a rule."""
         cells: Any = getattr(self, "cells", None)
-        state = getattr(cells, "state", cells)  # a configuration's, or the values themselves
+        state = getattr(cells, "state", cells)  # the cells of a configuration, or the row itself
         if not isinstance(state, Row):
             raise TypeError(f"{type(self).__name__} is compared within a rule: compare what it says there")
         return {cell: value for cell, value in state.items() if cell[0] in self.SORTS and value is not None}

@@ -1,1 +1,1 @@
-"""Time: what a mission's `timing` section comes to, and the clocks that it compares; knows nothing of search."""
+"""Time: the values of a mission's `timing` section, and the clocks that it compares; independent of search."""

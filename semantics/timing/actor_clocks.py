@@ -1,8 +1,7 @@
-"""The clocks of actors: what of them runs in a configuration, and what each of their steps is timed by.
+"""The clocks of actors: which of them run in a configuration, and which clocks guard each step.
 
-An actor is a vehicle that lasts so long, an agent with its requests, an agent by itself, or a clause of the
-environment. What is said of each is a pure function of the cells that it reads, so it can be learned like the
-rules.
+An actor is a vehicle with an endurance, an agent's requests, an agent itself, or a clause of the environment. The
+clocks of an actor are a pure function of the cells that it reads, so they can be learned as the rules are.
 """
 
 import math
@@ -26,32 +25,33 @@ from semantics.timing.timing import ONE_HOST, Every, Sayable, Timing, Window
 
 
 class Sort(IntEnum):
-    """What a clock measures."""
+    """The measure of a clock."""
 
     MISSION = auto()
     """The time since the start."""
     EVERY = auto()
-    """Since the last step of a clause that steps at most every so often."""
+    """Since the last step of a clause with a least time between steps."""
     WINDOW = auto()
-    """No time: whether a clause that has a window was enabled in it (1), or is bound by it no more (2)."""
+    """Not a time, but a flag of a clause with a window: enabled within it (`BOUND`), or no longer bound by it (`FREE`).
+    """
     ALOFT = auto()
-    """Since a vehicle left where it is restored."""
+    """Since a vehicle left a place that restores it."""
     RESTORED = auto()
-    """Since a vehicle came to where it is restored."""
+    """Since a vehicle came to a place that restores it."""
     REQUEST = auto()
     AGENT = auto()
     AFTER = auto()
-    """Since an agent waits at a `react` with an `after`, and nothing that is there fits."""
+    """Since an agent waits at a `react` with an `after`, and no case takes anything that has come."""
     FLIGHT = auto()
     """Since the `command` of a flight."""
     AIM = auto()
-    """Since a flight can end, and what it is directed by has not changed."""
+    """Since a flight can end, and its aim has not changed."""
     RETURNS = auto()
-    """Since what dropped or left may return."""
+    """Since a dropped channel, or one that was left, may return."""
 
 
 class Clock(NamedTuple):
-    """What a clock belongs to."""
+    """A clock: its measure, and its owner."""
 
     sort: Sort
     of: Hashable = ""
@@ -59,7 +59,7 @@ class Clock(NamedTuple):
 
 
 BOUND, FREE = 1, 2
-"""What the clock of a window says of a clause."""
+"""The values of a window's clock: the window binds the clause, or binds it no longer."""
 
 
 class Running(NamedTuple):
@@ -67,8 +67,8 @@ class Running(NamedTuple):
 
     Attributes:
         clock: The clock.
-        interval: The bounds of what it times.
-        aim: What a flight is directed by: where that changes, its clock starts anew.
+        interval: The bounds of the step that it times.
+        aim: The targets of a flight; when they change, its clock restarts.
     """
 
     clock: Clock
@@ -77,7 +77,7 @@ class Running(NamedTuple):
 
 
 class Test(NamedTuple):
-    """A clock has to be within bounds."""
+    """A bound on a clock: its age must lie in [least, most]."""
 
     clock: Clock
     least: int
@@ -85,11 +85,11 @@ class Test(NamedTuple):
 
 
 class StepClocks(NamedTuple):
-    """What times a step.
+    """The clocks of a step.
 
     Attributes:
-        done: The clocks of what is done.
-        tests: One of them has to be met; nothing where it may be done at any time.
+        done: The clocks that the step resets.
+        tests: The guards, of which one must hold; empty if the step is possible at any time.
     """
 
     done: tuple[Clock, ...]
@@ -97,11 +97,11 @@ class StepClocks(NamedTuple):
 
 
 class ActorClocks(NamedTuple):
-    """What is timed of an actor.
+    """The clocks of an actor.
 
     Attributes:
         running: The clocks that run; of equal ones the oldest is the first.
-        steps: What times each of its steps.
+        steps: The clocks of each of its steps.
     """
 
     running: tuple[Running, ...]
@@ -109,14 +109,14 @@ class ActorClocks(NamedTuple):
 
 
 def timing_of(c: Configuration) -> Timing:
-    """Return what a mission says of times; it says something."""
+    """Return a mission's timing; the mission must have a `timing` section."""
     timing = c.setting.timing
     assert timing is not None
     return timing
 
 
 def lasting(timing: Timing) -> Iterator[Running]:
-    """Yield the clocks that run everywhere: the mission's, and those of clauses."""
+    """Yield the clocks that run in every configuration: the mission's, and those of clauses."""
     steps = [each.step for each in timing.clauses]
     latest = [bound for step in steps if isinstance(step, Window | Sayable) for bound in _bounds_of(step)]
     if latest:
@@ -132,7 +132,7 @@ def lasting(timing: Timing) -> Iterator[Running]:
 
 
 def of_vehicle(c: Configuration, vehicle: Name) -> ActorClocks:
-    """Return the clocks of a vehicle's endurance: RESTORED only where it is."""
+    """Return the clocks of a vehicle's endurance; RESTORED runs only at a place that restores it."""
     endurance = dict(timing_of(c).endurances)[vehicle]
     aloft = Running(Clock(Sort.ALOFT, vehicle), Interval(endurance.lasts))
     restored = Running(Clock(Sort.RESTORED, vehicle), Interval(endurance.after))
@@ -140,7 +140,7 @@ def of_vehicle(c: Configuration, vehicle: Name) -> ActorClocks:
 
 
 def is_restored(c: Configuration, vehicle: Name) -> bool:
-    """Tell whether a vehicle is where it is restored: in transit it is nowhere."""
+    """Whether a vehicle is at a place that restores it; a vehicle in transit is at no place."""
     physical, places = c.structure.physical, dict(timing_of(c).endurances)[vehicle].places
     if vehicle not in physical or physical.transit(vehicle) is not None:
         return False
@@ -148,7 +148,7 @@ def is_restored(c: Configuration, vehicle: Name) -> bool:
 
 
 def _around(c: Configuration, entity: Name) -> Iterator[Name]:
-    """Yield the places around an entity, the innermost first, as P has them."""
+    """Yield the places around an entity in A(P), the innermost first."""
     seen: set[Name] = set()
     place = c.structure.physical.abstract_parent(entity)
     while place in c.structure.physical and place not in seen:
@@ -161,7 +161,7 @@ def _around(c: Configuration, entity: Name) -> Iterator[Name]:
 
 
 def of_requests(c: Configuration, a: Name, served: Iterable[Transition | Fault]) -> ActorClocks:
-    """Return the clocks of an agent's requests that a rule would serve apart from turns, and of its flights."""
+    """Return the clocks of an agent's requests that a rule can serve, regardless of turns, and of its flights."""
     steps = [each for each in served if isinstance(each, Transition)]
     enabled = _serving_rules(steps)
     pending = [each.request for each in c.eta.in_line(a) if each.request in enabled]
@@ -172,12 +172,12 @@ def of_requests(c: Configuration, a: Name, served: Iterable[Transition | Fault])
         for channel in _channels(c, request)
     ]
     bounded = sorted((each for each in running if each.interval != ANY_TIME), key=running.index)
-    found = (*bounded, *_flights(c, a, enabled))  # equal clocks stand together
+    found = (*bounded, *_flights(c, a, enabled))  # equal clocks are adjacent
     return ActorClocks(found, tuple(_of_request(c, each, found) for each in steps))
 
 
 def _serving_rules(steps: Iterable[Transition]) -> dict[Request, frozenset[str]]:
-    """Return by which rules each request would be served."""
+    """Return the rules that would serve each request."""
     found: dict[Request, frozenset[str]] = {}
     for each in steps:
         if each.served is not None:
@@ -206,7 +206,7 @@ def _of_request(c: Configuration, step: Transition, running: Iterable[Running]) 
 
 
 def _tests(running: Iterable[Running], clocks: list[Clock]) -> tuple[Test, ...]:
-    """Return the bounds of which one has to be met; none where some clock has none."""
+    """Return the lower bounds, of which one must hold; empty if some clock has no lower bound."""
     bounds = {each.clock: each.interval for each in running}
     tests = tuple(Test(clock, bounds.get(clock, ANY_TIME).lo) for clock in clocks)
     return tests if all(each.least for each in tests) else ()
@@ -220,7 +220,7 @@ def _channels(c: Configuration, request: Request) -> tuple[Name, ...]:
 
 
 def _service(c: Configuration, request: Request, channel: Name, rules: frozenset[str]) -> Interval:
-    """Return how long it takes until a request is served by some rules: what no line is about takes any time."""
+    """Return the time until some rules serve a request; without a line in `timing` it is unbounded."""
     timing = timing_of(c)
     match request:
         case OBS():
@@ -237,9 +237,10 @@ def _service(c: Configuration, request: Request, channel: Name, rules: frozenset
 
 
 def is_taken_up(request: CTR, rule: str) -> bool:
-    """Tell whether serving a control is only taking it up, for which an agent takes the time of its own steps.
+    """Whether serving a control only takes it up, which takes the time of the agent's own steps (`react`).
 
-    A vehicle is sent on its way, or is there already. All else is done then, and how long that takes has to be said.
+    It does when a vehicle is sent on its way, or is already at its destination. Every other control takes effect when
+    served, and `timing` has to give its duration.
     """
     command = COMMANDS.get(word_of(request))
     return rule == "command" or (command is not None and command.travels)
@@ -260,7 +261,7 @@ def word_of(request: CTR) -> str:
 
 
 def of_moves(c: Configuration, a: Name, moves: Iterable[Transition | Fault]) -> ActorClocks:
-    """Return the clock of an agent that may do something by itself."""
+    """Return the clock of an agent that can take a step of its own."""
     steps = [each for each in moves if isinstance(each, Transition)]
     running = tuple(_of_agent(c, a, steps[-1].label.rule)) if steps else ()
     done = Clock(Sort.AGENT, a), Clock(Sort.AFTER, a)
@@ -292,7 +293,7 @@ def _after(c: Configuration, a: Name) -> Interval:
 
 
 def of_clause(c: Configuration, number: int, steps: Iterable[Transition]) -> ActorClocks:
-    """Return the clock of what may return by a clause, and what times its steps."""
+    """Return the clock of a clause's return, and the clocks of its steps."""
     several, most = list(steps), timing_of(c).clause(number).returns
     returns = Running(Clock(Sort.RETURNS, number), Interval(0, most))
     is_running = most is not None and any(_returns(c, number, each) for each in several)

@@ -1,4 +1,4 @@
-"""What bounds a step: which clocks time it, how long it takes, and what of the mission's text says so."""
+"""The bounds of a step: its clocks, its duration, and the line of the mission's text that gives them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 class Bound(NamedTuple):
-    """An assumption of the section `timing` as it was written, and its line; no words where nothing is said."""
+    """An assumption of the `timing` section as written, and its line; empty if the section has none."""
 
     words: str = ""
     line: int = 0
@@ -30,14 +30,14 @@ class Bound(NamedTuple):
 
 
 class Timed(NamedTuple):
-    """The clocks since whose start a step is waited for, the first to be asked first; and how long it takes."""
+    """The clocks that time a step, in order of preference, and its duration."""
 
     clocks: tuple[Clock, ...]
     interval: Interval
 
 
 def timed_by(situation: Situation, step: TimedStep) -> Timed:
-    """Return what times a step."""
+    """Return the clocks and the duration of a step."""
     request = None if step.transition.served is None else step.transition.served.request
     if isinstance(request, FLY):
         flight, directed = Clock(Sort.FLIGHT, request), Clock(Sort.AIM, request)
@@ -72,14 +72,14 @@ def _timed_clause(situation: Situation, step: TimedStep) -> Timed:
 
 
 def bound_of(situation: Situation, step: TimedStep) -> Bound:
-    """Return what the mission's text says of how long a step takes."""
+    """Return the line of the mission's text that bounds a step's duration."""
     begins = tuple(_beginnings(situation, step))
     found = (Bound(*said) for begin in begins for said in situation.timing.lines if said[0].startswith(begin))
     return next(found, Bound())
 
 
 def _beginnings(situation: Situation, step: TimedStep) -> Iterator[str]:
-    """Yield how a bound of a step may begin, the more special first."""
+    """Yield the possible beginnings of a step's bound, the most specific first."""
     label, setting = step.transition.label, situation.c.setting
     request = None if step.transition.served is None else step.transition.served.request
     match request:
@@ -110,12 +110,12 @@ def _beginnings(situation: Situation, step: TimedStep) -> Iterator[str]:
 
 
 def flight_beginnings(setting: Setting, vehicle: str) -> tuple[str, str]:
-    """Return how a bound of a vehicle's flights may begin: it is said of the vehicle, or of its kind."""
+    """Return the possible beginnings of the bound on a vehicle's flights: by the vehicle, or by its kind."""
     return f"{vehicle} flies ", f"{setting.kind(vehicle)} flies "
 
 
 def clause_beginnings(setting: Setting, number: int) -> Iterator[str]:
-    """Yield how a bound of a clause may begin, which says what happens, too: `wifi drops `."""
+    """Yield the possible beginnings of a clause's bound, which also describe its event: `wifi drops `."""
     match setting.environment[number]:
         case Drifts(entity=entity):
             yield f"{entity} drifts "
@@ -134,7 +134,7 @@ def clause_beginnings(setting: Setting, number: int) -> Iterator[str]:
 
 
 def running_in(situation: Situation) -> Counter[Clock]:
-    """Return how many clocks run of all that may be done, bounded or not, and the others that run."""
+    """Return the number of each clock that runs, including the clocks of steps without a bound."""
     done = {clock for step in situation.steps for clock in step.done}
     return Counter(situation.clocks) | Counter(done)
 
@@ -142,7 +142,7 @@ def running_in(situation: Situation) -> Counter[Clock]:
 def going_on(
     since: Mapping[Clock, tuple[T, ...]], source: Situation, done: Iterable[Clock], after: Situation, now: T
 ) -> dict[Clock, tuple[T, ...]]:
-    """Return since when the clocks run after a step; of equal ones the oldest is the first, and is served first."""
+    """Return the start dates of the clocks after a step; of equal clocks the oldest is first, and is served first."""
     kept = dict(since)
     for clock in done:
         kept[clock] = kept.get(clock, ())[1:] if clock.sort is Sort.REQUEST else ()

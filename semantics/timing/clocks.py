@@ -1,7 +1,7 @@
-"""Clocks: what is timed in a configuration, the bounds of what may be done there, and what a step starts anew.
+"""Clocks: the timed steps of a configuration, their bounds, and the clocks that a step restarts.
 
-A clock belongs to what is done: a request, an agent, a clause of the environment, a flight, a vehicle's endurance. It
-starts when that is newly enabled or was itself just done, and goes on while other steps are taken.
+A clock belongs to a request, an agent, a clause of the environment, a flight, or a vehicle's endurance. It starts when
+its owner's step is newly enabled or was just taken, and runs on while other steps are taken.
 """
 
 from collections import defaultdict
@@ -30,11 +30,11 @@ from semantics.timing.intervals import Interval
 from semantics.timing.timing import Sayable, Timing, Window
 
 STRICT = frozenset({Sort.MISSION, Sort.ALOFT, Sort.RESTORED})
-"""Clocks of which it is asked whether they are past a constant; of the others only whether they have come to it."""
+"""Clocks that are compared with `>` to a constant; all others only with `>=`."""
 
 
 class Guard(NamedTuple):
-    """A clock of a situation, by its index, has to be within bounds."""
+    """A clock of a situation, by its index, must lie within bounds."""
 
     clock: int
     least: int
@@ -42,7 +42,7 @@ class Guard(NamedTuple):
 
 
 class Deadline(NamedTuple):
-    """No time passes once a clock has come to a bound, unless another says that a clause is free."""
+    """No time passes once a clock reaches a bound, unless another clock marks the clause as free."""
 
     clock: int
     most: int
@@ -54,9 +54,9 @@ class TimedStep:
     """A transition that is in its turn, or waits for it.
 
     Attributes:
-        transition: What is done.
-        done: The clocks of what is done.
-        guards: One of them has to be met; nothing where it may be done at any time.
+        transition: The transition.
+        done: The clocks that it resets.
+        guards: The guards, of which one must hold; empty if it is possible at any time.
         in_turn: Whether it is in its turn.
     """
 
@@ -66,7 +66,7 @@ class TimedStep:
     in_turn: bool = True
 
     def is_due(self, ages: tuple[int, ...]) -> bool:
-        """Tell whether the clocks allow it."""
+        """Whether the clocks allow it."""
         return not self.guards or any(
             ages[clock] >= least and (most is None or ages[clock] <= most)
             for clock, least, most in self.guards
@@ -74,16 +74,16 @@ class TimedStep:
 
 
 class Situation:
-    """What time means in one configuration.
+    """The timed view of one configuration.
 
     Attributes:
         c: The configuration.
-        expansion: What it allows apart from time.
+        expansion: Its untimed transitions and faults.
         clocks: The clocks that run; of equal ones the oldest is the first.
-        constants: The largest constant that each is compared with.
-        steps: What may be done.
-        deadlines: What ends the passing of time.
-        aims: What each flight is directed by.
+        constants: The largest constant that each clock is compared with.
+        steps: Its timed steps.
+        deadlines: The bounds on the passing of time.
+        aims: The targets of each flight.
     """
 
     def __init__(self, c: Configuration) -> None:
@@ -103,7 +103,7 @@ class Situation:
         self.deadlines: tuple[Deadline, ...] = tuple(dict.fromkeys(self._deadlines()))
 
     def _actors(self) -> Iterator[tuple[ActorClocks, Sequence[Transition]]]:
-        """Yield what is timed of each actor, with its steps."""
+        """Yield the clocks of each actor, with its steps."""
         c, agents, enabled = self.c, self.c.alpha.names(), self.expansion.enabled
         for vehicle, _ in self.timing.endurances:
             yield of_vehicle(c, vehicle), ()
@@ -117,7 +117,7 @@ class Situation:
             yield of_clause(c, number, steps), steps
 
     def _steps(self, actors: Iterable[tuple[ActorClocks, Sequence[Transition]]]) -> Iterator[TimedStep]:
-        """Yield all steps, those last that wait for their turn."""
+        """Yield all steps; those that wait for their turn come last."""
         waiting = {id(each) for each in self.expansion.out_of_turn}
         timed = [each for clocks, steps in actors for each in zip(steps, clocks.steps, strict=True)]
         for in_turn in (True, False):
@@ -137,17 +137,17 @@ class Situation:
             if transitions and isinstance(step, Window) and step.within is not None:
                 yield Deadline(mission, step.within, self.first[Clock(Sort.WINDOW, number)])
 
-    # --- what is asked of ages
+    # --- ages
 
     @cached_property
     def constants(self) -> tuple[int, ...]:
-        """How far each clock has to be counted: the largest constant, and one more where it may be past it."""
+        """The cap of each clock: its largest constant, plus one if it is compared with `>`."""
         bounds = (self.bounds[clock] for clock in self.clocks)
         largest = (max(each.lo, each.hi or 0) for each in bounds)
         return tuple(most + (clock.sort in STRICT) for most, clock in zip(largest, self.clocks, strict=True))
 
     def slack(self, ages: tuple[int, ...]) -> int | None:
-        """Return how many ticks may pass; None if any number."""
+        """Return the number of ticks that may pass; None if unbounded."""
         left = (
             max(most - ages[clock], 0)
             for clock, most, unless in self.deadlines
@@ -156,7 +156,7 @@ class Situation:
         return min(left, default=None)
 
     def later(self, ages: tuple[int, ...], ticks: int) -> tuple[int, ...]:
-        """Return the ages some ticks later."""
+        """Return the ages after some ticks."""
         return tuple(
             age if clock.sort is Sort.WINDOW else age + ticks
             for age, clock in zip(ages, self.clocks, strict=True)
@@ -171,7 +171,7 @@ class Situation:
         return self.entered(ages)
 
     def entered(self, ages: list[int]) -> tuple[int, ...]:
-        """Return the ages after a step into this configuration: a window binds what it is first enabled in."""
+        """Return the ages after a step into this configuration; a window binds a clause once the clause is enabled."""
         for number, transitions in enumerate(self.by_clauses):
             step = self.timing.clause(number).step
             if transitions and isinstance(step, Window):
@@ -182,7 +182,7 @@ class Situation:
         return tuple(ages)
 
     def unbounded(self) -> Iterator[Label]:
-        """Yield what agents may do here in their turn that nothing says an end of."""
+        """Yield the labels of agents' steps that are in their turn here and have no deadline."""
         ending = {deadline.clock for deadline in self.deadlines}
         for step in self.steps:
             bounded = any(self.first[clock] in ending for clock in step.done if clock in self.first)
@@ -190,7 +190,7 @@ class Situation:
                 yield step.transition.label
 
     def exhausted(self, ages: tuple[int, ...]) -> tuple[Name, ...]:
-        """Return the vehicles that are aloft for longer than they last."""
+        """Return the vehicles that have been aloft for longer than their endurance."""
         return tuple(
             vehicle
             for vehicle, endurance in self.timing.endurances
@@ -200,7 +200,7 @@ class Situation:
         )
 
     def unsayable(self, ages: tuple[int, ...]) -> frozenset[int]:
-        """Return the clauses whose message cannot be said any more."""
+        """Return the clauses whose message can no longer be said."""
         return frozenset(
             number
             for number, times in enumerate(self.timing.clauses)
@@ -211,12 +211,13 @@ class Situation:
 
 
 class Passage:
-    """What a step does to the clocks.
+    """The effect of a step on the clocks.
 
     Attributes:
-        sources: For each clock of the target, the index of the one that goes on in it; None where it starts.
-        freed: The clocks of windows that bind no more.
-        leaving: Of vehicles that leave where they are restored: RESTORED before, ALOFT after, and how long it takes.
+        sources: For each clock of the target, the index of the source clock that continues in it; None if it starts.
+        freed: The clocks of windows that no longer bind.
+        leaving: For each vehicle that leaves a restoring place: its RESTORED clock before, its ALOFT clock after, and
+            the time that restoring takes.
     """
 
     def __init__(self, source: Situation, step: TimedStep, target: Situation) -> None:
@@ -246,7 +247,7 @@ class Passage:
         )
 
     def ages(self, ages: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
-        """Yield the ages after the step: several where a vehicle may just have been restored, or not."""
+        """Yield the ages after the step: several if a vehicle may or may not just have been restored."""
         after = [0 if source is None else ages[source] for source in self.sources]
         for index in self.freed:
             after[index] = FREE

@@ -1,4 +1,4 @@
-"""Runs with dates: whether the clocks allow each step at its moment."""
+"""Dated runs: whether the clocks allow each step at its date."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -10,11 +10,11 @@ from semantics.timing.dates import clock_text
 
 
 class UntimelyError(ValueError):
-    """A step at a moment at which it cannot be taken; why, in words."""
+    """A step is not possible at its date; the message gives the reason."""
 
 
 class Offer(NamedTuple):
-    """A step that may be taken next, and when: at the earliest and at the latest (None: whenever), in ticks."""
+    """A possible next step with its earliest and latest date in ticks; `latest` is None if unbounded."""
 
     transition: Transition
     earliest: int
@@ -22,7 +22,7 @@ class Offer(NamedTuple):
 
 
 class DatedRun:
-    """A run that goes on step by step, each at its date.
+    """A run that proceeds step by step, each step with its date.
 
     Attributes:
         now: The date of the last step, in ticks from the start.
@@ -34,7 +34,7 @@ class DatedRun:
         self.now = 0
 
     def offers(self) -> tuple[Offer, ...]:
-        """Return what may be done next before anything else has to be, in the order of the rules."""
+        """Return the steps that are possible before the next deadline, in the order of the rules."""
         found = []
         for step in self.situation.steps:
             windows = (
@@ -48,7 +48,7 @@ class DatedRun:
         return tuple(found)
 
     def _windows(self, step: TimedStep, ages: tuple[int, ...]) -> Iterator[tuple[int, int | None]]:
-        """Yield from when to when a step may be taken, counted from now."""
+        """Yield the intervals in which a step is possible, in ticks from now."""
         slack = self.situation.slack(ages)
         for guard in step.guards or (None,):
             begin, end = (0, None) if guard is None else self._window(guard, ages[guard.clock])
@@ -59,14 +59,14 @@ class DatedRun:
     def _window(self, guard: Guard, age: int) -> tuple[int, int | None]:
         end = None if guard.most is None else guard.most - age
         if self.situation.clocks[guard.clock].sort is Sort.WINDOW and age < guard.least:
-            return 0, -1  # this clock does not go on by itself
+            return 0, -1  # a window's clock does not advance with time
         return max(0, guard.least - age), end
 
     def take(self, label: Label, target: Configuration, date: int) -> None:
         """Take a step.
 
         Raises:
-            UntimelyError: The clocks do not allow it then.
+            UntimelyError: The clocks do not allow the step at that date.
         """
         after = Situation(target)
         waited = set(self._waiting(date))
@@ -88,7 +88,7 @@ class DatedRun:
         self.situation, self.ages, self.now = after, ages, date
 
     def _waiting(self, date: int) -> Iterator[tuple[int, ...]]:
-        """Yield the ages at a date."""
+        """Yield the possible ages at a date."""
         ticks = date - self.now
         if ticks < 0:
             raise UntimelyError(f"it is {self._moment(self.now)} already")

@@ -1,4 +1,4 @@
-"""Dates: moments of a run, counted from its start, and what lies between two of them."""
+"""Dates: moments of a run, counted from its start, and the durations between them."""
 
 import re
 from typing import Final
@@ -22,7 +22,7 @@ def clock_text(milliseconds: int) -> str:
 
 
 def lapse_text(milliseconds: int) -> str:
-    """Return how long something takes: in one unit where that says it well, else as a clock does.
+    """Return a duration in one unit if that is exact and short, else in the form of a clock.
 
     >>> lapse_text(480_000), lapse_text(13_000), lapse_text(1_715_000)
     ('8 min', '13 s', '28:35')
@@ -32,7 +32,7 @@ def lapse_text(milliseconds: int) -> str:
 
 
 def milliseconds_at(moment: str) -> int:
-    """Return a moment that is written as a clock says it, or in seconds, as milliseconds; raises ValueError.
+    """Return the milliseconds of a moment written as a clock or in seconds; raises ValueError.
 
     >>> milliseconds_at("12:31"), milliseconds_at("1:00:00"), milliseconds_at("0:01.25"), milliseconds_at("90")
     (751000, 3600000, 1250, 90000)

@@ -1,8 +1,8 @@
-"""Voyages: what has to be remembered of flights to know where things may be, and how long they still take.
+"""The history of flights: it bounds the positions of vehicles and the remaining duration of flights.
 
-P says of a vehicle in transit from where to where it was sent; of one that has arrived, the middle of a place of which
-it may be anywhere. So where `timing` is given, a cell of each vehicle remembers more, and it is written after every
-step that changes P (`remembering`), as the race monitor does; the rules know nothing of it.
+For a vehicle in transit, P only has its origin and destination. For one that has arrived, P has the middle of a place,
+although it may be anywhere in that place. With a `timing` section, a cell of each vehicle therefore remembers more.
+`remembering` writes it after every step that changes P, as the race monitor does; the rules do not know it.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ class Voyage:
     """A flight under way, from its `command` on.
 
     Attributes:
-        origin: Where the vehicle may have been at the `command`.
-        toward: What it was sent by (VIA, in order) and to.
+        origin: The possible positions of the vehicle at the `command`.
+        toward: Its current targets: the VIA in order, then the destination.
         waypoints: Every point that it was sent to in this flight, sorted.
-        hull: Where it may be: the hull of its origin and of everything that it was sent to or by. None where something
-            of it drifts within a place: nothing is known. What is absent adds nothing: nobody is sent there.
+        hull: Its possible positions: the hull of its origin and of all its targets so far. None (unknown) if one of
+            them drifts within a place. Absent targets add nothing, since no vehicle is sent there.
     """
 
     origin: Extent
@@ -50,33 +50,34 @@ class Voyage:
 
 
 class Adrift(Enum):
-    """Says that something was put down where its carrier had drifted within a place: P has one of many points."""
+    """Marks cargo put down by a carrier that drifts within a place: P has one of many possible points."""
 
     PUT_DOWN = "put down"
 
 
 Memory = Voyage | Extent | Adrift | None
-"""What is remembered of a vehicle: its flight; the place in which it arrived last, as that was then; that it was put
-down by what drifts within a place; or nothing."""
+"""The memory of a vehicle: its flight; or the place of its last arrival, as that was then; or that a carrier which
+drifts within a place put it down; or None.
+"""
 
 
 def memory_cell(vehicle: Name) -> Cell:
-    """Address what is remembered of a vehicle."""
+    """Address the memory of a vehicle."""
     return (VOYAGE, vehicle)
 
 
 def remembered_at_first(setting: Setting) -> Changes:
-    """Return the cells of all vehicles, as they are at first."""
+    """Return the initial memory cells of all vehicles."""
     return {} if setting.timing is None else {memory_cell(name): None for name in _remembered(setting)}
 
 
 def _remembered(setting: Setting) -> tuple[Name, ...]:
-    """Return of whom something is remembered, sorted: who can be driven, or put down where nobody knows."""
+    """Return the entities with a memory, sorted: those that can be driven, or put down at an unknown position."""
     return tuple(sorted({*vehicles(setting), *_drifting_cargo(setting)}))
 
 
 def _drifting_cargo(setting: Setting) -> Iterator[Name]:
-    """Yield who may be aboard of what drifts within a place."""
+    """Yield the entities that may be aboard an entity that drifts within a place."""
     waiting, kinds = [setting.kind(each.entity) for each in _adrift(setting)], set[str]()
     while waiting:
         more = setting.signature[waiting.pop()].carries - kinds
@@ -94,14 +95,14 @@ def vehicles(setting: Setting) -> tuple[Name, ...]:
     return tuple(sorted(name for name, kind in setting.kinds.items() if setting.signature[kind].driven))
 
 
-# --- where things may be --------------------------------------------------------------------------
+# --- possible positions ---------------------------------------------------------------------------
 
 
 def whereabouts(c: Configuration, entity: Name) -> Extent | None:
-    """Return where an entity may be; None where nothing is known: it drifts within a place, or lies in what does.
+    """Return the possible positions of an entity; None if it, or an entity around it, drifts within a place.
 
-    In transit it is anywhere in the hull of its flight, arrived anywhere in the place, as that was then; else where P
-    has it. What is carried is where its outermost carrier is.
+    In transit, it is anywhere in the hull of its flight. After arrival, it is anywhere in the place as that was then.
+    Otherwise it is at its position in P. Cargo is at the position of its outermost carrier.
     """
     physical = c.structure.physical
     bearer = _outermost(physical, entity)
@@ -115,16 +116,16 @@ def whereabouts(c: Configuration, entity: Name) -> Extent | None:
 
 
 def is_there(c: Configuration, entity: Name) -> bool:
-    """Tell whether P has an entity, and everything that carries it, at some place."""
+    """Whether P has a position for an entity's outermost carrier, or for the entity itself if nothing carries it."""
     physical = c.structure.physical
     return physical.position(_outermost(physical, entity)) is not None
 
 
 def origin(c: Configuration, vehicle: Name) -> Extent | None:
-    """Return O(u), where a vehicle may be as a flight begins; None where nothing is known.
+    """Return O(u), the possible positions of a vehicle at the beginning of a flight; None if unknown.
 
-    The place in which it arrived last, as that was then, enlarged by the circle that it flies there. If it never flew,
-    or drifted or appeared since, the place in which A(P) has it, else where it is by itself.
+    They are the place of its last arrival, as that was then, enlarged by the circle that the vehicle flies there. If it
+    never flew, or drifted or appeared since, they are its parent in A(P), or in the region its own position.
     """
     physical = c.structure.physical
     if physical.carrier(vehicle) is not None:
@@ -151,7 +152,7 @@ def _outermost(physical: PhysicalModel, entity: Name) -> Name:
 
 
 def _is_adrift(c: Configuration, entity: Name) -> bool:
-    """Tell whether something drifts within a place, or lies in something that does."""
+    """Whether an entity, or one around it, drifts within a place."""
     adrift = {each.entity for each in _adrift(c.setting)}
     around, seen = entity, set[Name]()
     while around != REGION and around not in seen and adrift:
@@ -166,7 +167,7 @@ def _is_adrift(c: Configuration, entity: Name) -> bool:
 
 
 def remembering(c: Configuration, transition: Transition) -> Transition:
-    """Return the transition with what it changed remembered of flights, where a mission speaks of time."""
+    """Return the transition with the memory of flights updated, if the mission has a `timing` section."""
     if c.setting.timing is None or transition.label.rule not in MOVING:
         return transition
     after, driven = transition.target, vehicles(c.setting)
@@ -182,7 +183,7 @@ def remembering(c: Configuration, transition: Transition) -> Transition:
 
 
 def _memory(c: Configuration, after: Configuration, vehicle: Name) -> Memory:
-    """Return what is to be remembered of a vehicle whose placement a step has changed."""
+    """Return the new memory of a vehicle whose placement a step has changed."""
     before, now = c.structure.physical.placement(vehicle), after.structure.physical.placement(vehicle)
     if isinstance(now, InTransit):
         begin = origin(c, vehicle)
@@ -196,7 +197,7 @@ def _memory(c: Configuration, after: Configuration, vehicle: Name) -> Memory:
 
 
 def _widened(c: Configuration, vehicle: Name) -> Changes:
-    """Write of a flight all that it was sent to or by, through chains of flights."""
+    """Return the writes that widen a flight's hull by all its targets, through chains of flights."""
     flights = dict(_chain(c, vehicle))
     points = {name: waypoints(c, fly, name) for name, (fly, _) in flights.items()}
     while True:
@@ -207,7 +208,7 @@ def _widened(c: Configuration, vehicle: Name) -> Changes:
 
 
 def _chain(c: Configuration, vehicle: Name) -> Iterator[tuple[Name, tuple[FLY, tuple[Name, ...]]]]:
-    """Yield a vehicle in transit with its request and what it is sent by and to, and all in transit among those."""
+    """Yield a vehicle in transit with its request and its targets, then all vehicles in transit among those targets."""
     physical, waiting, seen = c.structure.physical, [vehicle], set[Name]()
     while waiting:
         name = waiting.pop()
@@ -230,7 +231,7 @@ def _flights_of(c: Configuration, vehicle: Name) -> Iterator[FLY]:
 
 
 def flies(line: tuple[Request, ...] | None, vehicle: Name) -> bool:
-    """Ask of an agent's requests whether a vehicle flies by one of them."""
+    """Whether a vehicle flies by one of an agent's requests; a question about a cell."""
     return any(
         isinstance(each, FLY) and vehicle in dict(moved(each.reaction, each.match)) for each in line or ()
     )
@@ -241,7 +242,7 @@ def _sent(
     flights: Mapping[Name, tuple[FLY, tuple[Name, ...]]],
     points: Mapping[Name, tuple[Geometry, ...]],
 ) -> Iterator[tuple[Cell, Voyage]]:
-    """Yield each flight with what it is sent to or by now."""
+    """Yield each flight, widened by its current targets."""
     for name, (_, toward) in flights.items():
         kept: Memory = c.read(memory_cell(name))
         if isinstance(kept, Voyage):
@@ -256,14 +257,14 @@ def _hull(extents: Iterable[Extent | None]) -> Extent | None:
 
 
 def travelling(c: Configuration, fly: FLY) -> tuple[tuple[Name, Name], ...]:
-    """Return who is in transit by a request, and where to."""
+    """Return the nodes in transit by a request, with their destinations."""
     physical = c.structure.physical
     pairs = moved(fly.reaction, fly.match)
     return tuple((node, place) for node, place in pairs if isinstance(physical.placement(node), InTransit))
 
 
 def waypoints(c: Configuration, fly: FLY, vehicle: Name) -> tuple[Geometry, ...]:
-    """Return the points to which a vehicle is sent now, as the runtime sends it; none where it can't arrive now."""
+    """Return the current waypoints of a vehicle, those that the runtime sends it to; empty if it can't arrive now."""
     found = commits(c, fly)
     if found is None:
         return ()
@@ -272,6 +273,6 @@ def waypoints(c: Configuration, fly: FLY, vehicle: Name) -> tuple[Geometry, ...]
 
 
 def circle(setting: Setting, vehicle: Name) -> float:
-    """Return the diameter in metres of the circle that a vehicle flies where it cannot stand, else 0."""
+    """Return the diameter in metres of the circle that a vehicle flies if it cannot hover, else 0."""
     motion = None if setting.timing is None else setting.timing.motion(vehicle)
     return 0.0 if motion is None else motion.circle

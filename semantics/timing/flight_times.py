@@ -1,9 +1,11 @@
-"""How long flights take: an interval of ticks from geometry and speeds, rounded outwards.
+"""The duration of flights: an interval of ticks from geometry and speeds, rounded outwards.
 
-At least: from where the vehicle was at the `command`, by where its VIA may be, to where its destination may be, the
-straight way at the greatest speed, from the `command` on. At most: from there, or from any point that it was sent to
-since, by all VIA to the waypoint at the least speed, and a circle for each point on the way; counted again from each
-change of what it is sent to.
+The lower bound is the straight path at the greatest speed, counted from the `command`. The path leads from the
+vehicle's position at the `command` through the possible positions of its VIA to those of its destination.
+
+The upper bound is the path at the least speed, plus one circle at each point of it. The path starts at that position,
+or at any point that the vehicle was sent to since, and leads through all VIA to the waypoint. The upper bound restarts
+whenever the flight's targets change.
 """
 
 from __future__ import annotations
@@ -23,13 +25,13 @@ from semantics.timing.intervals import ANY_TIME, Interval
 from semantics.timing.timing import Motion
 
 ROUNDING: Final = 1e-12
-"""By what part a quotient of floating-point numbers may be off, generously."""
+"""A generous bound on the relative error of a floating-point quotient."""
 
 
 def interval_of_flight(c: Configuration, fly: FLY) -> Interval:
-    """Return how long a flight takes, in ticks: of several that travel by one request, the greatest of both.
+    """Return the duration of a flight in ticks; if several vehicles fly by one request, the maximum of both bounds.
 
-    `lo` counts from the `command`; `hi` from there, and again from each change of its `aim`.
+    `lo` counts from the `command`. `hi` counts from the `command`, and again from each change of the flight's `aim`.
     """
     intervals = [_interval(c, fly, vehicle, place) for vehicle, place in travelling(c, fly)]
     if not intervals:
@@ -39,7 +41,7 @@ def interval_of_flight(c: Configuration, fly: FLY) -> Interval:
 
 
 def aim(c: Configuration, fly: FLY) -> tuple[object, ...]:
-    """Return what a flight is directed by now: where this changes, it may begin anew, and `hi` is counted again."""
+    """Return the current targets of a flight: when they change, `hi` is counted again."""
     physical = c.structure.physical
     return tuple(
         (vehicle, tuple(map(physical.position, (*fly.reaction.via, place))), waypoints(c, fly, vehicle))
@@ -58,7 +60,7 @@ def _interval(c: Configuration, fly: FLY, vehicle: Name, place: Name) -> Interva
         return ANY_TIME
     if voyage.hull is None or len(where) < len(
         found
-    ):  # drifts within a place, or absent now: nothing is known
+    ):  # a target drifts within a place, or is absent: its position is unknown
         return ANY_TIME
     least = sum(starmap(least_distance, pairwise([voyage.origin, *where])))
     most = _longest(voyage, _aims(c, fly, vehicle, names, where), motion)
@@ -82,9 +84,9 @@ def _ticks(seconds: float, tick: int) -> int:
 def _aims(
     c: Configuration, fly: FLY, vehicle: Name, names: Sequence[Name], where: Sequence[Extent]
 ) -> list[Extent]:
-    """Return what is flown to, point by point: the waypoint of a place, all points where a vehicle may be.
+    """Return the targets of the flight in order: the waypoint of a place, all possible points of a mobile target.
 
-    None at all where something on the way is in transit itself, or the flight can't end now.
+    The list is empty if a target is itself in transit, or the flight can't end now.
     """
     physical, signature = c.structure.physical, c.setting.signature
     points = waypoints(c, fly, vehicle)
@@ -98,7 +100,7 @@ def _aims(
 
 
 def _longest(voyage: Voyage, aims: Sequence[Extent], motion: Motion) -> float:
-    """Return the most metres that a flight goes from its last aim on: infinitely many where that is not known."""
+    """Return an upper bound in metres of a flight from its last change of aim; infinite if unknown."""
     if not aims:
         return math.inf
     begins = [voyage.origin, *map(extent, voyage.waypoints)]
@@ -111,7 +113,7 @@ def _longest(voyage: Voyage, aims: Sequence[Extent], motion: Motion) -> float:
 
 
 def _levels(c: Configuration, vehicle: Name, names: Sequence[Name]) -> list[Band]:
-    """Return the bands of altitude on the way, in order; none where the vehicle's own is within them all."""
+    """Return the altitude bands along the path, in order; empty if the vehicle's own band lies within all of them."""
     positions = [c.structure.physical.position(name) for name in (vehicle, *names)]
     own, *others = [None if at is None else at.altitude for at in positions]
     if all(band_contains(other, own) for other in others):

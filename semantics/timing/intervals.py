@@ -1,4 +1,4 @@
-"""Intervals of whole ticks: how long something takes, at least and at most."""
+"""Intervals of whole ticks: the least and the greatest duration of a step."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -9,8 +9,8 @@ class Interval:
     """[lo, hi] in ticks; both ends belong to it.
 
     Attributes:
-        lo: At least so long.
-        hi: At most so long; None where nothing bounds it.
+        lo: The least duration.
+        hi: The greatest duration; None if unbounded.
     """
 
     lo: int = 0
@@ -21,4 +21,4 @@ class Interval:
 
 
 ANY_TIME: Final = Interval()
-"""What is not said is not assumed."""
+"""The bounds of a step that the mission does not time: nothing is assumed."""

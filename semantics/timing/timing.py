@@ -1,4 +1,4 @@
-"""What a mission's `timing` section comes to: every bound that its verdicts rest on. Durations are whole ticks."""
+"""The values of a mission's `timing` section: every time bound that its verdicts assume. Durations are whole ticks."""
 
 from dataclasses import dataclass, replace
 from typing import Final
@@ -7,17 +7,17 @@ from semantics.state.signature import Name
 from semantics.timing.intervals import ANY_TIME, Interval
 
 ONE_HOST: Final = ""
-"""Stands for the channel of a message between two bigActors on one host."""
+"""The channel of a message between two bigActors on one host."""
 
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """How one vehicle moves.
+    """The motion of one vehicle.
 
     Attributes:
-        speed: Metres per second, the least and the greatest, above 0.
-        climb: Metres per second up or down, the least and the greatest; None where nothing is said.
-        circle: The diameter in metres of the circle that it flies where it cannot stand; 0 where it can.
+        speed: The least and the greatest speed in metres per second, above 0.
+        climb: The least and the greatest vertical speed in metres per second, None if not given.
+        circle: The diameter in metres of the circle that a vehicle flies if it cannot hover; 0 if it can.
     """
 
     speed: tuple[float, float]
@@ -27,12 +27,12 @@ class Motion:
 
 @dataclass(frozen=True, slots=True)
 class Endurance:
-    """How long one vehicle lasts.
+    """The endurance of one vehicle.
 
     Attributes:
-        lasts: So long away from where it is restored.
-        places: Where it is restored, sorted; nowhere if empty.
-        after: How long that takes.
+        lasts: The longest time away from places that restore it.
+        places: The places that restore it, sorted; possibly none.
+        after: The time that restoring takes.
     """
 
     lasts: int
@@ -42,14 +42,14 @@ class Endurance:
 
 @dataclass(frozen=True, slots=True)
 class Every:
-    """At least so long lies between two steps of a clause (`drifts` and `drops at most every`)."""
+    """The least time between two steps of a clause (`drifts` and `drops at most every`)."""
 
     least: int
 
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """The first step of a clause (`appears`, `vanishes`) is at [after, within] from the start of the mission."""
+    """The interval [after, within], from the start of the mission, of a clause's first step (`appears`, `vanishes`)."""
 
     after: int = 0
     within: int | None = None
@@ -57,7 +57,7 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Sayable:
-    """A message may be said at [after, until] from the start of the mission, and need not be."""
+    """The interval [after, until], from the start of the mission, in which a message may be said."""
 
     after: int = 0
     until: int | None = None
@@ -68,8 +68,8 @@ class ClauseTimes:
     """The times of one clause of the environment.
 
     Attributes:
-        step: When it may take its steps; None where nothing is said.
-        returns: Within which time what dropped, or left, returns; None where nothing is said.
+        step: The times of its steps; None if not given.
+        returns: The longest time until a channel returns after it dropped or was left; None if not given.
     """
 
     step: Every | Window | Sayable | None = None
@@ -78,18 +78,18 @@ class ClauseTimes:
 
 @dataclass(frozen=True, slots=True)
 class Timing:
-    """The assumptions about time. What is not said takes any time.
+    """The assumptions about time. A duration that the mission does not give is unbounded.
 
     Attributes:
         tick: Milliseconds of a tick.
-        motions: How vehicles move, sorted by name.
-        endurances: How long vehicles last, sorted by name.
-        react: `fun`, `req_*`, `rcv_*`, and how long it takes until a vehicle is sent on its way.
-        sense: How long `sense` takes.
-        messages: How long a message over a channel takes, sorted by channel; `ONE_HOST` for those on one host.
-        commands: By the word of a command or the name of a rule (`HAND`, `CONNECT`, `spawn`), sorted.
-        clauses: Those of the clauses of the environment, in their order; empty where none has times.
-        lines: The bounds as they were written, with the lines that they stand in.
+        motions: The motions of vehicles, sorted by name.
+        endurances: The endurances of vehicles, sorted by name.
+        react: The duration of `fun`, `req_*` and `rcv_*`, and the time until a vehicle is sent on its way.
+        sense: The duration of `sense`.
+        messages: The duration of messages by channel, sorted; `ONE_HOST` for those on one host.
+        commands: The duration by command word or rule name (`HAND`, `CONNECT`, `spawn`), sorted.
+        clauses: The times of the environment's clauses, in their order; empty if none has times.
+        lines: The bounds as written, with their line numbers.
     """
 
     tick: int = 1000
@@ -103,22 +103,22 @@ class Timing:
     lines: tuple[tuple[str, int], ...] = ()
 
     def without_endurances(self) -> "Timing":
-        """Return the assumptions but those about how long vehicles last."""
+        """Return the assumptions without the endurances of vehicles."""
         lines = tuple(said for said in self.lines if said[0].split()[1:2] != ["lasts"])
         return replace(self, endurances=(), lines=lines)
 
     def motion(self, vehicle: Name) -> Motion | None:
-        """Return how a vehicle moves, None where nothing is said."""
+        """Return the motion of a vehicle, None if not given."""
         return dict(self.motions).get(vehicle)
 
     def message(self, channel: Name) -> Interval:
-        """Return how long a message takes over a channel."""
+        """Return the duration of messages over a channel."""
         return dict(self.messages).get(channel, ANY_TIME)
 
     def command(self, word: str) -> Interval | None:
-        """Return how long a command takes by its word, None where nothing is said."""
+        """Return the duration of a command by its word, None if not given."""
         return dict(self.commands).get(word)
 
     def clause(self, number: int) -> ClauseTimes:
-        """Return the times of the clause of a number."""
+        """Return the times of a clause by its number."""
         return self.clauses[number] if self.clauses else ClauseTimes()

@@ -1,7 +1,7 @@
-"""Elaboration: from a mission's syntax tree to its meaning, phase by phase, with all mistakes at once.
+"""Elaboration: from a mission's syntax tree to its meaning, phase by phase, reporting all mistakes at once.
 
-A phase a module, in this order: signature, world (with files and geometry), environment (with drifts), beliefs, rules,
-bodies (with statements, expressions and patterns), controls, checks. It knows nothing of exploration.
+Each phase is a module, in this order: signature, world (with files and geometry), environment (with drifts), beliefs,
+rules, bodies (with statements, expressions and patterns), controls, checks. It does not depend on exploration.
 """
 
 from specs.elaboration.mission import (

@@ -1,4 +1,4 @@
-"""The bigActors that are there at first: those declared one by one, and the members of families."""
+"""The initial bigActors: those declared one by one, and the members of families."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from specs.codes import Code
 from specs.elaboration.names import Names
 
 MOST_WRITTEN: Final = 100_000
-"""The most pieces of syntax that the members of all families may have together."""
+"""The largest number of syntax nodes of all family members together."""
 
 
 @dataclass(frozen=True, slots=True)
 class Actor:
-    """A bigActor that is there at first.
+    """An initial bigActor.
 
     Attributes:
-        name: What it is called; of a member `patrol[uav0]`.
-        host: Where it is hosted.
-        body: What it does.
-        where: Where it is declared.
-        family: Of a member the name of its family.
-        constants: Of a member the names that stand for its entity and its number.
+        name: Its name; for a member `patrol[uav0]`.
+        host: Its host.
+        body: Its statements.
+        where: Its declaration.
+        family: The name of its family, empty if it is no member.
+        constants: For a member, the names of its entity and its number, with their values.
     """
 
     name: str
@@ -37,7 +37,7 @@ class Actor:
 
 
 def first_actors(mission: s.Mission, names: Names) -> tuple[Actor, ...]:
-    """Return the bigActors, those without a name as bigActor0, bigActor1 and so on, families written out."""
+    """Return the initial bigActors, families expanded; those without a name are bigActor0, bigActor1 and so on."""
     singles = mission.each(s.BigActor)
     taken = {actor.name.text for actor in singles if actor.name is not None}
     free = (name for number in range(len(singles) + len(taken)) if (name := f"bigActor{number}") not in taken)
@@ -58,7 +58,7 @@ def first_actors(mission: s.Mission, names: Names) -> tuple[Actor, ...]:
 
 
 def _members(family: s.Family, names: Names) -> Iterator[Actor]:
-    """Yield the members of a family, declared as such."""
+    """Yield the members of a family, and declare it."""
     name, nodes = family.name.text, tuple(_nodes(family, names))
     if not nodes:
         kind = (
@@ -79,7 +79,7 @@ def _members(family: s.Family, names: Names) -> Iterator[Actor]:
 
 
 def _nodes(family: s.Family, names: Names) -> Iterator[str]:
-    """Yield the entities that a family goes through, in turn."""
+    """Yield the entities of a family's range, in order."""
     among = family.range
     if isinstance(among, s.Name) and among.text not in names.kinds:
         if names.kind(among):

@@ -1,4 +1,4 @@
-"""What quantifiers go through: the entities of a kind, bigActors, and what has to be true for one to count."""
+"""The ranges of quantifiers: the entities of a kind, or bigActors, with the conditions under which they count."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from specs.elaboration.bodies import Bodies
 from specs.elaboration.names import AGENTS, Names
 
 Instance = tuple[str, Proposition | None]
-"""A name that a quantified one stands for, and what has to be true for it to count; None where it always does."""
+"""A name in the range of a quantifier, and the condition under which it counts; None if it always does."""
 
 
 class Among:
-    """What the quantifiers of a mission go through."""
+    """The ranges of a mission's quantifiers."""
 
     def __init__(self, names: Names, bodies: Bodies) -> None:
         self.names = names
@@ -25,7 +25,7 @@ class Among:
         self.settled = cache(self._settled)
 
     def instances(self, node: s.Quantified, bound: Mapping[str, str]) -> tuple[Instance, ...]:
-        """Return what a quantified name stands for, sorted; reports a range that means nothing."""
+        """Return the instances of a quantifier, sorted by name; reports an invalid range."""
         agents = self._agents(node)
         if agents is None:
             return self._entities(node)
@@ -35,11 +35,11 @@ class Among:
         )
 
     def late(self, node: s.Quantified) -> str | None:
-        """Return a bigActor that is quantified over and only spawned; None where there is none."""
+        """Return a bigActor in the range that is only spawned; None if there is none."""
         return next((agent for agent in self._agents(node) or () if self.names.agents[agent] is None), None)
 
     def _agents(self, node: s.Quantified) -> list[str] | None:
-        """Return the bigActors that may be quantified over, sorted; None where it is entities."""
+        """Return the bigActors in the range, sorted; None if the range has entities."""
         word = node.range.text
         if word in self.names.families:
             agents: Iterable[str] = self.names.families[word].values()
@@ -73,7 +73,7 @@ class Among:
         return frozenset({each for each, body in self.bodies.agents.items() if body.runs == name} | spawned)
 
     def _condition(self, node: s.Quantified, agent: str, bound: Mapping[str, str]) -> Proposition | bool:
-        """Return what has to be true for a bigActor to count: that it is there, and hosted where it should be."""
+        """Return the condition under which a bigActor counts: it exists, and has a host of the range."""
         if node.host is None:
             return Exists(agent, implied=True) if self.names.agents[agent] is None else True
         hosts = self._hosts(node.host, bound)
@@ -84,7 +84,7 @@ class Among:
         return there[0] if len(there) == 1 else Or(there)
 
     def _settled(self, agent: str) -> str | None:
-        """Return where a bigActor is always hosted; None where that may change."""
+        """Return the constant host of a bigActor; None if its host may change."""
         host = self.names.agents[agent]
         moves = any(body.migrations for body in self.bodies.running(agent))
         return None if host is None or moves else host.text

@@ -1,4 +1,4 @@
-"""The beliefs phase: where L₀ differs from A(P₀)."""
+"""The beliefs phase: the differences of L₀ from A(P₀)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from specs.elaboration.names import Names
 
 
 def elaborate_beliefs(mission: s.Mission, names: Names) -> Beliefs:
-    """Return what the mission says is believed; reports what can't be."""
+    """Return the beliefs of the mission; reports impossible ones."""
     parents: dict[str, str | None] = {}
     links: dict[str, tuple[str, ...]] = {}
     for belief in _beliefs(mission):
@@ -61,9 +61,9 @@ def _check_known(mission: s.Mission, parents: dict[str, str | None], names: Name
 
 
 def settled(beliefs: Beliefs, actual: Configuration) -> Beliefs:
-    """Complete beliefs: a node in a place that L does not know is in the place around it.
+    """Complete beliefs: a node in a place outside L goes to the next place around it that is in L.
 
-    `actual` is the first configuration without beliefs.
+    `actual` is the initial configuration without beliefs.
     """
     unknown = {name for name, parent in beliefs.parents.items() if parent is None}
     logical = actual.structure.logical
@@ -77,7 +77,7 @@ def settled(beliefs: Beliefs, actual: Configuration) -> Beliefs:
 
 
 def check_forest(mission: s.Mission, c: Configuration, names: Names) -> None:
-    """Report beliefs that put something inside itself, or into a place that is not in L."""
+    """Report beliefs that nest an entity inside itself, or in a place outside L."""
     logical = c.structure.logical
     for belief in _beliefs(mission):
         if not isinstance(belief, s.BelievedIn):

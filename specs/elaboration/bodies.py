@@ -25,10 +25,10 @@ class Bodies:
     """All bodies of a mission.
 
     Attributes:
-        agents: By name, those that are there at first.
-        behaviours: By name.
+        agents: The bodies of the initial bigActors, by name.
+        behaviours: The bodies of behaviours, by name.
         parameters: The unique names of each behaviour's parameters.
-        schemas: The rules that controls name, those written in place included.
+        schemas: The rules that controls name, inline rules included.
     """
 
     agents: dict[str, Body] = field(default_factory=dict)
@@ -43,7 +43,7 @@ class Bodies:
 
     @cached_property
     def spawned(self) -> dict[str, list[SpawnSite]]:
-        """Return where each spawned bigActor is spawned."""
+        """The `spawn` sites of each spawned bigActor."""
         found: dict[str, list[SpawnSite]] = {}
         for body in self.all():
             for site in body.spawns:
@@ -51,7 +51,7 @@ class Bodies:
         return found
 
     def reached(self, start: Body) -> tuple[Body, ...]:
-        """Return the bodies that one runs: itself and what it calls."""
+        """Return the bodies that one runs: itself and those that it calls, transitively."""
         found: dict[int, Body] = {}
         waiting = [start]
         while waiting:
@@ -63,7 +63,7 @@ class Bodies:
         return tuple(found.values())
 
     def running(self, agent: str) -> tuple[Body, ...]:
-        """Return the bodies that a bigActor may run, one that is spawned included."""
+        """Return the bodies that an initial or spawned bigActor may run."""
         starts = [self.agents[agent]] if agent in self.agents else []
         spawned = {site.behaviour for site in self.spawned.get(agent, ())}
         starts += [self.behaviours[name] for name in sorted(spawned & self.behaviours.keys())]
@@ -71,7 +71,7 @@ class Bodies:
 
 
 def declare_behaviours(mission: s.Mission, names: Names, actors: Iterable[Actor]) -> None:
-    """Declare rules, behaviours and bigActors, so that they may name each other."""
+    """Declare rules, behaviours and bigActors before their bodies, so that these may refer to each other."""
     for rule in mission.each(s.Rule):
         if names.declare("rule", rule.name.text, rule.name):
             names.rules[rule.name.text] = rule
@@ -101,7 +101,7 @@ def _declare_spawned(mission: s.Mission, names: Names) -> None:
 def elaborate_bodies(
     mission: s.Mission, names: Names, actors: tuple[Actor, ...], schemas: Mapping[str, Schema]
 ) -> tuple[Bodies, Program]:
-    """Return all bodies and the program that they are numbered in."""
+    """Return all bodies, and the program with their numbered statements."""
     bodies = Bodies(schemas=dict(schemas))
     program = Numbering(names, bodies.schemas)
     first: dict[str, int] = {}
@@ -148,7 +148,7 @@ def elaborate_bodies(
 
 
 def _warn_of_unpaced(bodies: Bodies, program: Program, written: Sequence[s.Node], names: Names) -> None:
-    """Warn of loops that ask and never wait, once for each, with all bigActors that run it."""
+    """Warn once of each loop that makes requests and never waits, with all bigActors that run it."""
     found: dict[s.Span, tuple[s.Node, int, list[str]]] = {}
     for agent, block in _running(bodies):
         for loop in sorted(reachable(program, block)):
@@ -167,7 +167,7 @@ _LET_WAIT = "let each turn wait: observe(PARENT(HOST)) react { case here: Observ
 
 
 def _running(bodies: Bodies) -> Iterator[tuple[str, Block]]:
-    """Yield who runs what: the bigActors that are there at first, and those that are spawned."""
+    """Yield each initial or spawned bigActor with its initial code."""
     yield from ((name, body.block) for name, body in bodies.agents.items())
     for name, sites in bodies.spawned.items():
         for site in sites:
@@ -192,7 +192,7 @@ def _parameters(definition: s.Definition, names: Names) -> dict[str, str]:
 
 
 def _check_recursion(bodies: Bodies, names: Names) -> None:
-    """Report calls that come back to their own behaviour with something left to do after them."""
+    """Report calls that may recurse to their own behaviour and are not tail calls."""
     if not bodies.behaviours:
         return
     group = _components(
@@ -219,7 +219,7 @@ def _components(graph: Mapping[str, Iterable[str]]) -> dict[str, int]:
 
 
 def _outermost(bodies: Bodies) -> Iterator[int]:
-    """Yield the loops that stand at the top of a bigActor, or of a behaviour that is only ever its end."""
+    """Yield the loops at the top of a bigActor, or of a behaviour that is only called at the end of its callers."""
     inner = {call.behaviour for body in bodies.all() for call in body.calls if not call.top}
     while True:
         nested = {
@@ -237,7 +237,7 @@ def _outermost(bodies: Bodies) -> Iterator[int]:
 
 
 def possible_hosts(bodies: Bodies, names: Names) -> dict[str, frozenset[str] | None]:
-    """Return for each body, by name (behaviours with `()`), where a bigActor may be that runs it: None for anywhere."""
+    """Return the possible hosts of the bigActors that run each body, by `body_key`; None for any host."""
     found: dict[str, set[str] | None] = {}
     for agent in names.agents:
         hosts = _hosts_of(agent, bodies, names)
@@ -248,7 +248,7 @@ def possible_hosts(bodies: Bodies, names: Names) -> dict[str, frozenset[str] | N
 
 
 def body_key(body: Body) -> str:
-    """Return what a body is called among all."""
+    """Return the unique key of a body."""
     return body.name if body.is_agent else f"{body.name}()"
 
 

@@ -24,13 +24,13 @@ D = TypeVar("D", bound=s.Node)
 
 
 def elaborate_scheduler(mission: s.Mission, names: Names) -> Scheduler:
-    """Return the scheduler, `program_order` where none is named."""
+    """Return the scheduler; the default is `program_order`."""
     named = _only(mission.each(s.Scheduler), "scheduler", names)
     return Scheduler(named.name) if named is not None else Scheduler.PROGRAM_ORDER
 
 
 def elaborate_control(mission: s.Mission, names: Names) -> Control:
-    """Return whether control takes time, `atomic` where it isn't said."""
+    """Return the kind of control; the default is `atomic`."""
     named = _only(mission.each(s.ControlMode), "control", names)
     return Control(named.name) if named is not None else Control.ATOMIC
 
@@ -49,7 +49,7 @@ def _of_time(item: s.Deadline | s.FirstTime, formulas: Formulas, ticks: Ticks | 
 
 
 def _check_timed(item: s.Property, prop: Property, names: Names, *, is_timed: bool) -> None:
-    """Report a property of time where nothing has times, and one of runs without times where something has."""
+    """Report a property of time in a mission without `timing`, and an untimed property of runs in a mission with it."""
     if is_timed and prop.is_of_runs:
         word = item.logic if isinstance(item, s.TemporalProperty) else prop.kind.value
         message = f"'{word}' is about runs without times, and this mission has a section 'timing'"
@@ -69,22 +69,22 @@ def _only(named: tuple[D, ...], word: str, names: Names) -> D | None:
 
 
 def _written(item: s.Property, text: str) -> str:
-    """Return the formula of a property as its author wrote it, on one line; nothing of one that has none."""
+    """Return the formula of a property as its author wrote it, on one line; empty if it has none."""
     if not isinstance(item, s.Invariant | s.Reachable | s.TemporalProperty | s.Deadline | s.FirstTime):
         return ""
     fairness = item.fairness if isinstance(item, s.TemporalProperty) else ()
     before, end = fairness[-1].span.end if fairness else item.label.span.end, item.span.end
     while text.count("(", before, end) > text.count(")", before, end) and ")" in text[end:]:
-        end = text.index(")", end) + 1  # a group ends within its brackets
+        end = text.index(")", end) + 1  # include the closing bracket
     return " ".join(_COMMENT.sub("", text[before:end]).partition(":")[2].split())
 
 
 def elaborate_checks(
     mission: s.Mission, names: Names, bodies: Bodies, types: Types, ticks: Ticks | None
 ) -> tuple[Property, ...]:
-    """Return the properties in the order written, or those of the default, and those that go without saying.
+    """Return the properties in written order, or the default ones, followed by those that are always checked.
 
-    `ticks` are those of a mission with `timing`.
+    `ticks` is None in a mission without `timing`.
     """
     written = [item for section in mission.each(s.Check) for item in section.properties]
     formulas, found = Formulas(names, bodies, types, is_timed=ticks is not None), list[Property]()

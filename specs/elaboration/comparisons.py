@@ -1,4 +1,4 @@
-"""Comparisons of variables with constants in properties: those that no value can meet."""
+"""Comparisons of variables with constants in properties: those that are never true."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _WORDS: Final = NAMES | {Sort.TEXT}
 
 
 def check_comparable(node: s.Stored, variable: VariableOf, value: Value, names: Names, types: Types) -> None:
-    """Report a comparison that no value of the variable can meet."""
+    """Report a comparison that no value of the variable can satisfy."""
     if node.operator in ORDERS and not isinstance(value, int):
         message = f"'{node.operator}' compares numbers, and {show(value)} is none"
         hint = "write a whole number, or compare with == or !="
@@ -48,7 +48,7 @@ def check_comparable(node: s.Stored, variable: VariableOf, value: Value, names: 
 
 
 def _check_quotes(node: s.Stored, variable: VariableOf, value: Value, sorts: Sorts, names: Names) -> None:
-    """Warn of a text that is compared with names, or a name with texts."""
+    """Warn of a text that is compared with names, or of a name that is compared with texts."""
     sort = sort_of(value, names.agents)
     if (sort is Sort.TEXT) is not (Sort.TEXT in sorts) and not {sort, Sort.TEXT} <= sorts:
         has = " or ".join(words for each, words in _PLURALS.items() if each in sorts)

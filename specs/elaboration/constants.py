@@ -13,7 +13,7 @@ from specs.elaboration.names import Names
 
 
 def elaborate_constant(node: s.Expression, names: Names, bound: Mapping[str, Value] | None = None) -> Value:
-    """Return the value of a constant; reports what is none. `bound` are names that stand for another value."""
+    """Return the value of a constant; reports any other expression. `bound` has names that denote other values."""
     match node:
         case s.TextLiteral(text):
             return Text(text)

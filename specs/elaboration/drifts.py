@@ -23,13 +23,13 @@ LIST_THEM: Final = "list its placements: drifts among ..."
 
 @dataclass(slots=True)
 class Spots:
-    """Turns a written placement, or the name of a place, into a placement of an entity."""
+    """Elaborates written placements, and names of places, to placements of an entity."""
 
     names: Names
     world: World
 
     def placed(self, spot: s.Placement | s.Name, entity: str) -> Placed | None:
-        """Return the placement; a named place and a mere point give the entity's shape with its centre there."""
+        """Return the placement; for a named place or a point, it is the entity's shape centred there."""
         shape = self.world.shape(entity)
         if isinstance(spot, s.Placement):
             placed = elaborate_placement(spot, self.names.findings)
@@ -67,13 +67,13 @@ class Spots:
             seen.add(placement)
 
     def called(self, spot: s.Node) -> str:
-        """Return what a placement is called: its text."""
+        """Return the name of a placement: its text."""
         text = self.names.findings.source.text[spot.span.start : spot.span.end]
         return shorten(" ".join(text.split()))
 
 
 def drifts_among(clause: s.DriftsAmong, spots: Spots) -> Drifts | None:
-    """Return the drift among listed placements, from each to each other."""
+    """Return the drift among listed placements, from each to every other."""
     spots.names.entity(clause.entity)
     placements = [spots.placed(spot, clause.entity.text) for spot in clause.placements]
     spots.check_different(clause.placements, placements)
@@ -87,7 +87,7 @@ def drifts_among(clause: s.DriftsAmong, spots: Spots) -> Drifts | None:
 def drifts_within(
     clause: s.DriftsWithin, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]
 ) -> Drifts | None:
-    """Return the drift within a place by its faces; reports one that would not be exact."""
+    """Return the drift within a place by its faces; reports one that is not exact."""
     names, world = spots.names, spots.world
     if None in (names.entity(clause.entity), names.entity(clause.place)):
         return None
@@ -124,7 +124,7 @@ def _face(within: str, relations: tuple[tuple[str, ...], ...]) -> str:
 def _inexact(
     clause: s.DriftsWithin, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]
 ) -> str:
-    """Say why a drift within a place would not be exact."""
+    """Return why a drift within a place is not exact; empty if it is."""
     names, world = spots.names, spots.world
     entity, place = clause.entity.text, clause.place.text
     here, within, kind = world.placements.get(entity), world.placements.get(place), names.kinds[entity]
@@ -155,7 +155,7 @@ def _inexact(
 def _inexact_aboard(
     other: str, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]
 ) -> str:
-    """Say why placements of what takes off, or is put down, where its carrier has drifted to would not be exact."""
+    """Return why the placements of cargo unloaded from the drifting carrier are not exact; empty if they are."""
     inside = _contents(other, spots.names)
     if inside and any(not shape.geometry.is_point for shape in _shapes(other, spots, clauses)):
         return f"'{other}', which it may carry, may contain '{inside[0]}' once it is put down"
@@ -164,7 +164,7 @@ def _inexact_aboard(
 
 
 def _contents(entity: str, names: Names) -> list[str]:
-    """Return who may be in an entity, but for what it carries."""
+    """Return the entities that may be in an entity, except its cargo."""
     contains = names.signature[names.kinds[entity]].contains
     return [name for name, kind in sorted(names.kinds.items()) if kind in contains and name != entity]
 
@@ -179,7 +179,7 @@ def _containers(entity: str, names: Names) -> list[str]:
 
 
 def _cargo(entity: str, names: Names, mobility: Mobility) -> list[str]:
-    """Return who may ever be aboard an entity, at any depth, or on its way there."""
+    """Return the entities that may ever be aboard an entity, at any depth, or on their way to it."""
     aboard, waiting = set[str](), [names.kinds[entity]]
     while waiting:
         more = names.signature[waiting.pop()].carries - aboard
@@ -193,7 +193,7 @@ def _cargo(entity: str, names: Names, mobility: Mobility) -> list[str]:
 
 
 def _shapes(entity: str, spots: Spots, clauses: Sequence[s.EnvironmentClause]) -> set[Placed]:
-    """Return every shape that an entity may ever have, wherever that is."""
+    """Return all possible shapes of an entity, regardless of position."""
     shapes = {spots.world.shape(entity), *(placed for _, placed in _listed(entity, spots, clauses))}
     return {Placed(still(each.geometry), each.altitude) for each in shapes if each is not None}
 
@@ -201,12 +201,12 @@ def _shapes(entity: str, spots: Spots, clauses: Sequence[s.EnvironmentClause]) -
 def _roaming(
     entity: str, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]
 ) -> str | None:
-    """Return a polygon that may contain an entity and be in places that are not listed, if there is one."""
+    """Return a polygon that may contain an entity and may be at an unlisted placement; None if there is none."""
     return next((o for o in _containers(entity, spots.names) if _roams(o, spots, mobility, clauses)), None)
 
 
 def _roams(name: str, spots: Spots, mobility: Mobility, clauses: Sequence[s.EnvironmentClause]) -> bool:
-    """Tell whether a polygon may be in places that are not listed."""
+    """Whether a polygon may be at an unlisted placement."""
     shape = spots.world.shape(name)
     if shape is not None and shape.geometry.is_point and name not in mobility.drifting | mobility.coming:
         return False
@@ -224,9 +224,10 @@ def _arrangement(
     mobility: Mobility,
     clauses: Sequence[s.EnvironmentClause],
 ) -> tuple[Polygons, dict[Geometry, Polygons]]:
-    """Return all polygons that may ever contain an entity or what stands or flies where it is.
+    """Return all polygons that may ever contain an entity, or another one at its position.
 
-    What is aboard, or on its way there, is where the entity is; put down, it stands there in a shape of its own.
+    Cargo, and an entity that flies to it, is at the entity's position. Once it is put down, it stands there in its
+    own shape.
     """
     own, aboard = _around(entity, here, spots, clauses), dict[Geometry, Polygons]()
     for other in _cargo(entity, spots.names, mobility):
@@ -237,7 +238,7 @@ def _arrangement(
 
 
 def _around(entity: str, here: Placed, spots: Spots, clauses: Sequence[s.EnvironmentClause]) -> Polygons:
-    """Return all polygons that may ever contain an entity: where they are, and where it is listed that they may be."""
+    """Return all polygons that may ever contain an entity, at their initial and their listed placements."""
     return {
         called: placed.geometry
         for name in _containers(entity, spots.names)
@@ -251,7 +252,7 @@ def _around(entity: str, here: Placed, spots: Spots, clauses: Sequence[s.Environ
 def _listed(
     entity: str, spots: Spots, clauses: Sequence[s.EnvironmentClause]
 ) -> Iterator[tuple[str, Placed | None]]:
-    """Yield the placements that are listed of an entity, with what each is called."""
+    """Yield the listed placements of an entity, with their names."""
     for clause in clauses:
         if isinstance(clause, s.DriftsAmong | s.Appears) and clause.entity.text == entity:
             for number, spot in enumerate(clause.placements, 1):

@@ -18,13 +18,13 @@ from specs.elaboration.world import World
 
 @dataclass(slots=True)
 class _Clauses:
-    """What the phase knows and gathers.
+    """The state of the phase.
 
     Attributes:
         arriving: Entities whose flights always end.
-        appearing: Entities that appear, with the channels that they are on then.
+        appearing: Entities that appear, each with a channel that it then is on.
         vanishing: Entities that vanish.
-        positions: The position of each clause, by its identity: equal ones stand in several.
+        positions: The position of each clause, by identity, since equal clauses may occur twice.
     """
 
     names: Names
@@ -49,7 +49,7 @@ class _Clauses:
 def elaborate_environment(
     mission: s.Mission, names: Names, world: World, mobility: Mobility
 ) -> tuple[tuple[Clause, ...], tuple[s.Span, ...], frozenset[str]]:
-    """Return the clauses of a mission and where each stands, and the entities whose flights always end."""
+    """Return the clauses of a mission with their spans, and the entities whose flights always end."""
     written = tuple(clause for section in mission.each(s.Environment) for clause in section.clauses)
     phase = _Clauses(names, world, mobility, Spots(names, world), written)
     _check_repeated(phase)
@@ -63,7 +63,7 @@ def elaborate_environment(
 
 
 def appearing_channels(mission: s.Mission, names: Names) -> None:
-    """Declare the channels that only those who appear are on."""
+    """Declare the channels that only appearing entities are on."""
     for section in mission.each(s.Environment):
         for clause in section.clauses:
             for channel in clause.channels if isinstance(clause, s.Appears) else ():
@@ -98,7 +98,7 @@ def _check_repeated(phase: _Clauses) -> None:
 
 
 def _clause(phase: _Clauses, clause: s.EnvironmentClause) -> Clause | None:
-    """Return what a clause says; None where it has a mistake, or says nothing of P."""
+    """Return the meaning of a clause; None if it has a mistake, or has no effect on P."""
     match clause:
         case s.DriftsAmong():
             return drifts_among(clause, phase.spots)

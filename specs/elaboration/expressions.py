@@ -1,4 +1,4 @@
-"""Elaborate expressions and queries: resolve names to variables, nodes and bigActors."""
+"""Elaboration of expressions and queries: names are resolved to variables, nodes and bigActors."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ _WORDS: Final = ("HOST", "SELF", "true", "false")
 FUNCTIONS: Final = tuple(
     sorted(name for name in OPERATORS if name.isidentifier() and name not in {"in", "of", "not"})
 )
-"""What can be called in an expression."""
+"""The functions of the language."""
 
 _COLLECTIONS: Final[Mapping[type, type[TupleOf | SetOf | RouteOf]]] = {
     s.TupleLiteral: TupleOf,
@@ -94,7 +94,7 @@ def elaborate_expression(node: s.Expression, scope: Scope, names: Names) -> Expr
 
 def _all(items: tuple[s.Expression, ...], scope: Scope, names: Names) -> tuple[Expression, ...]:
     found = []
-    for item in items:  # a loop, since a comprehension would cost a frame at each depth
+    for item in items:  # a loop: a comprehension would add a stack frame at each depth
         found.append(elaborate_expression(item, scope, names))  # noqa: PERF401
     return tuple(found)
 
@@ -138,7 +138,7 @@ def _call(node: s.FunctionCall, scope: Scope, names: Names) -> Expression:
 
 
 def check_arity(name: s.Name, given: int, wanted: int, findings: Findings) -> bool:
-    """Tell whether as many arguments are given as there are parameters; reports it if not."""
+    """Whether the number of arguments fits; reports it if not."""
     if given == wanted:
         return True
     plural = "argument" if wanted == 1 else "arguments"
@@ -175,9 +175,9 @@ def _name(node: s.Name, scope: Scope, names: Names) -> Expression:
 
 
 def _member(node: s.Member, scope: Scope, names: Names) -> Expression:
-    """Return the name of a member, or what looks it up by its entity where a run decides which one is meant.
+    """Return the name of a member, or a look-up by its entity if a run decides which member is meant.
 
-    Of a variable it is an element.
+    For a variable it returns an element.
     """
     index, variable = elaborate_expression(node.index, scope, names), scope.find(node.family.text)
     if variable is not None:
@@ -190,9 +190,7 @@ def _member(node: s.Member, scope: Scope, names: Names) -> Expression:
         member = names.member(node.family, index.value, node.index)
         return MISTAKEN if member is None else Literal(member)
     members = names.family(node.family) or {}
-    if all(
-        isinstance(leaf, Literal) for leaf in leaves(index)
-    ):  # such as i + 1, and in range where it is reached
+    if all(isinstance(leaf, Literal) for leaf in leaves(index)):  # such as i + 1, in a family's body
         with suppress(Fault):
             number = evaluate(index, EvaluationScope("", "", {}, {}, names.kinds, {}))
             if isinstance(number, int) and 0 <= number < len(members):
@@ -201,21 +199,21 @@ def _member(node: s.Member, scope: Scope, names: Names) -> Expression:
     return Apply("[]", (Literal(frozenset(members.items())), index))
 
 
-# --- what must be a node or a bigActor ------------------------------------------------------------------------
+# --- nodes and bigActors ----------------------------------------------------------------------------------------
 
 
 def elaborate_node(node: s.Expression, scope: Scope, names: Names, by: str, need: Need = NODE) -> Expression:
-    """Return an expression that is to be a node, as something needs it; reports a name that is none."""
+    """Return an expression that must denote a node; reports a name that denotes none."""
     return _named(node, scope, names, need, by)
 
 
 def elaborate_agent(node: s.Expression, scope: Scope, names: Names, by: str) -> Expression:
-    """Return an expression that is to be a bigActor, as something needs it; reports a name that is none."""
+    """Return an expression that must denote a bigActor; reports a name that denotes none."""
     return _named(node, scope, names, AGENT, by)
 
 
 def _named(node: s.Expression, scope: Scope, names: Names, need: Need, by: str) -> Expression:
-    """Elaborate what is to name a node or a bigActor; a word that doesn't is reported."""
+    """Return an expression that must denote a node or a bigActor; reports a word that denotes neither."""
     known = names.agents if need is AGENT else names.kinds
     if isinstance(node, s.Name) and scope.find(node.text) is None and node.text not in scope.fixed:
         sort = names.sort_of(node.text)
@@ -242,7 +240,7 @@ def _named(node: s.Expression, scope: Scope, names: Names, need: Need, by: str) 
 
 
 def elaborate_query(query: s.Query, scope: Scope, names: Names, *, inside: bool = False) -> QueryOf:
-    """Return a query; reports one that follows relations of bigActors, which have none."""
+    """Return a query; reports one that applies an operator to bigActors, which have no relations."""
     match query:
         case s.AllNodes():
             return QueryOf(None, None)

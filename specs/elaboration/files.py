@@ -1,4 +1,4 @@
-"""Worlds from files: GeoJSON, waypoint files, plans, and recordings of AIS as of a time."""
+"""Worlds from files: GeoJSON, waypoint files, plans, and AIS recordings at a given time."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ from specs.grammar import RESERVED
 
 AIS: Final = (".nmea", ".ais", ".txt", ".log")
 MOST_PROBLEMS: Final = 5
-"""Mistakes of one file that are told."""
+"""The number of mistakes of one file that are reported."""
 
 _NAME: Final = re.compile(r"[^\W\d_]\w*")
 _CHANNEL: Final = re.compile(r"\w+(?:[:.\-]\w+)*")
 
 
 _GIVEN_BY_FILES: Final = ("entity", "name", "channel")
-"""Sorts of names that a file may give: of one that cannot be read it is not known which."""
+"""The sorts of names that a file may declare; the names in an unreadable file are unknown."""
 
 
 class Refused(Exception):
-    """A file that cannot be used; what to tell the user."""
+    """A file cannot be used; carries the code, message and hint for the user."""
 
     def __init__(self, code: Code, message: str, hint: str = "") -> None:
         self.code, self.message, self.hint = code, message, hint
@@ -43,13 +43,13 @@ class Refused(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Library:
-    """Where the files of a world are: beside the mission, unless other files replace them."""
+    """The location of a world's files: beside the mission, unless they are replaced."""
 
     directory: Path
     instead: Mapping[str, Path] = field(default_factory=dict)
 
     def locate(self, name: str) -> Path:
-        """Return the path of the file that a mission names; raises Refused where there is none."""
+        """Return the path of a file that a mission names; raises Refused if there is none."""
         if name in self.instead:
             return self.instead[name]
         try:
@@ -74,7 +74,7 @@ class Library:
 def read_source(
     entry: s.FromSource, library: Library, names: Names, notes: list[str]
 ) -> tuple[PhysicalProperty, ...]:
-    """Return what a file holds of the world, of kinds of the signature; reports what is wrong, and adds to `notes`."""
+    """Return the entities of a file, with kinds of the signature; reports mistakes, and adds omissions to `notes`."""
     area = None if entry.within is None else elaborate_geometry(entry.within, names.findings)
     for keep in entry.keep:
         names.kind(keep.kind)
@@ -182,7 +182,7 @@ def _check_keep(entry: s.FromSource, found: tuple[PhysicalProperty, ...], names:
 def _kept(
     found: tuple[PhysicalProperty, ...], keep: tuple[s.Keep, ...], area: Geometry | None, counting: Counting
 ) -> Iterator[tuple[PhysicalProperty, s.Keep | None]]:
-    """Yield what is kept, of the kind that the mission calls it, with what says so; count the rest."""
+    """Yield the entities that are kept, with the mission's kind and their `keep` clause; count the others."""
     kinds = {each.recorded.text: each for each in keep}
     for item in found:
         as_kind = kinds.get(item.kind)
@@ -198,7 +198,7 @@ Kept = Iterable[tuple[PhysicalProperty, s.Keep | None]]
 
 
 def _prefixed(found: Kept, prefix: s.Name | None) -> Kept:
-    """Put what a mission calls a file before the names in it."""
+    """Put the mission's prefix for a file before the names in it."""
     if prefix is None:
         return found
     begin = f"{prefix.text}_"
@@ -218,7 +218,7 @@ def _prefixed(found: Kept, prefix: s.Name | None) -> Kept:
 def _as_places(
     found: Kept, entry: s.FromSource, names: Names, notes: list[str]
 ) -> tuple[PhysicalProperty, ...]:
-    """Make circles of points where the mission says a radius; of several at one spot the first is one."""
+    """Replace points by circles if a radius is given; of several at one position only the first is kept."""
     made: dict[Geometry, str] = {}
     places = []
     for item, keep in found:

@@ -16,7 +16,7 @@ LONGEST: Final = 60
 
 
 class Findings:
-    """Collects the mistakes of one mission, and what looks like one."""
+    """Collects the mistakes and warnings of one mission."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -29,12 +29,12 @@ class Findings:
         return len(self._found)
 
     def add(self, code: Code, where: Node | Span, message: str, hint: str = "") -> None:
-        """Note a mistake, once."""
+        """Add a mistake, once."""
         span = where if isinstance(where, Span) else where.span
         self._found.setdefault(Diagnostic(code, span, message, hint))
 
     def warn(self, code: Code, where: Node | Span, message: str, hint: str = "") -> None:
-        """Note a warning, once."""
+        """Add a warning, once."""
         span = where if isinstance(where, Span) else where.span
         self._warned.setdefault(Diagnostic(code, span, message, hint))
 
@@ -52,9 +52,9 @@ class Findings:
         code: Code = Code.UNKNOWN_NAME,
         otherwise: str = "",
     ) -> None:
-        """Note a name that means nothing, and what may have been meant; else hint at `otherwise`.
+        """Report an unknown name, with similar names as a hint, or else `otherwise`.
 
-        Of names that an unreadable file may give, nothing is said.
+        A name that an unreadable file may declare is not reported.
         """
         if sort in self.unread:
             return
@@ -62,12 +62,12 @@ class Findings:
         self.add(code, name, f"unknown {sort} '{shorten(name.text)}'", hint)
 
     def suggest(self, word: str, among: Iterable[str]) -> str:
-        """Return `did you mean ...?`, or nothing; after fifty it isn't asked any more, since it is slow."""
+        """Return `did you mean ...?`, or an empty text; after fifty look-ups always empty, since they are slow."""
         self._suggested += 1
         return "" if self._suggested > MOST_SUGGESTIONS else did_you_mean(word, among)
 
     def error(self) -> MissionError:
-        """Return the mistakes as one error, by position: the first hundred, and how many more there are."""
+        """Return the mistakes as one error, by position: the first hundred, and the number of the others."""
         found = MissionError(self.source, self._found).diagnostics
         shown, more = found[:MOST_SHOWN], found[MOST_SHOWN:]
         if more:
@@ -82,7 +82,7 @@ def shorten(text: str) -> str:
 
 
 def a(word: str) -> str:
-    """Put the article before a word.
+    """Return a word with its article.
 
     >>> a("OilSpill"), a("UAV"), a("Vessel")
     ('an OilSpill', 'a UAV', 'a Vessel')

@@ -1,6 +1,6 @@
-"""Elaborate formulas of properties: expand quantifiers and resolve names, within bounds.
+"""Elaboration of the formulas of properties: expand quantifiers and resolve names, within bounds.
 
-A quantifier of which everything is about entities is not written out: its instances are made when they are asked for.
+A quantifier whose body is only about entities is not expanded: its instances are created on demand.
 """
 
 from __future__ import annotations
@@ -45,31 +45,31 @@ from specs.elaboration.value_types import Types
 from specs.writing import write
 
 MOST_ATOMS: Final = 50_000
-"""So many atoms the properties may have, written out."""
+"""The most atoms of all properties together, after expansion."""
 
 LONG: Final = 1_000
-"""A quantifier over entities that comes to more atoms doesn't keep its instances."""
+"""The most atoms of a quantifier over entities that keeps its instances."""
 
 MOST_ASKED: Final = 200_000
-"""So many atoms such a quantifier may ask of one configuration."""
+"""The most atoms of such a quantifier that one configuration may have to evaluate."""
 
 NOBODY: Final = REGION
-"""What a quantified name stands for where there is nothing to quantify over."""
+"""The value of a quantified name with an empty range."""
 
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """What there is around a part of a formula.
+    """The context of a subformula.
 
-    What has no value neither violates nor fulfils: below `always`, a comparison is true where its variable has no
-    value, below `eventually` false, and the other way round below a negation. So `not always F` is `eventually not F`.
+    An unbound variable neither violates nor fulfils a property. Below `always` a comparison with an unbound variable is
+    true, below `eventually` false, and a negation exchanges the two. So `not always F` is `eventually not F`.
 
     Attributes:
-        unbound: The truth of a comparison here whose variable has no value.
-        names: What each quantified name stands for.
-        depth: How many operators of paths are around.
-        is_alone: Whether nothing around is about runs: then quantifiers need not be written out.
-        variables: What stands for each name whose quantifier is not written out; `names` has one of its range.
+        unbound: The truth value here of a comparison whose variable is unbound.
+        names: The value of each quantified name.
+        depth: The number of enclosing path operators.
+        is_alone: Whether no enclosing formula is about runs; then quantifiers need not be expanded.
+        variables: The placeholder of each name whose quantifier is not expanded; `names` has one value of its range.
     """
 
     unbound: bool
@@ -79,11 +79,11 @@ class Context:
     variables: Mapping[str, str] = field(default_factory=dict)
 
     def naming(self, variable: str, name: str) -> Context:
-        """Return the context in which a quantified name stands for another."""
+        """Return the context with a value for a quantified name."""
         return replace(self, names={**self.names, variable: name})
 
     def leaving(self, variable: str, name: str, left: str) -> Context:
-        """Return the context in which a quantified name is left as it is; `name` is one that it stands for."""
+        """Return the context with a placeholder for a quantified name; `name` is one of its values."""
         return replace(self.naming(variable, name), variables={**self.variables, variable: left})
 
     def denied(self) -> Context:
@@ -91,16 +91,16 @@ class Context:
         return replace(self, unbound=not self.unbound)
 
     def on_paths(self, *, unbound: bool) -> Context:
-        """Return the context below one more operator of paths."""
+        """Return the context below one more path operator."""
         return replace(self, unbound=unbound, depth=self.depth + 1)
 
 
 class TooLarge(Exception):
-    """A formula that comes to more than is allowed: what is too much, and what to do."""
+    """A formula exceeds a bound; carries the message and the hint."""
 
 
 class Formulas:
-    """Elaborates the formulas of a mission; `atoms` counts those of all of them, `left` quantifiers as they are."""
+    """Elaborates the formulas of a mission; `atoms` counts all their atoms, `left` the quantifiers not expanded."""
 
     def __init__(self, names: Names, bodies: Bodies, types: Types, *, is_timed: bool = False) -> None:
         self.names = names
@@ -113,7 +113,7 @@ class Formulas:
         self.ranges = set[tuple[str, ...]]()
 
     def elaborate(self, formula: s.Formula, *, invariant: bool) -> Proposition:
-        """Return a formula as a proposition; reports what is wrong with it, and where the bound is passed."""
+        """Return a formula as a proposition; reports its mistakes, and a bound that it exceeds."""
         if self.full:
             return Always(True)
         try:
@@ -124,7 +124,7 @@ class Formulas:
 
     @property
     def full(self) -> bool:
-        """Whether there are so many atoms that the following properties are skipped."""
+        """Whether the bound on atoms is exceeded, so that all later properties are skipped."""
         return self.atoms > MOST_ATOMS
 
     def report(self, formula: s.Formula, error: TooLarge) -> None:
@@ -133,7 +133,7 @@ class Formulas:
         self.names.findings.add(Code.FORMULA_TOO_LARGE, formula, message, hint)
 
     def proposition(self, node: s.Formula, around: Context) -> Proposition:
-        """Return a formula as a proposition, the quantified names around it replaced."""
+        """Return a formula as a proposition, with the quantified names of its context replaced."""
         match node:
             case s.Negation(operand):
                 return Not(self.proposition(operand, around.denied()))
@@ -143,13 +143,13 @@ class Formulas:
                 return self._quantified(node, around)
             case _:
                 self.count(1)
-                atom = self._atom(node, around)  # reports what is wrong with it
+                atom = self._atom(node, around)  # reports mistakes
                 if not around.variables:
                     return atom
                 return self._atom(node, replace(around, names={**around.names, **around.variables}))
 
     def count(self, atoms: int) -> None:
-        """Count atoms; raises TooLarge where they are too many."""
+        """Count atoms; raises TooLarge if there are too many."""
         self.atoms += atoms
         if self.full:
             message = f"written out, the properties have more than {MOST_ATOMS:,} atoms"
@@ -178,14 +178,14 @@ class Formulas:
     def instances(
         self, node: s.Quantified, around: Context, elaborate: Callable[[s.Formula, Context], object]
     ) -> list[tuple[Context, Proposition | None]]:
-        """Return the context of each instance of what is quantified, and what has to be true for it to count."""
+        """Return the context of each instance of a quantifier, and the condition under which it counts."""
         mistakes = len(self.names.findings)
         instances = self.among.instances(node, around.names)
         if len(self.names.findings) > mistakes:
             return []
         if not instances:
             self._warn_of_nothing(node)
-            elaborate(node.body, around.naming(node.variable.text, NOBODY))  # for the mistakes in it
+            elaborate(node.body, around.naming(node.variable.text, NOBODY))  # for its mistakes
         self.ranges.add(tuple(name for name, _ in instances))
         self.count(sum(condition is not None for _, condition in instances))
         return [(around.naming(node.variable.text, name), condition) for name, condition in instances]
@@ -203,10 +203,10 @@ class Formulas:
             else "declare one, or quantify over others",
         )
 
-    # --- quantifiers that are not written out
+    # --- quantifiers that are not expanded
 
     def _size(self, node: s.Formula) -> int | None:
-        """Return how many atoms a formula about entities has, written out; None of one that is about others, too."""
+        """Return the number of atoms of an expanded formula about entities; None if it is also about anything else."""
         match node:
             case s.Quantified(_, _, among, body, None, None) if among.text in self.names.signature.kinds:
                 members = sum(kind == among.text for kind in self.names.kinds.values())
@@ -225,11 +225,11 @@ class Formulas:
         return None
 
     def _left(self, node: s.Quantified, around: Context) -> Proposition:
-        """Return a quantifier as operands that are made when they are asked for."""
+        """Return a quantifier whose instances are created on demand."""
         chain, left = [node], list[tuple[str, Range]]()
         while isinstance(inner := chain[-1].body, s.Quantified) and inner.quantifier == node.quantifier:
             chain.append(inner)
-        if len({each.variable.text for each in chain}) == len(chain):  # else one hides another
+        if len({each.variable.text for each in chain}) == len(chain):  # no variable hides another
             chain.sort(key=lambda each: not _is_said_something_of(each.variable.text, inner))
         for each in chain:
             names = tuple(name for name, _ in self.among.instances(each, around.names))
@@ -309,7 +309,7 @@ class Formulas:
         return self._stands_for(name, bound)
 
     def _check_inside(self, node: s.Node, who: str, within: str, *, directly: bool) -> None:
-        """Warn of a place that no entity of the kind can ever be in, by the signature."""
+        """Warn of a place that can never contain an entity of that kind, according to the signature."""
         kind, around = self.names.kinds.get(who), self.names.kinds.get(within)
         if kind is None or around is None or kind in self.names.signature.within(around, directly=directly):
             return
@@ -318,7 +318,7 @@ class Formulas:
         self.names.findings.warn(Code.NEVER_INSIDE, node, message, hint)
 
     def agent(self, name: s.Agent, bound: Mapping[str, str]) -> str:
-        """Return the bigActor that a name stands for; reports one that is none. `bound` are quantified names."""
+        """Return the bigActor that a name denotes; reports a name that denotes none. `bound` are quantified names."""
         if not isinstance(name, s.Name) or name.text not in bound:
             return self.names.agent(name, bound) or NOBODY
         if bound[name.text] in self.names.kinds:
@@ -368,7 +368,7 @@ class Formulas:
         return VariableOf(whose, unique or (shown,))
 
     def _variables(self, agent: str) -> Iterator[tuple[str, str]]:
-        """Yield the variables of what a bigActor may run: as written, and their unique names."""
+        """Yield the variables in the bodies that a bigActor may run: their written and their unique names."""
         for body in self.bodies.running(agent):
             for name, renamed in body.variables.items():
                 yield from ((name, unique) for unique in renamed)
@@ -378,7 +378,7 @@ IMPLICATIONS: Final = ("->", "<->")
 
 
 def implications(node: s.Connective) -> Iterator[tuple[s.Formula, s.Formula]]:
-    """Yield the condition and the conclusion of an implication; of `<->` both ways."""
+    """Yield the condition and the conclusion of an implication; for `<->` in both directions."""
     yield node.left, node.right
     if node.operator == "<->":
         yield node.right, node.left
@@ -391,7 +391,7 @@ def _parts(formula: Proposition, make: type[And | Or]) -> tuple[Proposition, ...
 
 
 def _asked(formula: Proposition) -> int:
-    """Return how many atoms a proposition asks of a configuration: of the places that something is in, a few."""
+    """Return how many atoms of a proposition a configuration has to evaluate; an anchored quantifier counts as one."""
     match formula:
         case Not(inner):
             return _asked(inner)
@@ -403,7 +403,7 @@ def _asked(formula: Proposition) -> int:
 
 
 def _is_said_something_of(variable: str, node: s.Formula) -> bool:
-    """Tell whether anything is said of a quantified name, but that others are in it."""
+    """Whether a formula has an atom about a quantified name, other than as a place that contains another."""
     for each in s.walk(node):
         match each:
             case s.Inside(entity) | s.Known(entity) | s.Present(s.Name() as entity) if (

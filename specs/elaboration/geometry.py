@@ -1,4 +1,4 @@
-"""Elaborate written geometry to geometry on the earth."""
+"""Elaboration of written geometry to geometry on the earth."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from specs.writing import write
 
 
 def elaborate_geometry(node: s.Geometry, findings: Findings) -> Geometry | None:
-    """Return the geometry that is written, None (and a finding) where it is none on the earth."""
+    """Return the written geometry; None, and a finding, if it is invalid."""
     try:
         geometry = _geometry(node)
         _warn_of_swapped_corner(node, findings)
@@ -39,7 +39,7 @@ def _geometry(node: s.Geometry) -> Geometry:
 
 
 def _warn_of_swapped_corner(node: s.Geometry, findings: Findings) -> None:
-    """Warn of a corner far from the others that would be near them with its latitude and longitude exchanged."""
+    """Warn of a corner far from the others that is near them once its latitude and longitude are exchanged."""
     if not isinstance(node, s.Box | s.Polygon):
         return
     corners = (node.first, node.second) if isinstance(node, s.Box) else node.corners
@@ -57,7 +57,7 @@ def _pair(coordinate: s.Coordinate) -> tuple[float, float]:
 
 
 def elaborate_placement(node: s.Placement, findings: Findings) -> Placed | None:
-    """Return the placement that is written."""
+    """Return the written placement; None, and a finding, if it is invalid."""
     geometry = elaborate_geometry(node.geometry, findings)
     try:
         altitude = None if node.altitude is None else _band(node.altitude)
@@ -72,6 +72,6 @@ def _band(node: s.AltitudeBand) -> Band:
 
 
 def moved_to(shape: Placed | None, at: Geometry) -> Placed:
-    """Return a shape, centred where another geometry has its centre; without a shape, that centre."""
+    """Return a shape moved to the centre of a geometry; without a shape, that centre."""
     centre = centroid(at)
     return Placed(centre) if shape is None else Placed(translate_to(shape.geometry, centre), shape.altitude)

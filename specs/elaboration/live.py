@@ -10,7 +10,7 @@ from specs.elaboration.statements import check_duration
 
 
 def elaborate_live(mission: s.Mission, names: Names) -> LivePolicy:
-    """Return the precautions of a mission: vehicles hold on a broken assumption where nothing else is said."""
+    """Return the fallbacks and time limits of a mission; by default vehicles hold on a broken assumption."""
     written = [item for section in mission.each(s.Live) for item in section.precautions]
     on_broken = [item for item in written if isinstance(item, s.OnBroken)]
     limits = [item for item in written if isinstance(item, s.TimeLimit)]

@@ -1,4 +1,4 @@
-"""Elaborate a mission: from a syntax tree to what is explored, or to all its mistakes."""
+"""Elaboration of a mission: from a syntax tree to an elaborated mission, or to all its mistakes."""
 
 from __future__ import annotations
 
@@ -48,19 +48,19 @@ from specs.recovery import Recovered
 
 @dataclass(frozen=True, eq=False)
 class ElaboratedMission:
-    """All that there is to explore and to check.
+    """A mission ready to explore and check.
 
     Attributes:
         name: The mission's name: its header's, else the file's stem.
         source: Its text.
-        setting: What stays the same.
-        properties: What is checked, in the order written.
-        notes: What a verdict has to say beside its results.
+        setting: Its constants.
+        properties: Its properties, in written order.
+        notes: Notes on the world that accompany every verdict.
         fixed: Entities whose place neither agents nor the environment can ever change.
-        spans: Where each name is declared, by sort (entity, kind, channel, agent, rule, behaviour) and name.
-        precautions: What is done when a live run goes otherwise.
-        warnings: What is allowed but probably not meant, by position.
-        begin: Makes the first configuration under a setting, of the world as it was read.
+        spans: The declaration of each name, by sort (entity, kind, channel, agent, rule, behaviour) and name.
+        precautions: The fallbacks and time limits of a live run.
+        warnings: Probable mistakes that are allowed, by position.
+        begin: The function from a setting to the initial configuration, in the world already read.
         empty: Whether its text declares nothing.
     """
 
@@ -84,16 +84,16 @@ class ElaboratedMission:
 
     @cached_property
     def initial(self) -> Configuration:
-        """The first configuration, made when it is asked for first: no mistake is left to be found there."""
+        """The initial configuration, computed on first use; it has no mistakes left to report."""
         return self.begin(self.setting)
 
     def under(self, scheduler: Scheduler, control: Control) -> ElaboratedMission:
-        """Return the same mission under another scheduler and kind of control; no file is read again."""
+        """Return the mission under another scheduler and kind of control; no file is read again."""
         setting = self.setting.with_(scheduler=scheduler, control=control)
         return replace(self, setting=setting)
 
     def line(self, sort: str, name: str) -> int:
-        """Return the line in which a name is declared, from 1; 0 where none is."""
+        """Return the line of a declaration, from 1; 0 if there is none."""
         span = self.spans.get((sort, name))
         return 0 if span is None else self.source.line(span.start)
 
@@ -101,9 +101,9 @@ class ElaboratedMission:
 def elaborate(
     mission: s.Mission, source: Source, directory: Path, variation: Variation = AS_WRITTEN
 ) -> ElaboratedMission:
-    """Return what a mission means; raises MissionError with every mistake that was found, by position.
+    """Return the meaning of a mission; raises MissionError with all mistakes found, by position.
 
-    Files of the world are looked for in `directory`, but for those that the variation has others for.
+    Files of the world are sought in `directory`, unless the variation replaces them.
     """
     names = Names(Findings(source))
     elaborate_signature(mission, names)
@@ -171,12 +171,12 @@ def elaborate(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Diagnosis:
-    """What a text means, or what is wrong with it.
+    """The result of elaborating a text: its meaning, or its mistakes.
 
     Attributes:
-        mistakes: Why it is refused, by position.
-        warnings: What is allowed but probably not meant, by position.
-        elaborated: What it means; None with a mistake.
+        mistakes: Its mistakes, by position.
+        warnings: Probable mistakes that are allowed, by position.
+        elaborated: The mission; None if there is a mistake.
     """
 
     mistakes: tuple[Diagnostic, ...]
@@ -187,7 +187,7 @@ class Diagnosis:
 def diagnose(
     found: Recovered, source: Source, directory: Path, variation: Variation = AS_WRITTEN
 ) -> Diagnosis:
-    """Return what was read means, or all that is wrong with it: mistakes of syntax, and others in spite of them."""
+    """Return the meaning of a parsed text, or all its mistakes: those of syntax, and those independent of them."""
     try:
         elaborated = elaborate(found.mission, source, directory, variation)
         meant = Diagnosis((), elaborated.warnings, elaborated)
@@ -200,7 +200,7 @@ def diagnose(
 
 
 def require_bigactor(mission: ElaboratedMission) -> None:
-    """Refuse a mission in which nobody acts: nothing checked is no pass; raises MissionError."""
+    """Refuse a mission without a bigActor, since an empty check is no pass; raises MissionError."""
     if mission.initial.alpha.names():
         return
     if mission.empty:
@@ -219,10 +219,10 @@ def _stop(findings: Findings) -> None:
 
 
 def load_mission(mission: str | Path, variation: Variation = AS_WRITTEN) -> ElaboratedMission:
-    """Read, parse and elaborate a mission: a file, or one that ships, by its name (`load_mission("oil_spill")`).
+    """Return the elaborated mission of a file, or of a shipped mission by its name (`load_mission("oil_spill")`).
 
     Raises:
-        MissionError: There is no such mission, it cannot be read, or it has mistakes; all of them.
+        MissionError: There is no such mission, it cannot be read, or it has mistakes; lists them all.
     """
     path = find_mission(mission) if isinstance(mission, str) else mission
     try:
@@ -237,10 +237,10 @@ def load_mission(mission: str | Path, variation: Variation = AS_WRITTEN) -> Elab
 def read_mission(
     text: str, directory: str | Path = ".", *, name: str = "<text>", variation: Variation = AS_WRITTEN
 ) -> ElaboratedMission:
-    """Parse and elaborate the text of a mission; files that it names with `from` are sought in a folder.
+    """Return the elaborated mission of a text; files named with `from` are sought in a directory.
 
     Raises:
-        MissionError: It has mistakes; all of them, at places in the `name`.
+        MissionError: The text has mistakes; lists them all, with positions in `name`.
     """
     return _elaborated(decode(name, text.encode("utf-8", "surrogatepass")), Path(directory), variation)
 
@@ -256,7 +256,7 @@ def _elaborated(source: Source, directory: Path, variation: Variation) -> Elabor
 
 
 def find_mission(word: str) -> Path:
-    """Return the path of a mission: a file, or one that ships, given by its name; raises MissionError."""
+    """Return the path of a mission: a file, or a shipped mission by its name; raises MissionError."""
     shipped = shipped_missions()
     try:
         if not word:
@@ -282,13 +282,13 @@ def _unreadable(name: str, message: str, hint: str) -> MissionError:
 
 
 def files_named(mission: s.Mission) -> tuple[str, ...]:
-    """Return the files that a mission takes its world from, as it names them."""
+    """Return the files of a mission's world, by the names that it gives."""
     entries = (entry for world in mission.each(s.World) for entry in world.entries)
     return tuple(entry.file.value for entry in entries if isinstance(entry, s.FromSource))
 
 
 def _check_sources(mission: s.Mission, source: Source, variation: Variation) -> None:
-    """Refuse a substitute for a file that the mission does not name."""
+    """Refuse a replacement for a file that the mission does not name."""
     named = set(files_named(mission))
     findings = Findings(source)
     for name in sorted(set(variation.sources) - named):

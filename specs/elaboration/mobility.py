@@ -1,4 +1,4 @@
-"""Which entities can move, and whether the immobile places nest."""
+"""Mobility: the entities that can move, and the nesting of those that can't."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ _AFLOAT: Final = re.compile(r"(?i)vessel|tanker|drifter|boat|ship|ferry|buoy|raf
 
 @dataclass(slots=True)
 class Mobility:
-    """Who moves, and how.
+    """The entities that move, by the way in which they do.
 
     Attributes:
         drifting: Entities that drift.
         coming: Entities that appear or vanish.
-        carried: Entities that may be carried: at first, or when they appear, or because they can be loaded.
+        carried: Entities that may be carried, initially or when they appear.
     """
 
     drifting: set[str] = field(default_factory=set)
@@ -36,7 +36,7 @@ class Mobility:
 
 
 def elaborate_mobility(mission: s.Mission, names: Names, world: World) -> Mobility:
-    """Gather who moves from the world and the environment section."""
+    """Collect the moving entities from the world and the environment section."""
     clauses = [clause for section in mission.each(s.Environment) for clause in section.clauses]
     found = Mobility()
     found.drifting = {
@@ -56,13 +56,13 @@ def _named(spots: Iterable[s.Placement | s.Name]) -> Iterator[s.Name]:
 
 
 def carries(names: Names, carrier: str, name: str) -> bool:
-    """Tell whether one entity's kind carries another's."""
+    """Whether one entity's kind carries another's."""
     kind = names.kinds.get(carrier)
     return kind is not None and names.kinds.get(name) in names.signature[kind].carries
 
 
 def moves(name: str, names: Names, mobility: Mobility) -> bool:
-    """Tell whether an entity may be somewhere else later: driven, carried or drifting."""
+    """Whether an entity may move after the start: by being driven, carried or drifting."""
     kind = names.kinds[name]
     return names.signature[kind].driven or name in mobility.drifting or name in mobility.carried
 
@@ -75,7 +75,7 @@ def fixed_entities(names: Names, mobility: Mobility) -> frozenset[str]:
 
 
 def check_nesting(names: Names, world: World, mobility: Mobility) -> None:
-    """Report every two places that never move and neither nest nor are apart."""
+    """Report each pair of immobile places that neither nest nor are disjoint."""
     places = {
         name: Place(placement.geometry, placement.altitude)
         for name, placement in world.placements.items()
@@ -90,7 +90,7 @@ def check_nesting(names: Names, world: World, mobility: Mobility) -> None:
 
 
 def warn_of_outliers(names: Names, world: World, clauses: Iterable[tuple[Clause, s.Span]]) -> None:
-    """Warn of what lies so far from everything else that its latitude and longitude may be swapped."""
+    """Warn of positions so far from all others that their latitude and longitude may be exchanged."""
     geometries = dict(_geometries(names, world, clauses))
     _warn_of_all(names, geometries)
     found = outliers(geometries)
@@ -104,7 +104,7 @@ def warn_of_outliers(names: Names, world: World, clauses: Iterable[tuple[Clause,
 
 
 def _warn_of_all(names: Names, geometries: Mapping[tuple[s.Span, str], Geometry]) -> None:
-    """Warn where the whole world seems to have latitude and longitude exchanged."""
+    """Warn if latitude and longitude of the whole world seem to be exchanged."""
     afloat = [key for key in geometries if _AFLOAT.search(names.kinds.get(key[1], ""))]
     where = all_swapped(geometries.values(), (geometries[key] for key in afloat))
     if where:
@@ -118,7 +118,7 @@ def _warn_of_all(names: Names, geometries: Mapping[tuple[s.Span, str], Geometry]
 def _geometries(
     names: Names, world: World, clauses: Iterable[tuple[Clause, s.Span]]
 ) -> Iterator[tuple[tuple[s.Span, str], Geometry]]:
-    """Yield where each entity is or may come to be, with where that is said and how it is called."""
+    """Yield the initial and possible geometries of each entity, with the span and the description of each."""
     for name, placement in world.placements.items():
         if isinstance(placement, Placed):
             yield (names.spans["entity", name], name), placement.geometry

@@ -18,7 +18,7 @@ from specs.elaboration.needs import Demand, Need, Use, unquoted
 
 SORTS: Final = ("entity", "agent", "family", "kind", "channel", "rule", "behaviour")
 AGENTS: Final = "agents"
-"""What properties call all bigActors, unless a kind or a family has this name."""
+"""The word for all bigActors in properties, unless a kind or a family has this name."""
 
 WORDS: Final = {
     "agent": "bigActor",
@@ -38,26 +38,26 @@ MANY: Final = {
     "behaviour": "behaviours",
 }
 EXCLUSIVE: Final = ("entity", "agent", "family", "kind", "channel")
-"""Sorts whose names differ from each other."""
+"""Sorts that may not share a name."""
 
 
 @dataclass(slots=True)
 class Names:
-    """What is declared where.
+    """The declarations of a mission.
 
     Attributes:
-        findings: Where mistakes go.
+        findings: The collector of mistakes.
         signature: The kinds.
-        spans: Where each name of each sort is declared first.
+        spans: The first declaration of each name of each sort.
         kinds: The kind of each entity.
         rules: The named rules.
         behaviours: The parametrised behaviours.
-        agents: All bigActors, spawned ones too, with their hosts (None for spawned ones).
+        agents: All bigActors, with their initial hosts (None for spawned ones).
         channels: All channels.
         lacking: Kinds that were reported as undeclared.
-        families: For each family its members by their entities, in turn.
-        hiding: Where patterns have a variable that is called like an entity or a bigActor, by its name.
-        demands: What the values of expressions are needed for, judged when all types are known.
+        families: For each family, its members by their entities, in order.
+        hiding: The spans of pattern variables that hide an entity or a bigActor, by its name.
+        demands: The required types of expressions, checked when all types are known.
     """
 
     findings: Findings
@@ -74,7 +74,7 @@ class Names:
     demands: list[Demand] = field(default_factory=list)
 
     def is_taken(self, sort: str, name: str) -> bool:
-        """Tell whether a name has a meaning already that it can't have beside one of this sort."""
+        """Whether a name is already declared with a sort that it can't share with this one."""
         return any((other, name) in self.spans for other in (EXCLUSIVE if sort in EXCLUSIVE else (sort,)))
 
     def declare(
@@ -84,7 +84,7 @@ class Names:
         where: s.Node | s.Span,
         hint: str = "choose another name for one of the two",
     ) -> bool:
-        """Give a name its meaning; reports one that has a meaning already, and tells whether all is well."""
+        """Declare a name and return whether it was free; reports one that is declared already."""
         span = where if isinstance(where, s.Span) else where.span
         clashing = EXCLUSIVE if sort in EXCLUSIVE else (sort,)
         taken = next((other for other in clashing if (other, name) in self.spans), None)
@@ -113,30 +113,30 @@ class Names:
         return self.findings.source.line(self.spans[sort, name].start)
 
     def need(self, node: s.Node, value: Expression, need: Need, by: str) -> Expression:
-        """Note what an expression is needed for, and return it."""
+        """Record the required type of an expression, and return the expression."""
         self.demands.append(Use(node, value, need, by))
         return value
 
     # --- look-ups
 
     def is_node(self, name: str) -> bool:
-        """Tell whether a name is an entity's."""
+        """Whether a name is an entity's."""
         return name in self.kinds
 
     def entity(self, name: s.Name, otherwise: str = "") -> str | None:
-        """Return the kind of the entity of that name; reports a name that is none."""
+        """Return the kind of an entity; reports an unknown name."""
         kind = self.kinds.get(name.text)
         if kind is None:
             self._missing(name, "entity", self.kinds, otherwise)
         return kind
 
     def holding(self, kind: str) -> tuple[str, ...]:
-        """Return the first five entities that may contain one of a kind."""
+        """Return the first five entities that may contain an entity of a kind."""
         found = (name for name, of in sorted(self.kinds.items()) if self.signature[of].may_contain(kind))
         return tuple(islice(found, 5))
 
     def kind(self, name: s.Name) -> bool:
-        """Tell whether there is such a kind, and report one that there isn't, once: only rules' bodies name any."""
+        """Whether a kind is declared; reports an undeclared one, once. Only rule bodies can name undeclared kinds."""
         if name.text in self.signature.kinds:
             return True
         if name.text not in self.lacking:
@@ -147,7 +147,7 @@ class Names:
         return False
 
     def agent(self, node: s.Agent, bound: Mapping[str, str] | None = None) -> str | None:
-        """Return the name of a bigActor; reports one that there isn't. `bound` are quantified names."""
+        """Return the name of a bigActor; reports an unknown one. `bound` are quantified names."""
         match node:
             case s.Member(family, s.Name(index)):
                 return self.member(family, (bound or {}).get(index, index), node.index)
@@ -160,7 +160,7 @@ class Names:
         return None
 
     def member(self, family: s.Name, index: Value, where: s.Node) -> str | None:
-        """Return the member of a family that is called by its entity or its number; reports one that there isn't."""
+        """Return the member of a family by its entity or its number; reports an unknown one."""
         members = self.family(family)
         if members is None:
             return None
@@ -176,14 +176,14 @@ class Names:
         return None
 
     def family(self, name: s.Name) -> Mapping[str, str] | None:
-        """Return the members of a family by their entities; reports a name that is none."""
+        """Return the members of a family by their entities; reports an unknown family."""
         found = self.families.get(name.text)
         if found is None:
             self._missing(name, "family", self.families)
         return found
 
     def channel(self, name: s.Name) -> bool:
-        """Tell whether there is such a channel, and report one that there isn't."""
+        """Whether a channel is declared; reports an undeclared one."""
         if name.text in self.channels:
             return True
         otherwise = f"{listed(self.channels, 'channels')}; or declare it: world {{ channel {name.text} }}"
@@ -213,5 +213,5 @@ class Names:
         return f"its host is '{host.text}'" if host is not None and host.text != name else ""
 
     def sort_of(self, name: str) -> str | None:
-        """Return the first sort that a name is declared as."""
+        """Return the first sort of a declared name."""
         return next((sort for sort in SORTS if (sort, name) in self.spans), None)

@@ -1,4 +1,4 @@
-"""What values are needed where: collected while statements are elaborated, and judged when all types are known."""
+"""Required types of values: collected while statements are elaborated, and checked when all types are known."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ from specs.writing import write
 
 @dataclass(frozen=True, slots=True)
 class Need:
-    """What something takes.
+    """The types that an operand accepts.
 
     Attributes:
-        sorts: The sorts that it takes.
-        remedy: What to write instead of another one.
-        members: Where it takes sets or routes, what these may hold.
-        filled: Whether these must hold something.
+        sorts: The accepted sorts.
+        remedy: The hint for a value of another sort.
+        members: If it accepts sets or routes, the accepted sorts of their members.
+        filled: Whether they must have a member.
     """
 
     sorts: Sorts
@@ -49,14 +49,14 @@ class Need:
     filled: bool = False
 
     def met(self, given: Type) -> bool:
-        """Tell whether a value of a type may be taken; what never has a value is not complained of."""
+        """Whether some value of a type may be accepted; a type without values is accepted."""
         taken = given.sorts & self.sorts
         fits = given.members & self.members if given.members else not self.filled
         return bool(taken - HOLDERS or (taken & HOLDERS and fits) or not given.sorts)
 
 
 MOST_MESSAGES: Final = 50
-"""Types of messages whose lines are told: each is compared with the cases of each react."""
+"""The most types of messages whose lines are reported; each is compared with the cases of every react."""
 
 CONDITIONAL: Final = "a condition"
 _NAME_IT: Final = "write its name, or a variable that holds it"
@@ -97,18 +97,18 @@ OPERANDS: Final[Mapping[str, tuple[Need | None, ...]]] = {
     "kind": (ENTITY,),
     "element": (TUPLE, NUMBER),
 }
-"""What the operators take whose operands are judged one by one; None for anything."""
+"""The accepted types of operators whose operands are checked one by one; None for any."""
 
 
 @dataclass(frozen=True, slots=True)
 class Use:
-    """An expression where something takes it.
+    """An expression used as an operand.
 
     Attributes:
-        where: The expression as it was written.
-        value: What it is.
-        need: What is taken there.
-        by: What takes it, for messages.
+        where: The written expression.
+        value: The elaborated expression.
+        need: The types that the operand accepts.
+        by: The operator or statement, for messages.
     """
 
     where: s.Node
@@ -119,7 +119,7 @@ class Use:
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Two operands that are judged together."""
+    """Two operands that are checked together."""
 
     operator: str
     left: s.Node
@@ -129,7 +129,7 @@ class Pair:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """The cases of a `match`, one of which has to take the subject, or of a `react`, which has none."""
+    """The cases of a `match`, one of which must accept the subject, or of a `react`, which has no subject."""
 
     where: s.Node
     subject: Expression | None
@@ -140,7 +140,7 @@ Demand = Use | Pair | Choice
 
 
 def check_types(demands: list[Demand], inference: Inference, findings: Findings) -> Types:
-    """Report values of which nothing can be taken where they stand, and doubts; returns the variables' types."""
+    """Report values of the wrong type, warn of doubtful ones, and return the types of variables."""
     known = inference.variables()
     judge = _Judge(inference, known, _gifts(inference, known), findings)
     for demand in demands:
@@ -158,7 +158,7 @@ def check_types(demands: list[Demand], inference: Inference, findings: Findings)
 
 
 def _gifts(inference: Inference, known: Types) -> Mapping[str, list[tuple[int, Type]]]:
-    """Return the lines that give each variable a value, with its type: of a message, the line that sends it."""
+    """Return the lines that assign each variable, with the types; for a received message, the line of the `send`."""
     program, found = inference.program, dict[str, list[tuple[int, Type]]]()
     sent: list[tuple[int, Type]] = []
     for number, each in enumerate(program.statements):
@@ -209,7 +209,7 @@ class _Judge:
         self.findings.add(Code.WRONG_VALUE, use.where, message + origin, hint)
 
     def doubt(self, use: Use, variable: str) -> None:
-        """Warn of a variable that some statement gives what can't be taken here."""
+        """Warn of a variable to which some statement assigns a value that is not accepted here."""
         for line, given in self.gifts.get(variable, ()):
             if not use.need.met(given):
                 message = (
@@ -242,7 +242,7 @@ class _Judge:
             self.quotes(where, pattern, given)
 
     def quotes(self, where: s.Pattern, pattern: Pattern, given: Type) -> None:
-        """Warn of a case with a text where only a name can be, or the other way round."""
+        """Warn of a case with a text where only names occur, or with a name where only texts do."""
         for constant, there in compared(pattern, given):
             own = self.inference.constant(constant).sorts
             if own.isdisjoint(there) and Sort.TEXT in own | there <= NAMES | {Sort.TEXT}:
@@ -253,7 +253,7 @@ class _Judge:
                 return
 
     def item(self, pair: Pair) -> None:
-        """Report an item that no tuple has."""
+        """Report the index of an item that no tuple has."""
         given, index = self.inference.type(pair.values[0], self.known), pair.values[1]
         if given.tuples and isinstance(index, Literal) and isinstance(index.value, int):
             longest = max(length for length, _ in given.tuples)
@@ -291,7 +291,7 @@ class _Judge:
         )
 
     def unquoted(self, node: s.Node, sign: str = "") -> str:
-        """Return the remedy where a text in something spells a name; in a pattern a name has a sign before it."""
+        """Return the hint for a text that spells a name, anywhere in a node; a pattern writes `sign` before a name."""
         known = self.inference.entities | self.inference.agents
         return next((hint for part in s.walk(node) if (hint := unquoted(part, known, sign))), "")
 
@@ -304,7 +304,7 @@ _ADDENDS: Final = Need(HOLDERS | {Sort.NUMBER}, "add numbers, or join sets or ro
 def operands(
     operator: str, nodes: tuple[s.Expression, ...], values: tuple[Expression, ...]
 ) -> Iterator[Demand]:
-    """Yield what an operator asks of its operands."""
+    """Yield the required types of an operator's operands."""
     if operator in ("+", "-", "==", "!=", "in", "element"):
         yield Pair(operator, nodes[0], nodes[1], (values[0], values[1]))
     for node, value, need in zip(nodes, values, OPERANDS.get(operator, ()), strict=False):
@@ -313,13 +313,13 @@ def operands(
 
 
 def requoted(value: Value) -> str:
-    """Return the remedy where a name stands instead of a text, or a text that spells no name."""
+    """Return the hint for a name in the place of a text, or for a text that spells no name."""
     is_name = isinstance(value, str)
     return f'a text is written in quotes: "{value}"' if is_name else "a name is written without quotes"
 
 
 def unquoted(node: s.Node, names: Container[str], sign: str = "") -> str:
-    """Return the remedy where a text spells a name, which stands behind a sign."""
+    """Return the hint for a text that spells a name, written with `sign` before it."""
     spells = isinstance(node, s.TextLiteral) and (node.value in names or node.value in NO_ENTITIES)
     return f"write the name without quotes: {sign}{write(node)[1:-1]}" if spells else ""
 

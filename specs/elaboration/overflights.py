@@ -1,8 +1,8 @@
-"""Ways: what flights may cross on their way, where an invariant keeps a vehicle out of a place.
+"""Overflights: flights that may cross a place from which an invariant excludes the vehicle.
 
-An invariant speaks of the places in which vehicles are, and in transit a vehicle is in none that it only crosses. So an
-invariant that keeps it out of a place holds though its way leads through. Until a property asks that, this is warned of
-wherever the hull of where a flight may begin and where it may end, or be sent by, meets the place.
+An invariant is about the places that contain vehicles, and a vehicle in transit is in no place that it only crosses. So
+an invariant that excludes a vehicle from a place holds even if its path leads through. No property is about paths yet.
+Therefore this module warns whenever the place meets the hull of two successive points of a possible flight.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -26,10 +26,10 @@ from specs.codes import Code
 from specs.elaboration.findings import Findings
 
 Leg = tuple[Name, tuple[Name, ...]]
-"""A vehicle, with what it is sent by and to."""
+"""A vehicle, with the places of its VIA and its destination."""
 
 MOST_PARTS = 2_000
-"""So many operands of a quantifier are looked at."""
+"""The most operands of a quantifier that are examined."""
 
 HINT = "an invariant is about where it is, not about its way; lead it around: MOVE_HOST_TO place VIA gate0, gate1"
 
@@ -37,7 +37,7 @@ HINT = "an invariant is about where it is, not about its way; lead it around: MO
 def warn_of_overflights(
     setting: Setting, begin: Callable[[], Configuration], properties: Iterable[Property], findings: Findings
 ) -> None:
-    """Warn of each invariant that keeps a vehicle out of a place that a flight of it may cross, once."""
+    """Warn once of each invariant that excludes a vehicle from a place that its flights may cross."""
     forbidden = [(each, *pair) for each in properties for pair in _kept_out(setting, each)]
     if not forbidden:
         return
@@ -59,7 +59,7 @@ def _line(findings: Findings, number: int) -> s.Span:
 
 
 def _kept_out(setting: Setting, asked: Property) -> Iterator[tuple[Name, Name]]:
-    """Yield which vehicles an invariant keeps out of which places, as P has them."""
+    """Yield the pairs of vehicle and place that an invariant keeps apart in P."""
     if asked.kind is not PropertyKind.INVARIANT or asked.line == 0:
         return
     for atom in dict.fromkeys(_denied(asked.formula, negated=False)):
@@ -69,7 +69,7 @@ def _kept_out(setting: Setting, asked: Property) -> Iterator[tuple[Name, Name]]:
 
 
 def _denied(formula: Proposition, *, negated: bool) -> Iterator[Inside]:
-    """Yield what a formula denies whatever else is true: no operand of which another one may be denied instead."""
+    """Yield the atoms that must be false for a formula to be true."""
     match formula:
         case Inside() if negated:
             yield formula
@@ -84,7 +84,7 @@ def _denied(formula: Proposition, *, negated: bool) -> Iterator[Inside]:
 
 
 def _legs(c: Configuration) -> Iterator[Leg]:
-    """Yield all flights that some bigActor may ask for."""
+    """Yield all flights that some bigActor may request."""
     program = c.setting.program
     for agent in c.alpha.names():
         for number in sorted(reachable(program, c.alpha.code(agent))):
@@ -97,7 +97,7 @@ def _legs(c: Configuration) -> Iterator[Leg]:
 
 
 def _crossing(c: Configuration, leg: Leg, legs: Iterable[Leg], place: Name) -> tuple[Name, Name] | None:
-    """Return between which two places of a flight, wherever it may begin, another one may be crossed."""
+    """Return the ends of a part of a flight that may cross a place, from any possible start; None if there is none."""
     vehicle, stops = leg
     begins = [vehicle, *sorted({each[1][-1] for each in legs if each[0] == vehicle} - {stops[-1]})]
     ways = [(begin, stops[0]) for begin in begins] + list(pairwise(stops))
@@ -109,18 +109,18 @@ def _crossing(c: Configuration, leg: Leg, legs: Iterable[Leg], place: Name) -> t
 
 
 def _meets(begins: list[Geometry], ends: list[Geometry], places: list[Geometry]) -> bool:
-    """Tell whether some way meets a place that neither of its ends is in, or around."""
+    """Whether some path meets a place, and neither of its ends meets that place."""
     for begin, end, place in product(begins, ends, places):
         there = extent(place)
         if any(least_distance(extent(each), there) == 0 for each in (begin, end)):
-            continue  # then the invariant itself speaks of it
+            continue  # the invariant itself covers it
         if least_distance(span([extent(begin), extent(end)]), there) == 0:
             return True
     return False
 
 
 def _shapes(c: Configuration, entity: Name) -> list[Geometry]:
-    """Return where something may be, as far as that is listed: now, and where it drifts to or appears."""
+    """Return the initial and the listed geometries of an entity."""
     if entity == REGION:
         return []
     at = c.structure.physical.position(entity)

@@ -12,11 +12,11 @@ from specs.elaboration.names import Names
 from specs.elaboration.scopes import Scope
 
 Bind = Callable[[s.Name], str]
-"""Gives a variable of a pattern its unique name."""
+"""A function from a variable of a pattern to its unique name."""
 
 
 def elaborate_pattern(node: s.Pattern, names: Names, scope: Scope, bind: Bind, *, react: bool) -> Pattern:
-    """Return a pattern; in a `react`, a variable that is the whole of it takes an observation."""
+    """Return a pattern; in a `react`, a pattern that is only a variable accepts observations."""
     match node:
         case s.ObservationPattern(variable):
             return Anything(None if variable is None else bind(variable), "observation")
@@ -37,19 +37,19 @@ def elaborate_pattern(node: s.Pattern, names: Names, scope: Scope, bind: Bind, *
             return Exactly(elaborate_constant(name, names, scope.fixed))
         case s.TuplePattern(items):
             found = []
-            for item in items:  # a loop, since a comprehension would cost a frame at each depth
+            for item in items:  # a loop: a comprehension would add a stack frame at each depth
                 found.append(elaborate_pattern(item, names, scope, bind, react=False))  # noqa: PERF401
             return Elements(tuple(found))
 
 
 def note_hiding(node: s.Pattern, names: Names) -> None:
-    """Note the variables of a pattern that are called like an entity or a bigActor."""
+    """Record the variables of a pattern with the name of an entity or a bigActor."""
     for part in s.walk(node):
         if isinstance(part, s.VariablePattern) and (
             part.variable.text in names.kinds or part.variable.text in names.agents
         ):
             places = names.hiding.setdefault(part.variable.text, [])
-            if part.span not in places:  # a family's text is read for each of its members
+            if part.span not in places:  # a family's text is read once for each member
                 places.append(part.span)
 
 

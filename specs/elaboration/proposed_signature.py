@@ -1,4 +1,4 @@
-"""Propose kinds for a mission that does not declare them, by what it does with their entities."""
+"""A proposed signature for a mission without one, from the use of its entities."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from specs import syntax as s
 
 
 def proposed(mission: s.Mission, kinds: tuple[str, ...]) -> tuple[Kind, ...]:
-    """Return the kinds: what has an area contains all others, hosts that move are driven, who has cargo carries it."""
+    """Return the proposed kinds: those with areas contain all, those of moving hosts are driven, carriers carry."""
     entities = tuple(
         entry for world in mission.each(s.World) for entry in world.entries if isinstance(entry, s.Entity)
     )
@@ -28,7 +28,7 @@ def proposed(mission: s.Mission, kinds: tuple[str, ...]) -> tuple[Kind, ...]:
 
 
 def _movers(mission: s.Mission) -> Iterator[str]:
-    """Yield the hosts of bigActors that move theirs, or call a behaviour, and what is moved by its name."""
+    """Yield the hosts of bigActors that move them or call a behaviour, and entities that are moved by name."""
     for actor in mission.each(s.BigActor):
         parts = tuple(s.walk(actor))
         commands = {part.name for part in parts if isinstance(part, s.Command)}

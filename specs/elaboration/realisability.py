@@ -1,4 +1,4 @@
-"""The control phase: find controls that can never be carried out, as far as the text shows."""
+"""The control phase: controls that can never be executed, as far as the text shows."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from specs.elaboration.statements import ControlSite
 from specs.elaboration.world import World
 
 MOST_HOSTS: Final = 50
-"""Where a bigActor may be in more places than these, controls are left to the run."""
+"""The most possible hosts of a bigActor whose controls are checked; with more, only runs check them."""
 
 MOST_HOLES: Final = 50
-"""Places that may swallow a node: of more than these, where it fits is left to the run."""
+"""The most smaller places that are considered when fitting a node; with more, only runs check the fit."""
 
 
 @dataclass(frozen=True, slots=True)
 class Someone:
-    """What is known of a node: its name or only its kind, or neither."""
+    """The known facts about a node: its name, only its kind, or neither."""
 
     kind: str | None
     name: str | None = None
@@ -43,12 +43,14 @@ class Someone:
 
 @dataclass(frozen=True, slots=True)
 class Ground:
-    """What is known of the world before anything happens.
+    """The known facts about the initial world.
 
     Attributes:
-        names, world, mobility: Those of the mission.
+        names: The declarations of the mission.
+        world: Its entities.
+        mobility: Its moving entities.
         fixed: The entities whose place never changes.
-        holes: For a kind and a place the smaller places in its reach that may swallow such a node, once asked for.
+        holes: For a kind and a place, the smaller places in reach that may contain such a node instead, once computed.
     """
 
     names: Names
@@ -58,11 +60,11 @@ class Ground:
     holes: dict[tuple[str, str], tuple[tuple[str, Placed], ...]] = field(default_factory=dict)
 
     def node(self, name: str) -> Someone:
-        """Return what is known of a node of that name."""
+        """Return the known facts about a node by its name."""
         return Someone(self.names.kinds.get(name), name)
 
     def obstacle(self, node: Someone, place: Someone) -> tuple[str, str] | None:
-        """Return why a node can never be brought into a place, and what to do; None where it may be possible."""
+        """Return why a node can never be moved into a place, and a hint; None if it may be possible."""
         if node.name is not None and node.name == place.name:
             return f"'{node.name}' cannot be put into itself", "choose another place"
         if node.kind is None:
@@ -77,7 +79,7 @@ class Ground:
         return self._room(node, place)
 
     def _instead(self, kind: str, place: Someone) -> str:
-        """Return where something of a kind may be instead, or how to let it be there: a point can only carry it."""
+        """Return a hint for placing an entity of a kind: another place, or a declaration; a point can only carry it."""
         there = self.names.holding(kind)
         if there and place.name is not None and not self._is_area(place):
             driven = self.names.signature[place.kind or ""].driven
@@ -90,7 +92,7 @@ class Ground:
         return isinstance(placed, Placed) and not placed.geometry.is_point
 
     def _drivable(self) -> str:
-        """Return what can be driven instead of a place."""
+        """Return a hint that lists the entities that can be driven."""
         kinds = self.names.kinds.items()
         driven = [name for name, kind in sorted(kinds) if self.names.signature[kind].driven]
         return (
@@ -100,7 +102,7 @@ class Ground:
         )
 
     def bars(self, node: Someone, place: Someone) -> tuple[str, str] | None:
-        """Return why a node can never pass a place on its way, and what to do; None where it may be possible."""
+        """Return why a node can never pass a place on its way, and a hint; None if it may be possible."""
         if node.name is not None and node.name == place.name:
             return f"'{node.name}' is what travels", "name the places that it passes"
         if node.kind is None or place.kind is None:
@@ -145,7 +147,7 @@ class Ground:
         return None
 
     def _holes(self, node: Someone, place: Someone, target: Placed, shape: Placed) -> tuple[Geometry, ...]:
-        """Return the places that never move and would swallow the node, as `drive` has them."""
+        """Return the immobile places that `drive` would find around the node, instead of its target place."""
         kind, within = node.kind or "", place.name or ""
         if (kind, within) not in self.holes:  # many nodes of a kind go to the same place
             self.holes[kind, within] = tuple(self._smaller(kind, within, target))
@@ -157,7 +159,7 @@ class Ground:
         return tuple(sorted(found)) if len(found) <= MOST_HOLES else ()
 
     def _smaller(self, kind: str, place: str, target: Placed) -> Iterator[tuple[str, Placed]]:
-        """Yield the smaller places on a place's latitudes that never move and may contain nodes of a kind."""
+        """Yield the smaller immobile places at a place's latitudes that may contain nodes of a kind."""
         size, (south, north) = (area(target.geometry), place), _latitudes(target.geometry)
         for name in self.fixed - {place}:
             hole = self.world.placements.get(name)
@@ -174,7 +176,7 @@ def _latitudes(geometry: Geometry) -> tuple[float, float]:
 
 
 def check_controls(bodies: Bodies, ground: Ground) -> None:
-    """Report controls that can never be made true from any host that a bigActor may have there."""
+    """Report controls that can never be made true from any possible host of their bigActor."""
     for rule in bodies.schemas.values():
         if rule.name:
             _check_rule(rule, ground)
@@ -212,7 +214,7 @@ def _check_site(
 
 
 def _check_command(site: ControlSite, command: Command, hosts: tuple[str, ...], ground: Ground) -> None:
-    """Report what a command moves that can never be where it goes, or never pass what it passes."""
+    """Report moves of a command that can never reach their destination, or never pass a place of the VIA."""
     arguments: dict[PlaceTerm, Expression] = {HOST: Host()}
     arguments |= zip(command.operands, site.statement.arguments, strict=False)
     for node, place in command.open.moves:
@@ -264,9 +266,9 @@ def _report(
     ground: Ground,
     code: Code = Code.UNREALISABLE,
 ) -> None:
-    """Report the first problem if there is one whoever the host is."""
+    """Report the first problem if every host has one."""
     first = None
-    for problem in problems:  # where one host can do it, the others need not be tried
+    for problem in problems:  # one host without a problem is enough
         if problem is None:
             return
         first = first or problem

@@ -1,9 +1,9 @@
-"""Regions of a rule: which are the same place on both sides, and which need a root.
+"""Regions of a rule: the correspondence of regions on both sides, and the roots that need a parent.
 
-In the paper's rules a region is somewhere that the rule doesn't name. Its roots share their parent, which is the
-region's place variable. A region of the reactum is the one of the redex that has a root in common with it, so
-`a || b -> b || a` moves nothing. Where that is ambiguous (`a | x || b -> b | x || a`) and both sides have as many
-regions, their position decides.
+In the paper's rules a region is a place that the rule does not name. Its roots share their parent, the region's place
+variable. A region of the reactum corresponds to the region of the redex with which it shares a root, so `a || b -> b ||
+a` moves nothing. If that is ambiguous (`a | x || b -> b | x || a`) and both sides have equally many regions, they
+correspond by position.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from bigraphs.notation.paper import RegionTerm, SiteTerm
 from semantics.behaviours.reaction_rules import NodeTerm, PlaceTerm, PlaceVariable
 
 Owner = int | NodeTerm
-"""What a site stands under: a region by its index, or a node."""
+"""The parent of a site: a region by its index, or a node."""
 
 Pairs = tuple[tuple[NodeTerm, PlaceTerm], ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """One region as written: everything in it with what it stands under, None for the region itself."""
+    """One written region: its nodes and sites, each with its parent, None for the region itself."""
 
     index: int
     items: tuple[tuple[WrittenNode | SiteTerm, WrittenNode | None], ...]
@@ -57,7 +57,7 @@ class Side:
     meaning: Mapping[str, NodeTerm | None]
 
     def term(self, node: WrittenNode) -> NodeTerm:
-        """Return what a node means."""
+        """Return the meaning of a node."""
         word = node.name or "" if node.control is None else f"{node.name or ''}_{node.control}"
         term = self.meaning[word]
         assert term is not None
@@ -70,12 +70,12 @@ class Side:
 
     @cached_property
     def terms(self) -> tuple[NodeTerm, ...]:
-        """What all nodes mean."""
+        """The meanings of all nodes."""
         return tuple(map(self.term, self.nodes))
 
     @cached_property
     def nested(self) -> Pairs:
-        """The pairs (node, node that it is written in)."""
+        """The pairs (node, parent) of nested nodes."""
         return tuple(
             (self.term(item), self.term(above))
             for region in self.regions
@@ -85,7 +85,7 @@ class Side:
 
     @cached_property
     def roots(self) -> tuple[tuple[WrittenNode, ...], ...]:
-        """The nodes of each region that are written in no other."""
+        """The roots of each region."""
         return tuple(
             tuple(item for item, above in region.items if isinstance(item, WrittenNode) and above is None)
             for region in self.regions
@@ -93,7 +93,7 @@ class Side:
 
     @cached_property
     def sites(self) -> tuple[tuple[SiteTerm, Owner], ...]:
-        """The sites, each with what it stands under."""
+        """The sites, each with its parent."""
         return tuple(
             (item, region.index if above is None else self.term(above))
             for region in self.regions
@@ -103,19 +103,20 @@ class Side:
 
     @cached_property
     def closed(self) -> tuple[NodeTerm, ...]:
-        """The nodes that are written without a site."""
+        """The nodes without a site."""
         open_ones = {owner for _, owner in self.sites}
         return tuple(term for term in self.terms if term not in open_ones)
 
 
 @dataclass(frozen=True, slots=True)
 class RegionPlaces:
-    """What regions say of parents.
+    """The parents that regions determine.
 
     Attributes:
-        same: For each region of the reactum the redex's that is the same place, None where none is.
-        redex, reactum: The pairs (root, place variable) that each side needs.
-        unplaced: Roots of the reactum that go where no variable tells, each with its region.
+        same: For each region of the reactum, the corresponding region of the redex, None if there is none.
+        redex: The pairs (root, place variable) that the redex needs.
+        reactum: The pairs (root, place variable) that the reactum needs.
+        unplaced: Roots of the reactum without a place variable, each with its region.
     """
 
     same: Mapping[int, int | None]
@@ -125,7 +126,7 @@ class RegionPlaces:
 
 
 def region_places(before: Side, after: Side) -> RegionPlaces:
-    """Return the pairs that say where roots are; a single root that stays one needs none."""
+    """Return the pairs that determine the parents of roots; a single root that stays needs none."""
     old = [set(map(before.term, roots)) for roots in before.roots]
     new = [set(map(after.term, roots)) for roots in after.roots]
     same = _same(old, new)
@@ -155,7 +156,7 @@ def region_places(before: Side, after: Side) -> RegionPlaces:
 
 
 def _same(old: list[set[NodeTerm]], new: list[set[NodeTerm]]) -> dict[int, int | None]:
-    """Return for each region of the reactum the same region of the redex."""
+    """Return the corresponding region of the redex for each region of the reactum."""
     sharing = {
         index: [place for place, there in enumerate(old) if there & roots] for index, roots in enumerate(new)
     }

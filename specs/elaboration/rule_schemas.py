@@ -27,7 +27,7 @@ _WORD: Final = re.compile(r"[^\W\d]\w*")
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter of a rule: the name that it stands as in the patterns (`u#`), and its kind, if that is known."""
+    """A parameter of a rule: its name in the patterns (`u#`), and its kind, if known."""
 
     name: str
     kind: str | None
@@ -40,7 +40,7 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """A node that gets another parent, and where the reactum says so."""
+    """A node that gets another parent, with its position in the reactum."""
 
     node: NodeTerm
     place: PlaceTerm
@@ -49,13 +49,13 @@ class Moved:
 
 @dataclass(frozen=True)
 class Schema:
-    """A rule of which `HOST` and the parameters are still open.
+    """A rule that is open in `HOST` and its parameters.
 
     Attributes:
-        name: Its name; empty for one written in the control itself.
-        text: The body of one without a name.
-        words: For each word of that text that is open, what it stands for and the rest of the word.
-        kinds: The kind of each term of the redex, as far as it is known.
+        name: Its name; empty for an inline rule.
+        text: The body of an inline rule.
+        words: For each open word of that text, the name that it denotes, and the rest of the word.
+        kinds: The kind of each term of the redex, if known.
     """
 
     name: str
@@ -69,7 +69,7 @@ class Schema:
 
     @cached_property
     def mentions(self) -> frozenset[str]:
-        """The words of its text and patterns that no argument stands for: names among them, and parts of channels'."""
+        """The constant words of its text and patterns: names, and parts of channels' names."""
         open_terms = {HOST, *(each.name for each in self.parameters)}
         said = [self.text if not self.name else ""]
         for pattern in (self.redex, self.reactum):
@@ -79,7 +79,7 @@ class Schema:
         return frozenset(word for each in said if each not in open_terms for word in _WORD.findall(each))
 
     def involves(self, host: Name, kind: str, arguments: Mapping[str, Name]) -> bool:
-        """Tell whether the redex can involve a host of a kind, given the arguments that are known."""
+        """Whether the redex can involve a host of a kind, given the known arguments."""
         for term in self.redex.nodes:
             if isinstance(term, NodeVariable):
                 if term.kind in (None, kind):
@@ -89,18 +89,18 @@ class Schema:
         return False
 
     def _may_be(self, term: Name, kind: str, arguments: Mapping[str, Name]) -> bool:
-        """Tell whether a term is the host, or a parameter of unknown value that may be one of its kind."""
+        """Whether a term is the host, or an unknown argument that may be a node of the host's kind."""
         unknown = term.endswith("#") and term not in arguments
         return term == HOST or (unknown and self.kinds.get(term) in (None, kind))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Checked:
-    """Makes the reactions of a command of the language; it fails for a value that is no node.
+    """Makes the reactions of a command of the language; it fails if an argument is no node.
 
     Attributes:
         command: The command.
-        kinds: The nodes that there are.
+        kinds: The kind of each node.
     """
 
     command: Command
@@ -116,20 +116,20 @@ class Checked:
         return self.command(host, *nodes)
 
     def made_from(self, reaction: Reaction, host: Name) -> tuple[Name, ...] | None:
-        """Return the host and the arguments of a reaction; None where another command or rule has made it."""
+        """Return the host and the arguments of a reaction; None if another command or rule made it."""
         return self.command.made_from(reaction, host)
 
 
 @dataclass(frozen=True, slots=True)
 class Maker:
-    """Makes the reactions of a schema: what `Program.reactions` holds for a rule."""
+    """Makes the reactions of a schema: the entry of `Program.reactions` for a rule."""
 
     schema: Schema
     kinds: Mapping[Name, str]
 
     @property
     def mentions(self) -> frozenset[str]:
-        """The names that it may mention, whatever its host and arguments; it treats all others of a kind alike."""
+        """The names that it mentions for any host and arguments; it treats all other names of a kind alike."""
         return self.schema.mentions
 
     def __call__(self, host: Name, *arguments: Value) -> Reaction:
@@ -145,7 +145,7 @@ class Maker:
         return Reaction(text, _put(schema.redex, values), _put(schema.reactum, values))
 
     def made_from(self, reaction: Reaction, host: Name) -> tuple[Name, ...] | None:
-        """Return the host and the arguments of a reaction; None where another command or rule has made it."""
+        """Return the host and the arguments of a reaction; None if another command or rule made it."""
         schema, values = self.schema, {HOST: host}
         if schema.name:
             inside = reaction.text.removeprefix(f"{schema.name}(").removesuffix(")")
@@ -180,7 +180,7 @@ class Maker:
 
 
 def _node(value: Value, kinds: Mapping[Name, str], otherwise: str) -> Name:
-    """Return a value that is a node; raises Fault."""
+    """Return a value that is a node; raises Fault for any other."""
     if not isinstance(value, str) or value not in kinds:
         raise Fault(f"{otherwise} {show(value)}")
     return value
@@ -202,13 +202,13 @@ def _put(pattern: Pattern, values: Mapping[str, Name]) -> Pattern:
 
 
 def _stand_for(schema: Pattern, pattern: Pattern) -> dict[str, Name]:
-    """Return what stands in a pattern where a schema has each of its names."""
+    """Return the names in a pattern at the positions of a schema's names."""
     mine, theirs = _node_terms(schema), _node_terms(pattern)
     pairs = zip(mine, theirs, strict=False)
     return {term: name for term, name in pairs if isinstance(term, str) and isinstance(name, str)}
 
 
 def _node_terms(pattern: Pattern) -> list[PlaceTerm]:
-    """Return the terms of a pattern that stand for nodes and places, in the order in which it is written."""
+    """Return the node and place terms of a pattern, in a fixed order."""
     related: list[PlaceTerm] = [term for pair in pattern.parents for term in pair]
     return [*pattern.nodes, *pattern.closed, *related, *(point for _, point in pattern.links)]

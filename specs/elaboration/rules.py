@@ -26,11 +26,11 @@ from specs.elaboration.rule_schemas import Moved, Parameter, Schema
 
 @dataclass(slots=True)
 class _Reading:
-    """One rule while it is read.
+    """The state of reading one rule.
 
     Attributes:
-        given: The names that the rule is open in: `HOST`, and its parameters.
-        terms: What each word means, once it is known.
+        given: The free names of the rule: its parameters, with their kinds.
+        terms: The meaning of each word, once known.
         sound: Whether no mistake was found.
     """
 
@@ -43,7 +43,7 @@ class _Reading:
     sound: bool = True
 
     def where(self, node: WrittenNode | SiteTerm) -> s.Span:
-        """Return where a node stands in the mission."""
+        """Return the span of a node in the mission."""
         start = self.body.raw_start + node.offset
         return s.Span(
             start, start + max(1, len(word_of(node) if isinstance(node, WrittenNode) else str(node)))
@@ -84,7 +84,7 @@ def elaborate_rule(
     given: Mapping[str, str | None],
     names: Names,
 ) -> Schema | None:
-    """Return the schema of a rule's body; None, and findings, for one that means nothing.
+    """Return the schema of a rule's body; None, and findings, if it has mistakes.
 
     `given` has the parameters as written, with their kinds.
     """
@@ -117,11 +117,11 @@ def elaborate_rule(
     return Schema(name, body.text, parameters, old, new, moves, reading.words, reading.kinds)
 
 
-# --- what each word means -------------------------------------------------------------------------------------
+# --- the meaning of words ---------------------------------------------------------------------------------------
 
 
 def word_of(node: WrittenNode) -> str:
-    """Return a node's word as it was written."""
+    """Return the written word of a node."""
     return node.name or "" if node.control is None else f"{node.name or ''}_{node.control}"
 
 
@@ -136,7 +136,7 @@ def _name_nodes(reading: _Reading, region: Region) -> None:
 
 
 def _term(reading: _Reading, node: WrittenNode) -> NodeTerm | None:
-    """Return what a node's word stands for: the host, a parameter, an entity, else a variable."""
+    """Return the term of a node's word: the host, a parameter, an entity, else a variable."""
     for name, rest in ((word_of(node), ""), (node.name, f"_{node.control}" if node.control else "")):
         if name is None:
             continue
@@ -182,7 +182,7 @@ def _check_control(reading: _Reading, node: WrittenNode, term: NodeTerm | None) 
         reading.mistake(Code.KIND_MISMATCH, node, message, f"write {node.name}_{kind}")
 
 
-# --- what a rule may do ---------------------------------------------------------------------------------------
+# --- restrictions on rules --------------------------------------------------------------------------------------
 
 
 def _check_same_nodes(reading: _Reading, before: Side, after: Side) -> None:
@@ -251,7 +251,7 @@ def _moves(
     old: tuple[tuple[NodeTerm, PlaceTerm], ...],
     new: tuple[tuple[NodeTerm, PlaceTerm], ...],
 ) -> Iterator[Moved]:
-    """Yield the nodes that change parent; reports parents of a kind that may not contain them, on both sides."""
+    """Yield the nodes that change parent; reports parents whose kind may not contain them, on both sides."""
     written = {reading.terms[word_of(node)]: node for side in (before, after) for node in side.nodes}
     signature = reading.names.signature
     for node, place in (*old, *new):

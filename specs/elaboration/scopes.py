@@ -1,4 +1,4 @@
-"""Variables: each binding gets a unique name in the program; its part before '#' is printed."""
+"""Variables: each binding gets a unique name in the program; printing shows the part before '#'."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ class Variables:
         return name if number == 1 else f"{name}#{number}"
 
     def rest(self) -> str:
-        """Return a name for what is left of a collection that a `for` goes through."""
+        """Return a name for the remaining members of a `for`."""
         self.hidden += 1
         return f"#{self.hidden}"
 
 
 @dataclass(slots=True)
 class Scope:
-    """What is bound in a block, and in the blocks around it.
+    """The names bound in a block, and in the blocks around it.
 
     Attributes:
-        around: The scope of the block around.
+        around: The scope of the enclosing block.
         bound: The unique names of variables.
-        constants: What stands for the same in the whole body; a variable of that name hides it.
+        constants: Names with one value in the whole body; a variable of that name hides it.
     """
 
     around: Scope | None = None
@@ -65,7 +65,7 @@ class Scope:
         return {name: value for name, value in self.constants.items() if self.find(name) is None}
 
     def names(self) -> Iterator[str]:
-        """Yield the constants and what is bound."""
+        """Yield the names of constants and variables."""
         yield from self.constants
         scope: Scope | None = self
         while scope is not None:

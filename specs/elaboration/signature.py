@@ -1,4 +1,4 @@
-"""The signature phase: kinds, and one error for each that is not declared."""
+"""The signature phase: kinds, and one error for each undeclared kind."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Uses = dict[str, list[s.Name]]
 
 
 def elaborate_signature(mission: s.Mission, names: Names) -> None:
-    """Declare the kinds of a mission; after the error, those that it lacks are as a signature to paste has them."""
+    """Declare the kinds of a mission; undeclared ones are reported, and defined as in the proposed signature."""
     kinds = _declared(mission, names)
     uses = _undeclared(mission, kinds)
     if uses and not mission.each(s.Signature):
@@ -61,16 +61,16 @@ def _kind(kind: s.Kind) -> Kind:
 
 
 def _extended(kind: Kind, by: Kind) -> Kind:
-    """Return a kind with what is said of it elsewhere too."""
+    """Return a kind with the clauses of another declaration added."""
     contains, carries = kind.contains | by.contains, kind.carries | by.carries
     return Kind(kind.name, contains, carries, kind.driven or by.driven, kind.passive or by.passive)
 
 
-# --- kinds that are not declared
+# --- undeclared kinds
 
 
 def _undeclared(mission: s.Mission, kinds: Kinds) -> Uses:
-    """Return where each undeclared kind is used, in the order of the text; rules' bodies are looked at later."""
+    """Return the uses of each undeclared kind, in text order; bodies of rules are examined later."""
     found, others = Uses(), _not_kinds(mission)
     used = (name for node in s.walk(mission) for name in _kinds_in(node, others))
     for name in sorted(used, key=lambda name: name.span):
@@ -80,7 +80,7 @@ def _undeclared(mission: s.Mission, kinds: Kinds) -> Uses:
 
 
 def _not_kinds(mission: s.Mission) -> frozenset[str]:
-    """Return what quantifiers and families name that is no kind: bigActors, families, entities."""
+    """Return the names in ranges of quantifiers and families that are no kinds: bigActors, families, entities."""
     named = (node for node in s.walk(mission) if isinstance(node, s.Family | s.Entity))
     return frozenset({AGENTS, *(each.name.text for each in named)})
 
@@ -98,7 +98,7 @@ def _kinds_in(node: s.Node, others: frozenset[str]) -> tuple[s.Name, ...]:
 
 
 def _lacking_signature(mission: s.Mission, uses: Uses, names: Names) -> Kinds:
-    """Report that there is no signature, with one to paste."""
+    """Report the missing signature, and propose one."""
     standard = _standard() if uses.keys() & _standard().keys() else Kinds()
     own = proposed(mission, tuple(kind for kind in uses if kind not in standard))
     holding = [kind for kind in uses if own and kind in standard and standard[kind].contains]
@@ -114,7 +114,7 @@ def _lacking_signature(mission: s.Mission, uses: Uses, names: Names) -> Kinds:
 
 
 def _lacking_kinds(mission: s.Mission, kinds: Kinds, uses: Uses, names: Names) -> Kinds:
-    """Report each kind that the signature lacks; afterwards, what contains anything contains it."""
+    """Report each undeclared kind; afterwards, every kind that contains anything contains it."""
     own = {kind.name: kind for kind in proposed(mission, tuple(uses))}
     entities = {node.kind.text for node in s.walk(mission) if isinstance(node, s.Entity)}
     for kind, where in uses.items():

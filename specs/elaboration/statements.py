@@ -1,4 +1,4 @@
-"""Statements, numbered in one program, and the facts that later checks need of each body."""
+"""Statements, numbered in one program, and the facts about each body that later checks need."""
 
 from __future__ import annotations
 
@@ -36,15 +36,15 @@ from specs.foreign_words import DONE
 from specs.writing import write
 
 LONGEST: Final = 7 * 24 * 3600.0
-"""Seconds that a duration has at most."""
+"""The longest duration in seconds."""
 
 _FILLED_LATER: Final = k.Tested()
-"""Keeps the place of a statement until its blocks are numbered."""
+"""The placeholder of a statement until its blocks are numbered."""
 
 
 @dataclass(frozen=True, slots=True)
 class CallSite:
-    """A call of a behaviour: `tail` where nothing is left to do after it, `top` where it isn't nested either."""
+    """A call of a behaviour: `tail` if no code follows it, `top` if it is a tail call that is not nested."""
 
     behaviour: str
     where: s.Node
@@ -54,7 +54,7 @@ class CallSite:
 
 @dataclass(frozen=True, slots=True)
 class SpawnSite:
-    """A `spawn`: of whom, running what, and where."""
+    """A `spawn`: the name, behaviour and host of the new bigActor."""
 
     name: str
     behaviour: str
@@ -63,22 +63,22 @@ class SpawnSite:
 
 @dataclass(frozen=True, slots=True)
 class ControlSite:
-    """A `control`, as it was written and as it is."""
+    """A `control`, as written and as elaborated."""
 
     where: s.Action
     statement: k.ControlBy
 
     @property
     def via(self) -> tuple[s.Expression, ...]:
-        """What stands behind VIA."""
+        """The places of its VIA."""
         return self.where.via if isinstance(self.where, s.Command) else ()
 
 
 @dataclass(slots=True)
 class Body:
-    """What a bigActor or a behaviour does: its block, and the places in it that later checks look at.
+    """The body of a bigActor or a behaviour: its block, and the statements in it that later checks examine.
 
-    `runs` is the behaviour that it is declared with, if there is nothing else in it.
+    `runs` is the behaviour that it is declared with, if it contains nothing else.
     """
 
     name: str
@@ -95,7 +95,7 @@ class Body:
 
 @dataclass(slots=True)
 class Numbering:
-    """The statements of a mission so far, each with its line and as it was written."""
+    """The statements of a mission so far, each with its line and its syntax node."""
 
     names: Names
     schemas: dict[str, Schema]
@@ -111,18 +111,18 @@ class Numbering:
         self.starts = [0, *(at + 1 for at, character in enumerate(text) if character == "\n")]
 
     def reserve(self, node: s.Node) -> int:
-        """Return the number of one more statement."""
+        """Return the number of a new statement."""
         self.statements.append(_FILLED_LATER)
         self.lines.append(self.line(node))
         self.nodes.append(node)
         return len(self.statements) - 1
 
     def line(self, node: s.Node) -> int:
-        """Return the line in which something begins."""
+        """Return the first line of a node."""
         return bisect_right(self.starts, node.span.start)
 
     def branch(self, number: int, rank: int, node: s.Node) -> None:
-        """Note where a branch of a statement begins."""
+        """Record the first line of a statement's branch."""
         self.branch_lines[number, rank] = self.line(node)
 
     def body(
@@ -144,7 +144,7 @@ class Numbering:
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """Where a statement stands: in which scope, whether nothing follows it, whether it is nested in nothing."""
+    """The context of a statement: its scope, whether it is in tail position, and whether it is not nested."""
 
     scope: Scope
     tail: bool
@@ -152,7 +152,7 @@ class _Place:
 
 
 class _Statements:
-    """Elaborates the statements of one body. At each depth of nesting it costs three frames of Python's stack."""
+    """Elaborates the statements of one body. Each depth of nesting costs three frames of Python's stack."""
 
     def __init__(self, program: Numbering, body: Body) -> None:
         self.program = program
@@ -162,7 +162,7 @@ class _Statements:
     def block(
         self, written: tuple[s.Statement, ...], scope: Scope, *, tail: bool, top: bool = False
     ) -> k.Block:
-        """Number the statements that follow each other; `scope` grows with each `let`."""
+        """Return the numbers of consecutive statements; `scope` grows with each `let`."""
         numbers: list[int] = []
         real = [statement for statement in written if not isinstance(statement, s.Skip)]
         for statement in real:
@@ -220,7 +220,7 @@ class _Statements:
         return elaborate_node(node, place.scope, self.names, by)
 
     def inline(self, body: s.RuleBody, place: _Place, number: int) -> tuple[str, tuple[Expression, ...]]:
-        """A rule written in place is open in the variables that are bound there."""
+        """Return the name and the arguments of an inline rule, which is open in the variables bound there."""
         words = (
             {}
             if body.term is None
@@ -301,7 +301,7 @@ class _Statements:
                 message,
                 hint or f"bind it: let {node.variable.text} = ...",
             )
-            variable = self.bind(place.scope, node.variable)  # what follows is not to blame
+            variable = self.bind(place.scope, node.variable)  # no further findings for this name
         return k.Assign(variable or "", value)
 
     def if_(self, node: s.If, place: _Place, _: int) -> k.Statement:
@@ -374,7 +374,7 @@ class _Statements:
         written: tuple[s.Case, ...],
         cases: tuple[k.Case, ...],
     ) -> None:
-        """Have cases judged when all types are known."""
+        """Record cases, to be checked when all types are known."""
         pairs = zip((each.pattern for each in written), (each.pattern for each in cases), strict=True)
         self.names.demands.append(Choice(where, subject, tuple(pairs)))
 
@@ -400,14 +400,14 @@ class _Statements:
 
 
 def check_duration(written: s.Duration, findings: Findings) -> None:
-    """Report a duration that is no time to wait."""
+    """Report a duration that is not positive or is too long."""
     if not 0 < written.seconds <= LONGEST:
         message = f"a time limit of {written.value:g} {written.unit}"
         findings.add(Code.BAD_TIME_LIMIT, written, message, "give it more than 0 s, and at most 168 h")
 
 
 def _check_way(action: s.Command, arguments: tuple[Expression, ...], findings: Findings) -> None:
-    """Report a way that is too long, or that names something twice; `arguments` is all that the action names."""
+    """Report a VIA that is too long, or repeats a place; `arguments` are the operands and the VIA."""
     if len(action.via) > MOST_VIA:
         message = f"a move passes {MOST_VIA} places at the most, and {len(action.via)} are named"
         findings.add(Code.BAD_WAY, action.via[MOST_VIA], message, "make two moves of it")

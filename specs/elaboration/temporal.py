@@ -1,4 +1,4 @@
-"""Elaborate temporal properties: formulas of runs, the steps that they name, and their fairness."""
+"""Elaboration of temporal properties: formulas of runs, the steps that they name, and fairness."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from specs.elaboration.names import Names
 from specs.writing import write
 
 MOST_NESTED: Final = 32
-"""So many operators of paths may be inside each other."""
+"""The largest nesting depth of path operators."""
 
 RULES: Final = (*(rule.__name__ for rule in rules_of(Control.TIMED)), *t.ENVIRONMENTS)
 
@@ -29,7 +29,7 @@ EACH: Final[dict[str, tuple[t.Steps, tuple[str, ...]]]] = {
     "requests": (t.Steps(t.SERVES), ("label",)),
     "environment": (t.Steps(t.ENVIRONMENTS), ()),
 }
-"""The steps that a word stands for, and what tells apart those that fairness means by it."""
+"""The steps that a word denotes, and the attributes by which fairness groups them."""
 
 _PREFIXES: Final[dict[str, Callable[[t.Temporal], t.Temporal]]] = {
     "[]": t.Globally,
@@ -47,7 +47,7 @@ _UNBOUND: Final = {
     "eventually": False,
     "infinitely often": False,
 }
-"""The truth of a comparison below an operator where its variable has no value; below `X` it is as around it."""
+"""The truth value, below an operator, of a comparison with an unbound variable; below `X` as in the context."""
 
 _OPERATIONS: Final[dict[str, Callable[[t.Temporal, t.Temporal], t.Temporal]]] = {
     "U": t.Until,
@@ -59,7 +59,7 @@ _OF_RUNS: Final = (s.PathPrefix, s.PathOperation, s.LeadsTo, s.PathQuantifier, s
 
 
 class TemporalFormulas:
-    """Elaborates temporal properties; what is about one configuration is left to `formulas`."""
+    """Elaborates temporal properties; `formulas` elaborates the parts about single configurations."""
 
     def __init__(self, formulas: Formulas) -> None:
         self.formulas = formulas
@@ -84,11 +84,11 @@ class TemporalFormulas:
         )
 
     def formula(self, item: s.TemporalProperty) -> t.Temporal:
-        """Return a property's formula; reports what is wrong with it, and where a bound is passed."""
+        """Return a property's formula; reports its mistakes, and a bound that it exceeds."""
         if self.formulas.full:
             return t.Now(Always(True))
         self.of_runs = set()
-        for node in reversed(tuple(s.walk(item.formula))):  # parts before what they are parts of
+        for node in reversed(tuple(s.walk(item.formula))):  # parts before the whole
             if isinstance(node, _OF_RUNS) or any(id(part) in self.of_runs for part in s.parts(node)):
                 self.of_runs.add(id(node))
         try:
@@ -98,7 +98,7 @@ class TemporalFormulas:
         return t.Now(Always(True))
 
     def _claim(self, node: s.Formula, around: Context) -> t.Temporal:
-        """Return a formula as a claim on runs, the quantified names around it replaced."""
+        """Return a formula as a temporal formula, with the quantified names of its context replaced."""
         if id(node) not in self.of_runs:
             return t.Now(self.formulas.proposition(node, around))
         match node:
@@ -143,14 +143,14 @@ class TemporalFormulas:
                 claim = t.Both(t.Now(if_so), claim)
             claims.append(claim)
         join = t.Both if node.quantifier == "forall" else t.Either
-        while len(claims) > 1:  # in pairs: a tree that is not deep
+        while len(claims) > 1:  # in pairs, for a tree of small depth
             odd = claims[-1:] if len(claims) % 2 else []
             pairs = zip(claims[::2], claims[1::2], strict=False)
             claims = [*(join(one, other) for one, other in pairs), *odd]
         return claims[0] if claims else t.Now(Always(node.quantifier == "forall"))
 
     def _check_begun(self, node: s.Quantified) -> None:
-        """Refuse to quantify at the beginning of runs over bigActors that are only spawned in them."""
+        """Report a quantifier about the beginning of runs that ranges over bigActors which are only spawned later."""
         late = self.formulas.among.late(node)
         if late is not None:
             message = f"this is about the beginning of runs, and '{late}' is spawned in them"
@@ -159,7 +159,7 @@ class TemporalFormulas:
             )
             self.names.findings.add(Code.WRONG_LOGIC, node.range, message, hint)
 
-    # --- operators of paths
+    # --- path operators
 
     def _of_paths(self, node: s.Formula, around: Context) -> t.Temporal:
         match node:
@@ -222,7 +222,7 @@ class TemporalFormulas:
             yield t.Fairness(declared.strength == "strong", steps, per, word)
 
     def steps(self, node: s.Steps, bound: Mapping[str, str]) -> tuple[t.Steps, tuple[str, ...]]:
-        """Return the steps that words name, and what tells apart those that fairness means by them."""
+        """Return the steps that words name, and the attributes by which fairness groups them."""
         first, *whose = node.words
         if isinstance(first, s.Member) or (
             not whose and (first.text in self.names.agents or first.text in bound)

@@ -1,4 +1,4 @@
-"""The timing phase: how long everything takes, in whole ticks."""
+"""The timing phase: the durations of all steps, in whole ticks."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ from specs.timing_mistakes import BEGINNING
 from specs.writing import write
 
 LONGEST: Final = 7 * 24 * 3600
-"""Seconds of the longest duration."""
+"""The longest duration in seconds."""
 
 SECOND: Final = 1000
 FASTEST: Final = 12_000.0
-"""Metres per second that nothing in a mission is beyond: what leaves the earth."""
+"""The largest speed of an entity in metres per second; anything faster leaves the earth."""
 
 OTHER_STEPS: Final = ("migrate", "spawn")
 
@@ -49,7 +49,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Ticks:
-    """Counts durations in ticks of so many milliseconds; reports those that are no whole number of them."""
+    """Converts durations to ticks of `tick` milliseconds; reports those that are no whole number of ticks."""
 
     tick: int
     findings: Findings
@@ -68,17 +68,17 @@ class Ticks:
         return int(milliseconds // self.tick)
 
     def maybe(self, written: s.Duration | None) -> int | None:
-        """Return a duration in ticks, None where none is written."""
+        """Return a duration in ticks, None if it is not written."""
         return None if written is None else self.count(written)
 
     def interval(self, lapse: s.Lapse) -> Interval:
-        """Return how long something takes; reports what ends before it begins."""
+        """Return a duration interval in ticks; reports an empty one."""
         return Interval(*self.ordered(lapse, lapse.least, lapse.most))
 
     def ordered(
         self, where: s.Node, least: s.Duration | None, most: s.Duration | None
     ) -> tuple[int, int | None]:
-        """Return two durations; reports what ends before it begins."""
+        """Return two durations in ticks; reports the pair if the second is shorter."""
         lo, hi = self.maybe(least) or 0, self.maybe(most)
         if least is not None and most is not None and hi is not None and hi < lo:
             _report_order(self.findings, where, write(least), write(most))
@@ -87,7 +87,7 @@ class Ticks:
 
 
 def milliseconds_of(written: s.Duration) -> Fraction:
-    """Return a duration exactly as it is written.
+    """Return the exact milliseconds of a written duration.
 
     >>> milliseconds_of(s.Duration(1.001, "s"))
     Fraction(1001, 1)
@@ -105,14 +105,14 @@ def _report_order(findings: Findings, where: s.Node, first: str, second: str) ->
 
 @dataclass(slots=True)
 class _Said:
-    """What the phase knows and gathers.
+    """The state of the phase.
 
     Attributes:
-        clauses: The environment, as far as it could be read.
-        whole: Whether all of it could.
-        times: What is said of each clause, by its number.
-        seen: What something was said of, to find what is said twice.
-        motions: By vehicle; of kinds the first, those of single vehicles replace them.
+        clauses: The environment's clauses that have no mistake.
+        whole: Whether no clause has a mistake.
+        times: The times of each clause, by its number.
+        seen: The subjects of bounds so far, to find repetitions.
+        motions: The motion of each vehicle; bounds of kinds come first, and those of single vehicles replace them.
     """
 
     names: Names
@@ -134,7 +134,7 @@ class _Said:
         return self.names.findings
 
     def is_new(self, node: s.Node, *key: object) -> bool:
-        """Tell whether nothing was said of this before, and report it otherwise."""
+        """Whether this is the first bound of its subject; reports a repetition."""
         if key not in self.seen:
             self.seen.add(key)
             return True
@@ -152,9 +152,9 @@ def elaborate_timing(
     *,
     whole: bool,
 ) -> Timing | None:
-    """Return how long everything takes; None where a mission says nothing of it.
+    """Return the time bounds of a mission; None if it has no `timing` section.
 
-    `clauses` are its environment, and `whole` tells whether all of that could be read.
+    `clauses` is its environment; `whole` is false if a clause of it has a mistake.
     """
     sections = mission.each(s.Timing)
     if not sections:
@@ -168,7 +168,7 @@ def elaborate_timing(
     said = _Said(names, world, Ticks(_tick(bounds, names.findings), names.findings), clauses, whole)
     for bound in sorted(
         bounds, key=lambda each: _is_of_one(said, each)
-    ):  # what is said of one vehicle counts for it
+    ):  # a bound of one vehicle replaces that of its kind
         _ELABORATE[type(bound)](said, bound)
     _warn_of_short_endurances(said, [each for each in bounds if isinstance(each, s.Lasting)])
     source = names.findings.source
@@ -221,7 +221,7 @@ def _tick(bounds: Iterable[s.Bound], findings: Findings) -> int:
 
 
 def _vehicles(said: _Said, name: s.Name, what: str) -> tuple[str, ...]:
-    """Return the vehicles of a kind, or the one of that name; reports what is neither, and what nothing drives."""
+    """Return the vehicles of a kind, or the named vehicle; reports any other name, and kinds that are not driven."""
     names, kind = said.names, said.names.kinds.get(name.text, name.text)
     if kind not in names.signature.kinds:
         among = [*names.signature.kinds, *names.kinds]
@@ -278,7 +278,7 @@ def _lasting(said: _Said, node: s.Lasting) -> None:
 
 
 def _warn_of_short_endurances(said: _Said, written: list[s.Lasting]) -> None:
-    """Warn of vehicles that last for no flight at all from where they are restored."""
+    """Warn of vehicles whose endurance is too short for any flight from a restoring place."""
     for node in written:
         vehicle = node.name.text
         found = said.endurances.get(vehicle)
@@ -292,7 +292,7 @@ def _warn_of_short_endurances(said: _Said, written: list[s.Lasting]) -> None:
 
 
 def _shortest_flight(said: _Said, vehicle: str, places: tuple[str, ...]) -> float | None:
-    """Return the seconds of the shortest flight from where a vehicle is restored to a place that may contain it."""
+    """Return the seconds of the shortest flight from a restoring place to another place for the vehicle."""
     from physical.extents import extent, least_distance  # noqa: PLC0415 - geometry takes its time to load
 
     kind, motion = said.names.kinds[vehicle], said.motions.get(vehicle)
@@ -312,7 +312,7 @@ def _geometries(said: _Said, names: Iterable[str]) -> Iterator[Any]:
     return (each.geometry for each in placed if each is not None)
 
 
-# --- what agents do
+# --- agents
 
 
 def _reaction_time(said: _Said, node: s.ReactionTime) -> None:
@@ -353,7 +353,7 @@ def _step_time(said: _Said, node: s.StepTime) -> None:
 
 
 def _meant(names: Names, word: str) -> str:
-    """Return how a bound is written that was meant by a word that takes no time by itself."""
+    """Return the correct form of a bound on a word that takes no time by itself."""
     if word in names.channels:
         return f"write messages over {word} within 5 s"
     if word in names.behaviours:
@@ -363,13 +363,13 @@ def _meant(names: Names, word: str) -> str:
     return BEGINNING.get(word, "")
 
 
-# --- what the environment does
+# --- the environment
 
 
 def _time_clauses(
     said: _Said, node: s.Bound, fits: Callable[[Any], bool], missing: str, hint: str, times: ClauseTimes
 ) -> None:
-    """Note the times of all clauses that fit; reports that there is none."""
+    """Add the times of all matching clauses; reports if there are none."""
     found = [number for number, clause in enumerate(said.clauses) if fits(clause)]
     if not found and said.whole:
         said.findings.add(Code.NOT_IN_ENVIRONMENT, node, missing, f"write in the environment: {hint}")

@@ -1,4 +1,4 @@
-"""What an elaboration finds that does not depend on the parts of a text that could not be read."""
+"""The findings that do not depend on the unreadable parts of a text."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ _NAME: Final = re.compile(r"[^\W\d_](?:[\w:.\-]*\w)?")
 
 _DECLARING_NOTHING: Final = frozenset({"check", "live"})
 _OF_ABSENCE: Final = frozenset({Code.NO_TIMING, Code.NOT_TIMED})
-"""What is said because something stands nowhere: it may stand in an unread part."""
+"""Findings about missing declarations, which may be in an unread part."""
 
 
 def independent(
     findings: Iterable[Diagnostic], unread: Iterable[Span], source: Source
 ) -> Iterator[Diagnostic]:
-    """Yield the findings that are true whatever stands in the unread parts.
+    """Yield the findings that are true for any contents of the unread parts.
 
-    Left out is what is said of a name that stands in one, since it may be declared or used there, and what is said of
-    a stretch that has one in it. A `check` section declares nothing that is named outside of a property.
+    It omits findings about a name that occurs in an unread part, since that part may declare or use it. It also omits
+    findings whose span overlaps an unread part. A `check` section declares nothing that is used outside of a property.
     """
     gaps = tuple(unread)
     findings = [found for found in findings if not gaps or found.code not in _OF_ABSENCE]
@@ -39,7 +39,7 @@ def independent(
 
 
 def _section(source: Source, gap: Span) -> str:
-    """Return the word of the section that a part lies in; nothing where it lies in several."""
+    """Return the word of the section that contains a part; empty if the part spans several."""
     begun = [found for found in SECTION.finditer(source.text) if found.start("word") < gap.end]
     several = len(begun) > 1 and begun[-1].start("word") > gap.start
     return begun[-1]["word"] if begun and not several else ""

@@ -1,4 +1,4 @@
-"""The possible types of values, over-approximated from the text: what is said of none of them is certain."""
+"""The possible types of values, over-approximated from the text: a value certainly has none of the other types."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ from semantics.behaviours.statements import (
 from semantics.behaviours.values import Route, Text, Truth, Value, within
 
 MISTAKEN: Final = Literal("")
-"""Stands for an expression with a mistake, by its identity: the mission is refused, and its type is unknown."""
+"""Stands, by identity, for an expression with a mistake: the mission is refused, and its type is unknown."""
 
 
 class Sort(StrEnum):
-    """What a value is, by what messages call it."""
+    """The sort of a value, by its description in messages."""
 
     NUMBER = "a number"
     TRUTH = "true or false"
@@ -61,20 +61,20 @@ HOLDERS: Final = Sorts({Sort.SET, Sort.ROUTE})
 COLLECTIONS: Final = HOLDERS | {Sort.OBSERVATION}
 
 Tag = Text | str | None
-"""The text or name by which tuples of one length are told apart, if it is fixed."""
+"""The fixed text or name that distinguishes tuples of one length."""
 
 Shape = tuple[int, Tag]
-"""How many items a tuple has, and the text or name that is its first item, if that is fixed."""
+"""The length of a tuple, and its first item if that is a fixed text or name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Type:
-    """What a value may be.
+    """The possible types of a value.
 
     Attributes:
-        sorts: Its possible sorts; none where there is no value at all.
-        members: Those of the members of its sets and routes.
-        tuples: Those of the items of its tuples, by their shape; None where they may be any.
+        sorts: Its possible sorts; empty if it has no value at all.
+        members: The possible sorts of the members of its sets and routes.
+        tuples: The possible sorts of the items of its tuples, by their shape; None if they are unknown.
     """
 
     sorts: Sorts
@@ -87,7 +87,7 @@ class Type:
         )
 
     def without(self, sort: Sort) -> Type:
-        """Return the type of a value that is not of a sort."""
+        """Return the type without one of its sorts."""
         return Type(self.sorts - {sort}, self.members, self.tuples)
 
 
@@ -104,14 +104,14 @@ def _merged(
 
 
 def of(*sorts: Sort) -> Type:
-    """Return the type of a value of these sorts, of whose parts nothing is known."""
+    """Return the type of a value of these sorts, with unknown parts."""
     return Type(
         Sorts(sorts), EVERY if HOLDERS & Sorts(sorts) else Sorts(), None if Sort.TUPLE in sorts else {}
     )
 
 
 def sort_of(value: Value, agents: Container[str]) -> Sort:
-    """Return the sort of a constant; a name is an entity's, or a place's, if it is no bigActor's."""
+    """Return the sort of a constant; a name that is no bigActor's is an entity's or a place's."""
     if isinstance(value, str):
         return Sort.AGENT if value in agents else Sort.ENTITY
     return next(sort for type_, sort in _SORT_OF.items() if isinstance(value, type_))
@@ -134,13 +134,13 @@ Types = Mapping[str, Type]
 
 @dataclass(frozen=True)
 class Inference:
-    """What is known of a mission's values.
+    """The type inference of a mission.
 
     Attributes:
-        program: What bigActors run.
+        program: The program of the bigActors.
         entities: The names of entities.
         agents: The names of bigActors.
-        said: What someone outside says.
+        said: The messages from outside.
     """
 
     program: Program
@@ -149,7 +149,7 @@ class Inference:
     said: tuple[Value, ...] = ()
 
     def variables(self) -> Types:
-        """Return the types of the values that each variable may be given; a least fixpoint, since loops lead back."""
+        """Return the possible types of each variable's values: a least fixpoint, since loops lead back."""
         known: dict[str, Type] = {}
         grown = True
         while grown:
@@ -163,7 +163,7 @@ class Inference:
         return known
 
     def messages(self, known: Types) -> Type:
-        """Return the type of what is sent or said to anybody."""
+        """Return the type of all messages, from bigActors and from outside."""
         sent = (each.message for each in self.program.statements if isinstance(each, Send))
         found = NOTHING
         for message in (*map(self.constant, self.said), *(self.type(each, known) for each in sent)):
@@ -173,7 +173,7 @@ class Inference:
     def given(
         self, statement: Statement, known: Types, messages: Type | None = None
     ) -> Iterator[tuple[str, Type]]:
-        """Yield what a statement gives to variables."""
+        """Yield the variables that a statement assigns, with the types."""
         match statement:
             case Assign(variable, expression):
                 yield variable, self.type(expression, known)
@@ -244,13 +244,13 @@ def _tag(value: Value) -> Tag:
 
 
 def members_of(collection: Type) -> Sorts:
-    """Return the sorts of what a set, a route or an observation holds."""
+    """Return the sorts of the members of a set, a route or an observation."""
     seen = NAMES if Sort.OBSERVATION in collection.sorts else Sorts()
     return collection.members | seen if HOLDERS & collection.sorts else seen
 
 
 def bound(pattern: Pattern, value: Type) -> Iterator[tuple[str, Type]]:
-    """Yield what a pattern gives to variables, where it takes a value of that type."""
+    """Yield the variables that a pattern binds, with the types, for a subject of that type."""
     match pattern:
         case Anything(str() as variable, kind):
             seen, told = of(Sort.OBSERVATION), value.without(Sort.OBSERVATION)
@@ -262,7 +262,7 @@ def bound(pattern: Pattern, value: Type) -> Iterator[tuple[str, Type]]:
 
 
 def may_take(pattern: Pattern, value: Type, inference: Inference) -> bool:
-    """Tell whether a pattern may take a value of that type."""
+    """Whether a pattern may match a value of that type."""
     match pattern:
         case Anything(_, "observation"):
             return Sort.OBSERVATION in value.sorts
@@ -278,7 +278,7 @@ def may_take(pattern: Pattern, value: Type, inference: Inference) -> bool:
 
 
 def compared(pattern: Pattern, value: Type) -> Iterator[tuple[Value, Sorts]]:
-    """Yield the constants of a pattern, each with what it is compared with in tuples of its length; nothing of any."""
+    """Yield the constants of a pattern, each with the sorts that it is compared with in tuples of its length."""
     match pattern:
         case Exactly(constant) if value.sorts:
             yield constant, value.sorts
@@ -290,7 +290,7 @@ def compared(pattern: Pattern, value: Type) -> Iterator[tuple[Value, Sorts]]:
 
 
 def _items(items: tuple[Pattern, ...], value: Type) -> tuple[Sorts, ...]:
-    """Return the sorts of the items of the tuples that a pattern may take."""
+    """Return the sorts of the items of the tuples that a pattern may match."""
     if value.tuples is None:
         return (EVERY,) * len(items)
     wanted = items[0].value if isinstance(items[0], Exactly) else None
@@ -303,7 +303,7 @@ def _items(items: tuple[Pattern, ...], value: Type) -> tuple[Sorts, ...]:
 
 
 def _element(value: Type, index: Expression) -> Type:
-    """Return the type of one item of a tuple or a route."""
+    """Return the type of one item of a tuple, or one stop of a route."""
     if value.tuples is None:
         return ANY
     at = index.value if isinstance(index, Literal) and isinstance(index.value, int) else None
@@ -331,7 +331,7 @@ def _sum(left: Type, right: Type) -> Type:
 
 
 def _part(left: Type, members: Sorts) -> Type:
-    """Return what is kept of a collection: of a route a route, else a set."""
+    """Return the type of a part of a collection: a route for a route, otherwise a set."""
     route = Type(Sorts({Sort.ROUTE}), members) if Sort.ROUTE in left.sorts else NOTHING
     return route | _set(members) if left.sorts - {Sort.ROUTE} else route
 
@@ -358,4 +358,4 @@ _RESULTS: Final[Mapping[str, Callable[..., Type]]] = {
     "size": _always(Sort.NUMBER),
     "first": lambda value: of(*members_of(value)),
 }
-"""What operators return, given the types of their arguments; of others nothing is known."""
+"""The result types of operators, given the types of their arguments; unknown for all others."""

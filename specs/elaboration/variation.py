@@ -1,4 +1,4 @@
-"""Variations of a mission when it is loaded: its scheduler, kind of control, and files."""
+"""Variations of a mission at load time: its scheduler, kind of control, and files."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ class Variation:
     """The same mission under another scheduler or kind of control, or in a world from other files.
 
     Attributes:
-        scheduler: In the place of the mission's own; None leaves it.
-        control: Likewise.
-        sources: Files in the place of those that the mission names, by the name that it gives.
+        scheduler: The replacement of the mission's scheduler; None keeps it.
+        control: The replacement of the mission's kind of control; None keeps it.
+        sources: The replacements of the mission's files, by the names that it gives.
     """
 
     scheduler: Scheduler | None = None

@@ -17,20 +17,20 @@ from specs.elaboration.names import Names
 
 MOST_ENTITIES: Final = 2_000
 MOST_PAIRS: Final = 1_200_000
-"""How often it may be asked whether a place contains an entity."""
+"""The largest number of pairs of a place and an entity."""
 
 _NOWHERE: Final = point(0, 0)
 
 
 @dataclass(slots=True)
 class World:
-    """P at first, and what is known of entities that are not there yet.
+    """The initial P, and the facts about absent entities.
 
     Attributes:
-        placements: Where each entity is that is there.
-        channels: The channels of each entity, of absent ones too.
-        absent: Entities that are declared and not there.
-        notes: What a verdict has to say of the world.
+        placements: The placement of each present entity.
+        channels: The channels of each entity, whether present or absent.
+        absent: Entities that are declared and absent at first.
+        notes: Notes on the world that accompany every verdict.
     """
 
     placements: dict[str, Placement] = field(default_factory=dict)
@@ -39,7 +39,7 @@ class World:
     notes: list[str] = field(default_factory=list)
 
     def position(self, entity: str) -> Placed | None:
-        """Return where an entity is, or its outermost carrier."""
+        """Return the position of an entity, or of its outermost carrier."""
         seen: set[str] = set()
         placement = self.placements.get(entity)
         while isinstance(placement, Carried) and placement.by not in seen:
@@ -48,7 +48,7 @@ class World:
         return placement if isinstance(placement, Placed) else None
 
     def shape(self, entity: str) -> Placed | None:
-        """Return what an entity takes up, wherever it is."""
+        """Return the shape of an entity, regardless of its position; None if it is absent."""
         placement = self.placements.get(entity)
         return (
             placement.shape
@@ -61,7 +61,7 @@ class World:
 
 @dataclass(frozen=True, slots=True)
 class _Load:
-    """Who is carried by whom, and where that is said."""
+    """An entity and its carrier, with the declaration."""
 
     name: str
     by: str
@@ -73,7 +73,7 @@ def elaborate_world(mission: s.Mission, names: Names, library: Library) -> World
     """Declare all entities and channels, and return P."""
     world, loads = World(), list[_Load]()
     entries = [entry for section in mission.each(s.World) for entry in section.entries]
-    for entry in entries:  # before what is linked to them, which declares those that stand nowhere
+    for entry in entries:  # before entities, whose links declare all other channels
         if isinstance(entry, s.ChannelDeclaration):
             names.channels.add(entry.name.text)
             names.declare("channel", entry.name.text, entry.name)
@@ -151,7 +151,7 @@ def _from_file(entry: s.FromSource, names: Names, world: World, library: Library
     told = frozenset(others)
     for item in found:
         if item.entity in told:
-            continue  # one finding for a file: its remedy is one for all of its names
+            continue  # one finding for a file: its hint remedies all of its names
         if names.declare("entity", item.entity, entry.file, hint):
             names.kinds[item.entity] = item.kind
             world.channels[item.entity] = item.channels
@@ -164,7 +164,7 @@ def _from_file(entry: s.FromSource, names: Names, world: World, library: Library
         _join((s.Name(channel, span=entry.file.span),), names)
 
 
-# --- what is carried ------------------------------------------------------------------------------------------
+# --- cargo ------------------------------------------------------------------------------------------------------
 
 
 def _load(loads: list[_Load], names: Names, world: World) -> None:
