@@ -270,6 +270,11 @@ def test_the_blocks_of_a_page_do_what_it_shows(page, tmp_path):
         session.pycon(lines)
 
 
+@pytest.mark.parametrize("page", sorted((ROOT / "docs").rglob("*.txt")), ids=name_of)
+def test_a_session_of_the_python_reference_does_what_it_shows(page, tmp_path):
+    Session(tmp_path, variables(tmp_path / "site")).pycon(page.read_text(encoding="utf-8"))
+
+
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_a_block_has_a_kind_by_which_it_is_run(page):
     assert [block.place for block in blocks(page) if is_run(block) and block.kind not in KINDS] == []
