@@ -48,7 +48,7 @@ Follow = Callable[[Node], Iterable[tuple[int, Node]]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Group(Generic[Node]):
-    """The states that a sequence of steps reaches first, whatever the dates."""
+    """The states that a sequence of steps reaches first, at any dates."""
 
     states: tuple[Node, ...]
     step: int = DELAY
