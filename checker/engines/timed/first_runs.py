@@ -1,7 +1,7 @@
 """Runs in whole ticks, and the choice of the run that a report shows.
 
-The first run to a goal has the fewest steps; among those, the sequence of step numbers that is first in lexicographic
-order; and each step as early as the steps before it allow. So every engine shows the same run.
+The first run to a goal has the fewest steps. Among such runs, its sequence of step numbers is the first in
+lexicographic order. Each step is as early as the steps before it allow. So every engine shows the same run.
 """
 
 from __future__ import annotations
