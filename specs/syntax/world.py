@@ -171,7 +171,8 @@ class FromSource(Node):
 
     Entities from a file beside the mission: places (GeoJSON, a waypoint file, a plan) or an AIS recording. The time, an
     area and the largest number of entities are optional. So is a prefix of the names: `from "survey.plan" as survey`
-    has `survey_waypoint1`. `keep Vessel, BaseStation as Station` or `keep Waypoint as Location radius 50 m` selects kinds.
+    has `survey_waypoint1`. A selection of kinds is `keep Vessel, BaseStation as Station` or `keep Waypoint as Location
+    radius 50 m`.
     """
 
     file: TextLiteral
