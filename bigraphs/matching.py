@@ -3,8 +3,8 @@
 An occurrence maps nodes injectively and preserves controls, nesting and links. A node without a site has no further
 child. A closed link matches an edge all of whose points are matched. An open link matches any other link; several may
 match the same. A region may lie in any active place that is neither matched nor below a match (Milner's disjointness).
-A region whose nodes all have other parents in the redex may have no place at all (Sevegnani and Calder's bigraphs with
-sharing, where a site of the context may be an orphan).
+If all nodes of a region have other parents in the redex, the region may have no place: in Sevegnani and Calder's
+bigraphs with sharing, a site of the context may be an orphan.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from bigraphs.region_matching import placements
 class Match:
     """An occurrence of `redex` in `target`.
 
-    `nodes` gives the target node of each redex node, `links` the target link of each redex link, `regions` the places
-    of each region, and `sites` the topmost target nodes in each site.
+    `nodes` gives the target node of each redex node, and `links` the target link of each redex link. `regions` gives
+    the places of each region, and `sites` the topmost target nodes in each site.
     """
 
     redex: Bigraph

@@ -146,7 +146,7 @@ class Value:
 class Decided:
     """The outcome of a claim, with a run as its evidence where one run suffices.
 
-    `what` describes the run; `remarks` say in which respect the verdict is weaker than it looks. A claim that asks for
+    `what` describes the run; `remarks` explain why the verdict is weaker than it looks. A claim that asks for
     a number has it as `value`; `strategy` is the choice in each state that attains it.
     """
 

@@ -35,9 +35,9 @@ class Step:
 
 
 def step_of(source: Configuration, label: Label, target: Configuration) -> Step:
-    """Return the step between two configurations; labels that print alike are alike, as `replay` knows no more.
+    """Return the step between two configurations; labels with the same text count as equal, since `replay` has no more.
 
-    What an observation is received without is looked up.
+    For a received observation, the label with the missing parts of the observation is looked up.
     """
     if isinstance(label.about, Received):
         received = (t for t in candidates(source, label=str(label)) if isinstance(t.label.about, Received))
@@ -52,7 +52,7 @@ def step_between(source: Configuration, target: Configuration) -> Step:
     agents = source.alpha.names()
     if changed and all(
         len(cell) > 1 for cell in changed
-    ):  # a step changes its agent, or what is nobody's: the queue
+    ):  # a step changes cells of its agent or the queue, which has no owner
         named = {name for cell in changed for name in cell[1:]}
         agents = tuple(name for name in agents if name in named)
     steps = _in_turn(source, agents)
@@ -62,9 +62,9 @@ def step_between(source: Configuration, target: Configuration) -> Step:
 def candidates(
     source: Configuration, sight: Sight | Elsewhere | None = None, label: str | None = None
 ) -> tuple[Transition, ...]:
-    """Return what may follow, or be meant by what was observed.
+    """Return the possible next steps, or those that a sight may mean.
 
-    With a label, agents that it does not name are passed over: every label of an agent's steps names it.
+    With a label, agents that it does not name are skipped: the label of an agent's step always has its name.
     """
     agents = [name for name in source.alpha.names() if label is None or name in label]
     if sight is not None:
@@ -73,7 +73,7 @@ def candidates(
 
 
 def _in_turn(source: Configuration, agents: Sequence[Name]) -> tuple[Transition, ...]:
-    """Return what some agents and the environment may do, in the turn of all."""
+    """Return the possible steps of some agents and the environment, restricted to the turn of all agents."""
     found = expand_by(source, agents).transitions
     turn = next((turn_of(each) for each in found if turn_of(each) is not None), None)
     if turn is None:

@@ -74,7 +74,7 @@ class Trace:
         return f"<Trace {print_length(self)}>"
 
     def _repr_html_(self) -> str:
-        from bigactors.notebook import trace_html  # noqa: PLC0415 - what notebooks show is built on values
+        from bigactors.notebook import trace_html  # noqa: PLC0415 - the notebook's pictures are built on values
 
         return trace_html(self)
 
@@ -158,7 +158,7 @@ def _unfolded(found: Exploration, number: int, by: Transition | None, *, shortes
 
 
 def print_trace(trace: Trace, *, changes: bool = True) -> Iterator[str]:
-    """Print a trace in the paper's notation, with what changed under each step."""
+    """Print a trace in the paper's notation, with the changes under each step."""
     for number, (step, source) in enumerate(zip(trace.steps, trace.configurations, strict=False), 1):
         yield print_step(trace, number)
         if changes:
@@ -168,7 +168,7 @@ def print_trace(trace: Trace, *, changes: bool = True) -> Iterator[str]:
 
 
 def print_step(trace: Trace, number: int) -> str:
-    """Print one step, from 1: its date, its label, and what it is in a race."""
+    """Print one step, numbered from 1: its date, its label, and its role in a race."""
     date, role = trace.date(number - 1), trace.role(number)
     label = f"{f'at {date} ' if date else ''}{trace.steps[number - 1].label}"
     return f"c{number - 1} --{label}--> c{number}{f'  [{role}]' if role else ''}"

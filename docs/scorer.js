@@ -1,5 +1,4 @@
-// Ranks the pages that the search finds: first those whose title has the words, and what a user reads before what a
-// maintainer reads.
+// Ranks the pages found by the search: pages with the words in the title first, and users' pages before maintainers' pages.
 const asked = (new URLSearchParams(location.search).get("q") || "").toLowerCase().split(/\s+/).filter(Boolean);
 const shelf = { "docs/tutorial": 3, "docs/how-to": 4, "docs/reference": 2, "docs/explanation": 1 };
 

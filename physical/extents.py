@@ -1,9 +1,9 @@
 """Extents: regions of possible positions, with the least and greatest distance of two of them, in metres.
 
 Both bounds are rounded outwards: bent edges are followed in a metric frame, and the possible error is subtracted or
-added. In the frame around a centre, lengths along its rays are those of the earth. Lengths across are too long by at
-most the factor c/sin(c), with c the angle from the centre (Rauch: the ellipsoid nowhere bends more than a sphere of its
-polar radius).
+added. In the frame around a centre, lengths along its rays are those of the earth. Lengths across are too long, at
+most by the factor c/sin(c), with c the angle from the centre. This is Rauch's bound: the ellipsoid nowhere bends more
+than a sphere of its polar radius.
 """
 
 from __future__ import annotations

@@ -143,7 +143,7 @@ def actuate(c: Configuration, a: Name) -> Iterator[Transition]:
 def command(c: Configuration, a: Name) -> Iterator[Transition]:
     """Send a vehicle on its way (`control timed`); L does not change yet.
 
-    as actuate      neither what moves nor what carries it is in transit
+    as actuate      neither the moved nodes nor their carriers are in transit
     ──────────────────────────────────────────────────────────────────────────────  ⟨command : CTR(a, R ⇒ R′)⟩
     ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L, P[moved ↦ in transit], β, γ) | η[CTR ↦ FLY(a, m, R′)]⟩
     """

@@ -1,9 +1,13 @@
 """The mission language: from a text to a mission, or to the mistakes in it.
 
 It knows nothing of exploration, vehicles or the command line. A mission passes through the modules in this order:
-`preprocessing` (bounds, comments), `grammar` and the builders (`build_world`, `build_timing`, `build_behaviour`),
-`syntax` (the tree), `recovery`, `syntax_errors`, `common_mistakes` and `codes` (the mistakes), and `diagnostics`
-(their printing). `writing`, `layout` and `formatter` turn a tree into text.
+
+- `preprocessing` (bounds, comments)
+- `grammar` and the builders of the `syntax` tree (`build_world`, `build_timing`, `build_behaviour`)
+- `recovery`, `syntax_errors`, `common_mistakes` and `codes` (the mistakes)
+- `diagnostics` (the printing of mistakes)
+
+`writing`, `layout` and `formatter` turn a tree into text.
 """
 
 import lazy_loader

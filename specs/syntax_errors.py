@@ -90,7 +90,7 @@ _FORMS: Final = (
         'write invariant "name": formula, or reachable, ltl, ctl, deadlock_freedom; of times: within 5 min, endurance',
     ),
 )
-"""The forms of what is expected in some situations, for mistakes without a better explanation."""
+"""The expected forms in some situations, for mistakes without a better explanation."""
 
 _SORTS: Final = {
     "NAME": "a name",

@@ -1,4 +1,4 @@
-"""The operator's console: a reader of a recording, which may still be written, and what it shows in browsers.
+"""The operator's console: it reads a recording, which may still be written, and shows it in browsers.
 
-Nothing here knows of a run but what its recording says, so that a console can neither slow a run nor end it.
+Its only source about a run is the recording, so that a console can neither slow a run nor end it.
 """

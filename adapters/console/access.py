@@ -1,4 +1,4 @@
-"""Who may look at a console, and who may act: a token for each, in the links that it prints."""
+"""The two access tokens of a console, one to watch and one to act; the printed links contain them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from hmac import compare_digest
 
 
 class Role(StrEnum):
-    """What a token is good for."""
+    """The permission that a token gives."""
 
     WATCH = "watch"
     ACT = "act"
@@ -21,18 +21,18 @@ def _token() -> str:
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """The tokens of one console: whoever has one has its role.
+    """The tokens of one console; each gives its holder a role.
 
     Attributes:
-        watch: Of those who look on.
-        act: Of those who may say and order what the run allows.
+        watch: For observers.
+        act: For operators, who may send messages and orders.
     """
 
     watch: str = field(default_factory=_token)
     act: str = field(default_factory=_token)
 
     def role(self, token: str) -> Role | None:
-        """Return the role of a token, None if it is none.
+        """Return the role of a token, None for an unknown token.
 
         >>> Access("blue", "red").role("red"), Access("blue", "red").role("green")
         (<Role.ACT: 'act'>, None)

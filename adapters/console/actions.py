@@ -1,4 +1,4 @@
-"""What operators do, and what becomes of it: asked of the run, sent to vehicles, confirmed by them, or refused."""
+"""The operators' actions and their states: asked of the run, sent to vehicles, confirmed by them, or refused."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ MOST: Final = 500
 MOST_NAMED: Final = 1_000
 
 SETTLED: Final = ("confirmed", "refused")
-"""The states of an action of which nothing more will be heard."""
+"""The final states of an action."""
 
 
 def take_saying(draft: Draft, time: float, data: Any) -> None:
-    """Take in a message that someone said to an agent: it is in the mailbox, or was refused."""
+    """Take in an operator's message to an agent: it is in the mailbox, or was refused."""
     match data:
         case {"agent": str(agent), "message": str(message)}:
             number = act(draft, time, data, f'say "{text(message)}"', text(agent))
@@ -28,7 +28,7 @@ def take_saying(draft: Draft, time: float, data: Any) -> None:
 
 
 def act(draft: Draft, time: float, data: Any, what: str, about: str, state: str = "confirmed") -> str:
-    """Note an action and what has become of it, unless the run refused it; return its number."""
+    """Add an action in a state, or as refused if the run refused it; return its number."""
     draft.acted += 1
     why = text(data.get("refusal"))
     state = "refused" if why else state
@@ -57,17 +57,17 @@ def _left_out(said: Any) -> dict[str, str]:
 
 
 def settle(draft: Draft, time: float, number: str, state: str, why: str = "") -> None:
-    """Note what has become of an action that was not settled."""
+    """Set the final state of an action."""
     action: Json = draft.actions.get(number)
     if action is not None:
         draft.actions[number] = {**action, "state": state, "why": why, "answered": time}
 
 
-# --- what an operator has seen ------------------------------------------------------------------------
+# --- acknowledgements ---------------------------------------------------------------------------------
 
 
 def take_acknowledgement(draft: Draft, time: float, data: Any) -> None:
-    """Take in that an operator has seen a finding."""
+    """Take in that an operator has acknowledged a finding."""
     match data:
         case {"finding": int(number)} if str(number) in draft.alerts:
             seen = {"by": text(data.get("by")), "time": time}

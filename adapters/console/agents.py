@@ -1,4 +1,4 @@
-"""BigActors: what they wait for, and what may be said to them."""
+"""The states of the bigActors, and the messages that operators may send them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ MOST: Final = 1_000
 
 
 def take_deadline(draft: Draft, _time: float, data: Any) -> None:
-    """Take in until when an agent waits, or that it waits no longer."""
+    """Take in the time until which an agent waits, or the end of its wait."""
     match data:
         case {"agent": str(name), "until": until}:
             draft.deadlines.pop(name, None)
@@ -78,13 +78,13 @@ def _state(c: Configuration, name: Name, request: object) -> str:
 
 
 def _awaits(c: Configuration, name: Name) -> list[str]:
-    """Return what each case of the `react` takes at which an agent is; nothing where it is at none."""
+    """Return a description of each case of the agent's current `react`; empty if its next statement is another."""
     statement = next_statement(c, name) if is_here(c, name) else None
     return [text(_taken(case)) for case in statement.cases] if isinstance(statement, React) else []
 
 
 def _taken(case: Case) -> str:
-    """Return what a case takes, in words."""
+    """Return a description of the values that a case takes."""
     what = _ANYTHING[case.pattern.of] if isinstance(case.pattern, Anything) else _part(case.pattern)
     return what if case.guard is None else f"{what} that passes a test"
 
@@ -103,7 +103,7 @@ def _part(pattern: Pattern) -> str:
 
 
 def sayings(facts: Facts) -> Mapping[str, Json]:
-    """Return the section `sayings`: what the mission lets someone say to the agents that run here."""
+    """Return the section `sayings`: the messages that the mission allows to the agents of this station."""
     if facts.standing is None:
         return {}
     known = _sayings(facts.standing.configuration)
@@ -128,7 +128,7 @@ def _sayings(c: Configuration) -> Mapping[str, Json]:
 
 
 def _is_awaited(c: Configuration, said: Says) -> bool:
-    """Tell whether an agent waits, and would take this message now: what is said earlier stays in its mailbox."""
+    """Return whether an agent waits and would take this message now; an earlier message stays in its mailbox."""
     statement = next_statement(c, said.agent) if said.agent in c.alpha else None
     if not isinstance(statement, React):
         return False

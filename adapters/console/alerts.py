@@ -1,4 +1,4 @@
-"""Findings: what the operator was told, and what stands until it is acknowledged."""
+"""The run's findings as alerts; an alert of something wrong stands until an operator acknowledges it."""
 
 from __future__ import annotations
 
@@ -15,19 +15,22 @@ MOST: Final = 1_000
 WRONG: Final = frozenset(
     {"broken assumption", "refused", "taken over", "lost link", "late", "blocked", "failed"}
 )
-"""The kinds of findings that stand until somebody has seen them."""
+"""The kinds of findings that stand until an operator acknowledges them."""
 
 STOPPING: Final = {"hold": "hold", "return": "return home"}
-"""The fallbacks after which controls are served no more, of the agent that is late, else of all; in words."""
+"""The fallbacks that end the serving of controls, with their words.
+
+After a late request they end it for that agent, after another finding for all agents.
+"""
 
 OF_ACTIONS: Final = frozenset({"ordered", "confirmed"})
-"""The kinds that tell what became of an action, which has a tick of its own."""
+"""The kinds of findings about an action; they get no tick, since the action has its own."""
 
 ALL: Final = ""
-"""Stands for all agents among those whose controls are served no more."""
+"""The key of `stopped` for all agents."""
 
 CONSOLES_OWN: Final = "0"
-"""The key of what the console itself has to say; findings are counted from 1."""
+"""The key of the console's own alert; findings are counted from 1."""
 
 
 def take_finding(draft: Draft, time: float, data: Any) -> None:
@@ -46,20 +49,23 @@ def take_finding(draft: Draft, time: float, data: Any) -> None:
 
 
 def _is_copied(draft: Draft, time: float) -> bool:
-    """Tell whether something was found in the run that this one resumes: it begins once the world is right again."""
+    """Return whether a finding is from the run that this one resumes.
+
+    Its fallback does not count here: a run resumes only when its assumptions hold again.
+    """
     return draft.run is not None and time < draft.run.mission["begun"]
 
 
 def tell(draft: Draft, message: str) -> None:
-    """Alert of what the console itself has found; it stands in no red line."""
+    """Set the console's own alert, which never stands in the red line."""
     draft.alerts[CONSOLES_OWN] = _alert(draft.time, {"kind": "console", "message": message})
 
 
-# --- what stands --------------------------------------------------------------------------------------
+# --- alarms and consequences --------------------------------------------------------------------------
 
 
 def alarms(facts: Facts) -> Section:
-    """Return the section `alarms`: what is wrong and not acknowledged, each with its consequence."""
+    """Return the section `alarms`: the unacknowledged alerts of something wrong, with their consequences."""
     return {
         number: {**alert, "consequence": _consequence(facts, alert)}
         for number, alert in facts.alerts.items()
@@ -68,7 +74,7 @@ def alarms(facts: Facts) -> Section:
 
 
 def fallen_back(facts: Facts) -> str:
-    """Return what it means that the mission has fallen back; empty where it has not."""
+    """Return the consequence of the mission's fallback; empty if it has not fallen back as a whole."""
     if ALL not in facts.stopped:
         return ""
     told = STOPPING[facts.stopped[ALL]]
@@ -76,19 +82,19 @@ def fallen_back(facts: Facts) -> str:
 
 
 def grounded(agent: str) -> str:
-    """Return what it means that an agent's controls are served no more."""
+    """Return the consequence of an agent's fallback."""
     return f"nothing that {agent} orders is carried out any more"
 
 
 def vanity(facts: Facts | Draft, agent: str) -> str | None:
-    """Return why nothing comes of what is said to an agent, None if something may: the mission commands vehicles."""
+    """Return why a message to an agent has no effect; None while the mission still commands vehicles for it."""
     if ALL in facts.stopped:
         return "the mission has fallen back and commands nothing any more: what is said moves no vehicle"
     return f"the mission has fallen back: {grounded(agent)}" if agent in facts.stopped else None
 
 
 def _consequence(facts: Facts, alert: Json) -> str:
-    """Return what follows from a finding, or from all that was found: the latter counts for every vehicle."""
+    """Return the consequence of a finding; once the whole mission has fallen back, that consequence counts for all."""
     fallback = alert["fallback"]
     if whole := fallen_back(facts):
         return whole

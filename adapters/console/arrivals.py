@@ -1,4 +1,4 @@
-"""What plugins publish: sightings, the trails of vehicles, and when they were heard."""
+"""The plugins' sightings: positions, areas, the trails of vehicles, and the times of their last messages."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOST_ENTITIES: Final = 5_000
 MOST_SHAPES: Final = 500
 
 CHUNK: Final = 32
-"""Positions of a piece of a trail."""
+"""Positions in a piece of a trail."""
 
 MOST_CHUNKS: Final = 64
 
@@ -26,7 +26,7 @@ EVERY: Final = 1.0
 
 
 def take_arrival(draft: Draft, time: float, data: Any) -> None:
-    """Take in what a plugin published; what is older than what is known of the entity is passed over."""
+    """Take in a sighting of a plugin; a position older than the known one is dropped."""
     entity, said = data.get("entity"), data.get("ring")
     if not isinstance(entity, str) or _is_anothers(draft, entity, data.get("plugin")):
         return
@@ -40,7 +40,10 @@ def take_arrival(draft: Draft, time: float, data: Any) -> None:
 
 
 def _is_anothers(draft: Draft, entity: str, plugin: Any) -> bool:
-    """Tell whether a plugin speaks of the vehicle of another one: several stations hear one over several links."""
+    """Return whether a plugin reports a vehicle of another plugin.
+
+    With stations every plugin may report a vehicle: several stations hear it over several links.
+    """
     run = draft.run
     owner = None if run is None or run.station else run.vehicles.get(entity)
     return owner is not None and owner != plugin
@@ -64,7 +67,7 @@ def _see(draft: Draft, entity: str, time: float, data: Any) -> None:
     if draft.run is not None and entity in draft.run.vehicles:
         draft.trails[entity] = extended(draft.trails.get(entity), at, stamp)
         draft.links[entity] = Link(stamp, draft.links.get(entity, _UNHEARD).lost)
-        if not draft.status.get(entity, {}).get("authority"):  # what it says of itself is newer
+        if not draft.status.get(entity, {}).get("authority"):  # the vehicle's own status is newer
             obeys(draft, stamp, entity, _authority(channels))
 
 
@@ -83,7 +86,7 @@ def _velocity(value: Any) -> tuple[float | None, float | None]:
 
 
 def _has_room(draft: Draft, entity: str, time: float) -> bool:
-    """Tell whether an entity is known or may be added, when those that are too old are dropped."""
+    """Return whether an entity is known or may be added; expired sightings are dropped when the table is full."""
     if entity in draft.seen or len(draft.seen) < MOST_ENTITIES:
         return True
     for old in [name for name, seen in draft.seen.items() if seen.until < time]:
@@ -95,7 +98,7 @@ def _has_room(draft: Draft, entity: str, time: float) -> bool:
 
 
 def extended(trail: Trail | None, at: Position, time: float) -> Trail:
-    """Return a trail with one more position, unless that is the last one or comes too soon after it."""
+    """Return a trail with one more position, unless that repeats the last one or comes too soon after it."""
     if trail is None:
         return Trail(((at,),), time, EVERY)
     *before, last = trail.chunks

@@ -1,6 +1,6 @@
-"""What one browser is shown, and what it asks for (docs/reference/console.md).
+"""The session of one browser: the frames sent to it, and its requests (docs/reference/console.md).
 
-It has the view that was sent to it last, and gets the next difference when the socket has taken that one: a slow
+Each frame is the difference from the last view sent. It is computed when the socket has taken the last frame: a slow
 browser gets fewer and larger steps, never a queue.
 """
 
@@ -38,7 +38,7 @@ EVERY: Final = 0.1
 """Seconds between two frames to a browser."""
 
 STALLED: Final = 30.0
-"""Seconds after which a browser that takes no frame is given up."""
+"""Seconds after which a browser that takes no frame is disconnected."""
 
 MOST_REQUESTS: Final = 50
 """Requests of one connection in a second."""
@@ -51,16 +51,16 @@ NOT_BEGUN: Final = "the run has not begun to write its recording"
 
 @dataclass(frozen=True, slots=True)
 class Console:
-    """What is served.
+    """The recording that a console serves, and its settings.
 
     Attributes:
         history: The recording.
-        access: Who may look and act.
-        version: Of this program.
-        perform: Has the run perform actions; None where there is none that could be reached.
+        access: The tokens to watch and to act.
+        version: The version of this program.
+        perform: Passes actions to the run; None if there is no run to reach.
         live: Whether the recording is still being written.
         tiles: A PMTiles file for the map.
-        recording: The recording's file, for people; empty where it is not kept.
+        recording: The name of the recording's file, for people; empty if the file is not kept.
     """
 
     history: History
@@ -74,7 +74,7 @@ class Console:
 
 @dataclass(slots=True)
 class Looker:
-    """One browser: what it is shown, and what it says."""
+    """One browser: the view that it has, and its requests."""
 
     console: Console
     socket: Any
@@ -86,10 +86,10 @@ class Looker:
     _moment: Moment | None = None
     _changed: asyncio.Event = field(default_factory=asyncio.Event)
 
-    # --- showing
+    # --- sending
 
     async def show(self) -> None:
-        """Send the welcome and a snapshot, then what changes, until the browser is gone."""
+        """Send the welcome and a snapshot, then the changes, until the browser is gone."""
         mode = "live" if self.console.live else "replay"
         await self._send(
             {
@@ -123,7 +123,7 @@ class Looker:
             self._changed.clear()
 
     def _begin(self) -> None:
-        """Begin a replay at its beginning, in motion."""
+        """Start playing a replay from its beginning."""
         history = self.console.history
         self.playhead = Playhead(history.begin, time.monotonic(), playing=True)
 
@@ -135,7 +135,7 @@ class Looker:
             await self._send({"type": "changes", "n": self.number, "set": changed, "gone": gone})
 
     def _view(self) -> View:
-        """Return what is to be seen at the play head."""
+        """Return the view at the play head."""
         history, clock = self.console.history, time.monotonic()
         if not history.behind:
             ended = not self.console.live or history.ended is not None
@@ -149,7 +149,7 @@ class Looker:
         return self._moment.forward(now)
 
     def _with_clock(self, view: View) -> View:
-        """Return a view that says what is shown of the time line, too."""
+        """Return a view whose section `clock` includes the play head."""
         history = self.console.history
         head = self.playhead
         shown = {
@@ -166,10 +166,10 @@ class Looker:
         async with asyncio.timeout(STALLED):
             await self.socket.send_str(text)
 
-    # --- hearing
+    # --- receiving
 
     async def hear(self) -> None:
-        """Do what the browser asks, until it is gone or asks too much."""
+        """Carry out the browser's requests, until it is gone or sends too many."""
         ration: Ration[str] = Ration(MOST_REQUESTS)
         async for message in self.socket:
             if not ration.takes("", time.monotonic()):

@@ -1,4 +1,4 @@
-"""The vehicles' cards: what each is to do, what it does, and how much it needs an operator."""
+"""The vehicles' cards: their requests and orders, their status, and how urgently they need an operator."""
 
 from __future__ import annotations
 
@@ -22,25 +22,25 @@ from semantics.state.requests import CTR, FLY, Request
 from semantics.state.signature import Name
 
 WELL, WATCHED, WRONG, LOST = range(4)
-"""How much a vehicle needs an operator."""
+"""The levels: how urgently a vehicle needs an operator."""
 
 WORDS: Final = ("well", "watch", "wrong", "lost")
-"""How a vehicle is, by its level, where its reason has no word of its own."""
+"""The word for each level, unless the reason has its own."""
 
 UNKNOWN_NOW: Final = "unknown"
-"""How a vehicle is of which nothing is known."""
+"""The word for a vehicle without any current information."""
 
 OLD: Final = 5.0
-"""Seconds after which a link is watched."""
+"""Seconds of silence after which a vehicle is to be watched."""
 
 LOW: Final = 25
-"""Percent of a battery that are too few."""
+"""Percent of charge below which a battery is low."""
 
 UNTOLD: Final = Authority(())
 
 
 class Asked(NamedTuple):
-    """A request that a vehicle is to serve, how long it may take, and whether it is given up: served no more."""
+    """A request that concerns a vehicle, its time limit, and whether it is given up (never served any more)."""
 
     waiting: Waiting
     limit: TimeLimit | None
@@ -48,7 +48,7 @@ class Asked(NamedTuple):
 
 
 class Reason(NamedTuple):
-    """Why a vehicle needs an operator: how much, why, and how it is; the word of its level where that is empty."""
+    """A reason why a vehicle needs an operator: the level, the explanation, and a word; if empty, the level's word."""
 
     level: int
     why: str
@@ -56,7 +56,7 @@ class Reason(NamedTuple):
 
 
 def vehicles(facts: Facts, now: float, broken_off: str = "") -> dict[str, Json]:
-    """Return the section `vehicles`; `broken_off` says why nothing more is known after what is shown."""
+    """Return the section `vehicles`; `broken_off` is the reason why the recording ends here, if it was cut off."""
     if facts.run is None:
         return {}
     asked, where = _asked(facts), known_whereabouts(facts)
@@ -72,7 +72,10 @@ def vehicles(facts: Facts, now: float, broken_off: str = "") -> dict[str, Json]:
 
 
 def _card(facts: Facts, name: Name, asked: Asked | None, where: Whereabouts, said: list[Reason]) -> Json:
-    """Return a vehicle's card, which doesn't change with each of the positions that it sends ten times a second."""
+    """Return a vehicle's card.
+
+    It omits the position and rounds the times, so that it does not change ten times a second with each position.
+    """
     seen, status = facts.seen.get(name), facts.status.get(name, {})
     order, link = _order(facts, name), facts.links.get(name, Link())
     reasons = sorted(said, key=lambda reason: -reason.level)
@@ -130,13 +133,13 @@ def _request_json(asked: Asked) -> Json:
 
 
 def _order(facts: Facts, name: Name) -> Order | None:
-    """Return what a vehicle was told last: of its authority, until that is done, else where to be."""
+    """Return a vehicle's last order: a hand-over until it is done, else the last order of movement."""
     handing = facts.handing.get(name)
     return handing if handing is not None and handing.state != "arrived" else facts.orders.get(name)
 
 
 def _is_bidden(facts: Facts, name: Name, order: Order) -> bool:
-    """Tell whether what a vehicle was told is what an operator ordered: that has words of its own."""
+    """Return whether an order is an operator's; the card describes those separately."""
     return name in facts.bidden and facts.bidden[name].bidden.command.request == order.request
 
 
@@ -148,7 +151,7 @@ def _away(facts: Facts, name: Name) -> str | None:
 
 
 def _ordered_json(bid: Bid | None) -> Json:
-    """Return what an operator has ordered a vehicle to do, and what became of it."""
+    """Return an operator's order to a vehicle, and its state."""
     if bid is None:
         return None
     order = bid.bidden
@@ -181,7 +184,7 @@ def _order_json(order: Order, way: tuple[Position, ...]) -> Json:
 
 
 def _asked(facts: Facts) -> Mapping[Name, Asked]:
-    """Return the request of each vehicle: that which moves it, else that of an agent aboard."""
+    """Return one request for each vehicle: one that moves it, else one of an agent aboard."""
     if facts.standing is None or facts.run is None:
         return {}
     limits = facts.standing.rules.limits if facts.run.limits is None else facts.run.limits
@@ -201,7 +204,7 @@ def _is_given_up(facts: Facts, request: Request) -> bool:
 
 
 def limit_of(request: Request, limits: tuple[TimeLimit, ...]) -> TimeLimit | None:
-    """Return the shortest limit of a request, None where nothing limits it."""
+    """Return the shortest time limit of a request, None if it has none."""
     kind = type(request).__name__
     covering = (limit for limit in limits if limit.covers(kind, request.agent))
     return min(covering, key=attrgetter("seconds"), default=None)
@@ -213,7 +216,7 @@ def limit_of(request: Request, limits: tuple[TimeLimit, ...]) -> TimeLimit | Non
 def _reasons(
     facts: Facts, name: Name, now: float, asked: Asked | None, where: Whereabouts
 ) -> Iterator[Reason]:
-    """Yield why a vehicle needs an operator, and how much."""
+    """Yield the reasons why a vehicle needs an operator."""
     yield from _of_link(facts.links.get(name, Link()), now)
     if name in facts.taken:
         yield Reason(LOST, f"taken over: {facts.taken[name]}", "taken over")
@@ -249,7 +252,7 @@ def _of_link(link: Link, now: float) -> Iterator[Reason]:
 
 
 def _of_assumptions(facts: Facts, name: Name) -> Iterator[Reason]:
-    """Yield the newest broken assumption about a vehicle that nobody has acknowledged, and how many more there are."""
+    """Yield the newest unacknowledged broken assumption about a vehicle, and the number of the others."""
     broken = [
         alert["message"]
         for alert in facts.alerts.values()
@@ -261,7 +264,7 @@ def _of_assumptions(facts: Facts, name: Name) -> Iterator[Reason]:
 
 
 def _of_request(asked: Asked | None, now: float, *, idle: bool) -> Iterator[Reason]:
-    """Yield what its request's limit calls for; `idle`: the mission does not command the vehicle."""
+    """Yield the reasons due to the request's time limit; `idle`: the mission does not command the vehicle."""
     if asked is None or asked.limit is None:
         return
     stood, limit = now - asked.waiting.since, asked.limit.seconds
@@ -279,7 +282,7 @@ def _of_request(asked: Asked | None, now: float, *, idle: bool) -> Iterator[Reas
 
 
 def _of_falling_back(facts: Facts, asked: Asked | None) -> Iterator[Reason]:
-    """Yield that the mission does not command a vehicle again, even one that is given back."""
+    """Yield that the mission will not command a vehicle again, even after a give-back."""
     if whole := fallen_back(facts):
         yield Reason(WRONG, whole)
     elif asked is not None and asked.given_up:
@@ -287,7 +290,7 @@ def _of_falling_back(facts: Facts, asked: Asked | None) -> Iterator[Reason]:
 
 
 def _of_idleness(facts: Facts) -> Iterator[Reason]:
-    """Yield for whom a vehicle waits of which nothing is asked: who would ask waits itself, or has ended."""
+    """Yield why no request concerns a vehicle: an agent waits, or all agents have ended."""
     if ALL in facts.stopped:
         return
     states = agents(facts)

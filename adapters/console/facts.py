@@ -1,4 +1,4 @@
-"""What a recording has told up to some message: frozen values, from which views are made."""
+"""The facts: the content of a recording up to some message, as frozen values. Views are made from them."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ Position = tuple[float, float]
 
 
 class Unreplayable(Exception):
-    """Steps that cannot be taken again here; the message says why."""
+    """Steps that cannot be replayed here; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rules:
-    """What was flown, and its rules: handed in, since they are elaborated and replayed elsewhere.
+    """The mission that was flown, and its rules; callers supply them, since they elaborate and replay it.
 
     Attributes:
         initial: The first configuration.
-        fixed: The entities whose place never changes.
-        limits: How long requests may take.
-        on_broken: What is done when an assumption breaks.
-        follow: Takes a recorded step again; raises Unreplayable where it is not allowed.
+        fixed: The entities that never move.
+        limits: The time limits of requests.
+        on_broken: The fallback after a broken assumption.
+        follow: Replays a recorded step; raises Unreplayable if the rules do not allow it.
     """
 
     initial: Configuration
@@ -40,7 +40,7 @@ class Rules:
 
 
 Opening = Callable[[Mapping[str, Any]], Rules]
-"""Returns the rules of what a recording's `run` says was flown; raises Unreplayable."""
+"""Returns the rules of the mission that a recording's `run` names; raises Unreplayable."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,13 +54,13 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """Where the run stands by the rules.
+    """The state of the run, as replayed by its rules.
 
     Attributes:
-        rules: Of its mission.
+        rules: The rules of its mission.
         configuration: ⟨α | S | η⟩.
-        change: How its L and P came about.
-        heads: The requests at the heads of lines, and since when; as `adapters.live.limits` has them.
+        change: The last change of its L or P.
+        heads: The requests at the heads of lines, and the start of their waits, as in `adapters.live.limits`.
     """
 
     rules: Rules
@@ -74,12 +74,12 @@ class Seen(NamedTuple):
 
     Attributes:
         kind: Its kind.
-        at: Where.
+        at: Its position.
         course: In degrees from true north.
         speed: In metres a second.
-        time: When it was observed.
-        until: When it is too old to be shown.
-        source: The plugin that tells of it.
+        time: The time of the observation.
+        until: The time after which it is not shown.
+        source: The plugin that reports it.
         channels: The channels that it is on.
         altitude: In metres above sea level.
     """
@@ -96,7 +96,7 @@ class Seen(NamedTuple):
 
 
 class Authority(NamedTuple):
-    """The stations that a vehicle obeys, and how that changed last, as the cards have it."""
+    """The controlling stations of a vehicle, and their last change, in the form of the cards."""
 
     stations: tuple[str, ...]
     handed: Json = None
@@ -112,16 +112,16 @@ class Shape(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """A command to a vehicle, and what became of it.
+    """A command to a vehicle, and its state.
 
     Attributes:
-        request: Names it in reports.
+        request: Its identifier in reports.
         command: Its kind.
-        to: Where to, or to which channel.
-        way: The waypoints of what it passes, and of where it goes.
-        since: When it was first sent.
-        state: `asked` (to hold or to return, not told yet), `sent`, `accepted`, `arrived` or `refused`.
-        why: Why it was refused.
+        to: The destination, or the channel of a hand-over.
+        way: The waypoints on the way, and of the destination.
+        since: The time at which it was first sent.
+        state: `asked` (to hold or to return, not sent yet), `sent`, `accepted`, `arrived` or `refused`.
+        why: The reason of the refusal.
     """
 
     request: str
@@ -135,12 +135,12 @@ class Order:
 
 @dataclass(frozen=True, slots=True)
 class Bid:
-    """An operator's order to a vehicle to hold or to return, and what became of it.
+    """An operator's order to a vehicle to hold or to return, and its state.
 
     Attributes:
         action: The number of the action.
-        since: When it was given.
-        bidden: The order, as the run has it.
+        since: The time of the order.
+        bidden: The order, in the run's form.
     """
 
     action: str
@@ -150,7 +150,7 @@ class Bid:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A link to a vehicle: when it was heard last, and whether the link is lost."""
+    """A link to a vehicle: the time of the last message, and whether the link is lost."""
 
     heard: float | None = None
     lost: bool = False
@@ -158,11 +158,11 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Trail:
-    """Where a vehicle was, thinned out evenly when there is too much of it.
+    """The past positions of a vehicle, thinned out evenly when there are too many.
 
     Attributes:
-        chunks: Its positions, piece by piece; a piece begins where the one before it ends.
-        time: Of the last position.
+        chunks: The positions in pieces; a piece begins with the last position of the piece before.
+        time: The time of the last position.
         every: The least seconds between two positions.
     """
 
@@ -173,16 +173,16 @@ class Trail:
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """What a recording's `run` says.
+    """The content of a recording's `run`.
 
     Attributes:
         mission: The section `mission`.
         vehicles: The plugin of each vehicle.
         fences: The section `fences`.
-        limits: How long requests may take; None where it does not say.
-        station: Whose recording it is, empty where there are no stations.
+        limits: The time limits of requests; None if it has none.
+        station: The station that recorded it; empty if there are no stations.
         stations: All stations.
-        rate: How fast its clock runs beside that on the wall; None for as fast as can be computed.
+        rate: Seconds of the run per second of wall time; None for as fast as possible.
     """
 
     mission: Section
@@ -196,40 +196,40 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """All that a recording has told.
+    """The content of a recording up to some message.
 
     Attributes:
-        run: What is flown; None before that is told.
-        begin: The time of the first message after it; None before that.
+        run: The mission and its settings; None before the message `run`.
+        begin: The time of the first message after `run`; None before it.
         time: The time of the last message, which never goes back.
-        ended: Why the run ended; None where it may go on.
-        broken_off: Whether that is not told by the recording, which just ends.
+        ended: Why the run ended; None if it may go on.
+        broken_off: Whether the recording just ends, without a reason of its own.
         step: The number of the last step.
-        standing: Where it stands by the rules; None where steps cannot be replayed.
-        seen: Sightings of what has one position.
-        shapes: Sightings of what has an area.
-        trails: Where vehicles were.
+        standing: The replayed state; None if steps cannot be replayed.
+        seen: Sightings of entities with one position.
+        shapes: Sightings of entities with an area.
+        trails: The past positions of vehicles.
         links: The links to vehicles.
-        orders: What vehicles were told last: where to be.
-        handing: What they were told last about their authority.
-        status: What vehicles say of themselves, as the topic `status` has it.
-        words: What they said last, as the cards have it.
-        taken: Who was taken over, and how.
-        bidden: What operators ordered vehicles to do, until each is given back or taken over.
-        rebinds: Of vehicles to be believed from another address, the request and the number of the action.
-        stopped: Whose controls are served no more (the empty name is all agents), and what their vehicles were told.
-        authority: Whom vehicles obey.
-        deadlines: Until when agents wait.
-        flights: How long flights take, as the cards have it; where the mission has times.
+        orders: The vehicles' last orders of movement.
+        handing: The vehicles' last orders of hand-over.
+        status: The vehicles' status, in the form of the topic `status`.
+        words: The vehicles' last texts, in the form of the cards.
+        taken: The vehicles that were taken over, with the reasons.
+        bidden: The operators' orders to vehicles, until a give-back or a take-over.
+        rebinds: The pending changes of vehicles' addresses: the request, and the number of the action.
+        stopped: The agents whose controls are no longer served (the empty name: all agents), with the fallback.
+        authority: The controlling stations of vehicles.
+        deadlines: The times until which agents wait.
+        flights: The durations of flights, in the form of the cards, if the mission has times.
         failed: Agents whose computation failed.
         steps: The section `steps`.
         ticks: The section `ticks`.
-        ticked: How many ticks there were.
+        ticked: The number of ticks so far, with those that were dropped.
         alerts: The section `alerts`.
-        found: How many findings there were.
+        found: The number of findings so far.
         actions: The section `actions`.
-        acted: How many actions there were.
-        stations: When each station was heard, and whether it is reached.
+        acted: The number of actions so far.
+        stations: For each station, the time of its last message, and whether it is reached.
         preflight: The section `preflight`.
     """
 

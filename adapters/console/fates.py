@@ -1,6 +1,6 @@
-"""The fate of operators' orders to hold or to return: asked, sent, confirmed or refused, in the words of the run.
+"""The fates of operators' orders to hold or to return, by the run's words: asked, sent, confirmed or refused.
 
-A vehicle is told again what it has refused: the order stays refused until the vehicle shows that it does it.
+The run repeats an order that a vehicle has refused. The order stays refused until the vehicle shows that it obeys.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ WORST_FIRST: Final = (Fate.REFUSED, Fate.ASKED, Fate.SENT, Fate.CONFIRMED)
 
 
 def take_order(draft: Draft, time: float, data: Any) -> None:
-    """Take in that vehicles were ordered to hold or to return, or that the run refused to tell them."""
+    """Take in an operator's order to vehicles to hold or to return, or the run's refusal of it."""
     match data:
         case {"order": "hold" | "return" as order, "requests": dict(requests)}:
             named = [each for each in requests.items() if isinstance(each[1], str)][:MOST_NAMED]
@@ -33,7 +33,7 @@ def take_order(draft: Draft, time: float, data: Any) -> None:
                 end(draft, time, vehicle, f"then it was told to {order}")
             number = act(draft, time, data, order, text(name) if isinstance(name, str) else "all", "asked")
             for vehicle, request in named:
-                draft.taken.pop(vehicle, None)  # who had taken it over is overruled
+                draft.taken.pop(vehicle, None)  # the order overrules the take-over
                 draft.bidden[vehicle] = Bid(
                     number, time, Bidden(stopping(Fallback(order), request, vehicle), by)
                 )
@@ -42,14 +42,14 @@ def take_order(draft: Draft, time: float, data: Any) -> None:
 
 
 def sent(draft: Draft, time: float, vehicle: str, request: str) -> None:
-    """Note that a vehicle is told an order; one that it has refused stays refused."""
+    """Note that an order is sent to a vehicle; a refused order stays refused when it is repeated."""
     for bid in _ordered(draft, vehicle, request):
         if bid.bidden.fate is Fate.ASKED:
             _becomes(draft, time, vehicle, bid, Fate.SENT)
 
 
 def confirm(draft: Draft, time: float, vehicle: str, request: str) -> None:
-    """Note that a vehicle shows that it does what was ordered."""
+    """Note that a vehicle shows that it obeys an order."""
     for bid in _ordered(draft, vehicle, request):
         if bid.bidden.owed:
             _becomes(draft, time, vehicle, bid, Fate.CONFIRMED)
@@ -62,14 +62,14 @@ def refuse(draft: Draft, time: float, vehicle: str, request: str, why: str) -> N
 
 
 def end(draft: Draft, time: float, vehicle: str, why: str) -> None:
-    """Note that an order stands no more; one that was not confirmed then never will be."""
+    """Note that an order has ended; if it is not confirmed yet, it never will be."""
     bid: Bid | None = draft.bidden.pop(vehicle, None)
     if bid is not None and bid.bidden.owed:
         _note(draft, time, vehicle, bid, why)
 
 
 def _ordered(draft: Draft, vehicle: str, request: str) -> Iterator[Bid]:
-    """Yield the order that a request is, if it stands for its vehicle."""
+    """Yield the vehicle's standing order if it has this request; else nothing."""
     bid: Bid | None = draft.bidden.get(vehicle)
     if bid is not None and bid.bidden.command.request == request:
         yield bid
@@ -81,7 +81,7 @@ def _becomes(draft: Draft, time: float, vehicle: str, bid: Bid, fate: Fate, why:
 
 
 def _note(draft: Draft, time: float, vehicle: str, bid: Bid, then: str = "") -> None:
-    """Note what has become of an order to a vehicle in the action that it is of, and what came then."""
+    """Update an order's action with the fate for a vehicle; `then` is the event that ended the order."""
     action: Json = draft.actions.get(bid.action)
     if action is None:
         return
@@ -103,7 +103,7 @@ def _is_owed(draft: Draft, vehicle: str, action: str) -> bool:
 
 
 def _state(fates: Collection[str]) -> str:
-    """Return the fate of an order to several vehicles: the worst of theirs."""
+    """Return the fate of an order to several vehicles: the worst of all."""
     return next(fate.value for fate in WORST_FIRST if fate.value in fates)
 
 

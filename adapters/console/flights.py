@@ -1,4 +1,4 @@
-"""What vehicles are told, what becomes of it, and what they say of themselves."""
+"""Commands to vehicles and their progress, the durations of flights, and the vehicles' status and texts."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from semantics.state.requests import CTR, FLY, Request
 from semantics.state.signature import Name
 
 STATES: Final = {"Accepted": "accepted", "Arrived": "arrived", "Rejected": "refused"}
-"""What becomes of an order, by the report."""
+"""The state of an order after each report."""
 
 MOST_WAY: Final = 100
 MOST_VEHICLES: Final = 1_000
 
 
 def take_command(draft: Draft, time: float, data: Any) -> None:
-    """Take in what a vehicle is told; the same request with other places goes on where it was."""
+    """Take in a command to a vehicle; a known request with a new path keeps its start and its state."""
     match data:
         case {
             "command": "GoTo" | "Follow" | "Hold" | "Return" as command,
@@ -69,7 +69,7 @@ def _waypoint(place: Any) -> Position | None:
 
 
 def take_report(draft: Draft, time: float, data: Any) -> None:
-    """Take in what a plugin reports of a request or a link."""
+    """Take in a plugin's report about a request or a link."""
     match data:
         case {
             "report": "Sent" | "Accepted" | "Arrived" | "Rejected" as report,
@@ -91,10 +91,10 @@ def take_report(draft: Draft, time: float, data: Any) -> None:
 
 
 def _answer(draft: Draft, time: float, name: str, request: str, report: str, why: str) -> None:
-    """Take in what became of something that a vehicle was told."""
+    """Take in a report about a command to a vehicle."""
     if report == "Sent":
         order: Order | None = draft.orders.get(name)
-        if order is not None and order.state == "asked":  # else it is told again what it has refused
+        if order is not None and order.state == "asked":  # else it repeats a refused order
             _becomes(draft.orders, name, request, "sent", "")
         sent(draft, time, name, request)
         return
@@ -108,7 +108,7 @@ def _answer(draft: Draft, time: float, name: str, request: str, report: str, why
 
 
 def take_flight(draft: Draft, _time: float, data: Any) -> None:
-    """Take in how long a flight takes, or that it is over."""
+    """Take in the duration of a flight, or its end."""
     match data:
         case {"vehicle": str(name), "takes": takes}:
             draft.flights.pop(name, None)
@@ -133,7 +133,7 @@ def _becomes(orders: Table[Order], name: str, request: str, state: str, why: str
 
 
 def arrive(draft: Draft, label: Label, c: Configuration) -> None:
-    """Note that what vehicles were told is done, by the step that says so: `commit`, or `actuate` of a hand-over."""
+    """Mark orders as done by the step that completes them: `commit`, or `actuate` for a hand-over."""
     table = {"commit": draft.orders, "actuate": draft.handing}.get(label.rule)
     if table is not None and isinstance(label.about, CTR | FLY):
         for name in concerned(c, label.about):
@@ -143,7 +143,7 @@ def arrive(draft: Draft, label: Label, c: Configuration) -> None:
 
 @lru_cache(maxsize=1 << 10)
 def concerned(c: Configuration, request: Request) -> tuple[Name, ...]:
-    """Return the nodes that a request moves or relinks, else the host of who asked."""
+    """Return the nodes that a request moves or relinks, else the host of its agent."""
     host = (c.alpha.host(request.agent),) if request.agent in c.alpha else ()
     match request:
         case FLY(_, reaction, match):
@@ -155,11 +155,11 @@ def concerned(c: Configuration, request: Request) -> tuple[Name, ...]:
     return host
 
 
-# --- what vehicles say of themselves ------------------------------------------------------------------
+# --- the vehicles' status and texts -------------------------------------------------------------------
 
 
 def take_status(draft: Draft, time: float, data: Any) -> None:
-    """Take in what a vehicle says of itself."""
+    """Take in a vehicle's status."""
     match data:
         case {"entity": str(name)}:
             draft.status[name] = {
@@ -194,7 +194,7 @@ def _battery(value: Any) -> dict[str, float | None] | None:
 
 
 def take_words(draft: Draft, time: float, data: Any) -> None:
-    """Take in a text that a vehicle says."""
+    """Take in a text message of a vehicle."""
     match data:
         case {"entity": str(name), "text": str(said)}:
             stamp = number(data.get("time"))

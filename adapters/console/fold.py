@@ -1,4 +1,4 @@
-"""The fold: from what a recording has told and its next messages to what it has told then."""
+"""The fold: it applies the next messages of a recording to the facts."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ TOPICS: Final[dict[str, Callable[[Draft, float, Any], None]]] = {
     "stations": take_presence,
     "preflight": take_preflight,
 }
-"""What each topic's messages are taken in by; of all other topics nothing is shown."""
+"""The handler of each topic's messages; the console shows nothing of other topics."""
 
 
 def take(draft: Draft, message: Message, opening: Opening) -> None:
-    """Take in a message; raises RecordingError if the recording is none of a run."""
+    """Take in a message; raises RecordingError if the recording is not of a run."""
     draft.changed = True
     if draft.run is None:
         if message.topic == "run":
@@ -61,9 +61,9 @@ def take(draft: Draft, message: Message, opening: Opening) -> None:
 
 
 def time_of(facts: Facts | Draft, message: Message) -> float:
-    """Return when a message counts: time never goes back, though the first ones of a resumed run are older.
+    """Return the time at which a message counts: time never goes back, even after the old messages of a resumed run.
 
-    The end of a run on another clock says no time of it, nor does what is there for other programs.
+    The topic `end` and those for other programs may use another clock; their messages count at the current time.
     """
     if facts.run is None or (facts.begin is None and message.topic != "end"):
         return message.time

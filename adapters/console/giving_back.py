@@ -1,4 +1,4 @@
-"""Vehicles that are given back, or believed from another address."""
+"""Vehicles that an operator gives back to the mission, or accepts from a new address."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MOST_VEHICLES: Final = 1_000
 
 
 def take_giving_back(draft: Draft, time: float, data: Any) -> None:
-    """Take in that a vehicle was given back, or is heard elsewhere from now on."""
+    """Take in an operator's give-back of a vehicle, or its new address."""
     match data:
         case {"vehicle": str(name), "at": str(at), **rest}:
             number = act(draft, time, rest, f"is at {text(at)}", text(name), "sent")
@@ -27,19 +27,19 @@ def take_giving_back(draft: Draft, time: float, data: Any) -> None:
 
 
 def rebind(draft: Draft, name: str, request: str) -> None:
-    """Note that a vehicle is to be believed elsewhere, before the operator's order that says so."""
+    """Note the command to accept a vehicle from a new address; the operator's order follows in the recording."""
     draft.rebinds[name] = (request, "")
     draft.rebinds.bounded(MOST_VEHICLES)
 
 
 def rebound(draft: Draft, time: float, name: str) -> None:
-    """Note that a vehicle is heard, where it was or elsewhere."""
+    """Note that a vehicle is heard again; this confirms a pending change of its address."""
     _, number = draft.rebinds.pop(name, ("", ""))
     settle(draft, time, number, "confirmed")
 
 
 def not_rebound(draft: Draft, time: float, name: str, request: str, why: str) -> None:
-    """Note that a vehicle is not believed elsewhere, and why."""
+    """Note that the change of a vehicle's address is refused, and why."""
     known, number = draft.rebinds.get(name, ("", ""))
     if number and known == request:
         draft.rebinds.pop(name)

@@ -1,6 +1,6 @@
-"""The time line of a recording: read on, the newest view, and the view at any earlier time.
+"""The time line of a recording: its appended messages, the newest view, and the view at any earlier time.
 
-What was told up to some messages is kept (checkpoints); from the nearest one before a time the recording is read again.
+Checkpoints keep the facts at some places. For an earlier time, reading starts at the nearest checkpoint before it.
 """
 
 from __future__ import annotations
@@ -24,30 +24,30 @@ from adapters.recording.mcap_files import McapReader, Message, Place, RecordingE
 from adapters.recording.reading import MOST_MESSAGES
 
 MOST_CHECKPOINTS: Final = 256
-"""Of more, every second one is dropped, and later ones are so much further apart."""
+"""Above this number, every second checkpoint is dropped, and the distance between later ones doubles."""
 
 APART: Final = 1_000
-"""The least effort between two checkpoints, in messages."""
+"""The least effort of reading between two checkpoints, in messages."""
 
 STEP: Final = 5
-"""How many other messages take as long to read again as one step."""
+"""The effort of replaying one step, in other messages."""
 
 OFTEN: Final = 0.5
-"""Seconds after which a view is made anew although nothing was told: links and requests grow old."""
+"""Seconds after which a view is made anew even without messages: links and requests grow old."""
 
 
 class Drawing(Protocol):
-    """What draws L, elsewhere: nothing here waits for it."""
+    """A background drawer of L; nothing here waits for its pictures."""
 
     def drawn(self, change: Change) -> str | None:
-        """Return the picture of L after a change, empty where it cannot be drawn; None if it is not drawn yet."""
+        """Return the picture of L after a change, empty if it cannot be drawn; None if it is not ready yet."""
 
     def begin(self, change: Change) -> bool:
-        """Begin to draw it, and tell whether it is begun; not while another one is being drawn."""
+        """Begin to draw it, and return whether it has begun; False while another picture is in progress."""
 
 
 class Undrawn:
-    """Draws nothing."""
+    """A drawer that draws nothing."""
 
     def drawn(self, _change: Change) -> str | None:
         """Return nothing."""
@@ -60,26 +60,26 @@ class Undrawn:
 
 @dataclass(frozen=True, slots=True)
 class Checkpoint:
-    """What was told up to a place in the recording."""
+    """The facts up to a place in the recording."""
 
     place: Place
     facts: Facts
 
 
 class History:
-    """All that a recording tells, from its beginning to where it is written now.
+    """The content of a recording, from its beginning to its current end.
 
     Attributes:
-        facts: What it has told up to the newest message that was read.
-        opening: Returns the rules of what was flown.
-        behind: Whether more of the recording was there to be read when it was read last.
-        trouble: Why it cannot be read, or not any further; empty where it can, or is not written yet.
+        facts: The facts up to the newest message that was read.
+        opening: Returns the rules of the mission that was flown.
+        behind: Whether the last reading left messages unread.
+        trouble: Why the recording cannot be read (any further); empty if it can be read or is not written yet.
     """
 
     def __init__(
         self, path: Path, opening: Opening, drawing: Drawing | None = None, *, live: bool = False
     ) -> None:
-        """Begin with nothing read; `live`: time goes on although nothing is written."""
+        """Begin with nothing read; `live`: time goes on even without new messages."""
         self.facts = Facts()
         self._reader = McapReader(path, unread=(OTHERS,))
         self.opening = opening
@@ -96,17 +96,17 @@ class History:
 
     @property
     def begin(self) -> float:
-        """The time at which it begins."""
+        """The time of its beginning."""
         return self.facts.time if self.facts.begin is None else self.facts.begin
 
     @property
     def head(self) -> float:
-        """The newest time that it tells of."""
+        """The time of its newest message."""
         return self.facts.time
 
     @property
     def now(self) -> float:
-        """The time at which it is, which goes on although nothing is written."""
+        """The current time of the run, which goes on even without new messages."""
         silent = clocks.monotonic() - self._told_at if self._live and self.ended is None else 0.0
         rate = 1.0 if self.facts.run is None else self.facts.run.rate or 1.0
         return self.facts.time + silent * rate
@@ -118,17 +118,17 @@ class History:
 
     @property
     def place(self) -> Place:
-        """Where the newest message that was read ends."""
+        """The end of the newest message that was read."""
         return self._reader.place
 
     def read_on(self, budget: float) -> bool:
-        """Take in what was appended, for at most `budget` seconds; tell whether there may be more.
+        """Take in appended messages for at most `budget` seconds; return whether there may be more.
 
-        What cannot be read ends a recording, but no run that is still to write it: it is tried again.
+        Unreadable data ends a finished recording. In a live recording it is read again later.
 
         Raises:
-            RecordingError: It is no recording of a run. What is damaged later ends it.
-            OSError: It cannot be opened; where it is still to be written, it need not be there yet.
+            RecordingError: It is not the recording of a run. Later damage does not raise.
+            OSError: The file cannot be opened. A live recording may still be missing.
         """
         if self.ended is not None:
             self.behind = False
@@ -160,7 +160,7 @@ class History:
         return more
 
     def end(self, reason: str) -> None:
-        """Note that nothing follows, unless the recording has told why."""
+        """Note that nothing follows, unless the recording has given a reason."""
         draft = Draft(self.facts)
         draft.end(reason)
         self.facts = draft.facts()
@@ -170,7 +170,7 @@ class History:
         return self._display.show(self.facts, self.now, self.facts)
 
     def at(self, time: float) -> Moment:
-        """Return the moment at a time, from which the recording can be told on."""
+        """Return the moment at a time, from which the recording can be played."""
         return Moment(self, time)
 
     # --- for moments
@@ -185,7 +185,7 @@ class History:
         return self._reader.going_on(place)
 
     def display(self) -> Display:
-        """Return what another looker is shown."""
+        """Return a display for another browser."""
         return Display(self._drawing)
 
     # --- reading on
@@ -199,7 +199,7 @@ class History:
                 yield message
 
     def _checked(self, draft: Draft, effort: int) -> Draft:
-        """Return the draft, or another one after a checkpoint."""
+        """Return the draft, or a new one after a checkpoint."""
         self._effort += effort
         if draft.run is None or (self._checkpoints and self._effort < self._apart):
             return draft
@@ -217,7 +217,7 @@ def _time_of(checkpoint: Checkpoint) -> float:
 
 
 class Display:
-    """What one looker is shown: what stays as it was stays the same object."""
+    """The view of one browser; unchanged values stay the same objects."""
 
     def __init__(self, drawing: Drawing) -> None:
         """Show nothing yet."""
@@ -240,7 +240,7 @@ class Display:
         return self._view
 
     def _drawn(self, facts: Facts) -> Json:
-        """Return the newest picture of L that there is, and have the next one begun."""
+        """Return the newest finished picture of L, and begin the next one."""
         if facts.standing is None:
             return self._picture
         change = facts.standing.change
@@ -252,7 +252,7 @@ class Display:
         return self._picture
 
     def _take(self, change: Change) -> None:
-        """Show the picture after a change, if it is drawn."""
+        """Show the picture after a change, if it is ready."""
         svg = self._drawing.drawn(change)
         if svg is not None:
             self._picture = {"svg": svg or None, "drawn": change.number}
@@ -260,7 +260,7 @@ class Display:
 
 
 class Moment:
-    """A place on the time line, from which the recording is told on."""
+    """A moment on the time line, from which the recording can be played."""
 
     def __init__(self, history: History, time: float) -> None:
         """Begin at a time."""
@@ -272,7 +272,7 @@ class Moment:
         self.forward(time)
 
     def forward(self, time: float) -> View:
-        """Return the view at a time: a later one than before, or any other."""
+        """Return the view at a time, before or after the last one; going on from the last one is cheap."""
         self._jump(time)
         draft = Draft(self._facts)
         for message in self._messages():
@@ -286,19 +286,19 @@ class Moment:
         return self._display.show(self._facts, max(self._facts.time, min(time, head.time)), head)
 
     def _jump(self, time: float) -> None:
-        """Go to the nearest checkpoint before a time, unless less has to be read from here."""
+        """Go to the nearest checkpoint before a time, unless reading on from here is shorter."""
         near = self._history.checkpoint(time)
         if near is not None and (near.place > self._reader.place or time < self._facts.time):
             self._facts, self._ahead = near.facts, None
             self._reader = self._history.reader(near.place)
 
     def _messages(self) -> Iterator[Message]:
-        """Yield the messages that the history has read, from here on."""
+        """Yield the messages from here to the end of the history's reading."""
         if self._ahead is not None:
             ahead, self._ahead = self._ahead, None
             yield ahead
         if self._reader.place < self._history.place:
             messages = self._reader.messages()
-            with suppress(RecordingError):  # which the history has told
+            with suppress(RecordingError):  # the history reports it
                 while self._reader.place < self._history.place and (message := next(messages, None)):
                     yield message

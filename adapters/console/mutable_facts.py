@@ -1,4 +1,4 @@
-"""Facts in the making: what is folded into them is written here, and nothing that others hold changes."""
+"""Mutable facts for the fold: it writes into copies, so that the frozen facts of others never change."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Value = TypeVar("Value")
 
 
 class Table(MutableMapping[str, Value]):
-    """A mapping that is copied when it is first written."""
+    """A mapping that is copied before the first write."""
 
     __slots__ = ("_owned", "_values")
 
@@ -25,7 +25,7 @@ class Table(MutableMapping[str, Value]):
         return self._values[key]
 
     def get(self, key: str, default: Any = None) -> Any:
-        """Return a value: as a dict does, and as fast."""
+        """Return a value; this is as fast as in a dict."""
         return self._values.get(key, default)
 
     def __setitem__(self, key: str, value: Value) -> None:
@@ -41,12 +41,12 @@ class Table(MutableMapping[str, Value]):
         return len(self._values)
 
     def bounded(self, most: int) -> None:
-        """Drop the oldest values of too many."""
+        """Drop the oldest values above a number."""
         while len(self._values) > most:
             del self[next(iter(self._values))]
 
     def whole(self) -> Mapping[str, Value]:
-        """Return the values; nothing may be written any more."""
+        """Return the values; the table must not be written afterwards."""
         return self._values
 
     def _own(self) -> dict[str, Value]:
@@ -56,9 +56,9 @@ class Table(MutableMapping[str, Value]):
 
 
 class Draft:
-    """Facts that are being changed, attribute by attribute as `Facts` has them.
+    """Mutable facts, with the attributes of `Facts`.
 
-    `changed` tells whether a message was taken in.
+    `changed` is true once a message is taken in.
     """
 
     changed: bool
@@ -103,12 +103,12 @@ class Draft:
             setattr(self, name, Table(value) if isinstance(value, dict) else value)
 
     def end(self, reason: str, *, broken_off: bool = True) -> None:
-        """Note that the run has ended, unless that is known; only its recording's own end tells how."""
+        """Note the end of the run, unless it is known; `broken_off`: the recording itself gives no reason."""
         if self.ended is None:
             self.ended, self.broken_off, self.changed = reason, broken_off, True
 
     def facts(self) -> Facts:
-        """Return what has come of it; the draft is done with."""
+        """Return the frozen facts; the draft must not be used afterwards."""
         return Facts(**{name: _whole(getattr(self, name)) for name in _NAMES})
 
 

@@ -1,4 +1,4 @@
-"""The place on the time line at which one browser looks: the newest moment, or an earlier one, at rest or in motion."""
+"""The play head of one browser: the newest moment of the time line, or an earlier one, paused or playing."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from typing import Final
 
 SLOWEST: Final = 0.5
 FASTEST: Final = 100.0
-"""How many seconds of the recording pass in one of the clock on the wall."""
+"""The bounds of the speed: seconds of the recording per second of wall time."""
 
 
 @dataclass(frozen=True, slots=True)
 class Playhead:
-    """Where somebody looks.
+    """A browser's place on the time line.
 
     Attributes:
-        at: The time of the recording that was shown at `since`; None for the newest moment, whatever it is.
-        since: When that was, by a clock that never goes back.
-        playing: Whether the time that is shown goes on.
-        speed: How fast.
+        at: The recording's time that was shown at `since`; None for the newest moment, even as new messages come.
+        since: The time of a monotonic clock.
+        playing: Whether the shown time goes on.
+        speed: Seconds of the recording per second of wall time.
     """
 
     at: float | None = None
@@ -32,7 +32,7 @@ class Playhead:
         return self.at is None
 
     def now(self, clock: float, newest: float) -> float:
-        """Return the time that is shown, which is not after the newest.
+        """Return the shown time, at most the newest.
 
         >>> Playhead(100.0, since=5.0, playing=True, speed=10.0).now(7.0, 1000.0)
         120.0
@@ -43,19 +43,19 @@ class Playhead:
         return min(newest, self.at + passed)
 
     def seek(self, time: float, clock: float, begin: float, newest: float) -> Playhead:
-        """Show another time; it goes on playing if it did."""
+        """Return the play head at another time; a playing one goes on playing."""
         return replace(self, at=max(begin, min(newest, time)), since=clock)
 
     def play(self, speed: float, clock: float, newest: float) -> Playhead:
-        """Go on from what is shown, at a speed."""
+        """Return the play head playing from the shown time at a speed."""
         return Playhead(self.now(clock, newest), clock, playing=True, speed=speed)
 
     def pause(self, clock: float, newest: float) -> Playhead:
-        """Stay at what is shown."""
+        """Return the play head paused at the shown time."""
         return Playhead(self.now(clock, newest), clock, speed=self.speed)
 
     def caught_up(self, clock: float, newest: float, *, ended: bool) -> Playhead:
-        """Return what becomes of it: who plays up to the newest moment is live, or at rest once the run has ended."""
+        """Return the play head, live if it has played up to the newest moment; paused there if the run has ended."""
         if not self.playing or self.now(clock, newest) < newest:
             return self
         return self.pause(clock, newest) if ended else Playhead()

@@ -1,4 +1,4 @@
-"""What is checked before the start of a run that waits for an operator."""
+"""The preflight checklist of a run that waits for an operator's start."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MOST: Final = 1_000
 
 
 def take_preflight(draft: Draft, _time: float, data: Any) -> None:
-    """Take in the list, and whether the run waits, may start, or has begun."""
+    """Take in the checklist, and whether the run waits, is ready to start, or has begun."""
     match data:
         case {"state": str(state), "items": list(items)} if state in STATES:
             draft.preflight["state"] = state

@@ -1,4 +1,4 @@
-"""What a browser may say to a console: frames of JSON, read and never evaluated (docs/reference/console.md)."""
+"""The requests of a browser: frames of JSON, parsed and never evaluated (docs/reference/console.md)."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ MOST_ID: Final = 100
 
 
 class Unreadable(ValueError):
-    """A frame that says nothing which is understood; the message says what was expected."""
+    """A frame that is not a known request; the message names the expected ones."""
 
 
 @dataclass(frozen=True, slots=True)
 class Hello:
-    """The first frame: the protocol, the token, and who looks; None is a name that nobody can have."""
+    """The first frame: the protocol, the token, and the user's name; None for an invalid name."""
 
     protocol: str
     token: str
@@ -37,14 +37,14 @@ class Seek:
 
 @dataclass(frozen=True, slots=True)
 class Play:
-    """Let the time that is shown go on."""
+    """Play from the shown time, at a speed."""
 
     speed: float
 
 
 @dataclass(frozen=True, slots=True)
 class Pause:
-    """Stay at what is shown."""
+    """Pause at the shown time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class Live:
 
 @dataclass(frozen=True, slots=True)
 class Say:
-    """Say to an agent what the mission allows."""
+    """Send an agent a message that the mission allows."""
 
     agent: str
     message: str
@@ -77,14 +77,14 @@ class GiveBack:
 
 @dataclass(frozen=True, slots=True)
 class Acknowledge:
-    """Say that an alert was seen."""
+    """Acknowledge an alert."""
 
     finding: int
 
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Let a run begin that waits for it."""
+    """Start a run that waits for its operator."""
 
 
 Action = Say | Order | GiveBack | Acknowledge | Start
@@ -92,7 +92,7 @@ Action = Say | Order | GiveBack | Acknowledge | Start
 
 @dataclass(frozen=True, slots=True)
 class Act:
-    """An action, and the name that its answer has."""
+    """An action, and the identifier of its answer."""
 
     id: str
     action: Action
@@ -102,10 +102,10 @@ Request = Hello | Seek | Play | Pause | Live | Act
 
 
 def read_request(text: str) -> Request:
-    """Return what a frame asks for.
+    """Return the request in a frame.
 
     Raises:
-        Unreadable: Nothing that is known.
+        Unreadable: The frame is not a known request.
     """
     try:
         said = read_json(text.encode(errors="surrogatepass"), MOST_BYTES)

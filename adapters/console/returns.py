@@ -1,7 +1,7 @@
-"""What an order to return brings about beside the return: operators are told before they give it.
+"""The side effects of an order to return, which operators see before they give it.
 
-A vehicle that stands in a place and flies home leaves that place. The run compares each position with the mission's
-environment section, also of a vehicle that an operator has sent home, and falls back where they differ.
+A vehicle that flies home leaves the place where it stands. The run compares every position with the mission's
+environment section, even for a vehicle that an operator has sent home. It falls back if they differ.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from semantics.state.physical_model import Placed
 from semantics.state.signature import Name
 
 STEPS: Final = 32
-"""How many points of the way home are tried."""
+"""The number of tested points on the way home."""
 
 
 def of_return(facts: Facts, name: Name) -> str | None:
-    """Return what follows when a vehicle is ordered to return, None where nothing is known to follow."""
+    """Return the side effect of an order to return, in words; None if none is known."""
     if facts.standing is None or facts.run is None or fallen_back(facts):
         return None
     home: Position | None = facts.status.get(name, {}).get("home")
@@ -53,7 +53,7 @@ def _then(rules: Rules) -> str:
 def _leaves(
     rules: Rules, c: Configuration, vehicles: frozenset[Name], name: Name, home: Position
 ) -> str | None:
-    """Return what a vehicle leaves on its way home, None if nothing on that way breaks an assumption."""
+    """Return the places that a vehicle leaves on its way home; None if the way breaks no assumption."""
     here = c.structure.physical.placement(name)
     if not isinstance(here, Placed) or not here.geometry.is_point:
         return None
@@ -66,7 +66,7 @@ def _leaves(
 
 
 def _way(start: Geometry, home: Position) -> Iterator[Geometry]:
-    """Yield points of the way from one to the other, as the crow flies, the last one first."""
+    """Yield points of the straight way from the start to home, from home backwards."""
     north, east = (each / E7 for each in start.ring[0])
     across = (home[1] - east + 180.0) % 360.0 - 180.0
     for step in range(STEPS, 0, -1):

@@ -1,4 +1,4 @@
-"""Actions of operators, passed on to the run by its socket."""
+"""The client of a run's socket, which passes on operators' actions."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from adapters.console.requests import Acknowledge, Action, GiveBack, Order, Say,
 from adapters.live.operator_socket import NobodyListens, Outcome, acknowledge, give_back, order, say, start
 
 Performing = Callable[[Action, str], Awaitable[Outcome]]
-"""Performs an action for somebody, and returns what came of it."""
+"""Performs an action for a named operator, and returns its outcome."""
 
 
 def performing(socket: Path) -> Performing:
-    """Return what has the run at a socket perform actions."""
+    """Return a function that has the run at a socket perform actions."""
 
     async def perform(action: Action, by: str) -> Outcome:
         try:

@@ -1,4 +1,4 @@
-"""What a recording's `run` says: the mission, its verdict, its vehicles, and whose station's part it is."""
+"""The parsing of a recording's `run`: the mission, its verdict, its vehicles, and the recording station."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ RESTS_ON: Final = {
     "text": ["the mission's text"],
     "environment": ["the environment section"],
 }
-"""What a verdict rests on, in words."""
+"""The words for the premises of a verdict."""
 
 
 def run_of(data: dict[str, Any], begun: float) -> Run:
-    """Return what a checked `run` says."""
+    """Return the content of a checked `run`."""
     station = data.get("station")
     here = text(station.get("here")) if isinstance(station, dict) else ""
     hosts = station.get("hosts") if isinstance(station, dict) else None

@@ -1,4 +1,4 @@
-"""The sections of a view, each made of what was told."""
+"""The sections of a view, each made from the facts."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from semantics.state.configuration import Configuration
 
 
 def view_of(facts: Facts, now: float, head: Facts, picture: Section, before: View) -> View:
-    """Return what is shown of facts at a time; what is as it was in the view before is the same object.
+    """Return the view of facts at a time; values equal to those of the view before are the same objects.
 
-    `head` are the newest facts of the recording, and `picture` is the newest picture of L. What is wrong now is shown
-    beside each earlier moment of a run that goes on.
+    `head` are the newest facts of the recording, and `picture` is the newest picture of L. While a run goes on, the
+    view of an earlier moment has the current alarms.
     """
     if facts.run is None:
         return before
@@ -49,7 +49,7 @@ def view_of(facts: Facts, now: float, head: Facts, picture: Section, before: Vie
 
 
 def _clock(facts: Facts, head: Facts) -> dict[str, Json]:
-    """Return the section `clock`, as far as the recording tells it: what is shown of it is up to who looks."""
+    """Return the recording's part of the section `clock`; each browser adds its play head."""
     begin = head.time if head.begin is None else head.begin
     rate = None if facts.run is None else facts.run.rate
     ended = {"ended": head.ended, "broken_off": head.broken_off}

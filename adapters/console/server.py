@@ -1,6 +1,6 @@
-"""The console's server: its page over HTTP, and what is shown over a websocket (docs/reference/console.md).
+"""The console's server: its page over HTTP, and the views over a websocket (docs/reference/console.md).
 
-It reads a recording and never touches the run. Connections are bounded, in number and in how long they may be idle.
+It reads a recording and never touches the run. The number of connections and their idle time are bounded.
 """
 
 from __future__ import annotations
@@ -29,31 +29,31 @@ from physical import open_file
 PAGE: Final = Path(__file__).with_name("page")
 INDEX: Final = "index.html"
 NEEDED: Final = "parts/leaflet.js"
-"""A part that npm fetches: without it the page shows nothing."""
+"""A part that npm fetches; without it the page stays empty."""
 
 PATIENCE: Final = 5.0
-"""Seconds in which a connection says hello."""
+"""Seconds within which a connection must send its hello."""
 
 HEARTBEAT: Final = 20.0
 SLICE: Final = 0.02
-"""Seconds for which the recording is read before others get their turn."""
+"""Seconds of reading the recording before other tasks get their turn."""
 
 BREAKS_OFF: Final = "the recording breaks off here: its run was killed, or is not over yet"
 MOST_LOOKERS: Final = 32
 MOST_CONNECTIONS: Final = 256
-"""Those of all browsers together: each opens a few for the files of the page."""
+"""For all browsers together; each opens several for the files of the page."""
 
 MOST_TILE: Final = 1 << 24
-"""Bytes of the map's tiles that are answered at once."""
+"""The most bytes of map tiles in one answer."""
 
 IDLE: Final = 15.0
-"""Seconds in which a connection asks for something, as a whole."""
+"""Seconds within which a connection must send a complete request."""
 
 AT_ONCE: Final = struct.pack("ii", 1, 0)
-"""SO_LINGER for a connection that is cut off with all that was still to be sent."""
+"""SO_LINGER for a connection that is cut off, so that its unsent data is dropped."""
 
 LINGERING: Final = 1.0
-"""Seconds for which what nobody reads is still taken after an answer."""
+"""Seconds after an answer for which unread request data is still received."""
 
 POLICY: Final = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
@@ -72,7 +72,7 @@ HEADERS: Final = {
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """Where a console listens: any free port if it is 0; on this machine only unless another host is written out."""
+    """The address of a console: port 0 for any free port; by default only this machine can reach it."""
 
     port: int
     host: str = LOOPBACK
@@ -80,16 +80,16 @@ class Site:
 
 
 def lacks_parts() -> bool:
-    """Tell whether the page is not whole, as in a clone in which npm has fetched nothing."""
+    """Return whether the page is incomplete, as in a clone before npm has fetched its parts."""
     return not (PAGE / NEEDED).is_file()
 
 
 @asynccontextmanager
 async def serving(console: Console, site: Site) -> AsyncIterator[int]:
-    """Serve a console until the context is left, and say at which port.
+    """Serve a console until the context is left; yield the port.
 
     Raises:
-        OSError: It can't listen there.
+        OSError: The address cannot be listened on.
         PhysicalError: aiohttp is not installed.
     """
     service = Service(console, site)
@@ -118,7 +118,7 @@ async def serving(console: Console, site: Site) -> AsyncIterator[int]:
 
 
 async def _listening(http: Any, site: Site) -> asyncio.Server:
-    """Listen for as many connections as there may be."""
+    """Listen for at most `MOST_CONNECTIONS` connections."""
     return await asyncio.get_running_loop().create_server(
         Door(http, MOST_CONNECTIONS).opened,
         site.host,
@@ -140,8 +140,8 @@ class Service:
         self._connections: set[Any] = set()
 
     async def read_on(self) -> None:
-        """Take in what is appended to the recording, until cancelled or it proves to be none."""
-        with suppress(RecordingError, OSError):  # which the history tells who waits
+        """Read appended messages, until cancelled or the file proves to be no recording."""
+        with suppress(RecordingError, OSError):  # waiting browsers get the history's trouble
             while True:
                 more = self._console.history.read_on(SLICE)
                 if not more and not self._console.live:
@@ -149,7 +149,7 @@ class Service:
                 await asyncio.sleep(0 if more else EVERY)
 
     async def close(self) -> None:
-        """Say goodbye to all browsers."""
+        """Close the sockets of all browsers."""
         for socket in tuple(self._connections):
             with suppress(ConnectionError):
                 await socket.close(code=1001, message=b"the console has ended")
@@ -157,7 +157,7 @@ class Service:
     # --- files
 
     async def guard(self, request: Any, handler: Any) -> Any:
-        """Refuse what comes from elsewhere (DNS rebinding, other sites), and set the headers of all answers."""
+        """Refuse requests from elsewhere (DNS rebinding, other sites), and set the headers of all answers."""
         web = library().web
         if not is_meant(request.headers.get("Host", ""), self._site.host):
             answer = web.Response(
@@ -176,19 +176,19 @@ class Service:
         return answer
 
     async def _send(self, request: Any, answer: Any) -> None:
-        """Send an answer to who takes it in time."""
+        """Send an answer; cut off a client that does not take it within `STALLED` seconds."""
         try:
             async with asyncio.timeout(STALLED):
                 await answer.prepare(request)
                 await answer.write_eof()
         except TimeoutError:
             line = request.transport.get_extra_info("socket")
-            line.setsockopt(SOL_SOCKET, SO_LINGER, AT_ONCE)  # else the system keeps what is not taken
+            line.setsockopt(SOL_SOCKET, SO_LINGER, AT_ONCE)  # else the system keeps the unsent data
             request.transport.abort()
             raise ConnectionResetError from None
 
     def _is_own(self, origin: str | None) -> bool:
-        """Tell whether a page of this console asks, or no page at all: a program needs the token too."""
+        """Return whether the request is from this console's page or from a program; both need the token."""
         if origin is None:
             return True
         scheme, _, host = origin.partition("://")
@@ -199,7 +199,7 @@ class Service:
         return library().web.Response(body=_bytes_of(PAGE / INDEX), content_type="text/html", charset="utf-8")
 
     async def part(self, request: Any) -> Any:
-        """Answer with a file of the page: one of those that are there, whatever is asked."""
+        """Answer with a file of the page; only known files are served, so that no path leaves the folder."""
         web = library().web
         path = self._files.get(request.match_info["path"])
         if path is None:
@@ -221,7 +221,7 @@ class Service:
         return answer
 
     async def tiles(self, request: Any) -> Any:
-        """Answer with the part of the map's tiles that is asked for; such a file may be too large to be sent whole."""
+        """Answer with a byte range of the map's tiles; the whole file may be too large for one answer."""
         web = library().web
         self._admit(request)
         if self._console.tiles is None:
@@ -246,7 +246,7 @@ class Service:
     # --- the websocket
 
     async def socket(self, request: Any) -> Any:
-        """Show what happens to one browser, and hear it."""
+        """Serve one browser over a websocket."""
         web = library().web
         if len(self._connections) >= MOST_LOOKERS:
             raise web.HTTPServiceUnavailable
@@ -261,7 +261,7 @@ class Service:
             if hello is not None:
                 await self._talk(socket, *hello)
         except (ConnectionError, TimeoutError):
-            pass  # the browser is gone, or takes nothing
+            pass  # the browser is gone, or reads nothing
         finally:
             self._connections.discard(socket)
             with suppress(ConnectionError):
@@ -269,7 +269,7 @@ class Service:
         return socket
 
     async def _hello(self, socket: Any) -> tuple[Role, str] | None:
-        """Return the role and the name of who connects; None, with the socket closed, if that is not said."""
+        """Return the role and the name from a client's hello; None, with the socket closed, if it is not valid."""
         code, why = 4401, b"say hello with a token"
         with suppress(TimeoutError, Unreadable):
             async with asyncio.timeout(PATIENCE):
@@ -304,7 +304,7 @@ def _bytes_of(path: Path) -> bytes:
 
 
 def _part_of(path: Path, start: int, stop: int) -> tuple[bytes, int]:
-    """Return what a file has between two places, and its size."""
+    """Return the bytes of a file between two positions, and its size."""
     with open_file(path) as file:
         size = file.seek(0, SEEK_END)
         file.seek(start)
@@ -312,7 +312,7 @@ def _part_of(path: Path, start: int, stop: int) -> tuple[bytes, int]:
 
 
 def _files(folder: Path) -> dict[str, Path]:
-    """Return the files of the page by what they are asked for; what was there to fetch them is none of it."""
+    """Return the files of the page by their request paths, without npm's own files."""
     found = (path for path in folder.rglob("*") if path.is_file() and "node_modules" not in path.parts)
     return {
         path.relative_to(folder).as_posix(): path for path in found if not path.name.startswith("package")

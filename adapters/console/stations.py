@@ -1,4 +1,4 @@
-"""Stations: which are reached, when they were heard, and whose authority each vehicle is under."""
+"""The stations: their connection, the times of their last messages, and the vehicles that each controls."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def take_presence(draft: Draft, _time: float, data: Any) -> None:
 
 
 def obeys(draft: Draft, time: float, name: Name, stations: tuple[str, ...]) -> None:
-    """Note which stations a vehicle obeys; none is *not told*."""
+    """Note the controlling stations of a vehicle; an empty tuple means unknown and changes nothing."""
     known = draft.authority.get(name)
     if not stations or (known is not None and known.stations == stations):
         return
@@ -36,7 +36,7 @@ def obeys(draft: Draft, time: float, name: Name, stations: tuple[str, ...]) -> N
 
 
 def stations(facts: Facts, cards: Mapping[str, Json]) -> dict[str, Json]:
-    """Return the section `stations`; nothing where there is but one."""
+    """Return the section `stations`; empty if one station flies alone."""
     if facts.run is None:
         return {}
     unknown = {"reached": None, "heard": None}

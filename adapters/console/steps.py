@@ -1,4 +1,4 @@
-"""The steps of the run, taken again by its rules."""
+"""The steps of the run, replayed by its rules."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from semantics.state.differences import differences
 from semantics.state.requests import REQUESTS, SND
 
 MOST: Final = 200
-"""Steps that are shown."""
+"""The number of newest steps that are kept."""
 
 MOST_CHANGES: Final = 40
 
 SORTS: Final = {"env": "world", "commit": "world", "say": "say"}
-"""The sorts of ticks, by the rule; all others that are told are of sort `control`."""
+"""The sort of a tick, by its rule; `control` for the other rules of `TOLD`."""
 
 STRUCTURE: Final = frozenset({"parent", "links", "placement", "channels", "down", "names"})
 """The cells of L and P."""
 
 
 def take_step(draft: Draft, time: float, data: Any) -> None:
-    """Take in a step: the configuration after it, and what it has changed."""
+    """Take in a step: the configuration after it, and the changes."""
     label, number = data.get("label"), count(data.get("number"))
     if not isinstance(label, str) or number is None:
         return
@@ -63,7 +63,7 @@ def take_step(draft: Draft, time: float, data: Any) -> None:
 
 
 def _followed(draft: Draft, standing: Standing, number: int, time: float, data: Any) -> Label | None:
-    """Go on by the rules where they allow the step, and without them from here on where they don't."""
+    """Replay a step and return its label; if the rules do not allow it, give up the replay for good."""
     before = standing.configuration
     try:
         label, after = standing.rules.follow(before, data)
@@ -78,7 +78,7 @@ def _followed(draft: Draft, standing: Standing, number: int, time: float, data: 
 
 
 def _heads(standing: Standing, label: Label, after: Configuration, time: float) -> Mapping[str, Waiting]:
-    """Return the heads of lines after a step: the next request waits from now on, even if it is an equal one."""
+    """Return the heads of lines after a step; the wait of a next request starts now, even if it is an equal one."""
     served = isinstance(label.about, REQUESTS) and not isinstance(label.about, SND)
     known = {key: each for key, each in standing.heads.items() if not (served and key == label.agent)}
     return heads_of(after, known, time)
@@ -86,11 +86,11 @@ def _heads(standing: Standing, label: Label, after: Configuration, time: float) 
 
 @lru_cache(maxsize=1 << 12)
 def changes(before: Configuration, after: Configuration) -> tuple[str, ...]:
-    """Return what a step has changed, in words; runs that observe in a loop take the same steps over and over."""
+    """Return descriptions of the changes of a step; cached, since observing loops repeat the same steps."""
     return tuple(cut(each, 200) for each in differences(before, after)[:MOST_CHANGES])
 
 
 @lru_cache(maxsize=1 << 12)
 def is_structural(before: Configuration, after: Configuration) -> bool:
-    """Tell whether a step has changed L or P."""
+    """Return whether a step has changed L or P."""
     return any(cell[0] in STRUCTURE for cell in written(before, after))

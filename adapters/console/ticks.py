@@ -1,4 +1,4 @@
-"""The ticks of the time line: when something happened, in all of the recording."""
+"""The ticks of the time line: the times of events in the whole recording."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MOST: Final = 2_000
 
 
 def tick(draft: Draft, time: float, sort: str) -> None:
-    """Add a tick; of too many the commonest sort is thinned out."""
+    """Add a tick; above `MOST`, every second tick of the commonest sort is dropped."""
     draft.ticked += 1
     draft.ticks[str(draft.ticked)] = (time, sort)
     if len(draft.ticks) > MOST:

@@ -1,4 +1,4 @@
-"""What a console shows at one moment, and the difference between two views."""
+"""Views: the state that a console shows at one moment, and the difference between two of them."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 Json = Any
-"""What JSON can say."""
+"""A JSON value."""
 
 Section = Mapping[str, Json]
-"""Values by their keys; a value is replaced whole, and never changed."""
+"""Values by their keys; a value is replaced as a whole and never changed in place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,11 +21,11 @@ class View:
 
 
 NOTHING: Final = View({})
-"""The view of someone who was shown nothing yet."""
+"""The view before the first frame."""
 
 
 def difference(before: View, after: View) -> tuple[dict[str, dict[str, Json]], dict[str, list[str]]]:
-    """Return what is to be set and what is gone, by section: what is the same object is not compared further.
+    """Return the values to set and the keys to remove, by section; identical objects are not compared further.
 
     >>> difference(View({"a": {"x": 1, "y": 2}}), View({"a": {"y": 3}}))
     ({'a': {'y': 3}}, {'a': ['x']})
@@ -51,7 +51,7 @@ def _differs(old: Json, new: Json) -> bool:
 
 
 def keeping(before: Section, after: Section) -> Section:
-    """Return a section with the values of an earlier one wherever they are equal, or that itself if all are."""
+    """Return a section that reuses equal values of an earlier one; the earlier section itself if all are equal."""
     if before is after:
         return before
     kept = {key: _kept(before.get(key, _ABSENT), value) for key, value in after.items()}

@@ -1,4 +1,4 @@
-"""Places and entities: where P has them, where they were seen, and where L believes them to be."""
+"""Places and entities: their positions in P, their sightings, and their parents in L and in P."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from semantics.state.signature import Name
 
 
 class Whereabouts(NamedTuple):
-    """The parent of a node in L, and in A(P); None where it is in neither."""
+    """The parents of a node in L (believed) and in A(P) (actual); None where it has no parent."""
 
     believed: Name | None
     actual: Name | None
 
     @property
     def differs(self) -> bool:
-        """Whether L and P say different things."""
+        """Whether L and P disagree."""
         return self.believed != self.actual
 
 
@@ -33,7 +33,7 @@ UNKNOWN = Whereabouts(None, None)
 
 
 class _Reading:
-    """Cells that remember which of them were read."""
+    """A reader of cells that records the cells read."""
 
     def __init__(self, cells: Cells) -> None:
         self._cells = cells
@@ -53,16 +53,16 @@ class _Reading:
         return question(self.read(cell), *constants)
 
     def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
-        """Return what an edit makes of a cell's value."""
+        """Return a cell's value after an edit."""
         return edit(self.read(cell), *constants)
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
-        """Return what a pointwise definition says of each name."""
+        """Return the value of a pointwise definition for each name."""
         return {name: part(name) for name in names}
 
 
 class _Parents:
-    """The parents in A(P): another configuration's are found anew only where a cell that was read has changed."""
+    """The parents in A(P), cached: a parent is computed anew only if a cell that it was read from has changed."""
 
     def __init__(self) -> None:
         self._before: Configuration | None = None
@@ -81,7 +81,7 @@ class _Parents:
 
 
 def _parent(c: Configuration, name: Name) -> tuple[Name, set[Cell]]:
-    """Return the parent of an entity in A(P), and the cells that this was read from."""
+    """Return the parent of an entity in A(P), and the cells that it was read from."""
     reading = _Reading(c.state)
     return PhysicalModel(reading, c.setting).abstract_parent(name), reading.cells
 
@@ -91,7 +91,7 @@ _PARENTS: Final = _Parents()
 
 @lru_cache(maxsize=256)
 def whereabouts(c: Configuration) -> Mapping[Name, Whereabouts]:
-    """Return where each node of L or P is."""
+    """Return the parents of each node of L or P."""
     logical, actual = c.structure.logical, _PARENTS.of(c)
     believed = {name: logical.parent(name) for name in logical.nodes()}
     names = sorted(believed.keys() | actual.keys())
@@ -99,7 +99,7 @@ def whereabouts(c: Configuration) -> Mapping[Name, Whereabouts]:
 
 
 def known_whereabouts(facts: Facts) -> Mapping[Name, Whereabouts]:
-    """Return where each node is, nothing where the run's steps cannot be replayed."""
+    """Return the parents of each node; empty if the run's steps cannot be replayed."""
     return {} if facts.standing is None else whereabouts(facts.standing.change.after)
 
 
@@ -107,7 +107,7 @@ def known_whereabouts(facts: Facts) -> Mapping[Name, Whereabouts]:
 
 
 def places(facts: Facts) -> dict[str, Json]:
-    """Return the section `places`: what has an area, and what never moves."""
+    """Return the section `places`: entities with an area, and entities that never move."""
     found = dict(_sighted_places(facts))
     if facts.standing is not None:
         found |= _places(facts.standing.change.after, facts.standing.rules.fixed, _vehicles(facts))
@@ -115,7 +115,7 @@ def places(facts: Facts) -> dict[str, Json]:
 
 
 def _sighted_places(facts: Facts) -> Iterator[tuple[str, Json]]:
-    """Yield the places that plugins tell of, and that the mission does not name, or of which nothing else is known."""
+    """Yield the sighted areas that the mission does not name; all of them if the steps cannot be replayed."""
     kinds = {} if facts.standing is None else facts.standing.configuration.setting.kinds
     vehicles = _vehicles(facts)
     for name, shape in facts.shapes.items():
@@ -162,7 +162,7 @@ def _vehicles(facts: Facts) -> frozenset[Name]:
 
 
 def entities(facts: Facts, now: float, shown: Mapping[str, Json]) -> dict[str, Json]:
-    """Return the section `entities`: what has one position, and is none of the places shown."""
+    """Return the section `entities`: entities with one position, except the places in `shown`."""
     where, vehicles = known_whereabouts(facts), _vehicles(facts)
     named = facts.standing.rules.initial.setting.kinds if facts.standing is not None else {}
     found = {
@@ -178,7 +178,7 @@ def entities(facts: Facts, now: float, shown: Mapping[str, Json]) -> dict[str, J
     return found
 
 
-@lru_cache(maxsize=1 << 13)  # most entities are where they were when the last view was made
+@lru_cache(maxsize=1 << 13)  # most entities have not moved since the last view
 def _entity(seen: Seen, where: Whereabouts, named: bool, vehicle: bool) -> dict[str, Json]:
     return {
         "kind": seen.kind,
@@ -196,7 +196,7 @@ def _entity(seen: Seen, where: Whereabouts, named: bool, vehicle: bool) -> dict[
 
 
 def _unheard(facts: Facts) -> Iterator[tuple[Name, tuple[str, Position]]]:
-    """Yield what P has, wherever nobody has told of it yet."""
+    """Yield the kind and the position of each entity that P places at a point; the caller drops the sighted ones."""
     if facts.standing is not None:
         yield from _positions(facts.standing.change.after).items()
 
@@ -213,7 +213,10 @@ def _positions(c: Configuration) -> Mapping[Name, tuple[str, Position]]:
 
 
 def destination(facts: Facts, name: Name) -> Name | None:
-    """Return where something is on its way to, by whichever station's order: until then L has it where it was."""
+    """Return the destination of an entity in transit, of any station's order; None if it is not in transit.
+
+    L keeps the entity at its old place until it arrives.
+    """
     physical = None if facts.standing is None else facts.standing.configuration.structure.physical
     placement = None if physical is None else physical.placement(name)
     return placement.to if isinstance(placement, InTransit) else None

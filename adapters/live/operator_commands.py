@@ -216,7 +216,7 @@ def _meant(saying: Saying, clauses: Iterable[Says]) -> Iterator[Says]:
 
 
 def typed(clause: Says, clauses: Iterable[Says]) -> str:
-    """Return what an operator types to say a message: a text stands in quotes only where a name is said, too."""
+    """Return an operator's input for a message; a text has quotes only if a name with the same letters may be sent."""
     others = (each for each in clauses if each.agent == clause.agent and each.message != clause.message)
     short = spoken(clause.message)
     return show(clause.message) if any(short == show(each.message) for each in others) else short

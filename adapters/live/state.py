@@ -117,7 +117,7 @@ class Bidden:
 
     @property
     def told(self) -> Fate:
-        """Its fate, as people are told: what was refused stays refused while the vehicle is told again."""
+        """Its fate in reports to people: a refused order stays refused while it is repeated."""
         return Fate.REFUSED if self.owed and self.refusal else self.fate
 
     @property

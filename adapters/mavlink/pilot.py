@@ -388,7 +388,7 @@ def _watched(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Report, ...]]:
     if helm.taken and not before.taken:
         return _taken_over(pilot, now)
     if helm.held and not before.held:
-        pilot = inventory.unsure(pilot, quiet=True)  # whoever had it for a moment may have changed more
+        pilot = inventory.unsure(pilot, quiet=True)  # the other controller may have changed more
     return pilot, tuple(_changes(pilot, before, now))
 
 

@@ -118,7 +118,7 @@ class Telemetry:
         boots: The number of reboots seen.
         words: Its last warnings or worse, with their times.
         chunks: The received chunks of a long text.
-        texts: Its texts that nobody has collected yet.
+        texts: Its texts that are not collected yet.
         battery: Its battery.
         heading: Its heading, in degrees from true north.
         beat: Arrival of its last heartbeat.

@@ -1,7 +1,7 @@
 """The automorphisms of a rule: occurrences that a symmetry maps to each other count once.
 
 A symmetry of a redex permutes its nodes, links, regions and sites. It is a symmetry of the rule if it also preserves
-the reactum: `A{x} | A{y} --> B{x} | B{y}` has one, `A{x} | A{y} --> B{x} | A{y}` has none.
+the reactum. So `A{x} | A{y} --> B{x} | B{y}` has a symmetry, and `A{x} | A{y} --> B{x} | A{y}` has none.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@
     return view.appendChild(group);
   });
 
-  // --- the view: a scale and where the origin is
+  // --- the view: its scale and the position of the origin
 
   let [scale, left0, top0] = [1, 0, 0];
   const size = () => [graph.clientWidth || 600, graph.clientHeight || 400];

@@ -52,7 +52,7 @@ class InTime(Enum):
     """The view of a configuration that an inspection gets, for a mission with timing."""
 
     ENABLED = auto()
-    """All transitions that the rules allow there, whatever the time."""
+    """All transitions that the rules allow there, at any time."""
     TAKEN = auto()
     """The transitions that are taken there at some time."""
     TOGETHER = auto()
@@ -251,7 +251,7 @@ def is_waiting(c: Configuration, a: Name) -> bool:
 
 
 def is_at_rest(c: Configuration, a: Name) -> bool:
-    """Return whether an agent is at the react of an outermost loop, or at one for which a message may still be said."""
+    """Return whether an agent is at the react of an outermost loop, or at one that a message from outside may match."""
     code = c.alpha.code(a)
     statements = c.setting.program.statements
     around = statements[code[-1]]

@@ -1,8 +1,8 @@
-"""Find the three steps of a stale-observation race in a run: who sensed, who changed the answer, who acted on it.
+"""The three steps of a stale-observation race in a run: the sensing, the change of the answer, and the control.
 
-Agents may ask the same of the world one after the other, and tell each other what they have seen. So the run is taken
-once more, with dependencies that know which step sensed them and which steps changed them; those that the last control
-rests on tell.
+Agents may ask the same question one after the other, and send each other their observations. So the run is replayed
+with dated dependencies: each has the numbers of the step that sensed it and of the steps that changed it. The
+dependencies of the last control give the three steps.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -23,7 +23,7 @@ from semantics.state.signature import Name
 
 @dataclass(frozen=True, slots=True)
 class _Dated(Dependency):
-    """A dependency with the steps that made it what it is.
+    """A dependency with the steps that sensed and changed it.
 
     Attributes:
         sensed: The number of the step that sensed its observation.
@@ -35,7 +35,7 @@ class _Dated(Dependency):
 
 
 def stale_steps(initial: Configuration, steps: Sequence[Step]) -> RaceSteps | None:
-    """Return the three steps of the race that a monitored run ends in; None where it ends in none."""
+    """Return the three steps of the race that ends a monitored run; None if it does not end in a race."""
     if not steps or not initial.setting.monitored or not isinstance(steps[-1].label.about, CTR | FLY):
         return None
     run = (initial, *(step.target for step in steps[:-1]))
@@ -52,7 +52,7 @@ def stale_steps(initial: Configuration, steps: Sequence[Step]) -> RaceSteps | No
 
 
 def _the_same(stale: Sequence[Dependency]) -> Iterator[_Dated]:
-    """Yield the first dependency, which a report names, as often as it was sensed."""
+    """Yield the first dependency, the one in reports, once for each time that it was sensed."""
     for each in stale:
         if isinstance(each, _Dated) and _plain(each) == _plain(stale[0]):
             yield each
@@ -67,7 +67,7 @@ def _changed(stale: _Dated, used: frozenset[Key]) -> int:
     )
 
 
-# --- the run, taken again -------------------------------------------------------------------------------------
+# --- the replayed run -----------------------------------------------------------------------------------------
 
 
 def _dated_end(run: Sequence[Configuration], steps: Sequence[Step]) -> Configuration | None:
@@ -83,7 +83,7 @@ def _dated_end(run: Sequence[Configuration], steps: Sequence[Step]) -> Configura
 
 
 def _is_plainly(dated: Configuration, plain: Configuration) -> bool:
-    """Tell whether a configuration is another one, apart from dates."""
+    """Return whether two configurations are equal apart from dates."""
     cells = dated.state.changed(plain.state)
     return all(
         cell[0] == MONITOR and _mapped(dated.state.read(cell), _plain) == plain.state.read(cell)
@@ -92,7 +92,7 @@ def _is_plainly(dated: Configuration, plain: Configuration) -> bool:
 
 
 def _dated(before: Configuration, after: Configuration, number: int, actor: Name | None) -> Configuration:
-    """Return the configuration after a step, with the dates of what the step sensed and changed."""
+    """Return the configuration after a step, with this step's date on the dependencies that it sensed or changed."""
     cells = [cell for cell in after.state.changed(before.state) if cell[0] == MONITOR]
     return after.with_(
         {cell: _mapped(after.state.read(cell), lambda each: _dating(each, number, actor)) for cell in cells}
@@ -108,9 +108,9 @@ def _dating(each: Dependency, number: int, actor: Name | None) -> Dependency:
 
 
 def _date(mark: Mark, known: dict[Mark, int], gone: dict[Mark, int], number: int) -> int:
-    """Return when something was changed; a mark in the place of those of others is as old as they are.
+    """Return the date of a mark; a mark that replaces other agents' marks takes over their oldest date.
 
-    What the actor itself has changed makes nothing stale that it does.
+    Marks of the actor itself do not count: its own changes make none of its controls stale.
     """
     if mark in known:
         return known[mark]

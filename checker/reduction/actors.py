@@ -2,7 +2,7 @@
 
 An agent doesn't wait for its requests, so it is several actors: its *program* (the rest of its code), its *line* (whose
 first request may be served), and each *request* outside a line. A clause of the environment is one actor. The possible
-next step of an actor depends only on its agent's code, requests and host, whatever others do. So does a bound on all
+next step of an actor depends only on its agent's code, requests and host, not on other agents. So does a bound on all
 its later steps.
 """
 

@@ -55,7 +55,7 @@ RECEIVED = ("mail", "fault", "ready")
 """The kinds of slots for an agent's incoming messages and observations."""
 
 MEMORY = frozenset({"agents", "code", "line", "sends", MONITOR})
-"""The cells that decide which marks are relevant to whom; changing them reads the marks that may be made there."""
+"""The cells that decide which marks are relevant to an agent; changing them reads the marks that may be made there."""
 
 
 NOBODY = Acting(NOTHING, NOTHING, NOTHING)
@@ -282,7 +282,7 @@ class _Held:
     def unwritten(self, rule: Rule, cell: Cell, value: Any) -> Iterator[Slot]:
         """Yield the slots that a write changes outside the footprint, and the written private cells of other actors."""
         if rule is spawn and cell[-1] not in self.c.alpha:
-            return  # nobody reads the cells of absent agents
+            return  # no actor reads the cells of absent agents
         old = self.c.read(cell)
         for slot, told in slots_over(self.actors, cell):
             changed = told(old) != told(value) if told else old != value or varies(self.actors, cell)

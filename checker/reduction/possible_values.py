@@ -224,7 +224,7 @@ class Roles:
                     self._bind(agent, variable, None)
 
     def _messages(self) -> Iterator[tuple[Name, Expression]]:
-        """Yield all messages that may be sent or said, each with an agent that may evaluate it."""
+        """Yield all messages that agents or the environment may send, each with an agent that may evaluate it."""
         initial = self.bounds.initial
         for agent in self.agents:
             for number in sorted(self.roles[agent].statements):

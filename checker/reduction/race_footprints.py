@@ -98,7 +98,7 @@ class Marks:
     def _deciding(self, query: Query, touched: Names) -> Footprint:
         """Bound the other inputs that decide how a change of some entities affects the answer to a query.
 
-        Each child of a place is there or not, whatever the others do.
+        Each child of a place is there or not, independently of the others.
         """
         if not isinstance(query, Of) or query.operator != QueryOperator.CHILDREN or not is_local(query):
             return self.looking(query)

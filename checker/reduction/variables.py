@@ -45,7 +45,7 @@ class Footprint:
         )
 
     def beyond(self, bound: "Footprint") -> int:
-        """Return this footprint without another's slots; an actor may also read what it writes or merges."""
+        """Return this footprint without another's slots; an actor may also read the slots that it writes or merges."""
         reads = self.reads & ~(bound.reads | bound.changes)
         return reads | self.merges & ~bound.changes | self.writes & ~bound.writes
 

@@ -43,8 +43,8 @@ class LaneStep:
         lane: Its index in `Lanes.names`: an agent's lane or the environment's.
         label: Its label.
         changes: Its changes.
-        at: When it is taken, in milliseconds from the start; None where the run has no dates.
-        role: What it is in a stale-observation race: *sensed*, *changed* or *acted*; mostly nothing.
+        at: Its date in milliseconds from the start; None if the run has no dates.
+        role: Its role in a stale-observation race: *sensed*, *changed* or *acted*; empty for most steps.
     """
 
     number: int
@@ -192,7 +192,7 @@ def lanes_of_trace(trace: Trace) -> Lanes:
 
 
 def folded(steps: Sequence[LaneStep]) -> Iterator[Row]:
-    """Yield the steps in their order, those folded that only repeat what was done since the world last changed.
+    """Yield the steps in their order; steps that only repeat others since the last change of the world are folded.
 
     A step of a race is never folded.
     """

@@ -1,4 +1,4 @@
-// Starts `bigactors lsp`, and shows the pages of traces beside the text.
+// Starts `bigactors lsp`, and shows traces as pages beside the text.
 "use strict";
 
 const fs = require("node:fs/promises");
@@ -36,7 +36,7 @@ async function restart() {
   await start();
 }
 
-// The page of a trace is shown beside the mission; it is one file, and forbids all that is not in it.
+// Show the page of a trace beside the mission. The page is one file, and its policy forbids to load anything else.
 async function showDocument(params, next) {
   const uri = vscode.Uri.parse(params.uri);
   if (uri.scheme !== "file" || !uri.path.endsWith(".html")) {

@@ -173,7 +173,7 @@ def enter(c: Configuration, station: Station, number: int, parcel: Parcel) -> It
     the number-th parcel from station s has mail for a, or a itself      number − 1 parcels from s have entered
     the text can have produced it: a at a statement of it, values that fit, requests that its statements make
     ─────────────────────────────────────────────────────────────────────────────────────────  ⟨enter : a, s⟩
-    ⟨α | S | η⟩  →  ⟨α[a ↦ what is left to run, mailbox(a) + mail] | S | η ∪ a's requests⟩
+    ⟨α | S | η⟩  →  ⟨α[a ↦ its remaining code, mailbox(a) + mail] | S | η ∪ a's requests⟩
     """
     a, running = parcel.agent, parcel.running
     if c.read(took_cell(station)) != number - 1:  # premise: the parcels before it have entered, and it hasn't

@@ -56,8 +56,9 @@ class Adrift(Enum):
 
 
 Memory = Voyage | Extent | Adrift | None
-"""The memory of a vehicle: its flight; or the place of its last arrival, as that was then; or that a carrier which
-drifts within a place put it down; or None.
+"""The memory of a vehicle: its flight, the area of its last arrival at that time, a carrier's drift, or None.
+
+`Adrift` means that a carrier that drifts within a place has put it down.
 """
 
 

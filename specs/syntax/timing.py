@@ -61,8 +61,8 @@ class Motion(Node):
 class Lasting(Node):
     """`uav0 lasts 45 min, restored in airfield0, base0 after 20 min`.
 
-    The longest time that a vehicle, or each vehicle of a kind, may be away from the places that restore it, and the
-    time in one of them after which it lasts that long again.
+    The endurance of a vehicle, or of each vehicle of a kind: its longest time away from the places that restore it.
+    After the given time in one of these places, its endurance is restored.
     """
 
     name: Name

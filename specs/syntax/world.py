@@ -169,9 +169,10 @@ class Keep(Node):
 class FromSource(Node):
     """`from "workum.nmea" at "2020-04-07T21:42:00Z" within box (53.1, 5.3) (52.9, 5.5) limit 12`.
 
-    Entities from a file beside the mission: places (GeoJSON, a waypoint file, a plan) or an AIS recording. Optional are
-    a prefix of the names (`from "survey.plan" as survey` has `survey_waypoint1`), the time, an area, the kinds (`keep
-    Vessel, BaseStation as Station`, `keep Waypoint as Location radius 50 m`) and the largest number of entities.
+    Entities from a file beside the mission: places (GeoJSON, a waypoint file, a plan) or an AIS recording. The time, an
+    area and the largest number of entities are optional. So is a prefix of the names: `from "survey.plan" as survey`
+    has `survey_waypoint1`. A selection of kinds is `keep Vessel, BaseStation as Station` or `keep Waypoint as Location
+    radius 50 m`.
     """
 
     file: TextLiteral

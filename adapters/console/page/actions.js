@@ -1,4 +1,4 @@
-/** What may be said and done, and what became of what was. */
+/** The messages and orders that an operator may give, and the states of past actions. */
 import { Field, html, memo, byName, useSections, useWatched } from "./ui.js";
 import { eachFate, fateOf } from "./wording.js";
 import { HeldButton } from "./press.js";
@@ -31,7 +31,7 @@ export function Actions({ app }) {
   </div>`;
 }
 
-/** What is said before its agent waits for it is kept: the button says so. */
+/** The button of a message; it shows whether the agent waits for it, since an early message stays in the mailbox. */
 const Saying = memo(({ app, saying: { agent, message, left, awaited, vain }, over, fallen }) => html`<li class=${awaited && left !== 0 && !over && !vain ? "awaited" : ""}><${HeldButton} label=${`say “${message}” to ${agent}`} tell=${app.tell} disabled=${left === 0 || over || fallen} act=${() => app.act({ say: { agent, message } }, { what: `say "${message}"`, about: agent })}>
     “${message}” to ${agent} <span class="left">${over ? "has ended, hears nothing" : `${left} left${awaited === false ? ", not waited for yet" : awaited ? ", waited for now" : ""}`}</span>${vain && !fallen && html`<span class="aside">${vain}</span>`}<//></li>`);
 
@@ -41,7 +41,7 @@ const Fate = memo(({ action }) => html`<li class=${action.state}><time>${utc(act
       ${Object.entries(action.left_out ?? {}).map(([name, why]) => html`<span class="aside" key=${name}>not ${name}: ${why}</span>`)}
       ${(action.notes ?? []).map((note) => html`<span class="aside" key=${note}>${note}</span>`)}</span></li>`);
 
-/** The name is taken when it is complete. */
+/** The operator's name, which takes effect when its input is complete. */
 function Name({ app }) {
   const name = useWatched(app.name);
   const [mission] = useSections(app.store, ["mission"], 500);

@@ -1,20 +1,20 @@
-/** The red line: what is wrong, until someone acknowledges it. It has its place when nothing is, so that nothing moves. */
+/** The red line with the newest alarm, until it is acknowledged. It keeps its place without alarms, so that nothing moves. */
 import { html, useEffect, useSections, useState, useWatched } from "./ui.js";
 import { Age } from "./clock.js";
 import { findingWords } from "./wording.js";
 import { utc } from "./units.js";
 
-/** What has other findings follow: an assumption breaks because a link is lost, or because somebody has taken over. */
+/** The kinds of findings that cause others: a lost link or a take-over also breaks an assumption. */
 const CAUSES = ["lost link", "taken over", "failed"];
 
-/** The newest first; of those of one second what is about a vehicle, and of these what has caused the others. */
+/** The alarms, newest first; within one second, those about vehicles first, and among these the causes first. */
 const standing = (alarms, vehicles) => {
   const rank = ({ kind, about }) => 2 * vehicles.has(about) + CAUSES.includes(kind);
   return [...alarms]
     .sort(([, a], [, b]) => Math.floor(b.time) - Math.floor(a.time) || rank(b) - rank(a) || b.time - a.time);
 };
 
-/** What somebody here is waited for to say. */
+/** The text that an agent waits for an operator's message; null if none waits. */
 function asked(sayings, agents) {
   const saying = [...sayings.values()].find(({ awaited, left }) => awaited && left !== 0);
   if (!saying) return null;
@@ -22,7 +22,7 @@ function asked(sayings, agents) {
   return `${saying.agent} waits for somebody to say “${saying.message}”${until ? `, until ${utc(until)}` : ""}. `;
 }
 
-/** What is said where nothing stands: who is to be watched all the same, and why. */
+/** The text without alarms: the vehicles to be watched, and the reason for the worst. */
 function calm(vehicles, fallenBack) {
   if (fallenBack) return `The mission has fallen back: ${fallenBack}.`;
   const watched = [...vehicles].filter(([, card]) => card.level > 0);
@@ -33,7 +33,7 @@ function calm(vehicles, fallenBack) {
 
 const endOf = (why, file) => `The run has ended: ${why}.${file ? ` It is recorded in ${file}.` : ""}`;
 
-/** Milliseconds for which an alert that took the place of another cannot be acknowledged: the press was meant for that one. */
+/** Milliseconds for which an alert that replaces another cannot be acknowledged: the press was meant for the old one. */
 const TO_READ = 1_000;
 
 function Acknowledge({ app, number, about }) {

@@ -1,4 +1,4 @@
-/** Tells people who don't see the screen what has changed, in one sentence every few seconds at the most. */
+/** Announces changes to people who cannot see the screen, in at most one sentence every few seconds. */
 import { fateOf } from "./wording.js";
 
 const PAUSE = 3000;
@@ -53,7 +53,7 @@ export class Announcer {
     this.#timer ??= setTimeout(() => this.#tell(), PAUSE);
   }
 
-  /** Say what must not be among those that are only counted. */
+  /** Announce first, so that this sentence is not among those that are only counted. */
   #sayFirst(about, words) {
     this.#waiting = new Map([[about, words], ...this.#waiting]);
     this.#say(about, words);

@@ -1,4 +1,4 @@
-/** The operator's console: one screen on what a recording tells, and on what may be said and done. */
+/** The operator's console: one screen with the content of a recording and the actions of the operator. */
 import { first, html, render, memo, kept, owed, useEffect, useLayoutEffect, useRef, useSections, useWatched, Watched } from "./ui.js";
 import { Alert } from "./alert.js";
 import { Announcer } from "./announce.js";
@@ -16,12 +16,12 @@ import { openTab, Panel, PANELS, TabList, usePhone } from "./tabs.js";
 import { neighbour, SPEEDS, Timeline } from "./timeline.js";
 import { Who } from "./operator_name.js";
 
-/** Milliseconds in which a connection with a new name is made, or the action is not sent. */
+/** Milliseconds within which a connection under a new name must open; after them the action is not sent. */
 const CONNECTS = 10_000;
 
 const PAST = "The past is shown: to act, go to the newest moment (L).";
 
-/** What the link's fragment says: the token is in no request's address. */
+/** The parameters in the link's fragment; browsers send no fragment, so the token is in no request. */
 const fragment = () => new URLSearchParams(location.hash.slice(1));
 
 class App {
@@ -40,19 +40,19 @@ class App {
   hiddenSorts = new Watched(new Set());
   mayAct = new Watched(false);
   past = new Watched(false);
-  /** Whether all that hinders this page from acting is that the past is shown. */
+  /** Whether this page could act, if it did not show the past. */
   inPast = new Watched(false);
-  /** What waits for a name: `{action, words}`. */
+  /** The action that waits for the operator's name: `{action, words}`. */
   pending = new Watched(null);
-  /** Whether a name is asked for before there is anything to do, as once at the beginning. */
+  /** Whether the page asks for a name before any action, as it does once at the beginning. */
   asking = new Watched(false);
-  /** How fast the past is played, once it is. */
+  /** The speed at which the past is played. */
   speed = new Watched(1);
-  /** Whether what is shown as the newest moment is old: nothing is known of any vehicle now. */
+  /** Whether the newest known moment is old, so that nothing is known of any vehicle now. */
   stale = new Watched(false);
-  /** The only vehicle there is, or null. */
+  /** The mission's only vehicle; null if it has several or none. */
   only = new Watched(null);
-  /** The vehicles as the cards show them; empty where no cards are shown. */
+  /** The vehicles in the order of their cards; empty while no cards are shown. */
   order = [];
   whyNot = new Watched("");
   name = kept("name", "");
@@ -76,7 +76,7 @@ class App {
     });
     this.name.on((name) => {
       this.link.name = name;
-      this.link.connect(); // who acts is said at the beginning of a connection
+      this.link.connect(); // the hello of each connection has the name
     });
     this.chosen.on((name) => this.map?.choose(name));
     this.store.on(["vehicles"], () => this.only.set(onlyOf(this.store.section("vehicles"))));
@@ -100,12 +100,12 @@ class App {
     owed.on(() => queueMicrotask(this.#tellDrawn));
   }
 
-  /** Say which frame is drawn whole, to whoever drives this page by a program: `<html data-drawn="7">`. */
+  /** Publish the number of the last fully drawn frame, for programs that drive this page: `<html data-drawn="7">`. */
   #tellDrawn = () => {
     if (owed.value === 0 && this.link.frame > 0) document.documentElement.dataset.drawn = this.link.frame;
   };
 
-  /** What is chosen, or the only vehicle. */
+  /** The chosen vehicle or entity, else the only vehicle. */
   get subject() {
     return this.chosen.value ?? this.only.value;
   }
@@ -114,7 +114,7 @@ class App {
     this.map?.follow(this.following.value ? this.subject : null);
   }
 
-  /** Whether this page may act now, and if not, why. */
+  /** Update whether this page may act now, and if not, the reason. */
   #judge() {
     const { role, mode } = this.link.welcome.value ?? {};
     const heard = this.link.state.value.state === "open" && !this.clock.get("unread");
@@ -131,14 +131,14 @@ class App {
     this.inPast.set(why === PAST);
   }
 
-  /** Ask for an action, and say what becomes of it; `words` are `{what, about}` as the recording will have them. */
+  /** Ask for an action, and show its outcome; `words` are `{what, about}` as the recording will have them. */
   act = async (action, words) => {
     if (!this.name.value) return this.pending.set({ action, words });
     const notice = this.notices.asked(words, this.name.value);
     this.notices.answered(notice, await this.link.act(action), !action.acknowledge && !action.start);
   };
 
-  /** Take a name, and do what has waited for it as soon as the connection with that name is there. */
+  /** Take a name, and perform the action that waited for it once a connection under that name is open. */
   async actAs(name) {
     this.asking.set(false);
     if (!this.pending.value) return this.name.set(name);
@@ -156,7 +156,7 @@ class App {
     this.asking.set(false);
   }
 
-  /** Whether there is a connection within a few seconds. */
+  /** Whether a connection opens within a few seconds. */
   #opened() {
     return new Promise((resolve) => {
       const off = this.link.state.on(({ state }) => state === "open" && settle(true));
@@ -180,7 +180,7 @@ class App {
     this.clock.ask({ playing: this.clock.wanted.playing });
   };
   live = () => {
-    clearTimeout(this.seeking); // what was asked for before is not wanted any more
+    clearTimeout(this.seeking); // an earlier seek is obsolete
     this.link.send({ type: "live" });
     this.clock.ask({ live: true });
   };
@@ -192,14 +192,14 @@ class App {
     this.link.send({ type: "pause" });
     this.clock.ask({});
   };
-  /** At the end of a run that has ended, play begins anew. */
+  /** Play or pause; at the end of a run that has ended, play from the beginning. */
   playOrPause = () => {
     const { live, playing } = this.clock.wanted;
     if (this.clock.atEnd) this.seek(this.clock.get("begin"));
     if (!this.clock.atEnd && (playing || live)) this.pause();
     else this.play(this.speed.value);
   };
-  /** Choose how fast the past is played; what stands still or is live goes on to. */
+  /** Choose the speed at which the past is played; a paused or live display stays so. */
   setSpeed = (speed) => {
     this.speed.set(speed);
     if (this.clock.wanted.playing) this.play(speed);
@@ -210,7 +210,7 @@ class App {
     const within = Math.max(this.clock.get("begin") ?? time, time);
     if (this.clock.wanted.playing) this.pause();
     this.seek(within);
-    this.clock.expect(within); // what is asked next starts from there
+    this.clock.expect(within); // the next request starts from there
   };
   step = (direction) => {
     const time = neighbour(this.store.section("ticks"), this.clock.now, direction, this.hiddenSorts.value);
@@ -288,7 +288,7 @@ const onlyOf = (vehicles) => (vehicles.size === 1 ? vehicles.keys().next().value
 function Page({ app }) {
   const state = useWatched(app.link.state);
   const refused = useRef(null);
-  const known = app.clock.now !== null; // what was shown before stays: another run may be served here now
+  const known = app.clock.now !== null; // the last view stays: another run may be served here now
   if (known || state.state !== "connecting") refused.current = !known && state.state === "refused" ? state : null;
   return refused.current ? html`<${Door} app=${app} ...${refused.current} />` : html`<${Screen} app=${app} />`;
 }
@@ -320,7 +320,7 @@ function Screen({ app }) {
   </div>`;
 }
 
-/** On a phone's map: the vehicle that is chosen, or the only one, how it is and what can be ordered. */
+/** On a phone's map: the state of the chosen or only vehicle, and the buttons for its orders. */
 function Subject({ app }) {
   useWatched(app.chosen);
   useWatched(app.only);
@@ -333,7 +333,7 @@ function Subject({ app }) {
     <${Orders} app=${app} name=${app.subject} card=${card} /></div>`;
 }
 
-/** The map's element, which is drawn once: what is in it is the map's own. */
+/** The map's element, which preact draws once: the map itself draws its content. */
 const MapElement = memo(({ app }) => {
   const element = useRef(null);
   useEffect(() => {
@@ -361,5 +361,5 @@ const place = document.getElementById("app");
 place.replaceChildren();
 render(html`<${Page} app=${app} />`, place);
 listenForKeys(app);
-new Announcer(app, document.body.insertBefore(document.createElement("div"), place)); // below the screen it would make it scroll
+new Announcer(app, document.body.insertBefore(document.createElement("div"), place)); // below the screen it would make the page scroll
 app.link.connect();

@@ -1,4 +1,4 @@
-/** The picture of L, which can be moved and enlarged, and the same as text. */
+/** The picture of L, which can be moved and enlarged, and its text form. */
 import { html, useEffect, useLayoutEffect, useRef, useSections, useState } from "./ui.js";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -6,16 +6,16 @@ const ELEMENTS = new Set(["svg", "g", "path", "text", "tspan", "use", "defs", "c
 const ATTRIBUTES = new Set(["d", "x", "y", "x1", "x2", "y1", "y2", "dx", "dy", "width", "height", "transform", "clip-path", "id", "r", "cx", "cy", "rx", "ry", "points",
   "viewBox", "fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "opacity", "fill-opacity", "stroke-opacity",
   "font-family", "font-size", "font-weight", "font-style", "text-anchor", "textLength", "lengthAdjust", "class"]);
-/** A reference to something that is not in the picture. */
+/** A reference to something outside the picture. */
 const ELSEWHERE = /url\s*\((?!\s*['"]?#)/i;
 const LARGEST = 12;
 
 /**
- * A picture as elements of this page: shapes and text only. What is said in `style` is set by script, as the page's policy
- * refuses such attributes; nothing in the picture refers to anything outside of it.
+ * Convert a picture to elements of this page: shapes and text only. Script sets its styles, since the page's policy refuses
+ * `style` attributes. References to anything outside the picture are removed.
  */
 export function picture(text) {
-  // Else each style is reported as refused when it is parsed, before it is set by script or left out.
+  // Without this the browser reports each style attribute as refused when it parses the picture.
   const renamed = text.replaceAll(' style="', ' data-style="').replace(/<style[\s\S]*?<\/style>/g, "");
   const root = new DOMParser().parseFromString(renamed, "image/svg+xml").documentElement;
   if (root.localName !== "svg" || root.namespaceURI !== SVG) return null;
@@ -49,7 +49,7 @@ function sizeOf(root) {
   return [0, 0, width, height];
 }
 
-/** Of which step the picture is, which may be another than the moment's: it is drawn once a second at most. */
+/** The caption with the picture's step, which may be earlier than the moment's: L is drawn at most once a second. */
 function captionOf(pictured, step) {
   if (pictured === null) return "what is believed";
   const later = step !== null && step !== pictured ? `; the moment shown is after step ${step}, which is not drawn yet` : "";
@@ -69,7 +69,7 @@ export function Bigraph({ app }) {
     view.current.box = [...view.current.whole];
     show();
   };
-  /** Enlarge around a point, which is given as parts of the frame. */
+  /** Enlarge around a point, given in fractions of the frame. */
   const zoom = (factor, across = 0.5, down = 0.5) => {
     const { box, whole } = view.current;
     if (!whole) return;
@@ -90,7 +90,7 @@ export function Bigraph({ app }) {
     const drawn = picture(svg);
     frame.current.replaceChildren(...(drawn ? [drawn.root] : []));
     if (!drawn) return;
-    drawn.root.setAttribute("aria-hidden", "true"); // the text tells it
+    drawn.root.setAttribute("aria-hidden", "true"); // readers of the screen get the text
     const same = view.current.whole?.join() === drawn.size.join();
     view.current = { whole: drawn.size, box: same ? view.current.box : [...drawn.size] };
     show();

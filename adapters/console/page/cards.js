@@ -1,4 +1,4 @@
-/** One card a vehicle, worst first. */
+/** One card for each vehicle, worst first. */
 import { html, memo, byName, useEffect, useRef, useSections, useWatched } from "./ui.js";
 import { Age, Ticking, say } from "./clock.js";
 import { distance, distanceToArea } from "./map/geodesy.js";
@@ -8,13 +8,13 @@ import { useStillness } from "./stable_list.js";
 import { angle, age, duration, metres, position, range, speed, system, utc } from "./units.js";
 
 const MARKS = ["●", "▲", "■", "✖"];
-/** How a vehicle is of which nothing is known now, whatever was known of it. */
+/** The word for a vehicle without any current information. */
 const UNKNOWN = "unknown";
 const UNKNOWN_MARK = "?";
 const MANY = 8;
-/** Seconds for which a change of authority is marked, a finished action is shown, and what was said is not dimmed. */
+/** Seconds for which a change of authority is marked, a finished action is shown, and a vehicle's text is not dimmed. */
 const NEW = 60;
-/** Seconds after which what a vehicle said is not shown any more. */
+/** Seconds after which a vehicle's text disappears. */
 const STALE = 900;
 
 export const worstFirst = (vehicles) => [...vehicles].sort(([one, a], [other, b]) => b.level - a.level || byName(one, other)).map(([name]) => name);
@@ -52,7 +52,7 @@ export function Cards({ app }) {
 const wordOf = ({ word }, stale) => (stale ? UNKNOWN : word);
 const markOf = (word, level) => (word === UNKNOWN ? UNKNOWN_MARK : MARKS[level]);
 
-/** How many vehicles are how, the best first: `[word, {level, count}]`. */
+/** The number of vehicles for each word, the best first: `[word, {level, count}]`. */
 function tallied(cards, stale) {
   const found = new Map();
   for (const card of cards) {
@@ -96,19 +96,19 @@ const Card = memo(({ app, name, card, chosen, stale, small }) => {
   </article>`;
 });
 
-/** What a vehicle said of itself; "" of one that said nothing, as in a recording of before. */
+/** A vehicle's own status; "" if it sent none, as in an older recording. */
 function status({ mode, armed, heading, link }) {
   const parts = [mode, typeof armed === "boolean" && (armed ? "armed" : "disarmed"), isNumber(heading) && `heading ${angle(heading)}`];
   return asHeard(link, parts);
 }
 
-/** What a vehicle has told, of which nothing is known now where its link is lost. */
+/** A vehicle's reported facts, marked as old if its link is lost. */
 function asHeard({ lost }, parts) {
   const told = parts.filter(Boolean).join(" · ");
   return told && lost ? `when last heard: ${told}` : told;
 }
 
-/** How fast and how high a vehicle is, and how far it has to go; "" where nothing is known. */
+/** A vehicle's speed, height and remaining distance; "" if none is known. */
 function motion(store, name, card) {
   const { height, altitude, link } = card;
   const { speed: fast } = store.section("entities").get(name) ?? {};
@@ -116,7 +116,7 @@ function motion(store, name, card) {
   return asHeard(link, [isNumber(fast) ? speed(fast) : "", high, toGo(store, name, card)]);
 }
 
-/** How far a vehicle has to go, as the crow flies: into the place to which it was sent, not to its middle. */
+/** A vehicle's remaining distance in a straight line, to the edge of its destination, not to its middle. */
 function toGo(store, name, card, brief = false) {
   const { at, speed: fast } = store.section("entities").get(name) ?? {};
   const goal = wayOf(card).at(-1);
@@ -127,7 +127,7 @@ function toGo(store, name, card, brief = false) {
   return left > 0 ? `${range(left)} ${where}${fast > 1 ? `, ${duration(left / fast)} or more` : ""}` : `in ${card.order.to}`;
 }
 
-/** A vehicle in two lines, for a phone's map: why it needs somebody comes before what it does. */
+/** A vehicle in two lines, for a phone's map: the reason why it needs an operator precedes its motion. */
 export function Brief({ app, name, card }) {
   const { height, mode, link } = card;
   const facts = asHeard(link, [mode, isNumber(height) && metres(height), toGo(app.store, name, card, true)]);
@@ -136,7 +136,7 @@ export function Brief({ app, name, card }) {
     ${card.level > 0 && html`<span class="why" title=${card.why}>${card.why}</span>`} <span class="quiet">${facts}</span>`;
 }
 
-/** Whether the mission commands a vehicle now: another's flight is not held to its times. */
+/** Whether the mission commands a vehicle now; its time limits do not count for other flights. */
 const isCommanded = ({ taken, returning, request }) => !taken && !returning && !request?.given_up;
 
 const isNumber = (value) => typeof value === "number";
@@ -145,7 +145,7 @@ function Place({ card }) {
   return html`<span class=${`place ${isAstray(card) ? "differs" : ""}`}>${whereabouts(card)}</span>`;
 }
 
-/** How long ago the vehicle was heard: the older, the more it is marked; when, where nobody listens any more. */
+/** The age of a vehicle's last message, marked when it is old; its time of day once the run has stopped listening. */
 function LinkAge({ app, link, unknown }) {
   if (unknown && link.heard !== null) return html`<span class="link bad">last heard ${utc(link.heard)}</span>`;
   if (link.lost) return html`<span class="link bad">link lost${link.heard !== null && html` <${Age} clock=${app.clock} time=${link.heard} />`}</span>`;
@@ -166,8 +166,8 @@ function Battery({ battery }) {
 }
 
 /**
- * A request, how long it has stood, of how long it may, and what comes then; the mission's own words are its title.
- * A vehicle that the mission does not command now is told nothing then.
+ * A request with its waiting time, its time limit and its fallback; the title has the mission's own words.
+ * The fallback is omitted for a vehicle that the mission does not command now: it would not receive that order.
  */
 function Request({ app, card: { request, taken, returning } }) {
   const { since, limit, fallback, given_up: givenUp } = request;
@@ -184,7 +184,7 @@ function Request({ app, card: { request, taken, returning } }) {
     ${limit ? html`<${Ticking} clock=${app.clock} apply=${bar} class="bar" aria-hidden="true" />` : null}</span>`;
 }
 
-/** How long a flight has gone on, and how long it still takes by the mission's times. */
+/** The elapsed time of a flight, and the remaining time by the mission's times. */
 function Flight({ app, flight: { since, least, most } }) {
   const timed = most !== null;
   const words = (element, now) => {
@@ -205,12 +205,12 @@ function Order({ app, order, returning }) {
   return html`<span class=${order.state === "refused" ? "bad" : ""}>${orderWords(order, returning)} · <${Age} clock=${app.clock} time=${order.since} /> ago</span>`;
 }
 
-/** An operator's order: asked, sent, confirmed or refused; one that is not confirmed is not done. */
+/** An operator's order: asked, sent, confirmed or refused; only a confirmed one is done. */
 function Ordered({ app, ordered }) {
   return html`<span class=${`ordered ${ordered.state} ${ordered.why ? "bad" : ""}`}>${orderedWords(ordered)} · <${Age} clock=${app.clock} time=${ordered.since} /> ago</span>`;
 }
 
-/** The stations that a vehicle obeys, and for a minute that this has changed. */
+/** The controlling stations of a vehicle; a change is marked for a minute. */
 function Authority({ app, card: { authority, handed } }) {
   const told = handed && ((element, now) => {
     const isNew = now - handed.time < NEW;
@@ -220,13 +220,13 @@ function Authority({ app, card: { authority, handed } }) {
   return html`${authority.join(", ")}${told && html`<${Ticking} clock=${app.clock} apply=${told} />`}`;
 }
 
-/** What a vehicle said last: dimmed when it is old. */
+/** A vehicle's last text, dimmed when it is old. */
 function Said({ app, said }) {
   const dim = (element, now) => (element.className = now - said.time > NEW ? "said quiet" : "said");
   return html`<${Ticking} clock=${app.clock} apply=${dim} class="said">“${said.text}” <${Age} clock=${app.clock} time=${said.time} class="quiet" /><span class="quiet"> ago</span><//>`;
 }
 
-/** What became of the last action about this vehicle, unless its order says that; one that is done is shown for a minute. */
+/** The state of the last action on this vehicle, unless the order above shows it; a finished action is shown for a minute. */
 function LastAction({ app, about, ordered }) {
   const [actions] = useSections(app.store, ["actions"], 200);
   const last = [...actions.values()].filter((action) => action.about === about).sort((a, b) => b.time - a.time)[0];
@@ -235,7 +235,7 @@ function LastAction({ app, about, ordered }) {
   return html`<p class=${`fate ${last.state}`}><b>${last.what}</b> by ${last.by || "someone"}: ${fateOf(last)}${last.why ? `: ${last.why}` : ""}</p>`;
 }
 
-/** What was chosen on the map and is no vehicle of the mission. */
+/** An entity chosen on the map that is not a vehicle of the mission. */
 const Entity = memo(({ app, name, entity }) => html`<article class="card entity chosen" data-name=${name} aria-label=${name}>
     <h3><button type="button" class="name" aria-pressed="true" onClick=${() => app.chosen.set(null)}>${name}</button> <span class="kind">${entity.kind}</span>
       <span class="quiet">${entity.source}</span></h3>

@@ -1,10 +1,10 @@
-/** The moment shown, between frames too, and texts that tick by themselves. */
+/** The shown moment, which goes on between frames, and texts that update themselves each tick. */
 import { html, useEffect, useLayoutEffect, useRef } from "./ui.js";
 import { age } from "./units.js";
 
 const TICK = 250;
 
-/** Milliseconds after which what was asked for and did not come is given up. */
+/** Milliseconds after which an unanswered request is given up. */
 const ANSWERED = 5_000;
 
 export class Clock {
@@ -13,7 +13,7 @@ export class Clock {
   #anchor = { now: null, at: 0 };
   #connected = true;
   #held = false;
-  /** How time was asked to be shown last, until it is: `{live, playing, speed}`. */
+  /** The last requested mode, until the server shows it: `{live, playing, speed}`. */
   #asked = null;
 
   constructor(store) {
@@ -26,24 +26,24 @@ export class Clock {
     return this.#store.section("clock").get(key) ?? null;
   }
 
-  /** Without a connection what is shown stands still. */
+  /** Without a connection the shown moment stands still. */
   set connected(connected) {
     if (connected === this.#connected) return;
     this.#anchor = { now: this.now, at: performance.now() };
     this.#connected = connected;
   }
 
-  /** Take a moment that was asked for as the one shown, until the answer says which it is. */
+  /** Show a requested moment, until the answer has the real one. */
   expect(time) {
     this.#anchor = { now: time, at: performance.now() };
   }
 
-  /** Take how time was asked to be shown for how it is, until it is shown so. */
+  /** Assume a requested mode, until the server shows it. */
   ask({ live = false, playing = false, speed = this.get("speed") }) {
     this.#asked = { live, playing, speed, until: performance.now() + ANSWERED };
   }
 
-  /** How time is to be shown: `{live, playing, speed}`, as it was asked for last. */
+  /** The mode, as requested last: `{live, playing, speed}`. */
   get wanted() {
     return this.#asked && performance.now() < this.#asked.until ? this.#asked : this.#shown;
   }
@@ -52,21 +52,21 @@ export class Clock {
     return { live: Boolean(this.get("live")), playing: Boolean(this.get("playing")), speed: this.get("speed") };
   }
 
-  /** The seconds that pass in what is shown while one passes here. */
+  /** Seconds of the shown time per second of wall time. */
   get rate() {
     if (!this.#connected || this.#held) return 0;
     if (this.get("live")) return this.get("ended") ? 0 : this.get("rate") ?? 1;
     return this.get("playing") ? this.get("speed") ?? 1 : 0;
   }
 
-  /** Show one moment, as while a slider is moved; null lets time go on from the moment shown. */
+  /** Hold one moment, as while a slider is moved; null lets time go on from the shown moment. */
   hold(time) {
     this.#anchor = { now: time ?? this.now, at: performance.now() };
     this.#held = time !== null;
     this.tick();
   }
 
-  /** The moment shown; in replay it stays within what is recorded. */
+  /** The shown moment; in replay it stays within the recording. */
   get now() {
     const { now, at } = this.#anchor;
     if (now === null) return null;
@@ -74,17 +74,17 @@ export class Clock {
     return this.get("live") ? moved : Math.min(moved, this.get("head") ?? moved);
   }
 
-  /** Whether the end of a run that has ended is shown. */
+  /** Whether the run has ended and its end is shown. */
   get atEnd() {
     return Boolean(this.get("ended")) && !this.get("playing") && (this.get("live") || this.get("now") >= this.get("head"));
   }
 
-  /** For how long nothing new was recorded, though the run goes on. */
+  /** Seconds without a new message, while the run goes on. */
   get silence() {
     return this.get("live") && !this.get("ended") ? (performance.now() - this.#anchor.at) / 1000 : 0;
   }
 
-  /** Call `apply(now)` at every tick; returns what ends that. */
+  /** Call `apply(now)` at every tick; returns a function that ends the calls. */
   each(apply) {
     this.#texts.add(apply);
     return () => this.#texts.delete(apply);
@@ -116,7 +116,7 @@ export function Ticking({ clock, apply, children, ...attributes }) {
   return html`<span ref=${element} ...${attributes}>${children}</span>`;
 }
 
-/** How long ago something was: "12 s". */
+/** The age of a time: "12 s". */
 export function Age({ clock, time, ...attributes }) {
   return html`<${Ticking} clock=${clock} apply=${(element, now) => say(element, age(time, now))} ...${attributes} />`;
 }

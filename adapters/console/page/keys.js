@@ -1,10 +1,10 @@
-/** The keys, and the sheet that tells them. */
+/** The keyboard shortcuts, and their help sheet. */
 import { html, Modal, useWatched } from "./ui.js";
 import { system, SYSTEMS } from "./units.js";
 
 const WRITES = "input:not([type=range]):not([type=checkbox]), textarea, select";
 
-/** Every shortcut: key, what it does in words, and the deed. */
+/** Every shortcut: key, description, and action. */
 export function shortcuts(app) {
   return [
     ["?", "this help", () => app.help.set(!app.help.value)],
@@ -37,12 +37,12 @@ export function listenForKeys(app) {
   const table = new Map(shortcuts(app).map(([key, , does]) => [key, does]));
   addEventListener("keydown", (event) => {
     if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
-    const within = (selector) => event.target.closest?.(selector) && !event.target.closest("dialog:not([open])"); // what is closed has the focus until the next frame
+    const within = (selector) => event.target.closest?.(selector) && !event.target.closest("dialog:not([open])"); // a closed dialog keeps the focus until the next frame
     if (within(WRITES) && event.key !== "Escape") return;
-    if (document.querySelector("dialog[open]") && !["?", "Escape"].includes(event.key)) return; // what is behind it can't be seen
-    if (event.key === " " && within("button, summary, input:not([type=range]), a, [role=tab]")) return; // it presses what has the focus
+    if (document.querySelector("dialog[open]") && !["?", "Escape"].includes(event.key)) return; // the page behind the dialog is hidden
+    if (event.key === " " && within("button, summary, input:not([type=range]), a, [role=tab]")) return; // Space presses the focused control
     if (app.singleKeys.value === "off" && !["?", "Escape"].includes(event.key)) return;
-    const does = table.get(event.key) ?? table.get(event.key.toLowerCase()); // with a shift of its own, or with none
+    const does = table.get(event.key) ?? table.get(event.key.toLowerCase()); // the key with Shift may have its own entry
     if (!does) return;
     event.preventDefault();
     does();

@@ -41,5 +41,5 @@ const Agent = memo(({ app, name, agent }) => html`<tr class=${agent.state === "h
 
 const isNumber = (value) => typeof value === "number";
 
-/** Until when an agent waits, and for how long from now. */
+/** The time until which an agent waits, and the remaining duration. */
 const Until = ({ app, until }) => html`<${Ticking} clock=${app.clock} class="quiet" apply=${(element, now) => say(element, `, until ${utc(until)} (${until > now ? `in ${duration(until - now)}` : "due"})`)} />`;

@@ -1,4 +1,4 @@
-/** The websocket: hello, frames into the store, and again after a loss, with longer and longer pauses. */
+/** The websocket: it sends hello, puts frames into the store, and reconnects after a loss, with ever longer pauses. */
 import { Watched } from "./ui.js";
 
 export const PROTOCOL = "bigactors.console/1";
@@ -12,11 +12,11 @@ const REFUSED = {
 };
 
 export class Link {
-  /** `{state: "connecting"|"early"|"open"|"waiting"|"refused", since, retry, why}`; early is before a run has begun. */
+  /** `{state: "connecting"|"early"|"open"|"waiting"|"refused", since, retry, why}`; `early`: the run has not begun. */
   state = new Watched({ state: "connecting", since: Date.now() / 1000 });
   /** The server's welcome, null before the first. */
   welcome = new Watched(null);
-  /** What the server said of a message that it could not read. */
+  /** The server's complaint about a message that it could not read. */
   error = new Watched("");
   #store;
   #socket = null;
@@ -24,10 +24,10 @@ export class Link {
   #timer = null;
   #asked = new Map();
   #number = 0;
-  /** The number of the newest frame that was taken in; 0 before the first. */
+  /** The number of the newest frame in the store; 0 before the first. */
   frame = 0;
 
-  /** `nameless` is called when the name is one that nobody can have. */
+  /** `nameless` is called when the server refuses the name as invalid. */
   constructor(store, { token, name, nameless }) {
     this.#store = store;
     this.nameless = nameless;
@@ -72,7 +72,7 @@ export class Link {
       this.#take(frame);
       this.#state({ state: "open" });
     } else if (frame.type === "changes") {
-      if (frame.n !== this.frame + 1) return this.connect(); // one was lost: a snapshot mends it
+      if (frame.n !== this.frame + 1) return this.connect(); // a frame was lost: a new connection brings a snapshot
       this.#take(frame);
     } else if (frame.type === "answer") this.#answer(frame.id, frame);
     else if (frame.type === "error") this.error.set(frame.message);
@@ -107,7 +107,7 @@ export class Link {
     for (const id of [...this.#asked.keys()]) this.#answer(id, { refusal: "the connection was made anew before an answer: look whether it was done" });
   }
 
-  /** `since` is when the connection was lost, however often it was tried since. */
+  /** Change the state; `since` stays the time of the loss through all attempts to reconnect. */
   #state(state) {
     const before = this.state.value;
     const lost = state.state !== "open" && before.state !== "open";

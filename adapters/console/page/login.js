@@ -1,4 +1,4 @@
-/** All that someone sees whose token is missing or wrong: the question for it. */
+/** The screen for a missing or wrong token, which asks for it. */
 import { html, useRef } from "./ui.js";
 
 export function Door({ app, why, asks }) {

@@ -1,4 +1,4 @@
-/** The top: which mission, what was verified, which moment, who is connected. */
+/** The top line: the mission, its verification, the shown moment, the connection. */
 import { html, useSections, useWatched } from "./ui.js";
 import { Ticking, say } from "./clock.js";
 import { day, duration, since, utc } from "./units.js";
@@ -24,7 +24,7 @@ export function Mission({ app }) {
   </header>`;
 }
 
-/** Says that time is simulated, and how fast it goes; null is as fast as it can be computed. */
+/** A badge for simulated time, with its speed; a null rate means as fast as possible. */
 function Rate({ rate }) {
   if (rate === undefined || rate === 1) return null;
   return html`<span class="badge simulated" title=${`time is simulated: ${rate === null ? "as fast as it can be computed" : `${rate} s pass in one`}`}>simulated${rate === null ? "" : ` ${rate}×`}</span>`;
@@ -39,7 +39,7 @@ function State({ app, live, ended, clock }) {
   return html`<b class="badge past">${clock.get("playing") ? `PAST ${clock.get("speed") ?? 1}×` : "PAST, PAUSED"}</b>`;
 }
 
-/** The properties whose verdicts rest on what has proved wrong. */
+/** The properties whose verdicts rest on broken assumptions. */
 function doubtedBy(alerts) {
   return new Set([...alerts.values()].flatMap((alert) => alert.verdicts ?? []).map((each) => (typeof each === "string" ? each : each.property)));
 }
@@ -55,10 +55,10 @@ function Verdict({ verified, verdicts, doubted, digest, scheduler }) {
     </div></details>`;
 }
 
-/** Seconds of silence after which a run that goes on would have recorded something. */
+/** Seconds of silence after which a run may have been killed: a running one would have recorded something. */
 const KILLED = 15;
 
-/** Whether the page is connected, and whether what it shows is new. */
+/** Whether the page is connected, and whether its data is current. */
 function Presence({ app }) {
   const state = useWatched(app.link.state);
   if (state.state === "open") {
@@ -75,7 +75,7 @@ function Presence({ app }) {
 
 const forHowLong = (since) => (element) => say(element, duration(Date.now() / 1000 - since));
 
-/** Says across the whole page that it is not connected: what is shown is old. */
+/** A line across the whole page while it is not connected and its data is old. */
 export function NotConnected({ app }) {
   const state = useWatched(app.link.state);
   const seen = useWatched(app.link.welcome);

@@ -1,11 +1,11 @@
-/** What became of each action that this page asked for, until it is over; and short words that go by themselves. */
+/** Notices: the state of each action that this page asked for, until it is final, and short messages that disappear. */
 import { html, useWatched, Watched } from "./ui.js";
 import { fateOf } from "./wording.js";
 
 const SHOWN = 6000;
 /** Notices at once: refusals stay until they are closed. */
 const MOST = 5;
-/** Milliseconds after which an action that nobody has confirmed is left to its card. */
+/** Milliseconds after which the notice of an unconfirmed action is closed; the vehicle's card still shows it. */
 const PATIENCE = 60_000;
 
 export class Notices {
@@ -18,19 +18,19 @@ export class Notices {
     store.on(["actions"], () => this.#follow());
   }
 
-  /** Say something that is over in a few seconds, instead of what was said so before. */
+  /** Show a message for a few seconds, in place of an earlier one. */
   tell = (text) => {
     this.list.set(this.list.value.filter(({ passing }) => !passing));
     this.#fade(this.#put({ text, state: "told", passing: true }));
   };
 
-  /** Say that an action was asked for; returns the notice, for `answered`. */
+  /** Show that an action was asked for; returns the notice, for `answered`. */
   asked({ what, about }, by) {
     const notice = { action: { what, about, by }, state: "asked", known: new Set(this.#actions.keys()) };
     return this.#put({ ...notice, text: textOf(notice.action, "asked") });
   }
 
-  /** Say what the run has answered; what is not recorded as an action is done with it. */
+  /** Show the run's answer; it settles an action that is not recorded. */
   answered(number, { refusal, left_out: leftOut, notes }, isRecorded) {
     const more = [...Object.entries(leftOut ?? {}).map(([name, why]) => `not ${name}: ${why}`), ...(notes ?? [])];
     const state = refusal ? "refused" : isRecorded ? "asked" : "confirmed";
@@ -44,7 +44,7 @@ export class Notices {
 
   close = (number) => this.list.set(this.list.value.filter((notice) => notice.number !== number));
 
-  /** Take over what the recording says of the actions that the run has taken, until nothing more will come of them. */
+  /** Update the notices of accepted actions from the recording, until their states are final. */
   #follow() {
     for (const { number, action, known, more, key: mine } of this.list.value.filter((notice) => notice.follows)) {
       const key = mine ?? [...this.#actions].find(([each, said]) => !known.has(each) && ["what", "about", "by"].every((part) => said[part] === action[part]))?.[0];
@@ -56,7 +56,7 @@ export class Notices {
     }
   }
 
-  /** Leave to its card what nobody has confirmed; a refusal stays until it is closed, or the vehicle obeys. */
+  /** Close the notice of an unconfirmed action; a refusal stays until it is closed, or the vehicle obeys. */
   #leave(number) {
     if (this.list.value.find((notice) => notice.number === number)?.state !== "refused") this.close(number);
   }

@@ -1,4 +1,4 @@
-/** Asks who acts, at the beginning and before the first action: each is recorded with a name, so nobody acts without one. */
+/** The dialog for the operator's name, at the beginning and before the first action: each action is recorded with a name. */
 import { Field, html, Modal, useState, useWatched } from "./ui.js";
 
 export const LONGEST_NAME = 40;

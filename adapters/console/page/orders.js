@@ -1,8 +1,8 @@
-/** Hold, Return and Give back of one vehicle; while the past is shown the way to now, in the same place. */
+/** The buttons Hold, Return and Give back of one vehicle; while the past is shown, a button to now in the same place. */
 import { html, useWatched } from "./ui.js";
 import { HeldButton } from "./press.js";
 
-/** The last button has the same place whatever else is there, the first one comes and goes. */
+/** The first button comes and goes; the others keep their places. */
 export function Orders({ app, name, card: { taken, on_return: onReturn } }) {
   const act = useWatched(app.mayAct);
   const past = useWatched(app.inPast);
@@ -16,7 +16,7 @@ export function Orders({ app, name, card: { taken, on_return: onReturn } }) {
   </div>`;
 }
 
-/** What an order to return brings about beside the return: it is said before it is pressed. */
+/** The side effect of an order to return, shown before the button is pressed. */
 export function OnReturn({ app, card }) {
   const act = useWatched(app.mayAct);
   return act && card.on_return ? html`<p class="on-return"><b>Return</b> ${card.on_return}</p>` : null;

@@ -1,4 +1,4 @@
-/** What is checked before the start of a run, and its Start button: nothing is commanded before it is pressed. */
+/** The preflight checklist of a run, and its Start button: the run commands nothing before it is pressed. */
 import { html, useSections, useWatched } from "./ui.js";
 import { HeldButton } from "./press.js";
 

@@ -1,12 +1,12 @@
-/** A button that acts when it was held for one second, by pointer or by Enter or Space. */
+/** A button that acts after a press of one second, by pointer or by Enter or Space. */
 import { html, useEffect, useRef, useState } from "./ui.js";
 
 export const HOLD = 1000;
 const CONFIRM = 5000;
 
 /**
- * `label` says all that the press does, `short` names it. `act` is called once for each press that lasted. A short press does nothing but say so. Assistive technology
- * presses without a duration: there, a second press within five seconds confirms.
+ * `label` describes the whole effect, `short` names it. `act` is called once for each press of full length. A short press
+ * only shows a hint. Assistive technology presses without a duration: there, a second press within five seconds confirms.
  */
 export function HeldButton({ act, children, disabled, tell, label, short = label, kind = "", ...attributes }) {
   const [pressed, setPressed] = useState(false);
@@ -22,7 +22,7 @@ export function HeldButton({ act, children, disabled, tell, label, short = label
     setPressed(false);
   };
   const lasted = () => {
-    timer.current = "done"; // until it is let go
+    timer.current = "done"; // until the release
     setPressed(false);
     latest.current();
   };
@@ -32,7 +32,7 @@ export function HeldButton({ act, children, disabled, tell, label, short = label
     began.current = event.timeStamp;
     timer.current = setTimeout(lasted, HOLD);
   };
-  /** How long a press lasted is told by its events: a busy page may be late to hear of both. */
+  /** End a press; its duration is from the events' own times, since a busy page may receive both late. */
   const end = (event) => {
     if (timer.current !== null && timer.current !== "done") {
       clearTimeout(timer.current);

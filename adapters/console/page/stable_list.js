@@ -1,14 +1,14 @@
-/** A list that stands still under a hand: nothing in it changes places while someone is about to press something there. */
+/** A list that stands still under a hand: its items keep their order while someone is about to press a button there. */
 import { useLayoutEffect, useRef, useState } from "./ui.js";
 
-/** Milliseconds after a pointer's last motion, or the last key, until the order may change; on a button it never does. */
+/** Milliseconds after the last pointer motion or key until the order may change; on a button it never changes. */
 const STILL = 5000;
 const BUTTON = ".held";
 const HOVERS = matchMedia("(hover: hover)"); // a finger leaves a hover behind
 
 /**
- * Return whether a list has to stand still, and the handlers that tell of hands. What is under the hand also keeps its
- * place on the screen when something above it grows or shrinks: the list is scrolled by as much.
+ * Return whether a list has to stand still, and the handlers of pointer and key events. The item under the hand keeps its
+ * place on the screen even when an item above it grows or shrinks: the list scrolls by the difference.
  */
 export function useStillness(list) {
   const [, again] = useState(0);
@@ -22,7 +22,7 @@ export function useStillness(list) {
   };
   const isStill = () => isOnButton() || performance.now() - touched.current < STILL;
   const hold = (element) => (held.current = element && { element, top: topOf(list.current, element) });
-  /** Look again whether the hand has gone. */
+  /** Check again later whether the hand has gone. */
   const wait = () => {
     clearTimeout(timer.current);
     timer.current = setTimeout(() => (isStill() ? wait() : release()), STILL);
@@ -55,7 +55,7 @@ export function useStillness(list) {
 
 const topOf = (list, element) => element.getBoundingClientRect().top - list.getBoundingClientRect().top;
 
-/** Scroll a list so that an element is where it was; room for that is made where there is none. */
+/** Scroll a list so that an element keeps its place on the screen; add room below if the list is too short. */
 function keep(list, { element, top }) {
   const moved = () => topOf(list, element) - top;
   if (Math.abs(moved()) < 1) return;

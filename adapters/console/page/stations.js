@@ -1,4 +1,4 @@
-/** The stations of the mission: who is heard, how old their word is, and whose authority each vehicle is under. */
+/** The stations of the mission: their connections, the ages of their last messages, and the vehicles that each controls. */
 import { html, byName, useSections } from "./ui.js";
 import { Age } from "./clock.js";
 

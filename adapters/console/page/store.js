@@ -1,13 +1,13 @@
 /**
- * What the server last sent: sections of keys and values (protocol bigactors.console/1).
+ * The last state from the server: sections of keys and values (protocol bigactors.console/1).
  *
- * A value is replaced whole and never changed in place, so `===` tells whether it is still the same.
+ * A value is replaced as a whole and never changed in place, so that `===` detects a change.
  */
 export class Store {
   #sections = new Map();
   #listeners = new Set();
 
-  /** The section's values by key: the same Map for ever, so it may be kept. */
+  /** The section's values by key; it is always the same Map, so that callers may keep it. */
   section(name) {
     let found = this.#sections.get(name);
     if (!found) this.#sections.set(name, (found = new Map()));
@@ -15,8 +15,8 @@ export class Store {
   }
 
   /**
-   * Call `listener({section: Set of keys})` after each frame that changed one of the named sections; only those are
-   * in it. Returns what unsubscribes.
+   * Call `listener({section: Set of keys})` after each frame that changed one of the named sections, with only those
+   * sections. Returns a function that unsubscribes.
    */
   on(names, listener) {
     const entry = { names, listener };

@@ -1,4 +1,4 @@
-/** The panels under the cards; on a phone the map and the cards are tabs as well. */
+/** The panels under the cards; on a phone, the map and the cards are tabs as well. */
 import { html, useEffect, useRef, useState, useWatched } from "./ui.js";
 import { Actions } from "./actions.js";
 import { Bigraph } from "./bigraph.js";
@@ -25,7 +25,7 @@ export function usePhone() {
   return phone;
 }
 
-/** The tab that is open; on a desk the map and the cards are always there, so it is a panel. */
+/** The open tab; on a desk the map and the cards are always visible, so that it is one of the panels. */
 export const openTab = (tab, phone) => (!phone && AREAS.some(([key]) => key === tab) ? "actions" : tab);
 
 export function TabList({ app, phone }) {

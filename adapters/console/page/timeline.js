@@ -1,4 +1,4 @@
-/** The timeline: what happened as ticks, a slider, and how fast it is shown. */
+/** The timeline: ticks for events, a slider, and the speed. */
 import { html, useEffect, useLayoutEffect, useRef, useSections, useState, useWatched } from "./ui.js";
 import { Ticking, say } from "./clock.js";
 import { momentOf, since, utc } from "./units.js";
@@ -9,7 +9,7 @@ const PAUSE = 80;
 
 /** The moment of the nearest tick before or after `now` whose sort is shown, null if there is none. */
 export function neighbour(ticks, now, direction, hidden) {
-  const margin = 0.05; // what is shown may lie a little after the tick that was asked for
+  const margin = 0.05; // the shown moment may lie a little after the requested tick
   const times = [...ticks.values()].filter(([, sort]) => !hidden.has(sort)).map(([time]) => time);
   const beyond = times.filter((time) => (direction < 0 ? time < now - margin : time > now + margin));
   return beyond.length ? (direction < 0 ? Math.max(...beyond) : Math.min(...beyond)) : null;
@@ -50,7 +50,7 @@ export function Timeline({ app }) {
   const released = useRef(null);
   const release = () => {
     clearTimeout(released.current);
-    released.current = setTimeout(() => { // until the moment asked for has come
+    released.current = setTimeout(() => { // until the requested moment has come
       setDragged(null);
       app.clock.hold(null);
     }, 300);
@@ -92,7 +92,7 @@ export function Timeline({ app }) {
   </section>`;
 }
 
-/** A time of day that is typed; Enter goes there. */
+/** An input for a time of day; Enter goes there. */
 function GoTo({ app, begin, head }) {
   const go = (event) => {
     event.preventDefault();
@@ -106,7 +106,7 @@ function GoTo({ app, begin, head }) {
   return html`<form class="goto" onSubmit=${go}><input id="goto" size="8" maxlength="8" placeholder="HH:MM:SS" aria-label="go to a time of day, UTC" title="go to a time of day, UTC  G" autocomplete="off" /></form>`;
 }
 
-/** A sign that looks alike whatever fonts there are. */
+/** A sign that looks the same with all fonts. */
 const Sign = ({ shape }) => html`<svg class="sign" viewBox="0 0 16 16" aria-hidden="true"><path d=${shape} /></svg>`;
 
 /** The ticks, a row for each sort, on a canvas. */

@@ -1,9 +1,9 @@
-/** What the page's parts share: preact, hooks that watch the store, and values that are the page's own. */
+/** Shared parts of the page: preact, hooks that watch the store, and observable values. */
 import { html, render, Component, useCallback, useEffect, useLayoutEffect, useMemo, useRef, useState } from "./parts/preact.js";
 
 export { html, render, Component, useCallback, useEffect, useLayoutEffect, useMemo, useRef, useState };
 
-/** A value of the page's own, which tells who watches it that it has changed. */
+/** An observable value: it calls its listeners when it changes. */
 export class Watched {
   #listeners = new Set();
   constructor(value) {
@@ -20,7 +20,7 @@ export class Watched {
   }
 }
 
-/** The value of something watched, as soon as it is not null. */
+/** A promise of a watched value, resolved as soon as the value is not null. */
 export function first(watched) {
   if (watched.value !== null) return Promise.resolve(watched.value);
   return new Promise((resolve) => {
@@ -32,7 +32,7 @@ export function first(watched) {
   });
 }
 
-/** A value that outlives the page, where the browser lets it. */
+/** A watched value in the browser's storage, which outlives the page if the browser permits storage. */
 export function kept(key, fallback) {
   const watched = new Watched(fallback);
   try {
@@ -54,8 +54,8 @@ export function useWatched(watched) {
 }
 
 /**
- * An input of text, which owns what is typed: a drawing writes into it only another `value` from outside, and leaves the
- * text, the caret and the focus alone.
+ * A text input that owns its text: a drawing writes to it only if `value` has changed, and leaves the text, the caret and
+ * the focus alone otherwise.
  */
 export function Field({ value, ...attributes }) {
   const input = useRef(null);
@@ -66,8 +66,8 @@ export function Field({ value, ...attributes }) {
 }
 
 /**
- * A modal dialog. It opens and closes with the drawing that says so: keys that are pressed until a later frame would go to
- * what has no focus any more. `closed` is called when its user has closed it.
+ * A modal dialog. It opens and closes during the drawing itself: keys pressed before a later frame would miss the focused
+ * element. `closed` is called when the user closes it.
  */
 export function Modal({ open, closed, children, ...attributes }) {
   const dialog = useRef(null);
@@ -75,15 +75,15 @@ export function Modal({ open, closed, children, ...attributes }) {
     if (open === dialog.current.open) return;
     if (!open) return dialog.current.close();
     dialog.current.showModal();
-    dialog.current.querySelector("input[required]")?.focus(); // by touch it would not have it
+    dialog.current.querySelector("input[required]")?.focus(); // by touch it would not get the focus
   }, [open]);
   return html`<dialog ref=${dialog} onClose=${(event) => event.currentTarget.open || closed()} ...${attributes}>${children}</dialog>`;
 }
 
-/** How many drawings are owed for what has come: 0 where all of it is shown. */
+/** The number of pending drawings of received changes; 0 once all are shown. */
 export const owed = new Watched(0);
 
-/** Render again when one of the sections has changed, at most once in `pause` milliseconds. */
+/** Return sections of the store, and render again when one has changed, at most once in `pause` milliseconds. */
 export function useSections(store, names, pause = 100) {
   const [, again] = useState(0);
   useLayoutEffect(() => {
@@ -106,7 +106,7 @@ export function useSections(store, names, pause = 100) {
       owed.set(owed.value + 1);
     };
     const off = store.on(names, changed);
-    changed(); // what came between the first drawing and now
+    changed(); // changes between the first drawing and now
     return () => {
       off();
       settle();
@@ -115,7 +115,7 @@ export function useSections(store, names, pause = 100) {
   return names.map((name) => store.section(name));
 }
 
-/** A component that is drawn anew only when one of its props is another value, or what its own hooks watch. */
+/** A component that is drawn anew only when one of its props or a value watched by its hooks has changed. */
 export function memo(draw) {
   return class extends Component {
     shouldComponentUpdate(next) {
@@ -123,7 +123,7 @@ export function memo(draw) {
       return [...names].some((name) => name !== "children" && !Object.is(this.props[name], next[name]));
     }
     render(props) {
-      return html`<${draw} ...${props} />`; // one of its own: in this class, hooks would not draw it anew
+      return html`<${draw} ...${props} />`; // a component of its own: in this class, hooks would not draw it anew
     }
   };
 }

@@ -1,4 +1,4 @@
-/** Numbers as people read them, each with its unit: nautical or metric, as this browser's user chose. */
+/** Numbers for people, each with its unit: nautical or metric, by this user's choice. */
 import { wrapped } from "./map/geodesy.js";
 import { kept } from "./ui.js";
 
@@ -19,7 +19,7 @@ export function duration(seconds) {
   return `${Math.floor(whole / 86400)} d`;
 }
 
-/** How long before `now` something was; what a clock ahead of ours sends was just now. */
+/** The age of a time at `now`; 0 for a time of a clock ahead of ours. */
 export const age = (time, now) => duration(Math.max(0, now - time));
 
 /** The time of day in UTC. */
@@ -36,7 +36,7 @@ export function since(seconds) {
 
 const CLOCK = /^(\d{1,2}):(\d\d)(?::(\d\d))?$/;
 
-/** The newest moment between two with a time of day, "HH:MM" or "HH:MM:SS" in UTC: null if there is none, or it is none. */
+/** The newest moment from `begin` to `head` at a time of day, "HH:MM" or "HH:MM:SS" in UTC; null for none or an invalid text. */
 export function momentOf(text, begin, head) {
   const [, hours, minutes, seconds = "0"] = CLOCK.exec(text.trim()) ?? [];
   if (hours === undefined || Number(hours) > 23 || Number(minutes) > 59 || Number(seconds) > 59) return null;
@@ -61,7 +61,7 @@ export const latitude = (value, digits = 3) => (isMetric() ? decimal(value, "NS"
 export const longitude = (value, digits = 3) => (isMetric() ? decimal(wrapped(value), "EW", digits) : degreesAndMinutes(wrapped(value), "EW", 3, digits));
 export const position = ([north, east]) => `${latitude(north)} ${longitude(east)}`;
 
-/** Metres as mariners read them, below a cable and a half in metres; or as others do, below a kilometre in metres. */
+/** A distance in nautical miles, below a cable and a half in metres; or in kilometres, below one in metres. */
 export function range(metres) {
   if (metres < (isMetric() ? 1000 : 278)) return `${Math.round(metres)} m`;
   const [value, unit] = isMetric() ? [metres / 1000, "km"] : [metres / MILE, "nm"];

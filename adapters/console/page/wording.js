@@ -1,32 +1,32 @@
-/** What the mission asks and what vehicles are told, in an operator's words; the calculus has its own panels. */
+/** The operator's words for requests, orders and their states; other panels show the terms of the calculus. */
 
 const placed = { region: "outside all named places" };
 
-/** A place's name; the region is what no place of the mission contains. */
+/** A place's name; `region` is the area outside all places of the mission. */
 export const placeName = (name) => placed[name] ?? name ?? "nowhere";
 
 const within = (name) => (name === null || name === undefined ? "nowhere" : name === "region" ? placeName(name) : `in ${name}`);
 
-/** Where something is believed to be and where it really is: one that was sent somewhere is in no place until it is there. */
+/** The believed and the actual place of a vehicle or an entity; a vehicle under way is in no place until it arrives. */
 export function whereabouts(card) {
   const { believed, actual, differs, going, order, request, returning, taken } = card;
   if (returning) return `${placeName(believed)} → flies home`;
   if (!differs) return placeName(believed);
-  const to = isUnderWay(order) ? order.to : going && !request && !taken ? going : null; // another station's order is not told here
+  const to = isUnderWay(order) ? order.to : going && !request && !taken ? going : null; // this station does not see another's order
   if (to) return `${placeName(believed)} → under way to ${to}`;
   return going ? `left ${placeName(believed)}, has not arrived anywhere yet` : `believed ${within(believed)}, really ${within(actual)}`;
 }
 
-/** Whether something is not where it is believed to be, and no flight explains it. */
+/** Whether the believed and the actual place differ without a flight that explains it. */
 export const isAstray = ({ differs, going, returning }) => differs && !going && !returning;
 
-/** The way on which a vehicle is: home where it flies there, whoever sent it; else where it was told to go. */
+/** The waypoints of a vehicle's way: home if it returns, whoever ordered it; else those of its order. */
 export function wayOf({ order, returning, home }) {
   if (returning) return home ? [home] : [];
   return order?.way?.length && !OVER.includes(order.state) ? order.way : [];
 }
 
-/** What a control asks, by the words with which missions write it: a command's words, and those for who waits and who goes. */
+/** For each command of missions: its form, the words for a waiting agent, and the words for the flight. */
 const ASKED = [
   [/^MOVE_HOST_TO (\S+)/, "to be sent to $1", "flies to $1"],
   [/^MOVE (\S+) TO (\S+)/, "$1 to be sent to $2", "$1 goes to $2"],
@@ -37,7 +37,7 @@ const ASKED = [
 ];
 const REQUEST = /^([A-Z]+)\(([^,]+), (.*)\)$/s;
 
-/** A pending request: what its agent waits for. */
+/** The words for a pending request. */
 export function requestWords({ text, agent }) {
   const [, sort, by = agent, what = text] = REQUEST.exec(text) ?? [];
   if (sort === "OBS" || sort === "READY") return `${by} looks around`;
@@ -61,35 +61,35 @@ const ENDS = { Hold: "in effect", Return: "is home", HandOver: "done" };
 
 const OVER = ["arrived", "refused"];
 
-/** The name of a station or a place; a station's channel has its sort before it. */
+/** The name of a station or a place, without the prefix of a station's channel. */
 const bare = (name) => (name ?? "").split(":").at(-1);
 
-/** What a vehicle was told last, and what became of it; one that flies home does nothing else meanwhile. */
+/** A vehicle's last order and its state; while the vehicle flies home, it carries out no other order. */
 export function orderWords({ command, to, state, why }, returning = false) {
   const deed = DEEDS[command]?.(bare(to)) ?? [command, bare(to)].filter(Boolean).join(" to ");
   if (returning && isUnderWay({ command, to, state })) return `${deed}: not now, it flies home`;
   return `${deed}, ${(state === "arrived" && ENDS[command]) || (STATES[state] ?? state)}${why ? `: ${why}` : ""}`;
 }
 
-/** Whether an order is still to be carried out. */
+/** Whether a vehicle still carries out an order of movement. */
 export const isUnderWay = (order) => Boolean(order?.to) && ["sent", "accepted"].includes(order.state) && order.command !== "HandOver";
 
 const FALLBACKS = { hold: "then it holds", return: "then it returns home", continue: "then it goes on waiting" };
 
-/** What follows when a request has stood for too long. */
+/** The words for the fallback after a request's time limit. */
 export const fallbackWords = (fallback) => FALLBACKS[fallback] ?? "";
 
 const FALLEN_BACK = { hold: "vehicles were told to hold", return: "vehicles were told to return home", continue: "the mission goes on" };
 
-/** What was found, and what the run did of itself then. */
+/** A finding, and the run's fallback after it. */
 export const findingWords = ({ message, fallback }) => [message, FALLEN_BACK[fallback]].filter(Boolean).join(" · ");
 
 const FATES = { asked: "asked, not sent yet", sent: "sent, not confirmed yet", confirmed: "confirmed by the vehicle", refused: "refused" };
 const OURS = /^(say|give back|acknowledge|start)/;
 
 /**
- * What became of an action, in words: what no vehicle has to confirm is done, unless nothing comes of it. A vehicle is told
- * again what it has refused; an order that ended before it was confirmed never will be.
+ * The words for an action's state. An accepted action that no vehicle confirms is done, unless it has no effect. The run
+ * repeats a refused order. An order that ended unconfirmed is never confirmed.
  */
 export function fateOf({ what, state, vain, fates, answered }) {
   if (state === "confirmed" && OURS.test(what)) return vain ? `heard, but ${vain}` : "done";
@@ -101,8 +101,8 @@ export function fateOf({ what, state, vain, fates, answered }) {
 /** Whether vehicles still have to confirm an order. */
 const isOwed = ({ fates, answered }) => !answered && Object.keys(fates ?? {}).length > 0;
 
-/** What became of an order to several vehicles, of each. */
+/** The state of an order to several vehicles, for each vehicle. */
 export const eachFate = ({ fates }) => (Object.keys(fates ?? {}).length > 1 ? Object.entries(fates).map(([name, { state, why }]) => `${name}: ${FATES[state]}${why ? `: ${why}` : ""}`) : []);
 
-/** What an operator has ordered a vehicle to do, and what became of it. */
+/** An operator's order to a vehicle, and its state. */
 export const orderedWords = ({ order, by, state, why }) => `to ${order}, by ${by || "someone"}: ${state === "refused" ? `refused, and told again: ${why}` : FATES[state]}`;

@@ -1,8 +1,8 @@
 """Translation of a `.big` file to the language that BigraphER reads, as far as possible.
 
-Extensions of this language are rewritten: free order of declarations, several kinds of wires before an expression, `{x,
-y}`, `r(n + 1)` in a system, actions listed in a system, and declarations for particular arguments. `unportable` lists
-the rest.
+The translation rewrites these extensions: free order of declarations, several kinds of wires before an expression, and
+`{x, y}`. In a system it also rewrites `r(n + 1)`, listed actions, and declarations for particular arguments.
+`unportable` lists the other extensions.
 """
 
 from __future__ import annotations

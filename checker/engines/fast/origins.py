@@ -1,8 +1,9 @@
 """The row from which each row was first reached.
 
-Breadth-first search reaches rows in the order of their origins. So a bit for each row and one for each origin encode
-all: for each row, bit number + origin is set (Elias, Efficient storage and retrieval by content and address of static
-files, 1974). If rows come in another order, as between workers, each stores its origin as a number.
+Breadth-first search reaches rows in the order of their origins. So one bit for each row and one for each origin encode
+all origins: the bit with the index row + origin is set for each row (Elias, *Efficient storage and retrieval by content
+and address of static files*, 1974). If rows come in another order, as between workers, each stores its origin as a
+number.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"

@@ -1,7 +1,7 @@
 """Runs in whole ticks, and the choice of the run that a report shows.
 
-The first run to a goal has the fewest steps; among those, the sequence of step numbers that is first in lexicographic
-order; and each step as early as the steps before it allow. So every engine shows the same run.
+The first run to a goal has the fewest steps. Among such runs, its sequence of step numbers is the first in
+lexicographic order. Each step is as early as the steps before it allow. So every engine shows the same run.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ Follow = Callable[[Node], Iterable[tuple[int, Node]]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Group(Generic[Node]):
-    """The states that a sequence of steps reaches first, whatever the dates."""
+    """The states that a sequence of steps reaches first, at any dates."""
 
     states: tuple[Node, ...]
     step: int = DELAY

@@ -130,8 +130,10 @@ class View(NamedTuple):
 AGENTS, ACTORS, ITS_TURN, IS_CROWDED, STAMP, CLOCKS = range(6)
 
 LOCATED, LEAVING, TESTED, SOURCED, DEADLINED, CLOCKED, WIDEST, DONE = range(8)
-"""The positions of the loops' state: the numbers of locations, edges, tests, sources, deadlines and clocks, one more
-than the most clocks of a location, and the number of given locations that are done.
+"""The positions in the loops' state.
+
+They hold the numbers of locations, edges, tests, sources, deadlines and clocks; the most clocks of a location, plus 1;
+and the number of given locations that are done.
 """
 
 KNOWN, MISS, FULL = range(3)
@@ -337,8 +339,8 @@ def add_edges(  # each argument is another part of the state
 ) -> int:  # fmt: skip
     """Add the edges of a step to a row that was looked at, one for each combination of tests and choices.
 
-    The choices are: for each vehicle that leaves where it is restored, whether its endurance was restored in full; and
-    for each window that becomes bound, whether it is already over.
+    One choice for each vehicle that leaves its restoring place: whether its endurance was restored in full. One choice
+    for each window that becomes bound: whether it is already over.
     """
     done, end = t.steps[times], t.steps[times + 1]
     count, said = np.int64(0), np.int64(0)

@@ -1,12 +1,12 @@
-/** Land under everything, fetched by windows that hold the view with room around it. */
+/** The land under all other layers, fetched in windows somewhat larger than the view. */
 const { L } = globalThis;
 
 const KEPT = 12;
 const MARGIN = 0.5;
 
 /**
- * The window to fetch for a view [south, west, north, east]: snapped to a grid of powers of two, so that moving a
- * little asks for the same one, and west lies between -180 and 180. `turns` is what brings its longitudes back.
+ * The window to fetch for a view [south, west, north, east]: snapped to a grid of powers of two, so that a small move
+ * needs no other window. Its west lies between -180 and 180; `turns` times 360 brings its longitudes back to the view.
  */
 export function windowFor([south, west, north, east]) {
   const size = 2 ** Math.ceil(Math.log2(Math.max(north - south, east - west) * MARGIN));
@@ -19,7 +19,7 @@ export function windowFor([south, west, north, east]) {
 
 const addressOf = ({ south, west, north, east }) => `/land?south=${south}&west=${west}&north=${north}&east=${east}`;
 
-/** Keeps the land of the map's view drawn; `tell(problem)` gets what went wrong, or an empty text. */
+/** The layer with the land in the map's view; `tell(problem)` receives a failure, or an empty text. */
 export class Coast {
   #map;
   #fetchJson;

@@ -1,10 +1,10 @@
-/** What the chart shows, in words: for readers of the screen, and for what is pointed at. */
+/** Descriptions of the chart in words, for screen readers and for the tip at the pointer. */
 import { ageClass, FRESH } from "./ages.js";
 import { isAstray, orderWords, whereabouts } from "../wording.js";
 import { age, angle, position, speed } from "../units.js";
 import { counted, drawable, plain } from "./words.js";
 
-/** One thing's lines: its name, what it is, its motion, its age, and where it is believed to be. */
+/** The lines about one thing: its name, its kind, its motion, its age, and its believed place. */
 export function describe(name, store, now) {
   const entity = store.section("entities").get(name);
   if (entity) return describeEntity(name, entity, store.section("vehicles").get(name), now);

@@ -6,7 +6,7 @@ const RADIANS = Math.PI / 180;
 
 const reduced = (latitude) => Math.atan((1 - FLATTENING) * Math.tan(latitude * RADIANS));
 
-/** The angle between two points of a sphere, also exact where they are close. */
+/** The angle between two points of a sphere, exact even for close points. */
 function angleBetween([latitude, longitude], [latitude2, longitude2]) {
   const half = Math.sin((latitude2 - latitude) / 2) ** 2;
   const other = Math.cos(latitude) * Math.cos(latitude2) * Math.sin((longitude2 - longitude) / 2) ** 2;
@@ -14,8 +14,8 @@ function angleBetween([latitude, longitude], [latitude2, longitude2]) {
 }
 
 /**
- * Metres along the shortest way, by Lambert's formula for long lines: good to some ten metres in thousands of
- * kilometres. Between antipodes, where the formula has no value, the sphere's is returned.
+ * Metres along the shortest way, by Lambert's formula for long lines; its error is some ten metres in thousands of
+ * kilometres. Between antipodes the formula has no value, and the distance on the sphere is returned.
  */
 export function distance(a, b) {
   const [p, q] = [[reduced(a[0]), a[1] * RADIANS], [reduced(b[0]), b[1] * RADIANS]];
@@ -30,7 +30,7 @@ export function distance(a, b) {
 
 /**
  * Metres to the nearest point of an area's border, 0 within it; its edges are straight in latitude and longitude. The
- * nearest point is sought in the plane around `at`, which finds it well enough within some hundred kilometres.
+ * nearest point is computed in the plane around `at`, which is accurate enough within some hundred kilometres.
  */
 export function distanceToArea(at, ring) {
   const shrink = Math.cos(at[0] * RADIANS);
@@ -48,14 +48,14 @@ export function distanceToArea(at, ring) {
   return inside ? 0 : distance(at, [at[0] + nearest[1], at[1] + nearest[0] / shrink]);
 }
 
-/** Degrees from true north in which the shortest way begins, on the sphere of reduced latitudes. */
+/** The initial bearing of the shortest way, in degrees from true north, on the sphere of reduced latitudes. */
 export function bearing(a, b) {
   const [north, north2, east] = [reduced(a[0]), reduced(b[0]), (b[1] - a[1]) * RADIANS];
   const x = Math.cos(north) * Math.sin(north2) - Math.sin(north) * Math.cos(north2) * Math.cos(east);
   return (Math.atan2(Math.sin(east) * Math.cos(north2), x) / RADIANS + 360) % 360;
 }
 
-/** Points of the great circle between two, so that a long line is drawn where it goes. */
+/** Points of the great circle between two points, so that a long line is drawn along its real course. */
 export function arc(a, b) {
   const vectors = [a, b].map(([latitude, longitude]) => {
     const [north, east] = [latitude * RADIANS, longitude * RADIANS];
@@ -77,8 +77,8 @@ function between([a, b], angle, part) {
 export const wrapped = (longitude) => ((((longitude + 180) % 360) + 360) % 360) - 180;
 
 /**
- * The smallest window [south, west, north, east] that has all points, null of none. Its east goes beyond 180 where
- * the points are around the antimeridian.
+ * The smallest window [south, west, north, east] around all points, null without points. Its east is beyond 180 if the
+ * points lie on both sides of the antimeridian.
  */
 export function boundsOf(points) {
   if (points.length === 0) return null;

@@ -3,16 +3,16 @@ import { overlap } from "./labels.js";
 import { mercatorX, mercatorY } from "./projection.js";
 import { latitude, longitude } from "../units.js";
 
-/** The minutes that may be between two lines. */
+/** The possible steps between two lines, in minutes. */
 const STEPS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800];
 const APART = 110;
 
-/** The smallest step whose lines are far enough apart where 360 degrees are `side` pixels. */
+/** The smallest step whose lines are far enough apart if 360 degrees are `side` pixels. */
 export const stepFor = (side) => STEPS.find((step) => (step / 21600) * side >= APART) ?? STEPS.at(-1);
 
 const digitsOf = (step) => (step >= 1 ? 0 : step >= 0.1 ? 1 : 2);
 
-/** Draw the lines; their figures stand where nothing covers the chart. */
+/** Draw the lines, with their figures at uncovered parts of the chart's edges. */
 export function drawGraticule({ ctx, view, palette, lettering }, covered) {
   const step = stepFor(view.side);
   const digits = digitsOf(step);
@@ -55,7 +55,7 @@ function parallels(view, step) {
   return multiples(south * 60, Math.min(85, degrees(view.top)) * 60, step);
 }
 
-/** Degrees of the multiples of a step in minutes between two. */
+/** The multiples of a step (in minutes) between two values, in degrees. */
 function multiples(first, last, step) {
   const start = Math.ceil(first / step);
   const count = Math.max(0, Math.floor(last / step) - start + 1);

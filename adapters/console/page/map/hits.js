@@ -1,12 +1,12 @@
-/** What is under a point of the screen. */
+/** Hit testing: the thing under a point of the screen. */
 import { areaOf, isInside, lineOf } from "./projection.js";
 
-/** The nearest thing drawn there, else the smallest place around it: {name, section}, or null. */
+/** The nearest thing drawn at a point, else the smallest place around the point: {name, section}, or null. */
 export function hitAt(point, drawn, places, view, tolerance) {
   return nearest(point, drawn, tolerance) ?? smallestAround(point, places, view);
 }
 
-/** Among things as near, vehicles go first. */
+/** Among equally near things, vehicles come first. */
 function nearest([x, y], drawn, tolerance) {
   let best = null;
   for (const { name, section, at, radius, entity } of drawn) {

@@ -1,10 +1,10 @@
-/** What an operator does on the map by pointer and keys. */
+/** The operator's input on the map, by pointer and keys. */
 
 export const TOLERANCE = { mouse: 8, touch: 24 };
 
 /**
- * Tell the chart of clicks and of where the pointer is. A finger points at nothing when it has left the screen, though the
- * browser makes a mouse's events of its tap.
+ * Pass clicks and pointer positions to the chart. A lifted finger points at nothing, although the browser generates mouse
+ * events after a tap.
  */
 export function listenForPointer(map, chart) {
   let kind = "mouse";
@@ -15,7 +15,7 @@ export function listenForPointer(map, chart) {
   for (const each of ["pointerdown", "pointermove"]) map.getContainer().addEventListener(each, note, true);
   map.on("click", ({ containerPoint: { x, y }, latlng }) => {
     const isTouch = kind === "touch";
-    if (!isTouch) chart.point([x, y], [latlng.lat, latlng.lng]); // a busy browser tells of a click before it tells of the way to it
+    if (!isTouch) chart.point([x, y], [latlng.lat, latlng.lng]); // a busy browser reports a click before the motion that leads to it
     chart.click([x, y], [latlng.lat, latlng.lng], isTouch ? TOLERANCE.touch : TOLERANCE.mouse);
   });
   map.on("mousemove", ({ containerPoint: { x, y }, latlng }) => kind !== "touch" && chart.point([x, y], [latlng.lat, latlng.lng]));
@@ -31,7 +31,7 @@ export function listenForKeys(element, chart) {
   });
 }
 
-/** Do what a key says; whether that was something. */
+/** Carry out the action of a key; return whether it has one. */
 function keyDeed(event, chart) {
   const withControl = event.ctrlKey || event.metaKey;
   if (withControl) return event.key.toLowerCase() === "c" && !String(getSelection()) && Boolean(chart.copyPosition());

@@ -1,4 +1,4 @@
-/** What stands around the chart: scale, north, the pointer's position, what the chart is made of, what is pointed at. */
+/** The elements around the chart: the scale, north, the pointer's position, the sources, and the tip at the pointer. */
 import { MILE } from "../units.js";
 
 const ROUND = [1, 2, 5];
@@ -16,7 +16,7 @@ export function say(target, text) {
   target.hidden = text === "";
 }
 
-/** The longest round number that is not more than a limit. */
+/** The largest round number up to a limit. */
 export function roundBelow(limit) {
   const power = 10 ** Math.floor(Math.log10(limit));
   return power * ROUND.findLast((digit) => digit * power <= limit * (1 + 1e-9));
@@ -32,7 +32,7 @@ export class Scale {
     this.element.setAttribute("role", "img");
   }
 
-  /** Show how long things are where a pixel is some metres. */
+  /** Show the scale for a number of metres in a pixel. */
   show(metres) {
     const longest = 130 * metres;
     const texts = [this.#bar(0, longest, MILE, "nm"), this.#bar(1, longest, 1000, "km")];
@@ -52,7 +52,7 @@ export class Scale {
 
 const NORTH = "M12 1 L18 21 L12 17 L6 21 Z";
 
-/** North is up, always. */
+/** The arrow of north, which is always up. */
 export function northArrow() {
   const made = element("div", "map-north");
   const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");

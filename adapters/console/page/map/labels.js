@@ -1,4 +1,4 @@
-/** Where labels stand: the more important first, none over another. */
+/** The placement of labels: the more important first, without overlaps. */
 
 const GAP = 4;
 const CELL = 48;
@@ -15,7 +15,7 @@ const SLOTS = [
   ([w], r) => [-r * 0.7 - w, r * 0.7],
 ];
 
-/** Boxes [left, top, right, bottom], found again by where they are. */
+/** A spatial index of boxes [left, top, right, bottom]. */
 export class Boxes {
   #cells = new Map();
 
@@ -38,12 +38,12 @@ function* cellsOf([left, top, right, bottom]) {
     for (let y = Math.floor(top / CELL); y <= Math.floor(bottom / CELL); y++) yield x * 4096 + y;
 }
 
-/** Whether two boxes have a part in common. */
+/** Whether two boxes overlap. */
 export const overlap = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
 
 /**
- * Place labels: each has a `key`, `at`, `radius`, `size`, `priority` (the lowest first), and may be `centred`. What has
- * no room is left out, unless it is `needed`. A label keeps its side of last time while it can, by `slots`.
+ * Place labels: each has a `key`, `at`, `radius`, `size`, `priority` (the lowest first), and may be `centred`. A label
+ * without room is left out, unless it is `needed`. `slots` keep the last side of each label, which it reuses if it can.
  */
 export function placeLabels(labels, taken, slots, view) {
   const placed = [];

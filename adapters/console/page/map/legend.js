@@ -1,4 +1,4 @@
-/** What the chart's signs mean, folded until someone asks. */
+/** The legend: the meanings of the chart's signs, folded until the operator opens it. */
 import { element } from "./instruments.js";
 
 const SVG = "http://www.w3.org/2000/svg";

@@ -1,4 +1,4 @@
-/** Texts with a halo, each drawn once into a picture of its own: letters with outlines are slow to draw. */
+/** Texts with a halo, cached as pictures, since outlined letters are slow to draw. */
 
 const FAMILY = 'system-ui, -apple-system, "Segoe UI", "Noto Sans", sans-serif';
 const MOST = 3000;

@@ -1,6 +1,6 @@
 /**
- * The chart: what the store has, over a coast or over tiles. It is drawn only when something has changed, with all
- * where it was last known to be: nothing is interpolated.
+ * The chart: the store's content, over a coast or over tiles. It is drawn only after a change. Everything is at its last
+ * known position: nothing is interpolated.
  */
 import { Coast } from "./coast.js";
 import { describe, summary } from "./describe.js";
@@ -22,15 +22,15 @@ const { L } = globalThis;
 const EARTH = 40075016.7;
 const SECTIONS = ["places", "fences", "entities", "vehicles", "tracks", "clock"];
 const STILL = ["places", "fences"];
-const SUMMARY = 3000; // milliseconds between two texts for readers of the screen
+const SUMMARY = 3000; // milliseconds between two texts for screen readers
 const CREDIT = "Coast: Natural Earth, good to about 1 km. Not for navigation.";
-const EDGE = 20; // pixels that something chosen is at least away from the edge
+const EDGE = 20; // the least pixels between a chosen thing and the edge
 const NAMES = new Intl.Collator("en", { numeric: true });
 
 /**
- * Show a store's state on a map in an element. `select(name)` hears what is chosen on the map, null of nothing.
- * `followed(null)` and `measured(false)`, which may be left out, hear when the map itself ends following or measuring;
- * `covers()` returns elements of the page that lie over the map.
+ * Show a store's state on a map in an element. The map calls `select(name)` when the operator chooses a thing, with null
+ * for nothing. It calls `followed(null)` and `measured(false)`, which are optional, when it ends following or measuring.
+ * `covers()` returns the elements of the page that lie over the map.
  */
 export function createMap(container, store, options) {
   return new Chart(container, store, options);
@@ -76,9 +76,9 @@ class Chart {
     if (tiles) this.#openTiles(tiles);
   }
 
-  // --- what the page calls ---------------------------------------------------------------------------------------
+  // --- for the page ----------------------------------------------------------------------------------------------
 
-  /** Mark something as chosen, and bring it into view; null: nothing. */
+  /** Mark a thing as chosen, and bring it into view; null for none. */
   choose(name) {
     this.#chosen = name;
     const at = name === null ? null : this.pointOf(name);
@@ -87,7 +87,7 @@ class Chart {
     this.#surface.invalidate("moving");
   }
 
-  /** Keep something in the middle; null: nothing. */
+  /** Keep a thing in the middle; null for none. */
   follow(name) {
     this.#following = name;
     if (name !== null) this.#centreOn(name);
@@ -101,7 +101,7 @@ class Chart {
     this.#surface.invalidate("moving");
   }
 
-  /** Show all that the mission knows, and other targets where it knows of nothing; whether there is anything. */
+  /** Fit the view to the mission's places and entities, else to other targets; return whether there are any. */
   fit() {
     const bounds = boundsOf(pointsToFit(this.#store));
     if (!bounds || this.#surface.isHidden) return false;
@@ -110,18 +110,18 @@ class Chart {
     return true;
   }
 
-  /** Look from above a position, at a zoom of Leaflet's. */
+  /** Centre the view on a position, at a zoom level of Leaflet. */
   look(at, zoom) {
     this.#isFitted = true;
     this.#surface.map.setView(at, zoom, { animate: false });
   }
 
-  /** Draw anew, where the element has another size too. */
+  /** Draw anew, also after a change of the element's size. */
   redraw() {
     this.#surface.map.invalidateSize({ animate: false });
     this.#surface.invalidate();
     this.#fitFirst();
-    if (this.#hovered !== null) this.#hover(null); // what it names lies elsewhere now
+    if (this.#hovered !== null) this.#hover(null); // the named thing lies elsewhere now
   }
 
   setTheme(theme) {
@@ -133,7 +133,7 @@ class Chart {
     this.#tiles?.dress(this.#theme);
   }
 
-  /** Copy where the pointer is, or the middle where it is not on the map; returns the text. */
+  /** Copy the pointer's position, or the middle's if the pointer is not on the map; returns the text. */
   copyPosition() {
     const text = position(this.#pointer ?? this.#surface.centre);
     const told = (words) => say(this.#parts.told, words);
@@ -142,15 +142,15 @@ class Chart {
     return text;
   }
 
-  // --- what tests and readers of the screen ask ------------------------------------------------------------------
+  // --- for tests and screen readers ------------------------------------------------------------------------------
 
-  /** What is at a pixel of the map: {name, section}, or null. */
+  /** The thing at a pixel of the map: {name, section}, or null. */
   hit(x, y, tolerance = TOLERANCE.mouse) {
     this.#surface.draw();
     return hitAt([x, y], this.#drawn.hits, this.#store.section("places"), this.#surface.view, tolerance);
   }
 
-  /** The pixel [x, y] of something, null of what is nowhere. */
+  /** The pixel [x, y] of a thing, null if it has no position. */
   pointOf(name) {
     return pointOf(this.#surface.view, this.#store, name);
   }
@@ -160,14 +160,14 @@ class Chart {
     return this.#surface.view.point(position);
   }
 
-  /** What was drawn last: its things and labels, the window [south, west, north, east], zoom, and frames till now. */
+  /** The last drawing: its things and labels, the window [south, west, north, east], zoom, and the number of frames. */
   drawn() {
     this.#surface.draw();
     const { map, window, frames } = this.#surface;
     return { ...this.#drawn, window, zoom: map.getZoom(), frames };
   }
 
-  /** What the chart shows, in words. */
+  /** The chart in words. */
   summary() {
     return summary(this.#store, this.#now, this.#surface.centre);
   }
@@ -179,14 +179,14 @@ class Chart {
     for (const part of Object.values(this.#parts)) (part.element ?? part).remove?.();
   }
 
-  // --- what an operator does -------------------------------------------------------------------------------------
+  // --- the operator's input --------------------------------------------------------------------------------------
 
   click(pixel, at, tolerance) {
     if (this.#measure.on) return this.#addPoint(this.#snapped(pixel, at, tolerance));
     this.#select(this.hit(...pixel, tolerance)?.name ?? null);
   }
 
-  /** Do at the middle of the map what a click does: the keyboard's way to measure. */
+  /** Act like a click at the middle of the map, for measuring by keyboard. */
   clickMiddle() {
     if (!this.#measure.on) return false;
     this.#addPoint(this.#surface.centre);
@@ -246,7 +246,7 @@ class Chart {
     return true;
   }
 
-  /** Show or hide what the signs mean. */
+  /** Show or hide the legend. */
   toggleLegend() {
     this.#parts.legend.toggle();
   }
@@ -285,7 +285,7 @@ class Chart {
     this.#describeSoon();
   }
 
-  /** Show all at the beginning, as soon as there is something; then the operator says where to look. */
+  /** Fit the view once at the beginning, when there is something to show; afterwards the operator moves it. */
   #fitFirst() {
     if (!this.#isFitted) this.#isFitted = this.fit();
   }
@@ -304,14 +304,14 @@ class Chart {
     this.#options.select(name);
   }
 
-  /** Under a pointer that rests the map has moved on, as it does where something is followed. */
+  /** Update the pointer's position after the map has moved under it, as it does while it follows a thing. */
   #pointAgain() {
     if (!this.#pixel) return;
     const { lat, lng } = this.#surface.map.containerPointToLatLng(this.#pixel);
     this.point(this.#pixel, [lat, lng]);
   }
 
-  /** Say and draw all figures again, in other units. */
+  /** Show and draw all figures again, in other units. */
   #measureAnew() {
     this.#sayScale();
     this.#sayPosition();
@@ -319,7 +319,7 @@ class Chart {
     this.#surface.invalidate();
   }
 
-  /** The position of a thing or of a place's corner that is as near as that, else the point itself. */
+  /** The position of a thing or a place's corner within the tolerance, else the point itself. */
   #snapped(pixel, at, tolerance) {
     const { view } = this.#surface;
     const corners = [...this.#store.section("places").values()].flatMap(({ ring }) => ring);
@@ -346,7 +346,7 @@ class Chart {
     say(this.#parts.measured, this.#measure.on ? this.#measure.words() : "");
   }
 
-  /** The pointer's position, and its range and bearing from what is chosen. */
+  /** Show the pointer's position, and its range and bearing from the chosen thing. */
   #sayPosition() {
     const from = this.#chosen === null ? null : whereIs(this.#store, this.#chosen);
     const at = this.#pointer;
@@ -378,7 +378,7 @@ class Chart {
     }
   }
 
-  /** The boxes of what lies over the chart: no label is to be under it. */
+  /** The boxes of elements over the chart; labels avoid them. */
   get #covered() {
     const { left, top } = this.#parts.leaflet.getBoundingClientRect();
     const over = [...this.#parts.leaflet.querySelectorAll(".leaflet-control"), this.#parts.north, this.#parts.legend.element, ...this.#parts.foot.children, ...this.#options.covers()];
@@ -397,7 +397,7 @@ class Chart {
   }
 }
 
-/** The elements of a map, in the order in which they are read. */
+/** The elements of a map, in reading order. */
 function addParts(container) {
   container.classList.add("chart");
   const scale = new Scale();
@@ -433,7 +433,7 @@ function describeForReaders({ leaflet, summary: words, tip }) {
   leaflet.setAttribute("aria-roledescription", "chart");
   leaflet.setAttribute("aria-label", "Chart. Arrows move it, plus and minus enlarge it, Tab goes from vehicle to vehicle, Escape and Tab leave it.");
   leaflet.setAttribute("aria-describedby", words.id);
-  tip.setAttribute("aria-hidden", "true"); // the summary says it
+  tip.setAttribute("aria-hidden", "true"); // the summary has it
 }
 
 /** Show lines beside a pixel, on the side where there is room. */
@@ -447,7 +447,7 @@ function showTip(tip, lines, pixel, { width, height }) {
   tip.style.transform = `translate(${Math.max(0, Math.round(left))}px, ${Math.max(0, Math.round(top))}px)`;
 }
 
-/** The position that is drawn nearest to a pixel, null if none is as near as a tolerance. */
+/** The position drawn nearest to a pixel, null if none is within the tolerance. */
 function nearestWithin(positions, pixelOf, [x, y], tolerance) {
   let best = { position: null, distance: tolerance };
   for (const position of positions) {

@@ -1,4 +1,4 @@
-/** A way that is measured point by point, with the distance and bearing of each leg. */
+/** The measuring tool: a way of points, with the distance and bearing of each leg. */
 import { arc, bearing, distance } from "./geodesy.js";
 import { Line } from "./projection.js";
 import { angle, range } from "../units.js";
@@ -14,7 +14,7 @@ export class Measure {
     this.#pointer = null;
   }
 
-  /** The way goes on from here, the pointer's leg with it; a second click on the same point is none. */
+  /** Add a point to the way, from which the pointer's leg starts; a second click on the same point does nothing. */
   add(position) {
     if (this.#points.at(-1)?.join() !== position.join()) this.#points.push(position);
     this.#pointer = position;
@@ -29,14 +29,14 @@ export class Measure {
     this.#pointer = position;
   }
 
-  /** The legs, the one to the pointer with them: {from, to, metres, degrees}. */
+  /** The legs, including the one to the pointer: {from, to, metres, degrees}. */
   legs() {
     const isAway = this.#pointer && this.#points.length && this.#pointer.join() !== this.#points.at(-1).join();
     const points = isAway ? [...this.#points, this.#pointer] : this.#points;
     return points.slice(1).map((to, n) => ({ from: points[n], to, metres: distance(points[n], to), degrees: bearing(points[n], to) }));
   }
 
-  /** What is measured, in words. */
+  /** The measurement in words. */
   words() {
     const legs = this.legs();
     if (!legs.length) return this.#points.length ? "Click the next point." : "Click the first point to measure from.";

@@ -1,4 +1,4 @@
-/** What moves: the last pieces of tracks, planned ways, AIS targets, vehicles, what L and P say differently, labels. */
+/** The moving layer: the last pieces of tracks, planned ways, AIS targets, vehicles, differences of L and P, labels. */
 import { FRESH, LOST, OLD, OPACITY, ageClass } from "./ages.js";
 import { Boxes, placeLabels } from "./labels.js";
 import { lineOf } from "./projection.js";
@@ -8,16 +8,16 @@ import { TRIANGLE, addTurned, pathOf, shapeOf } from "./symbols.js";
 import { drawable } from "./words.js";
 
 const EARTH = 40075016.7;
-const VECTOR = 360; // seconds: what AIS targets do in six minutes, as radars show it
+const VECTOR = 360; // seconds: the length of AIS vectors, six minutes as on radars
 const RADIUS = { vehicle: 14, target: 9, diamond: 8, place: 5, dot: 2 };
-const CROWD = 300; // targets in view from which only one in each cell is drawn as more than a dot
+const CROWD = 300; // the targets in view above which only one in each cell has a symbol, the others dots
 const CELL = 22;
 const LABELLED = 120;
-const ROOMY = 110; // pixels that hold the name of most areas
+const ROOMY = 110; // pixels with room for the names of most areas
 const PRIORITY = { chosen: 0, vehicle: 1, named: 2, place: 3, fence: 4, target: 5 };
 const MARKS = ["", "▲", "■", "✖"];
 
-/** Draw all that moves; returns the things that may be hit: {name, section, at, radius}. */
+/** Draw the moving layer; return the things that may be hit: {name, section, at, radius}. */
 export function drawMoving(pen, store, tracks, { now, chosen, hovered, slots, covered }) {
   const things = inView(pen.view, store, now, chosen);
   for (const [name, chunk] of tracks.growing()) drawTrack(pen, [joined(chunk, store, name)], 1);
@@ -34,13 +34,13 @@ export function drawMoving(pen, store, tracks, { now, chosen, hovered, slots, co
   return { hits, labels: drawLabels(pen, store, things, stations, { chosen, slots, covered }) };
 }
 
-/** Join the last piece of a track with where the vehicle is now. */
+/** Join the last piece of a track with the vehicle's position. */
 function joined(chunk, store, name) {
   const at = store.section("entities").get(name)?.at;
   return at && chunk.length ? [...chunk, at] : chunk;
 }
 
-// --- what is there ---------------------------------------------------------------------------------------------
+// --- things in view --------------------------------------------------------------------------------------------
 
 function inView(view, store, now, chosen) {
   const things = [];
@@ -64,7 +64,7 @@ function inView(view, store, now, chosen) {
   return things;
 }
 
-/** In a crowd, leave one target in each cell its symbol; the others are dots where they are. */
+/** In a crowd, keep the symbol of one target in each cell; the others become dots at their positions. */
 function thin(things) {
   const crowd = things.filter(({ full }) => !full);
   const taken = new Set(things.filter(({ full }) => full).map(cellOf));
@@ -90,7 +90,7 @@ function stationsIn(view, places) {
 
 // --- symbols ---------------------------------------------------------------------------------------------------
 
-/** AIS triangles and vectors, of each age together: a thousand paths of their own are slow. */
+/** Draw AIS triangles and vectors in one path for each age: a thousand separate paths are slow. */
 function drawTargets({ ctx, view, palette }, things) {
   Object.assign(ctx, { strokeStyle: palette.ais, fillStyle: palette.aisFill });
   for (const age of [LOST, OLD, FRESH]) {
@@ -130,7 +130,7 @@ function targetPaths(view, targets) {
   return paths;
 }
 
-/** Mercator keeps angles, so a course is drawn as it is. */
+/** Mercator preserves angles, so that a course needs no correction. */
 function addVector(path, view, [x, y], { at, course, speed }) {
   const metre = view.side / EARTH / Math.cos((at[0] * Math.PI) / 180);
   const length = speed * VECTOR * metre;
@@ -140,7 +140,7 @@ function addVector(path, view, [x, y], { at, course, speed }) {
   path.lineTo(x + Math.sin(turn) * length, y - Math.cos(turn) * length);
 }
 
-/** A vehicle, or something that is only known to be there; hollow and dashed when its position is old. */
+/** Draw a vehicle or another thing with a position; hollow and dashed when the position is old. */
 function drawThing({ ctx, palette }, { at, shape, entity, heading, age }) {
   const path = pathOf(shape);
   ctx.save();
@@ -183,7 +183,7 @@ function drawLevel({ ctx, palette, lettering }, { at: [x, y], level }) {
   lettering.draw(ctx, MARKS[level], [x + 8, y - 20], "named", palette.levels[level]);
 }
 
-/** The corners that chart systems put around what is chosen; what is only pointed at has a thin circle. */
+/** Draw corners around the chosen thing, as chart systems do; a thin circle around a thing under the pointer. */
 function drawBrackets({ ctx, palette }, { at: [x, y], radius }, isChosen) {
   const half = radius + 6;
   Object.assign(ctx, { lineWidth: isChosen ? 2.5 : 1.5, strokeStyle: palette.chosen });
@@ -201,8 +201,8 @@ function drawBrackets({ ctx, palette }, { at: [x, y], radius }, isChosen) {
 // --- ways and differences --------------------------------------------------------------------------------------
 
 /**
- * A planned way: its VIA points numbered, its destination a target. The vehicle is joined to it only where it goes to
- * the first point: nothing tells which of several it has passed.
+ * Draw a planned way, with numbered VIA points and a target for its destination. The vehicle is joined to the way only
+ * while it flies to the first point: the passed points are not known.
  */
 function drawWay(pen, card, entity) {
   const way = wayOf(card);
@@ -247,7 +247,7 @@ function drawDestination({ ctx, palette }, [x, y]) {
   ctx.stroke();
 }
 
-/** Where L and P differ: a dashed ring, and a line from where L believes a thing to be; faint where it was sent elsewhere. */
+/** Mark a difference of L and P: a dashed ring, and a line from the believed place; faint if a flight explains it. */
 function drawDifference({ ctx, view, palette }, { at, entity, radius, expected }, store) {
   Object.assign(ctx, { lineWidth: expected ? 1.2 : 2, strokeStyle: expected ? palette.way : palette.differs });
   ctx.setLineDash([3, 4]);
@@ -271,7 +271,7 @@ function addLine(ctx, from, to, gap) {
   ctx.lineTo(from[0] + (to[0] - from[0]) * part, from[1] + (to[1] - from[1]) * part);
 }
 
-/** The pixel where a place or an entity is: a place's is its middle. Null of what is nowhere. */
+/** The pixel of an entity, or of a place's middle; null if it has no position. */
 export function pointOf(view, store, name) {
   const entity = store.section("entities").get(name);
   if (entity) return view.point(entity.at);
@@ -318,7 +318,7 @@ function targetLabels(things) {
   return targets.map(({ name, at, radius }) => ({ key: name, name, at, radius, font: "small", colour: "ais", priority: PRIORITY.target }));
 }
 
-/** The names of places and fences: within their upper edge, or beside those that are too small for that. */
+/** The labels of places and fences: inside at the upper edge, or beside areas too small for that. */
 function* areaLabels(view, areas, sort) {
   for (const [name, { ring }] of areas) {
     if (ring.length < 3 || !view.seesLine(lineOf(ring), 0)) continue;
@@ -330,5 +330,5 @@ function* areaLabels(view, areas, sort) {
   }
 }
 
-/** Where the name of a large area stands: near the upper edge of what is seen of it, clear of its line. */
+/** The position of a large area's name: near the upper edge of the visible part, clear of its line. */
 const shown = ([left, top, right], view) => [(Math.max(0, left) + Math.min(view.width, right)) / 2, Math.max(24, top + 18)];

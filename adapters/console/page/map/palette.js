@@ -1,6 +1,6 @@
 /**
- * The chart's colours by day and by night: Okabe and Ito's, which colour-blind people tell apart, darkened by day so
- * that lines stand out from sea and land. No colour is the only sign of anything.
+ * The chart's colours by day and by night: those of Okabe and Ito, which colour-blind people can distinguish. By day they
+ * are darker, so that lines stand out from sea and land. No meaning depends on colour alone.
  */
 export const PALETTES = {
   light: {

@@ -39,14 +39,14 @@ export function lineOf(points) {
   return line;
 }
 
-/** What part of the square is seen: `left` and `top` in pixels of the square, which is `side` pixels long. */
+/** The visible part of the square: `left` and `top` in pixels of the square, which is `side` pixels long. */
 export class View {
   constructor({ left, top, side, width, height }) {
     Object.assign(this, { left, top, side, width, height });
     this.middle = (left + width / 2) / side;
   }
 
-  /** The turns of the earth by which a thing at `x` is moved to be nearest to the middle. */
+  /** The number of turns around the earth that brings a thing at `x` nearest to the middle. */
   turns(x) {
     return Math.round(this.middle - x);
   }
@@ -69,7 +69,7 @@ export class View {
     return x >= -margin && y >= -margin && x <= this.width + margin && y <= this.height + margin;
   }
 
-  /** The pixels that a line takes from left to right and from top to bottom. */
+  /** The width and height of a line, in pixels. */
   box(line) {
     const turns = this.turns((line.west + line.east) / 2);
     return [this.x(line.west + turns), this.y(line.top), this.x(line.east + turns), this.y(line.bottom)];
@@ -80,7 +80,7 @@ export class View {
     return right >= -margin && bottom >= -margin && left <= this.width + margin && top <= this.height + margin;
   }
 
-  /** Add a line to a path; points closer than `apart` pixels to the one before are left out. */
+  /** Add a line to a path; a point closer than `apart` pixels to the one before is left out. */
   trace(path, line, apart = 0) {
     const turns = this.turns((line.west + line.east) / 2);
     const last = line.xs.length - 1;

@@ -1,4 +1,4 @@
-/** What seldom changes: graticule, places, fences, and the tracks but for their last pieces. */
+/** The still layer, which seldom changes: graticule, places, fences, and the tracks without their last pieces. */
 import { drawGraticule } from "./graticule.js";
 import { lineOf } from "./projection.js";
 import { FADED } from "./tracks.js";
@@ -12,7 +12,7 @@ export function drawStill(pen, store, tracks, covered) {
   for (const [opacity, chunks] of tracks.finished(FADED)) drawTrack(pen, chunks, opacity);
 }
 
-/** Places are outlined, dashed where L and P differ on what contains them. */
+/** Draw the outlines of places, dashed if L and P differ on the parent. */
 function drawPlaces({ ctx, view, palette }, places) {
   Object.assign(ctx, { lineWidth: 1.5, strokeStyle: palette.place, fillStyle: palette.placeFill });
   for (const { ring, differs } of places.values()) {
@@ -29,7 +29,7 @@ function drawPlaces({ ctx, view, palette }, places) {
   ctx.setLineDash([]);
 }
 
-/** Fences have ticks on the side where a vehicle may be. */
+/** Draw fences, with ticks on the permitted side. */
 function drawFences({ ctx, view, palette }, fences) {
   const path = new Path2D();
   for (const { ring } of fences.values()) {
@@ -43,7 +43,7 @@ function drawFences({ ctx, view, palette }, fences) {
   ctx.stroke(path);
 }
 
-/** The pixels of a ring, turned so that its inside is on the right hand. */
+/** The pixels of a ring, ordered so that its inside is on the right. */
 function inwards(pixels) {
   const turn = pixels.reduce((sum, [x, y], n) => {
     const [x2, y2] = pixels[(n + 1) % pixels.length];

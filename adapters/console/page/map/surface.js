@@ -1,4 +1,4 @@
-/** Leaflet's map with two canvases over it, which are drawn at the screen's next frame where something has changed. */
+/** Leaflet's map with two canvases over it; after a change they are drawn at the screen's next frame. */
 import { Lettering } from "./lettering.js";
 import { PALETTES } from "./palette.js";
 import { View } from "./projection.js";
@@ -35,13 +35,13 @@ export class Surface {
     this.invalidate();
   }
 
-  /** Have canvases drawn again, all where none is named. */
+  /** Mark canvases to be drawn again; all if none is named. */
   invalidate(...names) {
     for (const name of names.length ? names : this.#layers.keys()) this.#dirty.add(name);
     this.#frame ||= requestAnimationFrame(() => this.draw());
   }
 
-  /** Draw now what has changed. */
+  /** Draw the marked canvases now. */
   draw() {
     cancelAnimationFrame(this.#frame);
     this.#frame = 0;
@@ -58,7 +58,7 @@ export class Surface {
     this.frames++;
   }
 
-  /** What is seen now, in the pixels that Leaflet has rounded. */
+  /** The visible part, in Leaflet's rounded pixels. */
   get view() {
     const { x: width, y: height } = this.map.getSize();
     const { x: left, y: top } = this.map.getPixelBounds().min;
@@ -85,7 +85,7 @@ export class Surface {
     this.map.remove();
   }
 
-  /** Give the canvases the pixels that the screen has for them. */
+  /** Fit the canvases to the screen's resolution. */
   #fit() {
     const ratio = globalThis.devicePixelRatio || 1;
     const { x, y } = this.map.getSize();

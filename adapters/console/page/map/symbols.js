@@ -1,4 +1,4 @@
-/** The shapes of what moves, pointing up around the origin, and which of them a thing has. */
+/** The shapes of moving things, pointing up around the origin, and the choice of a thing's shape. */
 
 const polygon = (points) => (path) => {
   points.forEach(([x, y], n) => (n === 0 ? path.moveTo(x, y) : path.lineTo(x, y)));
@@ -12,7 +12,7 @@ const circle = (path, x, y, radius) => {
 
 const mirrored = (half) => [...half, ...half.toReversed().map(([x, y]) => [-x, y])];
 
-/** A vehicle's shape by the words of its kind; the first that fits. */
+/** The shapes of vehicles by the words of their kinds; the first match counts. */
 const BY_KIND = [
   [/copter|rotor|quad|hexa|heli|multirotor|vtol/i, "rotorcraft"],
   [/uuv|auv|submarine|glider|rov/i, "submarine"],

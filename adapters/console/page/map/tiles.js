@@ -1,4 +1,4 @@
-/** A chart of the operator's own, a file of PMTiles that the server gives: vector or raster, over the coast. */
+/** The operator's own chart, a file of PMTiles from the server: vector or raster, over the coast. */
 const { L, pmtiles, protomapsL } = globalThis;
 
 const VECTOR = 1;
@@ -9,7 +9,7 @@ export class Tiles {
   #header;
   #layer = null;
 
-  /** Open `{url, headers}`; null where the server has no tiles. The second value is to whom they are owed. */
+  /** Open `{url, headers}`; return the tiles and their attribution. */
   static async open(map, { url, headers }) {
     const source = new pmtiles.PMTiles(new pmtiles.FetchSource(new URL(url, location.href).href, new Headers(headers)));
     const header = await source.getHeader();
@@ -29,7 +29,7 @@ export class Tiles {
 
   #vector(theme) {
     const layer = protomapsL.leafletLayer({ url: this.#source, flavor: theme, lang: "en", attribution: "", maxDataZoom: this.#header.maxZoom });
-    layer.backgroundColor = undefined; // where there are no tiles, the coast is seen
+    layer.backgroundColor = undefined; // the coast shows through where tiles are missing
     return layer;
   }
 

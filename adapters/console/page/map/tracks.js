@@ -1,6 +1,6 @@
-/** Where vehicles were: pieces `uav0#3` of the section `tracks`, of which only a vehicle's last one grows. */
+/** The tracks of vehicles: pieces `uav0#3` of the section `tracks`; only the last piece of each vehicle grows. */
 
-/** How visible a piece is by how many there are after it: the older the fainter. */
+/** The opacity of a piece by the number of pieces after it: `[at most, opacity]`; older ones are fainter. */
 export const FADED = [[2, 0.85], [8, 0.6], [24, 0.4], [Infinity, 0.25]];
 
 export class Tracks {
@@ -11,7 +11,7 @@ export class Tracks {
     this.#chunks = chunks;
   }
 
-  /** Take in what changed; whether pieces did that are not a vehicle's last. */
+  /** Take in changed pieces; return whether others than the growing ones changed. */
   update(keys) {
     const before = this.#last;
     this.#last = lastOf(this.#chunks.keys());
@@ -26,7 +26,7 @@ export class Tracks {
     for (const [name, rank] of this.#last) yield [name, this.#chunks.get(`${name}#${rank}`)];
   }
 
-  /** The finished pieces, together with how visible they are. */
+  /** The finished pieces, grouped by opacity. */
   finished(faded) {
     const groups = faded.map(([, opacity]) => [opacity, []]);
     for (const [key, chunk] of this.#chunks) {

@@ -1,10 +1,10 @@
-/** Names and counts as the chart writes them. */
+/** The chart's form of names and counts. */
 const LONGEST = 28;
 
-/** A text on one line, without what turns the direction of writing. */
+/** A text on one line, without characters that change the writing direction. */
 export const plain = (text) => String(text).replace(/[\p{Cc}\p{Cf}\p{Zl}\p{Zp}]/gu, "\u00b7");
 
-/** A name as it may be drawn: plain, and not too long. */
+/** A name for drawing: plain, and not too long. */
 export function drawable(name) {
   const letters = [...plain(name)];
   return letters.length > LONGEST ? `${letters.slice(0, LONGEST - 1).join("")}…` : letters.join("");

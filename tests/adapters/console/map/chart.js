@@ -1,4 +1,4 @@
-/** The chart with a store of its own, which the tests give frames. */
+/** The chart with its own store, into which the tests put frames. */
 import { createMap } from "/parts/map/map.js";
 import * as geodesy from "/parts/map/geodesy.js";
 import * as words from "/parts/map/words.js";
