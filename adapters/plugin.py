@@ -479,6 +479,7 @@ Report = (
     | Elsewhere
     | Seen
 )
+"""A report on a request, a vehicle, a part of the run or another station."""
 
 # --- interfaces -------------------------------------------------------------------------------------
 

@@ -7,6 +7,7 @@ import argparse
 import json
 import re
 import sys
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -117,37 +118,51 @@ def _beside_bigrapher(ours: Kept, peer: Kept | None) -> tuple[str, str]:
     return f"{more}{peer['seconds']:.1f}{quoted}", f"{more}{peer['seconds'] / ours['seconds']:,.1f}"
 
 
-def real_bigraph_tables(kept: Kept) -> str:
-    """Lay out the real files of each repository, beside BigraphER where it ran."""
-    head = "file|states / transitions|s|MB|BigraphER's|s|MB|its time, ours = 1"
-    tables = []
-    for repository, rows in groupby(kept["rows"], key=lambda row: row["file"].partition("/")[0]):
-        lines = [(Path(row["file"]).name, *_real(row["ours"], row["bigrapher"])) for row in rows]
-        tables.append(f"**{repository}**\n\n{_table(head, lines)}")
-    said = f"Limits: {kept['limits']}.\n"
-    return "\n".join([*tables, said, machine(kept)])
+OUTCOMES = ("equal", "different", "stopped", "not read", "not run")
+"""What became of a file in BigraphER, beside ours."""
 
 
-def _real(ours: Kept, peer: Kept | None) -> tuple[str, ...]:
-    mine = (_counts(ours), f"{ours['seconds']:.2f}", f"{ours['megabytes']:.0f}")
+def real_bigraph_table(kept: Kept) -> str:
+    """Lay out the real files by repository, beside BigraphER; the results have a row for each file."""
+    head = "|".join(("repository", "files", "read", "s", "largest MB", *OUTCOMES, "stopped after, ours = 1"))
+    lines = [
+        _repository(name, list(rows))
+        for name, rows in groupby(kept["rows"], key=lambda row: row["file"].partition("/")[0])
+    ]
+    return "\n".join([_table(head, lines), f"Limits: {kept['limits']}.\n", machine(kept)])
+
+
+def _repository(name: str, rows: Sequence[Kept]) -> tuple[str, ...]:
+    ours, outcomes = [row["ours"] for row in rows], Counter(map(_outcome, rows))
+    ratios = [
+        row["bigrapher"]["seconds"] / row["ours"]["seconds"]
+        for row in rows
+        if _outcome(row) == "stopped" and not row["ours"]["why"]
+    ]
+    return (
+        name,
+        f"{len(rows)}",
+        f"{sum(run['states'] is not None for run in ours)}",
+        f"{sum(run['seconds'] for run in ours):.1f}",
+        f"{max(run['megabytes'] for run in ours):.0f}",
+        *(str(outcomes[outcome] or "") for outcome in OUTCOMES),
+        f"at least {min(ratios):.1f}" if ratios else "",
+    )
+
+
+def _outcome(row: Kept) -> str:
+    peer = row["bigrapher"]
     if peer is None:
-        return *mine, "", "", "", ""
-    its, both = f"{peer['seconds']:.2f}", not (ours["why"] or peer["why"])
+        return "not run"
     if "signal" in peer["why"]:
-        ratio = "" if ours["why"] else f"more than {peer['seconds'] / ours['seconds']:.1f}"
-        return *mine, "stopped", its, f"{peer['megabytes']:.0f}", ratio
+        return "stopped"
     if peer["states"] is None:
-        return *mine, "not read", "", "", ""
-    equal = both and _counts(ours) == _counts(peer)
-    ratio = f"{peer['seconds'] / ours['seconds']:.2g}" if both else ""
-    return *mine, "equal" if equal else _counts(peer), its, f"{peer['megabytes']:.0f}", ratio
-
-
-def _counts(run: Kept) -> str:
-    if run["states"] is None:
         return "not read"
-    counts = f"{run['states']:,} / {run['transitions']:,}"
-    return f"{counts}, not all" if run["why"] else counts
+    return "equal" if _counts(row["ours"]) == _counts(peer) else "different"
+
+
+def _counts(run: Kept) -> tuple[int | None, int | None, bool]:
+    return run["states"], run["transitions"], bool(run["why"])
 
 
 def _table(head: str, rows: Iterable[Sequence[str]]) -> str:
@@ -170,7 +185,7 @@ TABLES: dict[str, Callable[[Kept], str]] = {
     "patrol": patrol_tables,
     "wide": wide_table,
     "bigraphs": bigraph_table,
-    "real_bigraphs": real_bigraph_tables,
+    "real_bigraphs": real_bigraph_table,
 }
 
 

@@ -1,9 +1,9 @@
 """Logical-space programming: the public names of all packages, in one import.
 
-    import bigactors
-
-    report = bigactors.check(bigactors.load_mission("oil_spill"))
-    report.verdicts["race_freedom"]
+>>> import bigactors
+>>> report = bigactors.check(bigactors.load_mission("oil_spill"))
+>>> report.verdicts["race_freedom"].outcome
+<Outcome.HOLDS: 'holds'>
 
 `__init__.pyi` lists the names and their modules, also for type checkers. Importing this package loads none of these
 modules: the first use of a name loads its module.

@@ -11,7 +11,6 @@ from textwrap import dedent
 from typing import Any
 
 from adapters.recording.schemas import SCHEMAS
-from bigactors.api_pages import api_pages
 from bigactors.arguments import make_parser
 from bigactors.files import make_folder, write_text
 from bigactors.lsp.textmate import textmate_grammar
@@ -116,7 +115,6 @@ def pages() -> dict[str, str]:
         "reference/language.md": f"{GENERATED}{language_reference()}",
         "reference/recording.md": "".join(recording_page()),
         "reference/rules.md": "".join(rules_page()),
-        **{f"reference/python/{name}.md": f"{GENERATED}{page}" for name, page in api_pages().items()},
         "../editors/vscode/syntaxes/mission.tmLanguage.json": textmate_grammar(),
     }
 

@@ -1,7 +1,7 @@
 """Hypothesis strategies that generate missions, for tests of your own rules and tools (extra `strategies`).
 
-    from hypothesis import given
-    from bigactors.strategies import configurations, missions
+>>> from hypothesis import given
+>>> from bigactors.strategies import configurations, missions
 
 `configurations()` generates reachable configurations, `missions()` missions for `check`. `worlds`, `structures`,
 `programs`, `queries` and `reactions` generate their parts. Failures shrink to few entities, statements and steps.

@@ -19,7 +19,7 @@ from lexers import LEXERS
 
 project = "bigactors"
 version = release = bigactors.__version__
-extensions = ["myst_parser"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.viewcode", "python_reference"]
 
 # The sources are the repository, since pages link to files outside docs/.
 include_patterns = [
@@ -28,13 +28,22 @@ include_patterns = [
     "CONTRIBUTING.md",
     "benchmarks/README.md",
     "docs/**.md",
+    "docs/reference/python/*.txt",
 ]
+source_suffix = {".md": "markdown", ".txt": "restructuredtext"}
 root_doc = "docs/README"
 html_additional_pages = {"index": "index.html"}
 templates_path = ["templates"]
 
 myst_heading_anchors = 6
 nitpicky = True
+
+# A word in backticks is a link where it is a public name.
+default_role = "py:obj"
+nitpick_ignore_regex = [("py:.*", ".*")]
+autodoc_typehints_format = "short"
+toc_object_entries_show_parents = "hide"
+python_maximum_signature_line_length = 100
 
 html_theme = "furo"
 html_title = f"bigactors {version}"
@@ -43,9 +52,9 @@ html_show_copyright = False
 html_search_scorer = str(Path(__file__).with_name("scorer.js"))
 html_theme_options = {"navigation_with_keys": True}
 pygments_style = "friendly"
-highlight_language = "none"
+highlight_language = "python"
 
-ENTRY = re.compile(r"^- \[[^\]]+\]\(([^)#:]+)\.md\)", re.MULTILINE)
+ENTRY = re.compile(r"^- \[[^\]]+\]\(([^)#:]+)\.(?:md|txt)\)", re.MULTILINE)
 """Where a README.md lists a page."""
 
 

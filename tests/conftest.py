@@ -6,6 +6,7 @@ import signal
 import sys
 from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 sys.path.insert(0, str(Path(__file__).parent))  # for scale
@@ -18,6 +19,25 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 # Thousands of tests stay: to look through them again and again took a tenth of the time.
 gc.set_threshold(100_000, 20, 50)
+
+
+def pytest_addoption(parser):
+    """Add `--update`, the one way to renew expected outputs: look at the difference before it is committed."""
+    parser.addoption(
+        "--update", action="store_true", help="rewrite expected outputs: tests/corpus, and docs' consoles"
+    )
+
+
+@pytest.fixture
+def expect(request):
+    """Return a function that compares a text with an expected file, or rewrites the file with `--update`."""
+
+    def compare(text, path):
+        if request.config.getoption("--update"):
+            path.write_text(text, encoding="utf-8")
+        assert text == path.read_text(encoding="utf-8")
+
+    return compare
 
 
 def pytest_collection_finish() -> None:

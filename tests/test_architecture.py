@@ -1,4 +1,4 @@
-"""What the documentation says is where: every path, module and map of modules in it exists."""
+"""Every path and module that the documentation names exists."""
 
 import re
 from pathlib import Path
@@ -17,17 +17,7 @@ PATH = re.compile(rf"`((?:{ROOMS}|tests|benchmarks|docs)/[\w./]*)`")
 FILE = re.compile(r"`(\w+\.py)`")
 MODULE = re.compile(rf"`((?:{ROOMS})(?:\.\w+)+)`")
 LINK = re.compile(r"\]\((?!https?:)([^)#\s]*)(?:#([^)\s]+))?\)")
-FOLDER = re.compile(rf"`((?:{ROOMS})/[\w/]+)/`")
 WRITTEN_BY_BENCHMARKS = "benchmarks/results/"
-
-
-def maps():
-    """Return each fenced list of modules, by the last folder that is named before it."""
-    _, *parts = re.split(
-        r"^```(?:text)?$", (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8"), flags=re.MULTILINE
-    )
-    blocks = zip(parts[1::2], parts[2::2], strict=False)
-    return {FOLDER.findall(before)[-1]: re.findall(r"^\w+", block, re.MULTILINE) for before, block in blocks}
 
 
 def exists(name):
@@ -78,35 +68,6 @@ def test_every_link_of_a_page_leads_somewhere(page):
         if not target.exists() or (anchor and target.suffix == ".md" and anchor not in anchors(target)):
             dead.append(f"{path}#{anchor}")
     assert dead == []
-
-
-def test_the_maps_name_modules_of_their_folders():
-    found = maps()
-    assert list(found) == [
-        "checker/engines/fast",
-        "checker/engines/zones",
-        "checker/engines/cluster",
-        "checker/properties/temporal",
-        "bigraphs/engine",
-        "adapters/live",
-        "adapters/stations",
-        "adapters/console",
-    ]
-    missing = [
-        f"{folder}/{name}"
-        for folder, names in found.items()
-        for name in names
-        if not (ROOT / folder / f"{name}.py").exists()
-    ]
-    assert missing == []
-
-
-@pytest.mark.parametrize(
-    "folder", ["checker/engines/fast", "checker/engines/cluster", "checker/properties/temporal"]
-)
-def test_a_map_of_the_checker_names_every_module(folder):
-    modules = {path.stem for path in (ROOT / folder).glob("*.py")} - {"__init__"}
-    assert modules - set(maps()[folder]) == set()
 
 
 def test_a_decision_is_a_short_record_with_a_claim_for_its_title():

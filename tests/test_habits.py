@@ -35,11 +35,13 @@ def wheel(tmp_path_factory):
         yield built
 
 
+@pytest.mark.long
 def test_the_wheel_puts_one_name_into_site_packages(wheel):
     names = {name.split("/")[0] for name in wheel.namelist()}
     assert {name for name in names if not name.endswith(".dist-info")} == {PACKAGE}
 
 
+@pytest.mark.long
 def test_the_wheel_has_every_file_of_every_room(wheel):
     here = {
         path.relative_to(ROOT).as_posix() for room in (*ROOMS, PACKAGE) for path in (ROOT / room).rglob("*.*")

@@ -4,9 +4,12 @@ import json
 import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
+
+pytestmark = pytest.mark.long  # it builds the site
 
 ROOT = Path(__file__).parents[1]
 LOADED = re.compile(
@@ -48,6 +51,29 @@ def test_every_page_of_docs_is_in_the_site_and_leads_to_no_other_machine(site):
         loaded = ["".join(found) for found in LOADED.findall(built)]
         assert loaded
         assert [each for each in loaded if "//" in each or each.startswith("/")] == []
+
+
+@pytest.mark.parametrize(
+    ("page", "name"),
+    [
+        ("bigactors", "bigactors"),
+        ("bigraphs", "bigactors.bigraphs"),
+        ("physical", "bigactors.physical"),
+        ("plugin", "bigactors.adapters.plugin"),
+        ("strategies", "bigactors.strategies"),
+    ],
+)
+def test_each_public_name_has_its_docstring_and_source_by_its_installed_name(site, page, name):
+    built = (site / "docs" / "reference" / "python" / f"{page}.html").read_text(encoding="utf-8")
+    module = import_module(name)
+    for each in module.__all__:
+        signature, _, text = built.partition(f'id="{name}.{each}"')[2].partition("</dt>")
+        assert text.lstrip().startswith("<dd><p>"), each
+        if (
+            getattr(getattr(module, each), "__name__", "") == each
+        ):  # not another name of a type, nor a constant
+            assert 'href="../../../_modules/bigactors/' in signature, each
+    assert {path.name for path in (site / "_modules").iterdir()} == {"bigactors", "index.html"}
 
 
 def test_the_first_page_leads_to_the_landing_page(site):

@@ -1,12 +1,16 @@
 """The public API: one import, one home for each name."""
 
+import re
 import subprocess
 import sys
 from importlib import import_module
+from pathlib import Path
 
 import pytest
 
 import bigactors
+
+REFERENCE = Path(__file__).parents[2] / "docs" / "reference" / "python"
 
 
 @pytest.mark.parametrize(("name", "home"), bigactors.HOMES.items())
@@ -26,6 +30,14 @@ def test_an_unknown_name_is_an_attribute_error():
 
 def test_the_names_are_listed():
     assert set(bigactors.__all__) <= set(dir(bigactors))
+
+
+@pytest.mark.parametrize("page", ["bigactors", "bigraphs", "physical", "plugin", "strategies"])
+def test_each_public_name_is_used_in_a_session_of_the_reference(page):
+    text = (REFERENCE / f"{page}.txt").read_text(encoding="utf-8")
+    module = import_module(re.search(r"^\.\. automodule:: (\S+)$", text, re.MULTILINE)[1])
+    used = set(re.findall(r"\w+", "".join(re.findall(r"^(?:>>>|\.\.\.)( .+\n)", text, re.MULTILINE))))
+    assert [name for name in module.__all__ if name not in used] == []
 
 
 def loaded_by(code):

@@ -58,6 +58,7 @@ def test_links_of_36_nodes_cross_no_node_and_no_label(seed):
     assert crossings(crowd(36, seed))[0] == 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 def test_few_links_of_100_nodes_cross_a_node_or_a_label(seed):
     crossed, curves = crossings(crowd(100, seed))

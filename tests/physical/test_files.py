@@ -51,7 +51,6 @@ def test_what_is_not_there_is_told():
 
 OWN = {
     "bigactors/__init__.py",
-    "bigactors/api_pages.py",
     "bigactors/big/storm.py",
     "bigactors/big/storm_worker.py",
     "bigactors/build.py",

@@ -42,8 +42,8 @@ def message_of(path):
 
 
 @pytest.mark.parametrize("path", BAD, ids=lambda path: path.stem)
-def test_a_mistake_gives_the_expected_blocks(path):
-    assert message_of(path) == expected(path)
+def test_a_mistake_gives_the_expected_blocks(path, expect):
+    expect(message_of(path), path.with_suffix(".expected"))
 
 
 def test_every_code_of_the_elaborator_has_a_file_in_the_corpus():
@@ -55,9 +55,10 @@ WARNED = sorted((CORPUS / "warned").glob("*.mission"))
 
 
 @pytest.mark.parametrize("path", WARNED, ids=lambda path: path.stem)
-def test_what_is_hardly_meant_gives_the_expected_warnings(path):
+def test_what_is_hardly_meant_gives_the_expected_warnings(path, expect):
     source, mission = parse_bytes(path.name, path.read_bytes())
-    assert render_all(elaborate(mission, source, path.parent).warnings, source) + "\n" == expected(path)
+    found = render_all(elaborate(mission, source, path.parent).warnings, source)
+    expect(f"{found}\n", path.with_suffix(".expected"))
 
 
 def test_every_warning_has_a_file_in_the_corpus():

@@ -228,8 +228,10 @@ def test_a_crew_that_was_lost_altogether_is_followed_by_another(tmp_path, monkey
     initial = start("distributed_handover")
     undisturbed = LocalCrew(initial, 2)
     found = Expedition(undisturbed, initial, Options(LIMITS)).run(())
-    calls, expected = undisturbed.calls, whole(found)
-    for call in (30, 90, 5 * calls // 2):  # keeping checkpoints takes three times as many
+    expected, keeping = whole(found), LocalCrew(initial, 2)
+    kept = Keeping(str(tmp_path / "kept"), every=0.0)
+    Expedition(keeping, initial, Options(LIMITS, keeping=kept)).run(())
+    for call in (30, 90, keeping.calls * 2 // 3):  # on a busy machine there are more or fewer calls
         folder = str(tmp_path / str(call))
         crew = LocalCrew(initial, 2, dies=((call, 0),))
         monkeypatch.setattr(crew, "revive", lambda: None)  # it stays dead
