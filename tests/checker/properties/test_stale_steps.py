@@ -156,7 +156,9 @@ def test_a_mark_in_a_run_without_the_monitors_memory_is_refused():
         replay(start(LOOKS), data)
 
 
-@pytest.mark.parametrize("reduce", [{Reduction.POR}, {Reduction.SYMMETRY}, set(Reduction)], ids=str)
+@pytest.mark.parametrize(
+    "reduce", [{Reduction.POR}, {Reduction.SYMMETRY}, set(Reduction)], ids=["por", "symmetry", "both"]
+)
 def test_under_a_reduction_the_marks_are_at_the_steps_of_the_run_that_is_shown(reduce):
     mission = load(ALIKE, "")
     report = check(mission.initial, mission.properties, reduce=reduce)
