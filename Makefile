@@ -4,6 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 COMPILED := $(addprefix tests/checker/engines/fast/test_,rows.py checkpoints.py long_runs.py spill.py)
 STAMP  := $(VENV)/.installed
+USABLE := $(VENV)/.usable
 WHEEL  := .wheel
 PAGE   := adapters/console/page
 PARTS  := $(PAGE)/parts/LICENSES.txt
@@ -17,12 +18,17 @@ $(STAMP): pyproject.toml
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	touch $@
 
+$(USABLE): pyproject.toml  # what a user has; what is developed with comes with $(STAMP)
+	[ -x $(BIN)/python ] || $(PYTHON) -m venv $(VENV)
+	[ -e $(STAMP) ] || $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	touch $@
+
 parts: $(PARTS)  ## what the console's page is made of, by npm; without npm all works but the console
 
 $(PARTS): $(PAGE)/package-lock.json | $(STAMP)
 	$(BIN)/python hatch_build.py parts
 
-demo: $(STAMP)  ## check the shipped missions and draw them
+demo: $(USABLE)  ## check the shipped missions and draw them
 	$(BIN)/bigactors demo --out demo
 
 live-demo: $(STAMP) $(PARTS)  ## fly a verified mission with a simulated plane and a replayed AIS feed, into live-demo/; CONSOLE=1 serves the console
