@@ -18,9 +18,9 @@ $(STAMP): pyproject.toml
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	touch $@
 
-$(USABLE): pyproject.toml  # what a user has; what is developed with comes with $(STAMP)
+$(USABLE): pyproject.toml  # what a user installs; what is developed with comes with $(STAMP)
 	[ -x $(BIN)/python ] || $(PYTHON) -m venv $(VENV)
-	[ -e $(STAMP) ] || $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	[ -e $(STAMP) ] || $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[ais]'
 	touch $@
 
 parts: $(PARTS)  ## what the console's page is made of, by npm; without npm all works but the console
