@@ -9,7 +9,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from importlib.abc import Loader
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from pathlib import Path
@@ -20,7 +19,7 @@ ROOMS: Final = ("adapters", "bigraphs", "checker", "physical", "semantics", "spe
 PREFIX: Final = "bigactors."
 
 
-class RoomFinder(Loader):
+class RoomFinder:
     """Meta path finder and loader that maps `bigactors.ROOM.x` to `ROOM.x`."""
 
     @classmethod
@@ -32,9 +31,9 @@ class RoomFinder(Loader):
         found = find_spec(own)
         if found is None:
             return None
-        spec = ModuleSpec(
-            name, cls(), origin=found.origin, is_package=found.submodule_search_locations is not None
-        )
+        loader: Any = cls()  # a base class of importlib.abc would load twenty modules more
+        is_package = found.submodule_search_locations is not None
+        spec = ModuleSpec(name, loader, origin=found.origin, is_package=is_package)
         spec.submodule_search_locations = found.submodule_search_locations
         return spec
 

@@ -17,6 +17,7 @@ from bigactors.mistakes import Mistake
 from bigactors.recordings import Resumed, parting_of, trace_of
 from bigactors.stations import company_of
 from checker import ReplayError
+from semantics.behaviours.values import Text
 from semantics.state.parcel_serialization import parcel_json
 from semantics.state.parcels import Parcel
 from semantics.state.partition import Parting, enter, parted
@@ -161,8 +162,11 @@ def test_a_run_that_is_resumed_posts_what_had_left_and_acknowledges_what_had_ent
     mission = open_mission("distributed_handover", LIVE)
     parting = Parting("gcs0", {n: n for n in STATIONS}, {}, {})
     part = parted(mission.initial, parting)
-    (entered,) = enter(part, "gcs1", 1, Parcel("op0", ("yours",)))
-    left = (Outgoing("gcs1", 1, Parcel("op1", ("yours",))), Outgoing("gcs1", 2, Parcel("op1", ("again",))))
+    (entered,) = enter(part, "gcs1", 1, Parcel("op0", (Text("yours"),)))
+    left = (
+        Outgoing("gcs1", 1, Parcel("op1", (Text("yours"),))),
+        Outgoing("gcs1", 2, Parcel("op1", (Text("again"),))),
+    )
     before = Resumed(entered.target, 3, 0, (), (), {}, parting, left)
     journal = log(mission)
     journal.add([Posted("gcs1", 1, parcel_json(left[0].parcel)), Broke("it rains", 1.0)])
@@ -172,7 +176,7 @@ def test_a_run_that_is_resumed_posts_what_had_left_and_acknowledges_what_had_ent
         company.sharing.close()
         journal = log(mission)
         assert (journal.sent("gcs1"), journal.took("gcs1"), journal.waiting("gcs1")) == (2, 1, 2)
-        assert journal.word(("posted", "gcs1", "2")).parcel == {"Parcel": ["op1", ["again"], None]}
+        assert journal.word(("posted", "gcs1", "2")).parcel == {"Parcel": ["op1", [{"text": "again"}], None]}
         assert journal.word(("broke",)).assumption == "it rains"
         journal.close()
     with pytest.raises(Mistake, match="another station"):

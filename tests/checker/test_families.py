@@ -144,7 +144,7 @@ def test_who_is_no_member_is_a_fault_where_it_is_reached():
     found = verdict_of(checked(world(2) + family + said), "computation")
     (violation,) = found.violations
     assert violation.message == (
-        'f[uav1]: there is no member for "gcs0": the family\'s members are f[uav0], f[uav1]'
+        "f[uav1]: there is no member for gcs0: the family's members are f[uav0], f[uav1]"
     )
 
 

@@ -56,6 +56,7 @@ OWN = {
     "bigactors/build.py",
     "bigactors/commands/new.py",
     "bigactors/docs.py",
+    "bigactors/module_map.py",
     "bigactors/lsp/server.py",
     "bigactors/lsp/worker.py",
     "bigactors/notebook.py",

@@ -234,8 +234,8 @@ FORGOTTEN = {
     ),
     "whom mail wakes": ("footprints.Footprints.mail", lambda *_: (), CHANGED, "writes ('mail', 'c'"),
     "where entities are": ("footprints.Footprints.where", lambda *_: 0, CHANGED, "reads ('placement', "),
-    "that controls mark": ("marks.Marks.made", lambda *_: NOTHING, CHANGED, "marks ("),
-    "that agents pass marks on": ("marks.Marks._of", lambda *_: NOTHING, CHANGED, "keeps ("),
+    "that controls mark": ("race_footprints.Marks.made", lambda *_: NOTHING, CHANGED, "marks ("),
+    "that agents pass marks on": ("race_footprints.Marks._of", lambda *_: NOTHING, CHANGED, "keeps ("),
 }
 
 
