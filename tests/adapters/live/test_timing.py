@@ -399,6 +399,8 @@ def test_a_vehicle_that_is_slowed_breaks_the_assumption_about_its_flight(tmp_pat
     line = 1 + FLOWN[: FLOWN.index("uav0 flies")].count("\n")
     told = f"the mission says: uav0 flies at 8 m/s to 12 m/s (line {line})"
     assert flown.witness.told() == (
-        "" if flown.ended else f"the flight of uav0 to east0 takes longer than 9:40; {told}"
+        ""
+        if flown.ended
+        else f"the flight of uav0 to east0 takes longer than 9:40; {told}\nuav0 returns, as the mission ordered"
     )
     assert flown.inside("east0" if flown.ended else "west0")
