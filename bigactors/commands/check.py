@@ -150,7 +150,7 @@ def threads_of(options: Namespace) -> int | None:
 
 
 def keeping_of(options: Namespace) -> Keeping | None:
-    """Return the options on checkpoints, re-checking and hash compaction; None without any."""
+    """Return the options on checkpoints and re-checking; None without any."""
     if options.resume and options.checkpoint is None:
         raise Mistake("--resume goes on from a checkpoint", "say where it is: --checkpoint DIR")
     if options.checkpoint is None and options.paranoid is None:
