@@ -101,7 +101,8 @@ def check_queries(queries: Sequence[str], system: System) -> None:
 def answers(found: TransitionSystem, queries: Sequence[str]) -> Iterator[Decided]:
     """Yield Storm's answer to each query about an explored system; a failed query leaves the other answers."""
     texts = [translated(each, found.system) for each in queries]
-    for text, reply in zip(texts, _each_reply(texts, storm_files(found)), strict=True):
+    replies = _each_reply(texts, storm_files(found))
+    for text, reply in zip(queries, replies, strict=True):
         claim = f"storm {' '.join(text.split())}"
         if "error" in reply:
             yield Decided(claim, Outcome.INCOMPLETE, note=_without_answer(text, reply["error"], found.system))
