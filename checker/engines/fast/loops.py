@@ -5,6 +5,8 @@ from typing import Any, TypeVar
 
 import numba
 
+from checker.engines.fast.loop_cache import LoopCache
+
 Loop = TypeVar("Loop", bound=Callable[..., Any])
 
 
@@ -16,7 +18,14 @@ def njit(**options: Any) -> Callable[[Loop], Loop]:
     which never calls loops.
     """
     decorator: Any = numba.njit(**{"_nrt": False, "no_cfunc_wrapper": True} | options)
-    return decorator  # type: ignore[no-any-return]  # its result has the loop's signature
+
+    def compiled(loop: Loop) -> Loop:
+        found: Any = decorator(loop)
+        if options.get("cache"):
+            found._cache = LoopCache(loop)  # noqa: SLF001 - numba has no other way to say when a cache is void
+        return found  # type: ignore[no-any-return]  # it has the loop's signature
+
+    return compiled
 
 
 def inner(**options: Any) -> Callable[[Loop], Loop]:

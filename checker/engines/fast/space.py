@@ -83,7 +83,10 @@ class Space:
 
     ORIGINS: type[OriginPages] = Rising
     PLAIN = 2
-    """The greatest width in words of rows that are not tree-compressed."""
+    """The greatest width in words of rows that are never tree-compressed."""
+
+    COMPRESSED_FROM = 1 << 15
+    """The number of wide rows from which they are tree-compressed: the loops for it take seconds to compile."""
 
     def __init__(
         self,
@@ -184,6 +187,7 @@ class Space:
             self._advance_by(self.choosing, until)
             return
         while self.expanded < until:
+            self._compress()
             if self.exchanging is None:
                 self.slices.advance(until if end is None else end)
             else:
@@ -202,6 +206,7 @@ class Space:
     def _advance_by(self, choosing: "Choosing", until: int) -> None:
         """Expand rows until row `until`, following ample sets."""
         while self.state[AT] < until:
+            self._compress()
             new = 2 * len(self.batch.steps)
             self._make_room(new)
             choosing.paths.reserve(self.rows.room)
@@ -450,10 +455,24 @@ class Space:
         self.packing = self.packing.extended(sizes)
         if self.packing.holds(sizes):
             return
-        old = self.packing
-        new = self._packed(columns.room(self.learner.varying), old.words)
+        self._repack(self._packed(columns.room(self.learner.varying), self.packing.words))
+
+    def _compress(self) -> None:
+        """Compress the rows once there are many; the batch must hold no gathered rows."""
+        if self.rows.folded is None and self._is_compressed(self.packing):
+            self._repack(self.packing)
+            self._see()
+
+    def _is_compressed(self, where: Packing) -> bool:
+        """Return whether rows of a packing are tree-compressed; rows that once were stay so."""
+        wide = where.words > self.PLAIN
+        return wide and (self.rows.folded is not None or self.size >= self.COMPRESSED_FROM)
+
+    def _repack(self, new: Packing) -> None:
+        """Store the rows in another packing, compressed if they are wide and many."""
         self.pipeline.drop()
-        self.rows.repack(self.size, shifts(old, new), new.words, fold=new.words > self.PLAIN)
+        moves = shifts(self.packing, new)
+        self.rows.repack(self.size, moves, new.words, fold=self._is_compressed(new))
         self._pack_as(new, len(self.batch.hashes))
         self._rebuild(len(self.table.room))
 

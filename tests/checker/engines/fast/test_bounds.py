@@ -102,6 +102,7 @@ def test_searches_go_on_from_every_size(tmp_path, name):
 @pytest.mark.parametrize("name", UNTIMED)
 def test_searches_of_folded_rows_go_on_from_every_size(tmp_path, monkeypatch, name, shallow):
     monkeypatch.setattr(space.Space, "PLAIN", 1)
+    monkeypatch.setattr(space.Space, "COMPRESSED_FROM", 0)
     monkeypatch.setattr(tree_compression, "FIRST", 4)
     monkeypatch.setattr(tree_compression, "SHALLOW", shallow)
     mission = load_mission(MISSIONS / f"{name}.mission")

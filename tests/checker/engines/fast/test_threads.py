@@ -44,6 +44,7 @@ def small_slices(monkeypatch):
 def kept(request, monkeypatch):
     """Let rows be kept as they are, or fold them all into pieces whose room grows."""
     monkeypatch.setattr(space.Space, "PLAIN", request.param)
+    monkeypatch.setattr(space.Space, "COMPRESSED_FROM", 0)
     monkeypatch.setattr(tree_compression, "FIRST", 4)
 
 
@@ -81,6 +82,7 @@ def test_generated_missions_are_explored_alike_by_any_number_of_threads(initial,
     limits = Limits(configurations=300)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(space.Space, "PLAIN", plain)
+        patch.setattr(space.Space, "COMPRESSED_FROM", 40)
         assert seen(initial, 3, limits=limits) == seen(initial, 1, limits=limits)
 
 
@@ -106,6 +108,7 @@ def fleet(uavs):
 def test_wide_missions_are_explored_alike_by_any_number_of_threads(monkeypatch, configurations):
     """Most pieces of a row are met by slices before they have a number: they get it where the slices are stored."""
     monkeypatch.setattr(tree_compression, "SHALLOW", 1)
+    monkeypatch.setattr(space.Space, "COMPRESSED_FROM", 200)
     limits = Limits(configurations=configurations)
     alone = seen(fleet(12), 1, limits=limits)
     assert configurations == 40 or len(alone[-1][1]) > 2  # nodes: by then rows are folded twice

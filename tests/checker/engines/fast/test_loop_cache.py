@@ -1,0 +1,116 @@
+"""Compiled loops are cached, but never those of other code than the present."""
+
+import pickle
+import subprocess
+import sys
+from importlib import import_module
+
+import pytest
+
+from checker.engines.fast import loop_cache
+from checker.engines.fast.loop_cache import ENGINES, LoopCache, stamp
+
+LOOPS = "from checker.engines.fast.loops import"
+KERNEL = f"""\
+{LOOPS} njit
+from checker.engines.fast import (
+    sizes,
+)
+from semantics.times import LATE
+"""
+CALLER = """\
+from checker.engines.fast.loops import njit
+from {home} import step
+
+@njit(cache=True)
+def walk(x):
+    return step(x)
+"""
+
+CALLEE = """\
+from checker.engines.fast.loops import inner
+
+@inner(cache=True)
+def step(x):
+    return x + {more}
+"""
+
+
+@pytest.fixture
+def engines(tmp_path):
+    """Return a package of three engines' modules: a loop, a constant that it imports, and code that is not compiled."""
+    folder = tmp_path / "checker" / "engines"
+    (folder / "fast").mkdir(parents=True)
+    texts = {
+        "fast/kernel.py": KERNEL,
+        "fast/sizes.py": "WORD = 64\n",
+        "fast/explorer.py": "from checker.engines.fast.kernel import walk\n",
+    }
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    (tmp_path / "semantics").mkdir()
+    (tmp_path / "semantics" / "times.py").write_text("LATE = 1\n", encoding="utf-8")
+    stamp.cache_clear()
+    yield folder
+    stamp.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("name", "voids"),
+    [
+        ("checker/engines/fast/kernel", True),
+        ("checker/engines/fast/sizes", True),
+        ("checker/engines/fast/explorer", False),
+        ("semantics/times", True),
+    ],
+)
+def test_the_cache_is_void_when_what_is_compiled_with_loops_changes(engines, name, voids):
+    before = stamp(engines)
+    with (engines.parents[1] / f"{name}.py").open("a", encoding="utf-8") as opened:
+        opened.write("# changed\n")
+    stamp.cache_clear()
+    assert (stamp(engines) != before) == voids
+
+
+def test_every_module_with_loops_is_in_the_stamp():
+    compiled = {path.relative_to(ENGINES.parents[1]).as_posix() for path in loop_cache._compiled(ENGINES)}
+    engines = ("fast/kernel", "fast/table", "fast/columns", "zones/kernel", "cluster/kernel")
+    assert {f"checker/engines/{name}.py" for name in engines} <= compiled
+    assert "semantics/timing/actor_clocks.py" in compiled
+    assert "checker/engines/fast/space.py" not in compiled
+
+
+def test_a_changed_inner_loop_of_another_file_is_compiled_anew(tmp_path, monkeypatch):
+    """numba alone would go on with the old inner loop, since the file of the outer one is the same."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    folder = tmp_path / "checker" / "engines"
+    folder.mkdir(parents=True)
+    (folder / "loop_cache_caller.py").write_text(CALLER.format(home="loop_cache_callee"), encoding="utf-8")
+    program = (
+        "import sys; from pathlib import Path; from checker.engines.fast import loop_cache; "
+        "loop_cache.ENGINES = Path(sys.argv[1]); sys.path.insert(0, sys.argv[1]); "
+        "import loop_cache_caller; print(loop_cache_caller.walk(1))"
+    )
+    found = []
+    for more in (1, 2):
+        (folder / "loop_cache_callee.py").write_text(CALLEE.format(more=more), encoding="utf-8")
+        line = [sys.executable, "-B", "-c", program, str(folder)]
+        ran = subprocess.run(line, check=True, capture_output=True, text=True)
+        found.append(int(ran.stdout))
+    assert found == [2, 3]
+
+
+def test_an_index_of_modules_that_are_gone_is_empty(tmp_path, monkeypatch):
+    """As after an update that renamed a module: the index of the old version is still in the same place."""
+    monkeypatch.setattr("numba.core.config.CACHE_DIR", str(tmp_path))
+    loop = import_module("checker.engines.fast.bits").__dict__
+    function = next(each.py_func for each in loop.values() if hasattr(each, "py_func"))
+    found = LoopCache(function)._cache_file
+    found.save("key", b"data")
+    assert found.load("key") == b"data"
+    with open(found._index_path, "wb") as opened:
+        pickle.dump(found._version, opened)
+        opened.write(b"\x80\x04cchecker.engines.fast.long_gone\nModel\n.")
+    assert found.load("key") is None
+    found.save("key", b"new")
+    assert found.load("key") == b"new"
