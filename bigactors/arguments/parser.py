@@ -1,12 +1,13 @@
-"""The argument parser: argparse with the error messages of bigactors."""
+"""The argument parser: argparse with the error messages of bigactors, and the module of a command."""
 
 import argparse
 import re
 import textwrap
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import NoReturn
+from collections.abc import Iterator
+from importlib import import_module
+from typing import NoReturn, Protocol, cast
 
+from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 
 
@@ -68,20 +69,24 @@ class Parser(argparse.ArgumentParser):
         raise Mistake(message, f"{self.prog} --help shows what can be written")
 
 
-@dataclass(frozen=True, slots=True)
-class Command:
-    """One command.
+class Command(Protocol):
+    """The module of a command.
 
     Attributes:
-        name: Its name; its module in `bigactors.commands` has the same name.
-        summary: Its purpose, for the list of commands.
-        description: Its purpose, for its own help.
-        examples: Example command lines.
-        fill: Adds its arguments and options.
+        DESCRIPTION: Its purpose, for its help.
+        EXAMPLES: Example command lines, for its help.
     """
 
-    name: str
-    summary: str
-    description: str
-    examples: tuple[str, ...]
-    fill: Callable[[Parser], None]
+    DESCRIPTION: str
+    EXAMPLES: tuple[str, ...]
+
+    def add_arguments(self, parser: Parser) -> None:
+        """Add its arguments and options."""
+
+    def run(self, options: argparse.Namespace) -> Exit:
+        """Do its work, and return the exit code."""
+
+
+def command_of(name: str) -> Command:
+    """Return a command; its module is loaded on request."""
+    return cast("Command", import_module(f"bigactors.commands.{name.replace('-', '_')}"))

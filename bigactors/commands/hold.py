@@ -1,15 +1,48 @@
 """`bigactors hold`: order a vehicle of a running mission, or all, to stay in place."""
 
+from __future__ import annotations
+
 import time
 from argparse import Namespace
 from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Final
 
-from adapters.live.operator_socket import Fates, fates, order
-from adapters.live.state import Fate
-from bigactors.commands.say import check_texts, heard_at
+from bigactors.arguments.options import add_socket, add_speaker
+from bigactors.arguments.parser import Parser
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
+
+if TYPE_CHECKING:
+    from adapters.live.operator_socket import Fates
+
+ORDER: Final = """\
+It is told at once, and the mission commands it no more until `bigactors give-back VEHICLE`: what agents ask of it
+stays pending, all else goes on, and nothing that it does is an arrival. A vehicle that a pilot or a fail-safe has taken
+over is overruled only by its own name. One that is not heard is told as soon as it is; one that obeys another station
+is ordered there. The answer of the vehicle is awaited for 10 s: the exit code is 0 once it shows that it does it, 1 if
+it refuses, and 3 if neither is known. What is refused is told again until it is done, and the run says when."""
+"""The paragraph of help that `hold` and `return` share."""
+
+DESCRIPTION: Final = f"""\
+Order a vehicle to stay where it is, as well as it can: a plane circles.
+{ORDER}"""
+
+EXAMPLES: Final = ("bigactors hold uav0", "bigactors hold --all --by Ana")
+
+
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments of `bigactors hold`, and of `return`."""
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument("vehicle", metavar="VEHICLE", nargs="?", help="a vehicle of the running mission")
+    which.add_argument(
+        "--all",
+        action="store_true",
+        help="every vehicle that this station commands, but for those that others have taken over",
+    )
+    add_speaker(parser)
+    add_socket(parser)
+
 
 WAIT = 10.0
 """Seconds within which vehicles should confirm an order."""
@@ -20,6 +53,9 @@ LOOK = 0.25
 
 def run(options: Namespace) -> Exit:
     """Give the order, and print its outcome; also runs `return`."""
+    from adapters.live.operator_socket import order
+    from bigactors.sockets import check_texts, heard_at
+
     what, vehicle = options.command, options.vehicle
     check_texts("a vehicle", vehicle or "", options.by)
     refusal, left_out, notes = heard_at(options.socket, lambda path: order(path, what, vehicle, options.by))
@@ -33,6 +69,9 @@ def run(options: Namespace) -> Exit:
 
 def _awaited(socket: str | None, vehicle: str | None, left_out: Iterable[str]) -> Fates:
     """Return the outcomes of an order once all vehicles have confirmed or refused it, or after the timeout."""
+    from adapters.live.operator_socket import fates
+    from bigactors.sockets import heard_at
+
     until = time.monotonic() + WAIT
     while True:
         known = heard_at(socket, fates)
@@ -45,11 +84,15 @@ def _awaited(socket: str | None, vehicle: str | None, left_out: Iterable[str]) -
 
 
 def _is_settled(fate: str) -> bool:
+    from adapters.live.state import Fate
+
     return fate in (Fate.CONFIRMED, Fate.REFUSED)
 
 
 def _concluded(found: Fates) -> Exit:
     """Print the outcomes of an order, and return the exit code."""
+    from adapters.live.state import Fate
+
     for line in _lines(found):
         say(line)
     became = {fate for fate, _ in found.values()}
@@ -59,6 +102,8 @@ def _concluded(found: Fates) -> Exit:
 
 
 def _lines(found: Fates) -> Iterator[str]:
+    from adapters.live.state import Fate
+
     for name, (fate, words) in sorted(found.items()):
         again = "; it is told again until it does" if fate == Fate.REFUSED else ""
         later = "" if _is_settled(fate) else "; the run says when it is"
