@@ -19,12 +19,13 @@ __all__ = ["make_parser", "parse_arguments", "parser_of"]
 
 BEGINNING: Final = """\
 examples:
-  bigactors check oil_spill                  decide on a mission that ships
-  bigactors show oil_spill                   draw its first configuration
-  bigactors new patrol                       write one of your own
-  bigactors check --watch patrol.mission     check it whenever it is saved
+  bigactors check oil_spill                  check a mission that ships
+  bigactors show oil_spill                   draw its initial configuration
+  bigactors new patrol                       write your first mission
+  bigactors check --watch patrol.mission     check it at every save
 
-bigactors COMMAND --help describes a command, with examples. FILE is a mission file or the name of one that ships."""
+bigactors COMMAND --help describes a command, with examples. FILE is a mission file, or the name of a mission that
+ships."""
 
 GONE: Final = {
     "bigactors check --hash-compact": "it is gone, since a configuration takes some 24 bytes: --max-memory SIZE "

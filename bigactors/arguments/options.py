@@ -14,18 +14,24 @@ exit codes:
   3  incomplete: a bound was reached or the machine failed; nothing is decided beyond it
   4  a bug of bigactors
 
-With several missions the gravest code counts: 4, then 2, 1, 3, 0."""
+For several missions the gravest code counts: 4, then 2, 1, 3, 0."""
 
 MISSION: Final = "a mission file, or the name of a mission that ships with bigactors, such as oil_spill"
 
 
 def add_variation(parser: Parser) -> None:
     """Add the options that replace parts of a mission."""
-    group = parser.add_argument_group("replace what the mission says")
+    group = parser.add_argument_group("replace parts of the mission")
     group.add_argument(
-        "--scheduler", choices=("program_order", "unordered", "fcfs"), help="which request is served next"
+        "--scheduler",
+        choices=("program_order", "unordered", "fcfs"),
+        help="the order in which requests are served (default: the mission's)",
     )
-    group.add_argument("--control", choices=("atomic", "timed"), help="whether control takes time")
+    group.add_argument(
+        "--control",
+        choices=("atomic", "timed"),
+        help="whether a control is one step (atomic) or takes time (timed; default: the mission's)",
+    )
     add_source(group)
 
 
@@ -49,14 +55,15 @@ def add_foreign_names(parser: Parser) -> None:
         action="append",
         default=[],
         type=identity,
-        help="the name of a source in a recording by other programs: mavlink:1=uav0, mmsi:244660274=drifter0",
+        help="the name in the mission of a source in a recording by other programs, such as mavlink:1=uav0 or "
+        "mmsi:244660274=drifter0; may be repeated",
     )
 
 
 def add_speaker(parser: Parser) -> None:
     """Add the option for the name of the user who speaks to a running mission."""
     parser.add_argument(
-        "--by", metavar="NAME", default=_login(), help="who says so, as it is recorded (default: your login)"
+        "--by", metavar="NAME", default=_login(), help="your name in the recording (default: your login)"
     )
 
 
@@ -76,27 +83,29 @@ def add_socket(parser: Parser) -> None:
         "--socket",
         metavar="FILE",
         type=named,
-        help="where the mission listens (default: the only one that runs)",
+        help="the socket of the running mission (default: that of the only one)",
     )
 
 
-def add_serving(parser: Parser) -> None:
+def add_serving(parser: argparse._ActionsContainer) -> None:
     """Add the options for the console's map and its security."""
     parser.add_argument(
         "--tiles",
         metavar="FILE",
         type=named,
-        help="a map to draw under the console's chart, as PMTiles (vector tiles of the Protomaps schema, or pictures)",
+        help="a background map for the console, as PMTiles: vector tiles of the Protomaps schema, or pictures "
+        "(default: none)",
     )
     parser.add_argument(
         "--tls",
         metavar=("CERT", "KEY"),
         nargs=2,
         type=named,
-        help="serve the console by https, with this certificate and its key (PEM)",
+        help="serve the console by HTTPS, with this certificate and its key (PEM)",
     )
     parser.add_argument(
         "--insecure",
         action="store_true",
-        help="let the console listen for other machines without --tls: whoever reads the network can act",
+        help="let other machines reach the console without --tls: everybody on the network can then read its "
+        "token",
     )

@@ -39,7 +39,7 @@ def _lines(text: str) -> Iterator[str]:
 
 
 def _wrapped(line: str, width: int) -> list[str]:
-    column = re.match(r" +\S+(?: \S+)*  +", line)
+    column = re.match(r" +\S+(?: \S+)*  +", line) or re.match(r" +(?=\S)", line)
     further = " " * min(column.end() if column else 0, width // 2)
     return textwrap.wrap(
         line, width, subsequent_indent=further, break_long_words=False, break_on_hyphens=False
@@ -60,7 +60,8 @@ class Parser(argparse.ArgumentParser):
             choices=("auto", "always", "never"),
             metavar="WHEN",
             default=argparse.SUPPRESS,
-            help="always, never or auto (default): a terminal unless NO_COLOR is set, a pipe if FORCE_COLOR is",
+            help="colour the output: always, never or auto (default: terminals, without NO_COLOR, and pipes with "
+            "FORCE_COLOR)",
         )
         self.color = False  # since Python 3.14 argparse colours help, and so would the pages of docs/
 

@@ -19,7 +19,11 @@ EXAMPLES: Final = ("bigactors demo --out demo",)
 def add_arguments(parser: Parser) -> None:
     """Add the arguments of `bigactors demo`."""
     parser.add_argument(
-        "--out", metavar="DIR", type=named, default="demo", help="where pictures and traces go (default demo)"
+        "--out",
+        metavar="DIR",
+        type=named,
+        default="demo",
+        help="the folder for pictures and traces (default: demo)",
     )
 
 

@@ -36,46 +36,54 @@ def add_arguments(parser: Parser) -> None:
     """Add the arguments of `bigactors detect`."""
     parser.add_argument("source", metavar="SOURCE", type=named, help="a folder, a video or a GeoTIFF")
     parser.add_argument(
-        "--fov", metavar="DEGREES", type=degrees, default=60.0, help="horizontal field of view (default: 60)"
+        "--fov",
+        metavar="DEGREES",
+        type=degrees,
+        default=60.0,
+        help="the horizontal field of view (default: 60)",
     )
     parser.add_argument(
         "--mount",
         metavar="PITCH[,YAW[,ROLL]]",
         type=mount,
         default=(-90.0, 0.0, 0.0),
-        help="the camera's angles to the vehicle: -90 (default) looks down, --mount=-60 30° forward of that",
+        help="the camera's angles to the vehicle, in degrees: -90 (default) looks down, --mount=-60 looks 30° "
+        "forward of that",
     )
     parser.add_argument(
         "--level",
         action="store_true",
-        help="a gimbal holds it level: the vehicle's roll and pitch play no part",
+        help="ignore the vehicle's roll and pitch: a gimbal holds the camera level",
     )
     parser.add_argument(
         "--every",
         metavar="SECONDS",
         type=seconds,
         default=1.0,
-        help="take a video's frame every so often (default: 1)",
+        help="the time between two frames of a video (default: 1)",
     )
     parser.add_argument(
         "--detector",
         metavar="NAME",
         type=named,
-        help="a detector of your own: MODULE:NAME of a function, or the name of an installed one",
+        help="a function as MODULE:NAME, or the name of an installed detector (default: the detector of slicks)",
     )
     _add_results(parser)
 
 
 def _add_results(parser: Parser) -> None:
-    parser.add_argument("--kind", default="OilSpill", help="what is found (default: OilSpill)")
+    parser.add_argument("--kind", default="OilSpill", help="the kind of the regions (default: OilSpill)")
     parser.add_argument(
-        "--name", default="oilSpill", help="what it is called, with a number (default: oilSpill)"
+        "--name", default="oilSpill", help="the name of the regions, before a number (default: oilSpill)"
     )
     parser.add_argument(
         "--output", metavar="FILE", type=named, help="write the polygons as GeoJSON (RFC 7946)"
     )
     parser.add_argument(
-        "--pictures", metavar="FOLDER", type=named, help="draw what was found over each frame, as PNG, there"
+        "--pictures",
+        metavar="FOLDER",
+        type=named,
+        help="draw the regions over each frame, as PNG, into this folder",
     )
 
 

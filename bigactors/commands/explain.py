@@ -9,7 +9,7 @@ from bigactors.mistakes import Mistake
 from bigactors.terminal import say
 
 DESCRIPTION: Final = """\
-Say what a diagnostic code or a word of a report means, and what to do about it."""
+Print the meaning of a diagnostic code or of a word of a report, and the remedy."""
 
 EXAMPLES: Final = ("bigactors explain LS201", "bigactors explain stale-observation race", "bigactors explain")
 
@@ -20,7 +20,7 @@ def add_arguments(parser: Parser) -> None:
         "code",
         nargs="*",
         metavar="CODE",
-        help="a code such as LS201, or a word of a report such as stale-observation; without it all are listed",
+        help="a code such as LS201, or a word of a report such as stale-observation (default: list all)",
     )
 
 

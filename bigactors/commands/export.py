@@ -17,10 +17,9 @@ if TYPE_CHECKING:
     from specs.elaboration import ElaboratedMission
 
 DESCRIPTION: Final = """\
-Write what can be reached of a mission with times as a timed automaton, for a second opinion: --format tchecker
-for TChecker (github.com/ticktac-project/tchecker), --format uppaal for UPPAAL (uppaal.org), as XML. With
---property, the name of a deadline or `endurance`, an observer is part of it: the location `wrong` is reachable
-exactly if the property is violated.
+Write the reachable part of a mission with times as a timed automaton, for a second opinion: --format tchecker for
+TChecker (github.com/ticktac-project/tchecker), --format uppaal for UPPAAL (uppaal.org), as XML. With --property, the
+automaton contains an observer: its location `wrong` is reachable exactly if the property is violated.
 
   tck-reach -a covreach -l wrong patrol.tck     REACHABLE true: it is violated
   verifyta patrol.xml                           Formula is satisfied: it holds"""
@@ -35,13 +34,20 @@ def add_arguments(parser: Parser) -> None:
     """Add the arguments of `bigactors export`."""
     parser.add_argument("file", metavar="FILE", help=MISSION)
     parser.add_argument(
-        "--format", choices=("tchecker", "uppaal"), required=True, help="the language that it is written in"
+        "--format", choices=("tchecker", "uppaal"), required=True, help="the language of the automaton"
     )
     parser.add_argument(
-        "--property", metavar="NAME", type=named, help="label where this deadline, or endurance, is violated"
+        "--property",
+        metavar="NAME",
+        type=named,
+        help="observe this property: the name of a deadline, or `endurance` (default: none)",
     )
     parser.add_argument(
-        "--out", metavar="FILE", type=named, default="-", help="where it goes (default -, standard output)"
+        "--out",
+        metavar="FILE",
+        type=named,
+        default="-",
+        help="the file that is written (default: -, standard output)",
     )
     add_variation(parser)
 

@@ -8,9 +8,8 @@ from bigactors.exits import Exit, worst
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, say_text, tell
 
-DESCRIPTION: Final = (
-    "Rewrite mission files in the canonical layout, their comments kept. What does not parse is left alone."
-)
+DESCRIPTION: Final = """\
+Rewrite mission files in the canonical layout, with their comments. A file with a syntax error stays as it is."""
 
 EXAMPLES: Final = ("bigactors fmt oil_spill.mission", "bigactors fmt --check specs/missions/*.mission")
 
@@ -19,8 +18,8 @@ def add_arguments(parser: Parser) -> None:
     """Add the arguments of `bigactors fmt`."""
     parser.add_argument("files", nargs="+", metavar="FILE", help="a mission file")
     way = parser.add_mutually_exclusive_group()
-    way.add_argument("--check", action="store_true", help="write nothing; exit 1 if a file would change")
-    way.add_argument("--stdout", action="store_true", help="print the result instead of writing it")
+    way.add_argument("--check", action="store_true", help="write nothing; exit code 1 if a file would change")
+    way.add_argument("--stdout", action="store_true", help="print the formatted text instead of writing it")
 
 
 def run(options: Namespace) -> Exit:

@@ -11,10 +11,12 @@ from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
 
 DESCRIPTION: Final = """\
-Let a running mission command a vehicle again that a pilot, another station, a fail-safe, a reboot or an operator's
-order (hold, return) has taken over, or that has refused a command. What it was told before it is told anew, in
-whatever mode it is: look first. A vehicle on an unsigned link that sends from another address than before is believed
-there only once you say so by --at; was it taken over, it stays so until it is given back."""
+Let a running mission command a vehicle again after a take-over (by a pilot, another station, a fail-safe, a reboot or
+an operator's order hold or return), or after a refused command. The mission sends its last command again, in whatever
+mode the vehicle is: look first.
+
+With --at, accept another address of a vehicle on an unsigned link. A vehicle that was taken over stays so until it is
+given back without --at."""
 
 EXAMPLES: Final = ("bigactors give-back uav0", "bigactors give-back uav0 --at 192.168.1.7:14555")
 
@@ -26,7 +28,8 @@ def add_arguments(parser: Parser) -> None:
         "--at",
         metavar="HOST:PORT",
         type=named,
-        help="do not command it again, but believe it there from now on: it is silent where it was heard before",
+        help="accept the vehicle at this address from now on, instead of its silent old one, and do not command "
+        "it again",
     )
     add_speaker(parser)
     add_socket(parser)

@@ -17,15 +17,17 @@ if TYPE_CHECKING:
     from adapters.live.operator_socket import Fates
 
 ORDER: Final = """\
-It is told at once, and the mission commands it no more until `bigactors give-back VEHICLE`: what agents ask of it
-stays pending, all else goes on, and nothing that it does is an arrival. A vehicle that a pilot or a fail-safe has taken
-over is overruled only by its own name. One that is not heard is told as soon as it is; one that obeys another station
-is ordered there. The answer of the vehicle is awaited for 10 s: the exit code is 0 once it shows that it does it, 1 if
-it refuses, and 3 if neither is known. What is refused is told again until it is done, and the run says when."""
+The order is sent at once. From then on the mission does not command the vehicle until `bigactors give-back VEHICLE`:
+requests to it stay pending, and none of its positions is an arrival. The rest of the mission goes on. `--all` leaves
+out vehicles that a pilot or a fail-safe has taken over; an order by name overrules them. A silent vehicle gets the
+order as soon as it is heard. A vehicle of another station is ordered at that station.
+
+The command waits 10 s for the vehicle. Its exit code is 0 if the vehicle obeys, 1 if it refuses, and 3 if neither is
+known. A refused order is sent again until the vehicle obeys, and the run then prints a line."""
 """The paragraph of help that `hold` and `return` share."""
 
 DESCRIPTION: Final = f"""\
-Order a vehicle to stay where it is, as well as it can: a plane circles.
+Order a vehicle to hold its position; a plane circles.
 {ORDER}"""
 
 EXAMPLES: Final = ("bigactors hold uav0", "bigactors hold --all --by Ana")
@@ -38,7 +40,7 @@ def add_arguments(parser: Parser) -> None:
     which.add_argument(
         "--all",
         action="store_true",
-        help="every vehicle that this station commands, but for those that others have taken over",
+        help="every vehicle that this station commands, except those that others have taken over",
     )
     add_speaker(parser)
     add_socket(parser)

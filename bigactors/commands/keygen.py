@@ -10,8 +10,8 @@ from bigactors.exits import Exit
 from bigactors.terminal import say
 
 DESCRIPTION: Final = """\
-Write a new Ed25519 private key into FILE (PEM), readable by its owner only, and the public key into FILE.pub. It has
-no passphrase: keep it where verdicts are reached, and nowhere else."""
+Write a new Ed25519 private key into FILE (PEM), readable by its owner only, and the public key into FILE.pub. The
+private key has no passphrase: keep it only on the machine that signs verdicts."""
 
 EXAMPLES: Final = (
     "bigactors keygen release.key",
@@ -23,7 +23,10 @@ EXAMPLES: Final = (
 def add_arguments(parser: Parser) -> None:
     """Add the arguments of `bigactors keygen`."""
     parser.add_argument(
-        "file", metavar="FILE", type=named, help="where the key is written; FILE.pub is beside it"
+        "file",
+        metavar="FILE",
+        type=named,
+        help="the file of the private key; the public key goes into FILE.pub",
     )
 
 

@@ -11,8 +11,8 @@ from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 
 DESCRIPTION: Final = """\
-Speak the Language Server Protocol over the standard input and output. An editor starts this; docs/how-to/editors.md
-says how to set it up."""
+Speak the Language Server Protocol over standard input and output. An editor starts this command;
+docs/how-to/editors.md shows the configuration of editors."""
 
 EXAMPLES: Final = ("bigactors lsp",)
 
@@ -20,7 +20,7 @@ EXAMPLES: Final = ("bigactors lsp",)
 def add_arguments(parser: Parser) -> None:
     """Add the arguments of `bigactors lsp`."""
     parser.add_argument(
-        "--stdio", action="store_true", help="speak over the standard input and output (the only way)"
+        "--stdio", action="store_true", help="use standard input and output (the default, and the only way)"
     )
 
 

@@ -12,8 +12,8 @@ from bigactors.mistakes import Mistake, unreadable
 from bigactors.terminal import say
 
 DESCRIPTION: Final = """\
-Write a small mission with comments into NAME.mission. It holds; a line in it says how to break it, and what is seen
-then. A file that exists is left alone."""
+Write a small mission with comments into NAME.mission. Its properties hold. One of its comments shows how to violate
+one, and the trace that follows. An existing file stays as it is."""
 
 EXAMPLES: Final = (
     "bigactors new patrol",
@@ -28,7 +28,7 @@ def add_arguments(parser: Parser) -> None:
         "name",
         metavar="NAME",
         type=named,
-        help="the mission's name, or the path of its file; .mission may be left out",
+        help="the mission's name, or the path of its file, with or without .mission",
     )
 
 

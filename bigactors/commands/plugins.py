@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 DESCRIPTION: Final = """\
-List how `bigactors run` can be connected: what --vehicle and --feed take, which package has it, in which version, and
-what the package says of itself. No plugin is loaded for that."""
+List the forms of --vehicle, --feed and --detector: each with its package, the version, and the summary of the
+package. No plugin is loaded."""
 
 EXAMPLES: Final = ("bigactors plugins",)
 

@@ -8,7 +8,7 @@ from bigactors.commands.hold import ORDER, add_arguments, run
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
 
 DESCRIPTION: Final = f"""\
-Order a vehicle to go to its own home, in its own way (RTL).
+Order a vehicle to return to its own home, in its mode RTL.
 {ORDER}"""
 
 EXAMPLES: Final = ("bigactors return uav0", "bigactors return --all --by Ana")

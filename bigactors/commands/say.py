@@ -10,8 +10,8 @@ from bigactors.mistakes import Mistake
 from bigactors.terminal import say
 
 DESCRIPTION: Final = """\
-Put a message into the mailbox of a bigActor, as the mission's environment section says that someone may: what it does
-not say is refused, with what may be said instead."""
+Put a message into the mailbox of a bigActor. The mission's environment section lists the permitted messages; any
+other message is refused, and the permitted ones are printed."""
 
 EXAMPLES: Final = ("bigactors say op handover", "bigactors say op handover --by Ana")
 
@@ -19,7 +19,9 @@ EXAMPLES: Final = ("bigactors say op handover", "bigactors say op handover --by 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments of `bigactors say`."""
     parser.add_argument("agent", metavar="AGENT", help="a bigActor of the running mission")
-    parser.add_argument("message", metavar="MESSAGE", help="what its environment section says may be said")
+    parser.add_argument(
+        "message", metavar="MESSAGE", help="a message that the environment section of the mission permits"
+    )
     add_speaker(parser)
     add_socket(parser)
 

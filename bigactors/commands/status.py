@@ -9,8 +9,8 @@ from bigactors.exits import Exit
 from bigactors.terminal import say
 
 DESCRIPTION: Final = """\
-Ask a running mission how it stands, and print it on one screen: where each vehicle is, on its way to what, its mode
-and battery, who has taken it over; the requests that are not done; what someone may say now."""
+Print the state of a running mission on one screen: the place, destination, mode and battery of each vehicle, and who
+has taken it over; the pending requests; the messages that are permitted now."""
 
 EXAMPLES: Final = ("bigactors status", "watch bigactors status")
 

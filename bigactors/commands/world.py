@@ -11,7 +11,7 @@ from bigactors.terminal import say, tell
 
 DESCRIPTION: Final = """\
 Read GeoJSON, waypoint files, plans of QGroundControl and AIS recordings into one world, print its bigraph A(P),
-and count by kind what was in the files and not read."""
+and count the data that was left out, by kind."""
 
 EXAMPLES: Final = (
     "bigactors world harbour.geojson --output harbour.svg",
@@ -34,20 +34,22 @@ def add_arguments(parser: Parser) -> None:
         "--at",
         metavar="TIME",
         type=time_of,
-        help="the time of the recording, such as 2020-04-07T21:42:00Z",
+        help="the moment of a recording that is shown, such as 2020-04-07T21:42:00Z (default: its end)",
     )
     parser.add_argument(
         "--within",
         metavar="SOUTH,WEST,NORTH,EAST",
         type=corners,
-        help="take only what is in this box, in degrees",
+        help="take only entities in this box, in degrees (default: all)",
     )
-    parser.add_argument("--kinds", metavar="KIND,...", help="only entities of these kinds")
+    parser.add_argument(
+        "--kinds", metavar="KIND,...", help="take only entities of these kinds (default: all)"
+    )
     parser.add_argument(
         "--output",
         metavar="FILE",
         type=named,
-        help="draw it too: a picture, .svg or .png; or write it for other programs as GeoJSON, .geojson (RFC 7946)",
+        help="also draw a picture (.svg or .png), or write GeoJSON for other programs (.geojson, RFC 7946)",
     )
 
 

@@ -12,7 +12,7 @@ from contextlib import suppress
 import pytest
 from processes import begun
 
-from bigactors import file_changes
+from bigactors.commands.check import file_changes
 from bigactors.commands.check.continuous_check import files_of
 from bigactors.commands.check.file_changes import changed, look
 from specs.elaboration import Variation

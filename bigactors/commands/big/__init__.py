@@ -9,8 +9,8 @@ from bigactors.arguments.values import at_least_one, at_least_zero, named, secon
 from bigactors.exits import Exit
 
 DESCRIPTION: Final = """\
-Work with bigraphical reactive systems as such, without missions: all states that rules can reach, runs, predicates,
-Markov models for PRISM and Storm, pictures. A search that was cut off is incomplete, exit code 3."""
+Explore, simulate, check and draw bigraphical reactive systems, without missions, and write Markov models for PRISM and
+Storm. A search that a limit stops is incomplete: exit code 3."""
 
 EXAMPLES: Final = (
     "bigactors big full sensor_network --html network.html",
@@ -23,19 +23,18 @@ EXAMPLES: Final = (
 )
 
 FILE: Final = (
-    "a system of bigraphs: .big (BigraphER's language), .bgm (BigMC's), or the name of one that ships, such as "
+    "a system of bigraphs: .big (BigraphER's language), .bgm (BigMC's), or the name of a system that ships, such as "
     "mobile_ambients"
 )
 
 TASKS: Final = {
-    "full": "every state that can be reached, written for people and for other programs",
-    "sim": "one seeded run, or what many runs say",
-    "check": "whether predicates hold always, never or ever, and formulas of LTL and CTL, with a run that shows it",
-    "validate": "whether the file makes sense, and what is in it",
-    "show": "a state, printed and drawn",
-    "convert": "the same model in BigraphER's language",
+    "full": "explore every reachable state, and write the state space for people and other programs",
+    "sim": "simulate one run, or many with statistics",
+    "check": "decide predicates, and formulas of LTL and CTL, each with a run as evidence",
+    "validate": "read the file, and print its contents",
+    "show": "print a state, and draw it",
+    "convert": "write the model in BigraphER's language",
 }
-_VERBS: Final = {"convert": "Write"}
 
 
 def add_arguments(parser: Parser) -> None:
@@ -58,7 +57,7 @@ def add_arguments(parser: Parser) -> None:
     }
     for name, add in fillers.items():
         task = tasks.add_parser(
-            name, help=TASKS[name], description=f"{_VERBS.get(name, 'Find')} {TASKS[name]}."
+            name, help=TASKS[name], description=f"{TASKS[name][0].upper()}{TASKS[name][1:]}."
         )
         task.add_argument("file", metavar="FILE", help=FILE)
         task.add_argument(
@@ -78,33 +77,33 @@ def _limits(task: Parser) -> None:
         metavar="N",
         type=at_least_one,
         default=1_000_000,
-        help="visit no more than N states (default 1,000,000)",
+        help="visit at most N states (default: 1,000,000)",
     )
     task.add_argument(
         "--max-time",
         metavar="SECONDS",
         type=seconds,
-        help="explore no longer than SECONDS (default: no limit)",
+        help="explore for at most SECONDS (default: no limit)",
     )
     task.add_argument(
         "--threads",
         metavar="N",
         type=at_least_one,
-        help="let up to N processes share the work after half a second; what is found is the same for every N "
-        "(default: as many as there are cores)",
+        help="let at most N processes share the search after half a second; the results are the same for every N "
+        "(default: one a core)",
     )
 
 
 def _full(task: Parser) -> None:
     _limits(task)
-    written = task.add_argument_group("what is written")
+    written = task.add_argument_group("files")
     for option, metavar, text in (
-        ("--html", "FILE", "the state space as one page, the bigraph of a state a click away"),
-        ("--svg", "FILE", "the state space as a picture"),
-        ("--dot", "FILE", "the state space for Graphviz"),
-        ("--json", "FILE", "states and transitions as data; - for standard output, alone"),
-        ("--prism", "PREFIX", "PREFIX.tra, .lab, .csl, .srew, .trew for PRISM"),
-        ("--storm", "PREFIX", "PREFIX.tra, .lab, .srew, .trew for Storm"),
+        ("--html", "FILE", "write the state space as a page; a click on a state shows its bigraph"),
+        ("--svg", "FILE", "write the state space as a picture"),
+        ("--dot", "FILE", "write the state space for Graphviz"),
+        ("--json", "FILE", "write states and transitions as JSON; - for standard output, alone"),
+        ("--prism", "PREFIX", "write PREFIX.tra, .lab, .csl, .srew and .trew for PRISM"),
+        ("--storm", "PREFIX", "write PREFIX.tra, .lab, .srew and .trew for Storm"),
     ):
         written.add_argument(option, metavar=metavar, type=named, help=text)
 
@@ -115,7 +114,7 @@ def _sim(task: Parser) -> None:
         metavar="N",
         type=at_least_zero,
         default=0,
-        help="which run: the same seed, the same run (default 0)",
+        help="the number that chooses the run; the same seed gives the same run (default: 0)",
     )
     _add_many_runs(task)
     task.add_argument(
@@ -123,19 +122,19 @@ def _sim(task: Parser) -> None:
         metavar="N",
         type=at_least_zero,
         default=100,
-        help="take no more than N steps (default 100)",
+        help="take at most N steps (default: 100)",
     )
     task.add_argument(
         "--until",
         metavar="TIME",
         type=seconds,
-        help="in an sbrs, simulate up to TIME (default: no limit)",
+        help="in an sbrs, simulate up to TIME, in its own unit (default: no limit)",
     )
     task.add_argument(
         "--json",
         metavar="FILE",
         type=named,
-        help="the run, or what many say, as data; - for standard output, alone",
+        help="write the run or the statistics as JSON; - for standard output, alone",
     )
 
 
@@ -144,25 +143,25 @@ def _add_many_runs(task: Parser) -> None:
         "--runs",
         metavar="N",
         type=at_least_one,
-        help="take N runs of the seed, 0 to N-1, and say in how many each predicate was true, and when first",
+        help="simulate runs 0 to N-1 of the seed, and print in how many each predicate was true, and when first",
     )
     task.add_argument(
         "--run",
         metavar="N",
         type=at_least_zero,
-        help="take run N of those that --runs takes, step by step",
+        help="print run N of those of --runs, step by step",
     )
     task.add_argument(
         "--plot",
         metavar="FILE",
         type=named,
-        help="with --runs: draw the share of runs in which each predicate was true by then, .svg or .png",
+        help="with --runs: draw the share of runs in which each predicate has been true, over time (.svg or .png)",
     )
 
 
 def _check(task: Parser) -> None:
     _limits(task)
-    wanted = task.add_argument_group("what is checked (default: the properties that the file has)")
+    wanted = task.add_argument_group("claims (default: the properties in the file)")
     for option, text in (
         ("--always", "the predicate holds in every state"),
         ("--never", "the predicate holds in no state"),
@@ -177,8 +176,8 @@ def _check(task: Parser) -> None:
             help=f"{text}; may be repeated",
         )
     for option, text in (
-        ("--ltl", "a formula of predicates that is true of every run, such as 'p leads to q'"),
-        ("--ctl", "a formula of predicates that is true of the tree of runs, such as 'AG EF p'"),
+        ("--ltl", "a formula of predicates that holds on every run, such as 'p leads to q'"),
+        ("--ctl", "a formula of predicates that holds on the tree of runs, such as 'AG EF p'"),
     ):
         wanted.add_argument(
             option, metavar="FORMULA", action="append", default=[], help=f"{text}; may be repeated"
@@ -188,12 +187,12 @@ def _check(task: Parser) -> None:
         metavar="FORMULA",
         action="append",
         default=[],
-        help="a probability, reward or time that Storm computes, such as 'Pmax=? [F goal]', with the likeliest run; or "
-        "a claim about one, such as 'P>=0.9 [F goal]'; needs the extra [storm]; may be repeated",
+        help="a probability, reward or time for Storm to compute, such as 'Pmax=? [F goal]', with the likeliest "
+        "run; or a bound on one, such as 'P>=0.9 [F goal]'; needs the extra [storm]; may be repeated",
     )
-    wanted.add_argument("--no-deadlock", action="store_true", help="something can happen in every state")
+    wanted.add_argument("--no-deadlock", action="store_true", help="every state has a next state")
     task.add_argument(
-        "--json", metavar="FILE", type=named, help="verdicts as data; - for standard output, alone"
+        "--json", metavar="FILE", type=named, help="write the verdicts as JSON; - for standard output, alone"
     )
 
 
@@ -203,20 +202,20 @@ def _show(task: Parser) -> None:
         metavar="N",
         type=at_least_zero,
         default=0,
-        help="which state, as full numbers them (default 0)",
+        help="the number of the state, as the task full counts (default: 0)",
     )
-    task.add_argument("--output", metavar="FILE", type=named, help="draw it: a picture, .svg or .png")
+    task.add_argument("--output", metavar="FILE", type=named, help="draw the state (.svg or .png)")
 
 
 def _convert(task: Parser) -> None:
     task.add_argument(
-        "output", metavar="OUT", type=named, help="a .big file that is written; - for standard output"
+        "output", metavar="OUT", type=named, help="the .big file that is written; - for standard output"
     )
     task.add_argument(
         "--from",
         dest="source",
         choices=("big", "bgm"),
-        help="BigraphER's language or BigMC's (default: by the file's ending)",
+        help="the language of FILE, BigraphER's or BigMC's (default: by its suffix)",
     )
 
 

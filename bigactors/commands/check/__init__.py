@@ -11,7 +11,7 @@ from bigactors.exits import Exit
 
 DESCRIPTION: Final = f"""\
 Explore every interleaving of a mission and decide its properties, with a shortest trace for each that fails and a
-witness for each that holds. Ctrl-C, SIGTERM and SIGHUP end it within seconds with what was found so far; a second one
+witness for each that holds. Ctrl-C, SIGTERM and SIGHUP end it within seconds with the results so far; a second one
 ends it at once.
 
 {EXITS}"""
@@ -32,7 +32,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--watch",
         action="store_true",
-        help="check now, and again whenever a mission or a file of its world is saved; what has changed is said first; "
+        help="check now, and at every save of a mission or of a file of its world, and print the changes first; "
         "Ctrl-C ends it with the exit code of the last check",
     )
     _report(parser)
@@ -51,16 +51,16 @@ def _report(parser: Parser) -> None:
         metavar="N",
         type=at_least_one,
         default=5,
-        help="show at most N different violations of each property, each with a shortest trace; count the others "
-        "(default 5)",
+        help="print at most N different violations of each property, each with a shortest trace, and count the "
+        "others (default: 5)",
     )
     group.add_argument(
         "--times",
         action="store_true",
-        help="say how long each flight of a mission with timing takes, when it begins and ends, and when each time "
-        "property is first true: from the earliest moment to the latest; every tick is counted for it",
+        help="print the duration, the beginning and the end of each flight of a mission with timing, and when "
+        "each time property is first true: the earliest and the latest moment; this explores every tick",
     )
-    group.add_argument("--no-traces", action="store_true", help="print no traces: a short report")
+    group.add_argument("--no-traces", action="store_true", help="print a short report, without traces")
 
 
 def _add_files(group: argparse._ActionsContainer) -> None:
@@ -83,20 +83,22 @@ def _add_files(group: argparse._ActionsContainer) -> None:
         "--trace",
         metavar="DIR",
         type=named,
-        help="write the trace of each violation and witness into DIR: as text, as JSON, as pictures and as a page that "
+        help="write the trace of each violation and witness into DIR: as text, JSON, pictures and a page that "
         "steps through it",
     )
     group.add_argument(
         "--verdict",
         metavar="FILE",
         type=named,
-        help="write the verdict that `run` needs (docs/explanation/live.md); of one mission, with --control timed",
+        help="write the verdict that `bigactors run` needs (docs/explanation/live.md); for one mission, with "
+        "--control timed",
     )
     group.add_argument(
         "--sign",
         metavar="KEY",
         type=named,
-        help="sign the verdict with the key in KEY, for `run --trust KEY.pub` (bigactors keygen KEY makes a pair)",
+        help="sign the verdict with the private key in KEY, for `bigactors run --trust KEY.pub` (`bigactors "
+        "keygen KEY` makes both)",
     )
 
 
@@ -106,27 +108,28 @@ def _limits(parser: Parser) -> None:
         "--max-configurations",
         metavar="N",
         type=at_least_one,
-        help="visit no more than N configurations (default 100,000,000, of which each takes some 30 bytes, for each "
-        "worker of --engine ray; 2,000,000 with --engine reference)",
+        help="visit at most N configurations (default: 100,000,000, of about 30 bytes each, for each worker of "
+        "--engine ray; 2,000,000 with --engine reference)",
     )
     group.add_argument(
         "--max-pending",
         metavar="N",
         type=at_least_one,
-        help="follow no configuration in which one bigActor has more than N requests or messages pending "
+        help="go no further from a configuration in which a bigActor has more than N pending requests or messages "
         "(default: 64)",
     )
     group.add_argument(
         "--max-time",
         metavar="SECONDS",
         type=seconds,
-        help="explore and decide for at most SECONDS; the fast explorer takes at most half (default: no limit)",
+        help="explore and decide for at most SECONDS; the fast engine explores in at most half (default: no limit)",
     )
     group.add_argument(
         "--max-memory",
         metavar="SIZE",
         type=size,
-        help="stop when the process, or one of its workers, takes more memory, such as 800M or 12G (default: no limit)",
+        help="stop when the process or a worker takes more than SIZE bytes of memory, such as 800M or 12G "
+        "(default: no limit)",
     )
 
 
@@ -135,23 +138,23 @@ def _exploring(parser: Parser) -> None:
     group.add_argument(
         "--engine",
         choices=("reference", "fast", "ray"),
-        help="the engine that explores; verdicts are the same (default: reference or fast, whichever is quicker for "
-        "the mission's size)",
+        help="the engine that explores; all reach the same verdicts (default: reference or fast, by the "
+        "mission's size)",
     )
     group.add_argument(
         "--threads",
         metavar="N",
         type=at_least_one,
-        help="let the fast explorer use at most N threads; what it finds is the same for every N (default: as many as "
-        "there are cores; with --reduce one)",
+        help="let the fast engine use at most N threads; the results are the same for every N (default: one a "
+        "core; with --reduce one)",
     )
     group.add_argument(
         "--reduce",
         metavar="NAMES",
         type=reductions,
         default=(),
-        help="visit less, where that is sound: por (partial-order reduction), symmetry, or por,symmetry "
-        "(docs/explanation/reduction.md)",
+        help="visit fewer configurations, where that is sound: por (partial-order reduction), symmetry, or "
+        "por,symmetry (default: none; docs/explanation/reduction.md)",
     )
 
 
@@ -161,27 +164,31 @@ def _long_runs(parser: Parser) -> None:
         "--checkpoint",
         metavar="DIR",
         type=named,
-        help="save in DIR, every minute and at the end, what is needed to go on after the process was killed",
+        help="save the search in DIR, regularly and at the end, so that --resume can continue it",
     )
     group.add_argument(
-        "--every", metavar="SECONDS", type=seconds, default=60.0, help="between two checkpoints (default 60)"
+        "--every",
+        metavar="SECONDS",
+        type=seconds,
+        default=60.0,
+        help="the time between two checkpoints (default: 60)",
     )
     group.add_argument(
-        "--resume", action="store_true", help="go on from the checkpoint in DIR, if there is one"
+        "--resume", action="store_true", help="continue from the checkpoint in DIR, if there is one"
     )
     group.add_argument(
         "--spill",
         metavar="DIR",
         type=named,
-        help="when --max-memory is reached, move configurations to files in DIR, which should be on a disk; the files "
-        "are unnamed and deleted at the end",
+        help="when --max-memory is reached, move configurations to unnamed temporary files in DIR, which should "
+        "be on a disk",
     )
     group.add_argument(
         "--paranoid",
         metavar="N",
         type=at_least_one,
         help="let the interpreter re-check the successors of N configurations, and stop at a difference; with "
-        "--reduce, also check what the reduction assumes of rules and properties there (not with --engine ray)",
+        "--reduce, also re-check the assumptions of the reduction there (not with --engine ray; default: none)",
     )
 
 
@@ -190,14 +197,17 @@ def _several_processes(parser: Parser) -> None:
         "several processes or machines, by --engine ray (docs/how-to/cluster.md)"
     )
     group.add_argument(
-        "--workers", metavar="N", type=at_least_one, help="how many processes share the rows (default 2)"
+        "--workers",
+        metavar="N",
+        type=at_least_one,
+        help="the number of processes that share the search (default: 2)",
     )
     group.add_argument(
         "--address",
         metavar="ADDRESS",
         type=named,
-        help="the Ray cluster to join, such as 10.0.0.1:6379, or auto for the one on this machine (default: a new one "
-        "on this machine)",
+        help="the Ray cluster to join, such as 10.0.0.1:6379, or auto for the one on this machine (default: a "
+        "new one on this machine)",
     )
 
 

@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from adapters.console.history import History
 
 DESCRIPTION: Final = """\
-Serve the operator's console of a recording: the map beside the bigraph, a card for each vehicle, what was found wrong,
-and a time line that can be played. `bigactors run --console` serves it of a run, and its operators can act.
+Serve the operator's console of a recording: the map beside the bigraph, a card for each vehicle, the findings, and a
+time line that plays the recording. `bigactors run --console` serves the console of a run, in which operators can act.
 
-It prints a link with a token, and ends with Ctrl-C. docs/how-to/console.md shows it."""
+The command prints a link with a token, and ends with Ctrl-C. docs/how-to/console.md shows the console."""
 
 EXAMPLES: Final = (
     "bigactors console run.mcap",
@@ -39,21 +39,23 @@ EXAMPLES: Final = (
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments of `bigactors console`."""
-    parser.add_argument("recording", metavar="RECORDING", help="a recording, as run --record writes it")
+    parser.add_argument("recording", metavar="RECORDING", help="a recording (run --record writes it)")
     parser.add_argument(
         "--listen",
         metavar="[HOST:]PORT",
         type=place,
-        help="where to listen (default: this machine only, port 8765 or a free one)",
+        help="the address and port of the console (default: this machine only, port 8765 or a free one)",
     )
     parser.add_argument(
-        "--follow", action="store_true", help="the recording is still being written: show the newest moment"
+        "--follow",
+        action="store_true",
+        help="show the newest moment of a recording that a run is still writing",
     )
     parser.add_argument(
         "--socket",
         metavar="FILE",
         type=named,
-        help="the run's socket, by which operators may act; needs --follow",
+        help="the run's socket, so that operators can act; needs --follow (default: they only watch)",
     )
     # Only for `run --console`: whether the run keeps its recording.
     parser.add_argument("--beside", choices=["kept", "unkept"], help=argparse.SUPPRESS)

@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from checker import Trace
 
 DESCRIPTION: Final = """\
-Run a trace, or the recording of a live run, again through the rules, step by step. A step that they do not
-allow ends it with exit code 1, and what was enabled instead is shown.
+Replay a trace, or the recording of a run, through the rules, step by step. A step that the rules do not allow ends
+the replay with exit code 1, and the enabled steps are printed.
 
-A telemetry log (.tlog) or an AIS recording is shown in the places of a mission: what changes in its bigraph,
-what its environment section does not say, and the bigraph at the end."""
+For a telemetry log (.tlog) or an AIS recording, print the changes of the bigraph in the places of a mission, the
+events that its environment section does not permit, and the bigraph at the end."""
 
 EXAMPLES: Final = (
     "bigactors replay traces/oil_spill/over_the_spill-witness/trace.json",
@@ -40,19 +40,19 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "trace",
         metavar="TRACE",
-        help="a trace in JSON, as check --trace and simulate write it, or a recording that run --record wrote",
+        help="a trace in JSON (check --trace and simulate write it), or a recording (run --record writes it)",
     )
     parser.add_argument(
         "--mission",
         metavar="FILE",
         type=named,
-        help="the mission to replay it on (default: the one that it names)",
+        help="the mission on which the trace is replayed (default: the mission that the trace names)",
     )
     parser.add_argument(
         "--speed",
         metavar="X",
         type=seconds,
-        help="print a recording X times as fast as it was (default: at once)",
+        help="print a recording at X times its own speed (default: without pauses)",
     )
     add_foreign_names(parser)
     parser.add_argument(
@@ -61,7 +61,7 @@ def add_arguments(parser: Parser) -> None:
         action="append",
         default=[],
         type=route,
-        help="write the points that the trace sends a vehicle to, at its altitude there, for ground stations, as "
+        help="write the destinations of a vehicle in the trace, with their altitudes, for ground stations: as "
         "QGC WPL 110 (.waypoints) or as a plan (.plan); may be repeated",
     )
     parser.add_argument("--step", action="store_true", help="wait for Enter before each step")

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
     from checker import Trace
 
 DESCRIPTION: Final = """\
-Print the initial configuration of a mission, or any one of a trace; draw its bigraph beside the map. Show a whole
-trace in lanes, as a page that steps through it, or against another one. Show who flies when."""
+Print the initial configuration of a mission, or any configuration of a trace, and draw its bigraph beside the map.
+Show a whole trace in lanes or as a page that steps through it, and compare it with another one. Show a timeline of
+all flights."""
 
 EXAMPLES: Final = (
     "bigactors show oil_spill.mission --output oil_spill.png",
@@ -34,21 +35,21 @@ EXAMPLES: Final = (
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments of `bigactors show`."""
-    parser.add_argument("file", nargs="?", metavar="FILE", help=f"{MISSION}; with --trace it may be left out")
+    parser.add_argument("file", nargs="?", metavar="FILE", help=f"{MISSION}; optional with --trace")
     parser.add_argument(
         "--output",
         "--out",
         metavar="FILE",
         type=named,
-        help="the picture, .svg or .png (default: MISSION.svg, here), or a page that steps through the "
-        "whole trace, .html, or the tracks of a trace or recording, .geojson",
+        help="write a picture (.svg or .png), a page that steps through the whole trace (.html), or the tracks "
+        "of a trace or recording (.geojson); default: MISSION.svg in this folder",
     )
     parser.add_argument(
         "--trace",
         metavar="TRACE",
         type=named,
-        help="a trace in JSON, as check --trace and simulate write it, a recording of run, or a telemetry log (.tlog) "
-        "or AIS recording, seen in the mission's places",
+        help="a trace in JSON (check --trace and simulate write it), a recording (run --record writes it), or a "
+        "telemetry log (.tlog) or AIS recording, shown in the mission's places",
     )
     _add_views(parser)
     add_foreign_names(parser)
@@ -60,30 +61,31 @@ def _add_views(parser: Parser) -> None:
         "--step",
         metavar="K",
         type=at_least_zero,
-        help="show c_K of the trace (default: its last configuration)",
+        help="show configuration K of the trace (default: its last)",
     )
     parser.add_argument(
         "--lanes",
         action="store_true",
-        help="print the trace with a lane for each agent and only what each step changed; a picture only with --output",
+        help="print the trace with a lane for each agent, and only the changes of each step; draw only with "
+        "--output",
     )
     parser.add_argument(
         "--timeline",
         action="store_true",
-        help="explore a mission with timing, and draw who flies when over all of its runs, from the earliest moment to "
-        "the latest (default: MISSION-timeline.svg, here); the table of check --times is printed",
+        help="explore a mission with timing, print the table of check --times, and draw the earliest and latest "
+        "times of each flight over all runs (default: MISSION-timeline.svg in this folder)",
     )
     parser.add_argument(
         "--all",
         action="store_true",
-        help="give each step a row: otherwise steps in a row that only repeat others, as an agent does that observes "
-        "again and again, are folded",
+        help="give each step a row (default: repeated steps, such as those of an agent that observes again and "
+        "again, share one)",
     )
     parser.add_argument(
         "--against",
         metavar="TRACE",
         type=named,
-        help="print where the trace and this one differ; draw nothing",
+        help="print the differences between the trace and this one, and draw nothing",
     )
 
 

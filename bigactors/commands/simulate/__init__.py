@@ -19,9 +19,8 @@ if TYPE_CHECKING:
     from bigactors.commands.simulate.one_run import OneRun
     from specs.elaboration import ElaboratedMission
 
-DESCRIPTION: Final = (
-    "Take one run of a mission, chosen by a seed or step by step, and print it in the paper's notation."
-)
+DESCRIPTION: Final = """\
+Simulate one run of a mission, chosen by a seed or by you, step by step, and print it in the paper's notation."""
 
 EXAMPLES: Final = (
     "bigactors simulate oil_spill.mission --seed 7",
@@ -38,19 +37,20 @@ def add_arguments(parser: Parser) -> None:
         metavar="N",
         type=at_least_zero,
         default=0,
-        help="which run: the same seed, the same run (default 0)",
+        help="the number that chooses the run; the same seed gives the same run (default: 0)",
     )
     parser.add_argument(
         "--steps",
         metavar="N",
         type=at_least_zero,
         default=100,
-        help="take no more than N steps (default 100)",
+        help="take at most N steps (default: 100)",
     )
     parser.add_argument(
         "--choose",
         action="store_true",
-        help="choose each step: what is enabled is listed, and answers are read from standard input (? says which)",
+        help="choose each step: the enabled steps are listed, and your answers are read from standard input (? "
+        "lists the possible answers)",
     )
     parser.add_argument(
         "--json",
