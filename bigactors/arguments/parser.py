@@ -5,7 +5,7 @@ import re
 import textwrap
 from collections.abc import Iterator
 from importlib import import_module
-from typing import NoReturn, Protocol, cast
+from typing import NoReturn, Protocol, cast, runtime_checkable
 
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
@@ -70,6 +70,7 @@ class Parser(argparse.ArgumentParser):
         raise Mistake(message, f"{self.prog} --help shows what can be written")
 
 
+@runtime_checkable
 class Command(Protocol):
     """The module of a command.
 
