@@ -213,6 +213,6 @@ def _several_processes(parser: Parser) -> None:
 
 def run(options: Namespace) -> Exit:
     """Check missions, with `--watch` at each save; print the reports and write the requested files."""
-    from bigactors.commands.check.report import check_and_report
+    from bigactors.commands.check.check_report import check_and_report
 
     return check_and_report(options)

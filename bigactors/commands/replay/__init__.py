@@ -70,7 +70,7 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> Exit:
     """Replay a trace and print it; stop at a step that the rules do not allow."""
-    from bigactors.commands.replay.reading import is_foreign, read_trace
+    from bigactors.commands.replay.trace_reader import is_foreign, read_trace
     from bigactors.commands.replay.waypoint_export import write_route
     from bigactors.missions import opening, variation_of
     from checker import ReplayError, print_loop
@@ -100,7 +100,7 @@ def show_foreign(options: Namespace) -> Exit:
     """Print a foreign recording as a trace of the mission's world, and its last bigraph."""
     from textwrap import indent
 
-    from bigactors.commands.replay.reading import account_for, watched_in
+    from bigactors.commands.replay.trace_reader import account_for, watched_in
     from bigactors.missions import opening, variation_of
     from bigraphs import draw_text
     from physical.messages import counted

@@ -179,7 +179,7 @@ def _write_tracks(options: Namespace) -> Exit:
 
 def _compare(options: Namespace) -> Exit:
     """Print the point at which two traces part, and the differences from there."""
-    from bigactors.commands.replay.reading import read_trace
+    from bigactors.commands.replay.trace_reader import read_trace
     from bigactors.missions import opening, variation_of
     from checker.reports.comparison import comparison_text
 
@@ -246,7 +246,7 @@ def _write(options: Namespace, name: str, trace: Trace, times: tuple[float, ...]
 
 def _chosen(options: Namespace) -> tuple[str, Trace, tuple[float, ...], int]:
     """Return the mission's name, its trace, the times of the steps, and the number of the configuration to show."""
-    from bigactors.commands.replay.reading import read_trace
+    from bigactors.commands.replay.trace_reader import read_trace
     from bigactors.missions import open_mission, opening, variation_of
     from checker import Trace
 

@@ -1,4 +1,4 @@
-"""The printed report of a check, and the written files."""
+"""A check: the exploration, the printed report, and the written files."""
 
 from __future__ import annotations
 
