@@ -4,10 +4,10 @@ import gc
 import os
 import sys
 from collections.abc import Callable, Sequence
-from importlib import import_module
 from typing import Final
 
 from bigactors.arguments import parse_arguments
+from bigactors.arguments.parser import command_of
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake, describe_bug
 from bigactors.signals import ending_as_ctrl_c
@@ -20,7 +20,7 @@ OBJECTS_BETWEEN_COLLECTIONS: Final = 200_000
 def main(line: Sequence[str] | None = None) -> int:
     """Run one command line (default: this process's) and return its exit code."""
     if "_ARGCOMPLETE" in os.environ:  # a shell asks for completions
-        from bigactors.completion import complete  # noqa: PLC0415 - it builds the parsers of all commands
+        from bigactors.commands.completion import complete  # noqa: PLC0415 - it builds the parsers of all commands
 
         complete()
     gc.set_threshold(OBJECTS_BETWEEN_COLLECTIONS)
@@ -42,7 +42,7 @@ def run(line: Sequence[str]) -> int:
 def _run(line: Sequence[str]) -> int:
     options = parse_arguments(line)
     COLOUR.set(options.color)
-    return int(import_module(f"bigactors.commands.{options.command.replace('-', '_')}").run(options))
+    return int(command_of(options.command).run(options))
 
 
 def reported(command: Callable[[], int]) -> int:

@@ -32,7 +32,7 @@ from adapters.simulated.camera import render
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main as command
 from bigactors.cli import reported
-from bigactors.commands.run import Flight, fly, prepare, record
+from bigactors.commands.run.flight import Flight, fly, prepare, record
 from bigactors.drawings import write_page
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake, unreadable

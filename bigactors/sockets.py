@@ -1,13 +1,20 @@
-"""The sockets of running missions, in a folder that only their user may open."""
+"""The sockets of running missions, in a folder that only their user may open, and calls to them."""
 
 from __future__ import annotations
 
+import asyncio
 import os
 import stat
+from collections.abc import Callable, Coroutine
 from pathlib import Path
+from typing import Any, TypeVar
 
+from adapters.live.operator_socket import NobodyListens
 from bigactors.files import file_stem
 from bigactors.mistakes import Mistake
+from physical import is_text, is_word
+
+Heard = TypeVar("Heard")
 
 LONGEST = 100
 """The most bytes of a socket's path; systems refuse longer ones."""
@@ -48,3 +55,20 @@ def only_socket(given: str | None) -> Path:
         raise Mistake("no mission runs here", "start one with `bigactors run`, or give its --socket")
     names = ", ".join(map(str, found))
     raise Mistake(f"{len(found)} missions run here: {names}", "say which: --socket FILE")
+
+
+def check_texts(what: str, name: str, by: str, *more: str) -> None:
+    """Raise Mistake for invalid texts, and for a speaker's name that cannot be printed."""
+    if not all(map(is_text, (name, *more))):
+        raise Mistake(f"{what} has to be text in valid Unicode, of at most 2,000 characters")
+    if by and not is_word(by):
+        raise Mistake("--by has to be a name of 1 to 200 characters that can be printed")
+
+
+def heard_at(socket: str | None, saying: Callable[[Path], Coroutine[Any, Any, Heard]]) -> Heard:
+    """Call a running mission, at the given socket or the only one; return its answer."""
+    path = only_socket(socket)
+    try:
+        return asyncio.run(saying(path))
+    except NobodyListens as error:
+        raise Mistake(str(error), "is the mission running?") from error

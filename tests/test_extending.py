@@ -178,3 +178,46 @@ def test_a_command_more_is_hinted_at(swapping):
     assert swapping["half"] == [
         "LS109: expected 'WITH', found ')'; control actions are SWAP entity WITH other"
     ]
+
+
+# --- a command of the program is added as the page says ---------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def counting(tmp_path_factory):
+    """Return a program whose copy of bigactors/ has the command of the page."""
+    copy = tmp_path_factory.mktemp("count")
+    shutil.copytree(ROOT / "bigactors", copy / "bigactors", ignore=shutil.ignore_patterns("__pycache__"))
+    commands = copy / "bigactors" / "commands"
+    text = re.search(r"<!-- file: count.py -->\n```python\n(.+?)```", PAGE, re.DOTALL)[1]
+    (commands / "count.py").write_text(text, encoding="utf-8")
+    table = (commands / "__init__.py").read_text(encoding="utf-8")
+    first = '        "new": '
+    assert first in table
+    (commands / "__init__.py").write_text(
+        table.replace(first, f'        "count": "count the bigActors of a mission",\n{first}'),
+        encoding="utf-8",
+    )
+    path = os.pathsep.join(map(str, (copy, ROOT)))
+
+    def run(*words):
+        return subprocess.run(
+            [sys.executable, "-m", "bigactors", *words], env=os.environ | {"PYTHONPATH": path},
+            capture_output=True, text=True, check=False, cwd=copy,
+        )  # fmt: skip
+
+    return run
+
+
+def test_a_command_of_the_program_more_works(counting):
+    done = counting("count", "oil_spill")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "1\n", "")
+
+
+def test_a_command_of_the_program_more_is_in_the_help(counting):
+    assert "\n  count       count the bigActors of a mission\n" in counting("--help").stdout
+    assert "\nexamples:\n  bigactors count oil_spill\n" in counting("count", "--help").stdout
+
+
+def test_a_command_of_the_program_more_is_hinted_at(counting):
+    assert counting("cuont").stderr.endswith("hint: did you mean 'count'?\n")

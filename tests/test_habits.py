@@ -12,7 +12,7 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from bigactors.arguments import NAMES
+from bigactors.commands import NAMES
 from bigraphs.notation.bgm import parser as bgm_parser
 from bigraphs.notation.big import parser as big_parser
 from hatch_build import PACKAGE, ROOMS, installed, refuse_imports_of_rooms

@@ -36,7 +36,7 @@ LIBRARIES = {
     "numpy": (
         "bigraphs/simulation.py",  # independent streams of random numbers
         "checker/",
-        "bigactors/big/temporal.py",
+        "bigactors/commands/big/temporal.py",
         "adapters/camera/",
         "adapters/ros/messages.py",  # arrays of ROS's messages
         "adapters/simulated/camera.py",
@@ -48,7 +48,7 @@ LIBRARIES = {
     "llvmlite": ("checker/engines/fast/prefetch.py",),  # what numba has no name for
     "ray": ("checker/engines/cluster/ray_crew.py",),
     "scipy": ("checker/properties/temporal/components.py", "bigraphs/sampling.py"),
-    "stormpy": ("bigactors/big/storm_worker.py",),
+    "stormpy": ("bigactors/commands/big/storm_worker.py",),
     "pytest": ("bigactors/pytest_plugin.py",),
     "jsonschema": ("bigactors/testing.py",),
     "pyais": ("physical/ais_decode.py",),
@@ -66,7 +66,7 @@ LIBRARIES = {
     "cryptography": ("bigactors/signatures.py",),
     "hypothesis": ("semantics/strategies.py",),
     "wcwidth": ("bigactors/terminal.py", "checker/reports/lanes.py"),
-    "argcomplete": ("bigactors/completion.py",),
+    "argcomplete": ("bigactors/commands/completion.py",),
     "lazy_loader": tuple(
         f"{room}/__init__.py"
         for room in (*MAY_IMPORT, "bigraphs/exports", "bigraphs/notation", "checker/reduction")

@@ -1,52 +1,31 @@
-"""The command line's grammar: commands, arguments, options, and their help.
+"""The command line: its parser, and what the arguments of several commands share.
 
-It imports nothing slow, so that help appears at once. A command has a module here with its arguments, a module of the
-same name in `bigactors.commands` that runs it, and a place in `NAMES`.
+It loads the module of the command that the line names, and nothing slow: help appears at once.
 """
 
 import argparse
 import re
 from collections.abc import Callable, Sequence
 from functools import partial
-from importlib import import_module
 from typing import Final
 
 from bigactors import __version__
-from bigactors.arguments.common import EXITS
-from bigactors.arguments.parser import Command, Parser
-from bigactors.arguments.values import FORMATS
+from bigactors.arguments.options import EXITS
+from bigactors.arguments.parser import Parser, command_of
+from bigactors.commands import GROUPS, NAMES
 from bigactors.mistakes import Mistake, suggestion
 
-__all__ = ["FORMATS", "NAMES", "Command", "Parser", "make_parser", "parse_arguments", "parser_of"]
-
-GROUPS: Final = {
-    "write and check missions": (
-        "new",
-        "check",
-        "simulate",
-        "show",
-        "replay",
-        "export",
-        "fmt",
-        "lsp",
-        "explain",
-    ),
-    "fly them": ("run", "console", "status", "say", "hold", "return", "give-back", "plugins", "keygen"),
-    "places and bigraphs": ("world", "detect", "big"),
-    "begin": ("demo", "completion"),
-}
-"""The commands in groups, in the order of the help."""
-
-NAMES: Final = tuple(name for names in GROUPS.values() for name in names)
+__all__ = ["make_parser", "parse_arguments", "parser_of"]
 
 BEGINNING: Final = """\
 examples:
-  bigactors check oil_spill                  decide on a mission that ships
-  bigactors show oil_spill                   draw its first configuration
-  bigactors new patrol                       write one of your own
-  bigactors check --watch patrol.mission     check it whenever it is saved
+  bigactors check oil_spill                  check a mission that ships
+  bigactors show oil_spill                   draw its initial configuration
+  bigactors new patrol                       write your first mission
+  bigactors check --watch patrol.mission     check it at every save
 
-bigactors COMMAND --help describes a command, with examples. FILE is a mission file or the name of one that ships."""
+bigactors COMMAND --help describes a command, with examples. FILE is a mission file, or the name of a mission that
+ships."""
 
 GONE: Final = {
     "bigactors check --hash-compact": "it is gone, since a configuration takes some 24 bytes: --max-memory SIZE "
@@ -57,14 +36,15 @@ GONE: Final = {
 """Options of earlier versions, each with its replacement."""
 
 
-def command_of(name: str) -> Command:
-    """Return a command; its module is loaded on request."""
-    command: Command = import_module(f"bigactors.arguments.{name.replace('-', '_')}").COMMAND
-    return command
-
-
 def make_parser() -> tuple[Parser, dict[str, Parser]]:
-    """Return the parser of the whole line, and the parsers of the commands in the order of the help."""
+    """Return the parser of the whole line, and the parsers of all commands in the order of the help."""
+    whole = _front_page()
+    commands = whole.add_subparsers(dest="command", metavar="COMMAND", help=argparse.SUPPRESS)
+    return whole, {name: parser_of(name, partial(commands.add_parser, name)) for name in NAMES}
+
+
+def _front_page() -> Parser:
+    """Return the parser of `bigactors` without a command, whose help lists all commands."""
     whole = Parser(
         prog="bigactors",
         usage="bigactors [-h] [--version] [--color WHEN] COMMAND ...",
@@ -75,40 +55,47 @@ def make_parser() -> tuple[Parser, dict[str, Parser]]:
         epilog=f"{BEGINNING}\n\n{EXITS}",
     )
     whole.add_argument("--version", action="version", version=f"bigactors {__version__}")
-    commands = whole.add_subparsers(dest="command", metavar="COMMAND", help=argparse.SUPPRESS)
-    return whole, {name: parser_of(name, partial(commands.add_parser, name)) for name in NAMES}
+    return whole
 
 
 def _listed(group: str) -> str:
     """Return the commands of a group, each with its summary."""
     width = max(map(len, NAMES))
     return "\n".join(
-        [f"{group}:", *(f"  {name:<{width}}  {command_of(name).summary}" for name in GROUPS[group])]
+        [f"{group}:", *(f"  {name:<{width}}  {summary}" for name, summary in GROUPS[group].items())]
     )
 
 
 def parser_of(name: str, make: Callable[..., Parser] = Parser) -> Parser:
     """Return the parser of a command's line."""
     command = command_of(name)
-    shown = "examples:\n" + "\n".join(f"  {example}" for example in command.examples)
-    parser = make(prog=f"bigactors {name}", description=command.description, epilog=shown)
-    command.fill(parser)
+    shown = "examples:\n" + "\n".join(f"  {example}" for example in command.EXAMPLES)
+    parser = make(prog=f"bigactors {name}", description=command.DESCRIPTION, epilog=shown)
+    command.add_arguments(parser)
     return parser
 
 
 def parse_arguments(line: Sequence[str]) -> argparse.Namespace:
     """Return the options of a command line; raises Mistake, and SystemExit after --help and --version."""
-    if line and line[0] in NAMES:  # build only this command's parser
-        return _parsed(parser_of(line[0]), line[1:], argparse.Namespace(command=line[0], color="auto"))
-    whole, _ = make_parser()
-    if line and not line[0].startswith("-"):
-        hint = suggestion(line[0], NAMES) or f"the commands are {', '.join(NAMES)}"
-        raise Mistake(f"unknown command '{line[0]:.60}'", hint)
-    options = _parsed(whole, line, argparse.Namespace(color="auto"))
-    if options.command is None:
+    place = _place_of_command(line)
+    whole = _front_page()
+    options = _parsed(whole, line[:place], argparse.Namespace(color="auto"))
+    if place >= len(line):
         whole.print_help()
         raise SystemExit(2)
-    return options
+    options.command = line[place]
+    if options.command not in NAMES:
+        hint = suggestion(options.command, NAMES) or f"the commands are {', '.join(NAMES)}"
+        raise Mistake(f"unknown command '{options.command:.60}'", hint)
+    return _parsed(parser_of(options.command), line[place + 1 :], options)
+
+
+def _place_of_command(line: Sequence[str]) -> int:
+    """Return the index of the command, after the options of `bigactors` itself."""
+    place = 0
+    while place < len(line) and line[place].startswith("-"):
+        place += 2 if line[place] == "--color" else 1
+    return place
 
 
 def _parsed(parser: Parser, line: Sequence[str], options: argparse.Namespace) -> argparse.Namespace:

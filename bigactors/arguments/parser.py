@@ -1,12 +1,13 @@
-"""The argument parser: argparse with the error messages of bigactors."""
+"""The argument parser: argparse with the error messages of bigactors, and the module of a command."""
 
 import argparse
 import re
 import textwrap
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import NoReturn
+from collections.abc import Iterator
+from importlib import import_module
+from typing import NoReturn, Protocol, cast, runtime_checkable
 
+from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 
 
@@ -38,7 +39,7 @@ def _lines(text: str) -> Iterator[str]:
 
 
 def _wrapped(line: str, width: int) -> list[str]:
-    column = re.match(r" +\S+(?: \S+)*  +", line)
+    column = re.match(r" +\S+(?: \S+)*  +", line) or re.match(r" +(?=\S)", line)
     further = " " * min(column.end() if column else 0, width // 2)
     return textwrap.wrap(
         line, width, subsequent_indent=further, break_long_words=False, break_on_hyphens=False
@@ -59,7 +60,8 @@ class Parser(argparse.ArgumentParser):
             choices=("auto", "always", "never"),
             metavar="WHEN",
             default=argparse.SUPPRESS,
-            help="always, never or auto (default): a terminal unless NO_COLOR is set, a pipe if FORCE_COLOR is",
+            help="colour the output: always, never or auto (default: terminals, without NO_COLOR, and pipes with "
+            "FORCE_COLOR)",
         )
         self.color = False  # since Python 3.14 argparse colours help, and so would the pages of docs/
 
@@ -68,20 +70,25 @@ class Parser(argparse.ArgumentParser):
         raise Mistake(message, f"{self.prog} --help shows what can be written")
 
 
-@dataclass(frozen=True, slots=True)
-class Command:
-    """One command.
+@runtime_checkable
+class Command(Protocol):
+    """The module of a command.
 
     Attributes:
-        name: Its name; its module in `bigactors.commands` has the same name.
-        summary: Its purpose, for the list of commands.
-        description: Its purpose, for its own help.
-        examples: Example command lines.
-        fill: Adds its arguments and options.
+        DESCRIPTION: Its purpose, for its help.
+        EXAMPLES: Example command lines, for its help.
     """
 
-    name: str
-    summary: str
-    description: str
-    examples: tuple[str, ...]
-    fill: Callable[[Parser], None]
+    DESCRIPTION: str
+    EXAMPLES: tuple[str, ...]
+
+    def add_arguments(self, parser: Parser) -> None:
+        """Add its arguments and options."""
+
+    def run(self, options: argparse.Namespace) -> Exit:
+        """Do its work, and return the exit code."""
+
+
+def command_of(name: str) -> Command:
+    """Return a command; its module is loaded on request."""
+    return cast("Command", import_module(f"bigactors.commands.{name.replace('-', '_')}"))

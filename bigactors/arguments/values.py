@@ -160,3 +160,15 @@ def size(text: str) -> int:
     if value is None or value <= 0:
         raise argparse.ArgumentTypeError(f"'{text:.60}' is no size: write one such as 800M or 12G")
     return int(value * unit)
+
+
+def place(word: str) -> tuple[str, int]:
+    """Parse [HOST:]PORT.
+
+    >>> place("8765"), place("0.0.0.0:8765"), place("[::1]:0")
+    (('127.0.0.1', 8765), ('0.0.0.0', 8765), ('::1', 0))
+    """
+    host, _, port = word.rpartition(":")
+    if not (port.isascii() and port.isdigit() and int(port) < 65_536):
+        raise argparse.ArgumentTypeError(f"'{word:.60}' is not [HOST:]PORT, such as 8765 or 0.0.0.0:8765")
+    return host.removeprefix("[").removesuffix("]") or "127.0.0.1", int(port)

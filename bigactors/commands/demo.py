@@ -2,27 +2,50 @@
 
 from argparse import Namespace
 from pathlib import Path
+from typing import Final
 
-from bigactors.checking import Checked, check_mission
-from bigactors.commands.check import coloured, report_lines
-from bigactors.drawings import draw
+from bigactors.arguments.parser import Parser
+from bigactors.arguments.values import named
 from bigactors.exits import Exit, worst
-from bigactors.files import make_folder
 from bigactors.terminal import say
-from bigactors.trace_files import write_evidence
-from checker import Limits
-from specs.elaboration import Variation
+
+DESCRIPTION: Final = """\
+Check the oil spill of the paper and the watch over a harbour, print their verdicts, and write their
+pictures and traces."""
+
+EXAMPLES: Final = ("bigactors demo --out demo",)
+
+
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments of `bigactors demo`."""
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        type=named,
+        default="demo",
+        help="the folder for pictures and traces (default: demo)",
+    )
+
 
 MISSIONS = ("oil_spill", "harbour_watch")
 
 
 def run(options: Namespace) -> Exit:
     """Check both missions, and write a picture and the traces of each."""
+    from bigactors.files import make_folder
+
     out = make_folder(options.out)
     return worst([_show(name, out) for name in MISSIONS])
 
 
 def _show(name: str, out: Path) -> Exit:
+    from bigactors.checking import Checked, check_mission
+    from bigactors.commands.check.check_report import coloured, report_lines
+    from bigactors.drawings import draw
+    from bigactors.trace_files import write_evidence
+    from checker import Limits
+    from specs.elaboration import Variation
+
     result = check_mission(name, Limits(seconds=60), Variation())
     for line in report_lines(result, traces=True):
         say(coloured(line))

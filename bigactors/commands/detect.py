@@ -1,29 +1,129 @@
 """`bigactors detect`: slicks in a camera's frames, as polygons."""
 
+from __future__ import annotations
+
+import argparse
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
-from adapters.camera.frames import frames_of
-from adapters.camera.overlay import draw_patches
-from adapters.camera.sightings import properties, sightings
-from adapters.camera.slick import Patch, find_slicks
-from adapters.camera.view import Frame, Lens
-from adapters.camera.votes import Region
-from adapters.naming import NamingService
+from bigactors.arguments.parser import Parser
+from bigactors.arguments.values import named, seconds
 from bigactors.exits import Exit
-from bigactors.files import write_text
-from bigactors.installed_plugins import find_detector
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.terminal import say, tell
-from physical import PhysicalError, write_geojson
-from physical.messages import counted
-from physical.shape import planar
+
+if TYPE_CHECKING:
+    from adapters.camera.slick import Patch
+    from adapters.camera.view import Frame
+    from adapters.camera.votes import Region
+    from physical import PhysicalProperty
+
+DESCRIPTION: Final = """\
+Find slicks on the sea in the frames of a camera, and print their polygons' areas and positions. SOURCE is a folder of
+pictures with their poses (poses.csv), a video with its flight log (VIDEO.csv beside it), or a satellite's GeoTIFF."""
+
+EXAMPLES: Final = (
+    "bigactors detect flight1 --fov 62 --output spill.geojson --pictures looked",
+    "bigactors detect flight1.mp4 --fov 78 --mount=-60 --every 0.5",
+    "bigactors detect sentinel.tif --output spill.geojson",
+)
+
+
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments of `bigactors detect`."""
+    parser.add_argument("source", metavar="SOURCE", type=named, help="a folder, a video or a GeoTIFF")
+    parser.add_argument(
+        "--fov",
+        metavar="DEGREES",
+        type=degrees,
+        default=60.0,
+        help="the horizontal field of view (default: 60)",
+    )
+    parser.add_argument(
+        "--mount",
+        metavar="PITCH[,YAW[,ROLL]]",
+        type=mount,
+        default=(-90.0, 0.0, 0.0),
+        help="the camera's angles to the vehicle, in degrees: -90 (default) looks down, --mount=-60 looks 30° "
+        "forward of that",
+    )
+    parser.add_argument(
+        "--level",
+        action="store_true",
+        help="ignore the vehicle's roll and pitch: a gimbal holds the camera level",
+    )
+    parser.add_argument(
+        "--every",
+        metavar="SECONDS",
+        type=seconds,
+        default=1.0,
+        help="the time between two frames of a video (default: 1)",
+    )
+    parser.add_argument(
+        "--detector",
+        metavar="NAME",
+        type=named,
+        help="a function as MODULE:NAME, or the name of an installed detector (default: the detector of slicks)",
+    )
+    _add_results(parser)
+
+
+def _add_results(parser: Parser) -> None:
+    parser.add_argument("--kind", default="OilSpill", help="the kind of the regions (default: OilSpill)")
+    parser.add_argument(
+        "--name", default="oilSpill", help="the name of the regions, before a number (default: oilSpill)"
+    )
+    parser.add_argument(
+        "--output", metavar="FILE", type=named, help="write the polygons as GeoJSON (RFC 7946)"
+    )
+    parser.add_argument(
+        "--pictures",
+        metavar="FOLDER",
+        type=named,
+        help="draw the regions over each frame, as PNG, into this folder",
+    )
+
+
+def degrees(text: str) -> float:
+    """Parse an angle in degrees.
+
+    >>> degrees("62.5")
+    62.5
+    """
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text:.40}' is no angle in degrees") from None
+
+
+def mount(text: str) -> tuple[float, float, float]:
+    """Parse PITCH[,YAW[,ROLL]] in degrees.
+
+    >>> mount("-60"), mount("-45,90")
+    ((-60.0, 0.0, 0.0), (-45.0, 90.0, 0.0))
+    """
+    given = [degrees(part) for part in text.split(",")]
+    if len(given) > 3:
+        raise argparse.ArgumentTypeError(f"'{text:.40}' is not PITCH[,YAW[,ROLL]], such as -60,0,0")
+    pitch, yaw, roll = (*given, 0.0, 0.0)[:3]
+    return pitch, yaw, roll
 
 
 def run(options: Namespace) -> Exit:
     """Print the regions found in the frames, and the number of unusable frames by reason."""
+    from adapters.camera.frames import frames_of
+    from adapters.camera.overlay import draw_patches
+    from adapters.camera.sightings import properties, sightings
+    from adapters.camera.slick import find_slicks
+    from adapters.camera.view import Lens
+    from adapters.naming import NamingService
+    from bigactors.installed_plugins import find_detector
+    from physical import PhysicalError
+    from physical.messages import counted
+
     left_out: Counter[str] = Counter()
     try:
         pitch, yaw, roll = options.mount
@@ -49,12 +149,23 @@ def run(options: Namespace) -> Exit:
     for reason, number in sorted(left_out.items()):
         say(f"{counted(number, 'frame')} left out: {reason}")
     if options.output:
-        write_text(options.output, write_geojson(named))
-        tell(f"{counted(len(named), 'feature')} written to {options.output}")
+        _write(named, options.output)
     return Exit.HOLDS
 
 
+def _write(named: Sequence[PhysicalProperty], path: str) -> None:
+    """Write regions as GeoJSON."""
+    from bigactors.files import write_text
+    from physical import write_geojson
+    from physical.messages import counted
+
+    write_text(path, write_geojson(named))
+    tell(f"{counted(len(named), 'feature')} written to {path}")
+
+
 def _words(name: str, region: Region) -> Iterator[str]:
+    from physical.shape import planar
+
     centre = planar(region.geometry).centroid
     yield f"{name}: {region.area:,.0f} m² around {centre.y / 1e7:.5f}, {centre.x / 1e7:.5f},"
     yield f"confidence {region.confidence:.2f}"

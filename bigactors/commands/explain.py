@@ -1,17 +1,35 @@
 """`bigactors explain`: the meaning of a diagnostic code or of a word of a report."""
 
 from argparse import Namespace
+from typing import Final
 
+from bigactors.arguments.parser import Parser
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say
-from bigraphs.notation.spelling import did_you_mean
-from checker.reports.glossary import ALL, find_word
-from specs import Code, explain, find_code
+
+DESCRIPTION: Final = """\
+Print the meaning of a diagnostic code or of a word of a report, and the remedy."""
+
+EXAMPLES: Final = ("bigactors explain LS201", "bigactors explain stale-observation race", "bigactors explain")
+
+
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments of `bigactors explain`."""
+    parser.add_argument(
+        "code",
+        nargs="*",
+        metavar="CODE",
+        help="a code such as LS201, or a word of a report such as stale-observation (default: list all)",
+    )
 
 
 def run(options: Namespace) -> Exit:
     """Print the explanation of a code or a word, or the list of all."""
+    from bigraphs.notation.spelling import did_you_mean
+    from checker.reports.glossary import ALL, find_word
+    from specs import Code, explain, find_code
+
     if not options.code:
         for code in sorted(Code, key=lambda code: code.number):
             say(f"{code.number}  {code.title}")

@@ -1,30 +1,76 @@
 """`bigactors export`: a mission with times as a timed automaton, for a second opinion."""
 
-from argparse import Namespace
+from __future__ import annotations
 
+from argparse import Namespace
+from typing import TYPE_CHECKING, Final
+
+from bigactors.arguments.options import MISSION, add_variation
+from bigactors.arguments.parser import Parser
+from bigactors.arguments.values import named
 from bigactors.exits import Exit
-from bigactors.files import write_text
-from bigactors.missions import open_mission, variation_of
 from bigactors.mistakes import Mistake, suggestion
 from bigactors.terminal import say_text, tell
-from checker import Engine, explore
-from checker.engines.contract import TickError
-from semantics.properties.property import Property, watching
-from specs.elaboration import ElaboratedMission
+
+if TYPE_CHECKING:
+    from semantics.properties.property import Property
+    from specs.elaboration import ElaboratedMission
+
+DESCRIPTION: Final = """\
+Write the reachable part of a mission with times as a timed automaton, for a second opinion: --format tchecker for
+TChecker (github.com/ticktac-project/tchecker), --format uppaal for UPPAAL (uppaal.org), as XML. With --property, the
+automaton contains an observer: its location `wrong` is reachable exactly if the property is violated.
+
+  tck-reach -a covreach -l wrong patrol.tck     REACHABLE true: it is violated
+  verifyta patrol.xml                           Formula is satisfied: it holds"""
+
+EXAMPLES: Final = (
+    "bigactors export endurance --format tchecker --out endurance.tck",
+    "bigactors export broken_endurance --format uppaal --property endurance --out broken_endurance.xml",
+)
+
+
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments of `bigactors export`."""
+    parser.add_argument("file", metavar="FILE", help=MISSION)
+    parser.add_argument(
+        "--format", choices=("tchecker", "uppaal"), required=True, help="the language of the automaton"
+    )
+    parser.add_argument(
+        "--property",
+        metavar="NAME",
+        type=named,
+        help="observe this property: the name of a deadline, or `endurance` (default: none)",
+    )
+    parser.add_argument(
+        "--out",
+        metavar="FILE",
+        type=named,
+        default="-",
+        help="the file that is written (default: -, standard output)",
+    )
+    add_variation(parser)
 
 
 def run(options: Namespace) -> Exit:
     """Explore a mission by zones, and write its automaton."""
+    from bigactors.files import write_text
+    from bigactors.missions import open_mission, variation_of
+    from checker import Engine, explore
+    from checker.engines.contract import TickError
+    from semantics.properties.property import watching
+
     mission = open_mission(options.file, variation_of(options))
     if mission.initial.setting.timing is None:
         raise Mistake(
             f"{options.file} says nothing of times",
             "only missions with a section `timing` have timed automata",
         )
-    from checker.engines.timed.zone_answers import ZoneTimes  # noqa: PLC0415 - the same
-    from checker.engines.zones.interchange import model_of  # noqa: PLC0415 - numba is slow to load
-    from checker.engines.zones.tchecker import tchecker_text  # noqa: PLC0415 - the same
-    from checker.engines.zones.uppaal import uppaal_text  # noqa: PLC0415 - the same
+    # numba is slow to load: a mission without times is refused before
+    from checker.engines.timed.zone_answers import ZoneTimes
+    from checker.engines.zones.interchange import model_of
+    from checker.engines.zones.tchecker import tchecker_text
+    from checker.engines.zones.uppaal import uppaal_text
 
     asked = None if options.property is None else _asked(mission, options.property)
     try:

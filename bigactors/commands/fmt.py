@@ -1,14 +1,25 @@
 """`bigactors fmt`: mission files in the canonical layout, with the same meaning."""
 
 from argparse import Namespace
+from typing import Final
 
-from bigactors.diagnostics import as_mistake
+from bigactors.arguments.parser import Parser
 from bigactors.exits import Exit, worst
-from bigactors.files import read_bytes, write_text
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, say_text, tell
-from specs import MissionError, Source, decode, format_mission, parse
-from specs.preprocessing import MAX_BYTES
+
+DESCRIPTION: Final = """\
+Rewrite mission files in the canonical layout, with their comments. A file with a syntax error stays as it is."""
+
+EXAMPLES: Final = ("bigactors fmt oil_spill.mission", "bigactors fmt --check specs/missions/*.mission")
+
+
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments of `bigactors fmt`."""
+    parser.add_argument("files", nargs="+", metavar="FILE", help="a mission file")
+    way = parser.add_mutually_exclusive_group()
+    way.add_argument("--check", action="store_true", help="write nothing; exit code 1 if a file would change")
+    way.add_argument("--stdout", action="store_true", help="print the formatted text instead of writing it")
 
 
 def run(options: Namespace) -> Exit:
@@ -17,6 +28,8 @@ def run(options: Namespace) -> Exit:
 
 
 def _file(path: str, options: Namespace) -> Exit:
+    from bigactors.files import write_text
+
     try:
         before, after = formatted(path)
     except Mistake as mistake:
@@ -37,6 +50,11 @@ def _file(path: str, options: Namespace) -> Exit:
 
 def formatted(path: str) -> tuple[str, str]:
     """Return a mission file's text and its formatted text; raises Mistake if it does not parse."""
+    from bigactors.diagnostics import as_mistake
+    from bigactors.files import read_bytes
+    from specs import MissionError, Source, decode, format_mission, parse
+    from specs.preprocessing import MAX_BYTES
+
     data = read_bytes(path, MAX_BYTES)
     try:
         source = decode(path, data)

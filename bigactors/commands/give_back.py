@@ -1,16 +1,45 @@
 """`bigactors give-back`: return a vehicle, taken over or heard from another address, to a running mission."""
 
 from argparse import Namespace
+from typing import Final
 
-from adapters.live.operator_socket import give_back
-from bigactors.commands.say import check_texts, heard_at
+from bigactors.arguments.options import add_socket, add_speaker
+from bigactors.arguments.parser import Parser
+from bigactors.arguments.values import named
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
 
+DESCRIPTION: Final = """\
+Let a running mission command a vehicle again after a take-over (by a pilot, another station, a fail-safe, a reboot or
+an operator's order hold or return), or after a refused command. The mission sends its last command again, in whatever
+mode the vehicle is: look first.
+
+With --at, accept another address of a vehicle on an unsigned link. A vehicle that was taken over stays so until it is
+given back without --at."""
+
+EXAMPLES: Final = ("bigactors give-back uav0", "bigactors give-back uav0 --at 192.168.1.7:14555")
+
+
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments of `bigactors give-back`."""
+    parser.add_argument("vehicle", metavar="VEHICLE", help="a vehicle of the running mission")
+    parser.add_argument(
+        "--at",
+        metavar="HOST:PORT",
+        type=named,
+        help="accept the vehicle at this address from now on, instead of its silent old one, and do not command "
+        "it again",
+    )
+    add_speaker(parser)
+    add_socket(parser)
+
 
 def run(options: Namespace) -> Exit:
     """Give the vehicle back, and print the answer."""
+    from adapters.live.operator_socket import give_back
+    from bigactors.sockets import check_texts, heard_at
+
     vehicle, at = options.vehicle, options.at or ""
     check_texts("a vehicle or an address", vehicle, options.by, at)
     refusal, _, notes = heard_at(options.socket, lambda path: give_back(path, vehicle, at, options.by))

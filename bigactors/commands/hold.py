@@ -1,15 +1,50 @@
 """`bigactors hold`: order a vehicle of a running mission, or all, to stay in place."""
 
+from __future__ import annotations
+
 import time
 from argparse import Namespace
 from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Final
 
-from adapters.live.operator_socket import Fates, fates, order
-from adapters.live.state import Fate
-from bigactors.commands.say import check_texts, heard_at
+from bigactors.arguments.options import add_socket, add_speaker
+from bigactors.arguments.parser import Parser
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say, tell
+
+if TYPE_CHECKING:
+    from adapters.live.operator_socket import Fates
+
+ORDER: Final = """\
+The order is sent at once. From then on the mission does not command the vehicle until `bigactors give-back VEHICLE`:
+requests to it stay pending, and none of its positions is an arrival. The rest of the mission goes on. `--all` leaves
+out vehicles that a pilot or a fail-safe has taken over; an order by name overrules them. A silent vehicle gets the
+order as soon as it is heard. A vehicle of another station is ordered at that station.
+
+The command waits 10 s for the vehicle. Its exit code is 0 if the vehicle obeys, 1 if it refuses, and 3 if neither is
+known. A refused order is sent again until the vehicle obeys, and the run then prints a line."""
+"""The paragraph of help that `hold` and `return` share."""
+
+DESCRIPTION: Final = f"""\
+Order a vehicle to hold its position; a plane circles.
+{ORDER}"""
+
+EXAMPLES: Final = ("bigactors hold uav0", "bigactors hold --all --by Ana")
+
+
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments of `bigactors hold`, and of `return`."""
+    which = parser.add_mutually_exclusive_group(required=True)
+    which.add_argument("vehicle", metavar="VEHICLE", nargs="?", help="a vehicle of the running mission")
+    which.add_argument(
+        "--all",
+        action="store_true",
+        help="every vehicle that this station commands, except those that others have taken over",
+    )
+    add_speaker(parser)
+    add_socket(parser)
+
 
 WAIT = 10.0
 """Seconds within which vehicles should confirm an order."""
@@ -20,6 +55,9 @@ LOOK = 0.25
 
 def run(options: Namespace) -> Exit:
     """Give the order, and print its outcome; also runs `return`."""
+    from adapters.live.operator_socket import order
+    from bigactors.sockets import check_texts, heard_at
+
     what, vehicle = options.command, options.vehicle
     check_texts("a vehicle", vehicle or "", options.by)
     refusal, left_out, notes = heard_at(options.socket, lambda path: order(path, what, vehicle, options.by))
@@ -33,6 +71,9 @@ def run(options: Namespace) -> Exit:
 
 def _awaited(socket: str | None, vehicle: str | None, left_out: Iterable[str]) -> Fates:
     """Return the outcomes of an order once all vehicles have confirmed or refused it, or after the timeout."""
+    from adapters.live.operator_socket import fates
+    from bigactors.sockets import heard_at
+
     until = time.monotonic() + WAIT
     while True:
         known = heard_at(socket, fates)
@@ -45,11 +86,15 @@ def _awaited(socket: str | None, vehicle: str | None, left_out: Iterable[str]) -
 
 
 def _is_settled(fate: str) -> bool:
+    from adapters.live.state import Fate
+
     return fate in (Fate.CONFIRMED, Fate.REFUSED)
 
 
 def _concluded(found: Fates) -> Exit:
     """Print the outcomes of an order, and return the exit code."""
+    from adapters.live.state import Fate
+
     for line in _lines(found):
         say(line)
     became = {fate for fate, _ in found.values()}
@@ -59,6 +104,8 @@ def _concluded(found: Fates) -> Exit:
 
 
 def _lines(found: Fates) -> Iterator[str]:
+    from adapters.live.state import Fate
+
     for name, (fate, words) in sorted(found.items()):
         again = "; it is told again until it does" if fate == Fate.REFUSED else ""
         later = "" if _is_settled(fate) else "; the run says when it is"

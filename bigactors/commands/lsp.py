@@ -4,17 +4,33 @@ import contextlib
 import os
 import sys
 from argparse import Namespace
+from typing import Final
 
+from bigactors.arguments.parser import Parser
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
-from physical.messages import install_extra
+
+DESCRIPTION: Final = """\
+Speak the Language Server Protocol over standard input and output. An editor starts this command;
+docs/how-to/editors.md shows the configuration of editors."""
+
+EXAMPLES: Final = ("bigactors lsp",)
+
+
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments of `bigactors lsp`."""
+    parser.add_argument(
+        "--stdio", action="store_true", help="use standard input and output (the default, and the only way)"
+    )
 
 
 def run(options: Namespace) -> Exit:
     """Serve an editor until it ends the session."""
+    from physical.messages import install_extra
+
     del options
     try:
-        from bigactors.lsp.server import make_server  # noqa: PLC0415 - an extra, and slow to import
+        from bigactors.lsp.server import make_server
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] not in ("pygls", "lsprotocol"):
             raise

@@ -2,14 +2,34 @@
 
 import re
 from argparse import Namespace
-from importlib.resources import files as resources
 from pathlib import Path
+from typing import Final
 
+from bigactors.arguments.parser import Parser
+from bigactors.arguments.values import named
 from bigactors.exits import Exit
-from bigactors.files import check_writable
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.terminal import say
-from specs.grammar import RESERVED
+
+DESCRIPTION: Final = """\
+Write a small mission with comments into NAME.mission. Its properties hold. One of its comments shows how to violate
+one, and the trace that follows. An existing file stays as it is."""
+
+EXAMPLES: Final = (
+    "bigactors new patrol",
+    "bigactors new missions/patrol",
+    "bigactors check --watch patrol.mission",
+)
+
+
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments of `bigactors new`."""
+    parser.add_argument(
+        "name",
+        metavar="NAME",
+        type=named,
+        help="the mission's name, or the path of its file, with or without .mission",
+    )
 
 
 def run(options: Namespace) -> Exit:
@@ -26,6 +46,10 @@ def run(options: Namespace) -> Exit:
 
 def new_mission(name: str) -> str:
     """Return the mission's text; raises Mistake for an invalid name."""
+    from importlib.resources import files as resources
+
+    from specs.grammar import RESERVED
+
     if not re.fullmatch(r"[^\W\d_]\w*", name) or name in RESERVED:
         reason = "is a word of the language" if name in RESERVED else "is no name"
         raise Mistake(f"'{name:.60}' {reason}", "a mission's name has letters, digits and _, a letter first")
@@ -34,6 +58,8 @@ def new_mission(name: str) -> str:
 
 
 def _write(path: Path, text: str) -> None:
+    from bigactors.files import check_writable
+
     check_writable(str(path))
     try:
         with path.open("x", encoding="utf-8") as file:

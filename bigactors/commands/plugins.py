@@ -3,13 +3,26 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from importlib.metadata import EntryPoint
+from typing import TYPE_CHECKING, Final
 
 from bigactors import __version__
+from bigactors.arguments.parser import Parser
 from bigactors.exits import Exit
-from bigactors.installed_plugins import DETECTORS, FEEDS, VEHICLES, installed, package_of
 from bigactors.terminal import say
-from physical.untrusted_text import legible
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+DESCRIPTION: Final = """\
+List the forms of --vehicle, --feed and --detector: each with its package, the version, and the summary of the
+package. No plugin is loaded."""
+
+EXAMPLES: Final = ("bigactors plugins",)
+
+
+def add_arguments(_parser: Parser) -> None:
+    """Add nothing: it has no arguments."""
+
 
 OURS: tuple[tuple[str, str], ...] = (
     ("--vehicle NAME=udp:[HOST:]PORT", "a vehicle that speaks MAVLink, by datagrams sent to this machine"),
@@ -28,6 +41,8 @@ OURS: tuple[tuple[str, str], ...] = (
 
 def run(_options: Namespace) -> Exit:
     """Print one line for each plugin."""
+    from bigactors.installed_plugins import DETECTORS, FEEDS, VEHICLES
+
     rows = [(form, f"bigactors {__version__}", does) for form, does in OURS]
     rows += _theirs("--vehicle NAME={}:ADDRESS", VEHICLES)
     rows += _theirs("--feed {}=ADDRESS", FEEDS)
@@ -39,10 +54,14 @@ def run(_options: Namespace) -> Exit:
 
 
 def _theirs(form: str, group: str) -> list[tuple[str, str, str]]:
+    from bigactors.installed_plugins import installed, package_of
+
     return [(form.format(each.name), package_of(each), _summary(each)) for each in installed(group)]
 
 
 def _summary(entry: EntryPoint) -> str:
     """Return a package's own summary in one line."""
+    from physical.untrusted_text import legible
+
     told = {} if entry.dist is None else entry.dist.metadata.json
     return legible(str(told.get("summary", "")).partition("\n")[0])

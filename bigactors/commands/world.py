@@ -2,22 +2,70 @@
 
 from argparse import Namespace
 from pathlib import Path
+from typing import Final
 
-from bigactors.drawings import draw
+from bigactors.arguments.parser import Parser
+from bigactors.arguments.values import corners, named, time_of
 from bigactors.exits import Exit
-from bigactors.files import write_text
 from bigactors.terminal import say, tell
-from bigactors.worlds import census, configuration_of, read_world
-from bigraphs import draw_text
-from physical import write_geojson
-from physical.messages import counted
-from physical.place_files import PLACES
+
+DESCRIPTION: Final = """\
+Read GeoJSON, waypoint files, plans of QGroundControl and AIS recordings into one world, print its bigraph A(P),
+and count the data that was left out, by kind."""
+
+EXAMPLES: Final = (
+    "bigactors world harbour.geojson --output harbour.svg",
+    "bigactors world harbour.geojson vessels.nmea --at 2020-04-07T21:42:00Z --kinds Vessel,Harbour",
+    "bigactors world survey.plan harbour.geojson",
+    "bigactors world vessels.nmea --at 2020-04-07T21:42:00Z --output vessels.geojson",
+    "bigactors world vessels.nmea --within 52.83,5.66,52.87,5.72",
+)
+
+
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments of `bigactors world`."""
+    parser.add_argument(
+        "files",
+        nargs="+",
+        metavar="FILE",
+        help="places (.geojson, .json, .waypoints, .plan), or AIS (NMEA)",
+    )
+    parser.add_argument(
+        "--at",
+        metavar="TIME",
+        type=time_of,
+        help="the moment of a recording that is shown, such as 2020-04-07T21:42:00Z (default: its end)",
+    )
+    parser.add_argument(
+        "--within",
+        metavar="SOUTH,WEST,NORTH,EAST",
+        type=corners,
+        help="take only entities in this box, in degrees (default: all)",
+    )
+    parser.add_argument(
+        "--kinds", metavar="KIND,...", help="take only entities of these kinds (default: all)"
+    )
+    parser.add_argument(
+        "--output",
+        metavar="FILE",
+        type=named,
+        help="also draw a picture (.svg or .png), or write GeoJSON for other programs (.geojson, RFC 7946)",
+    )
+
 
 GEOJSON = (".geojson", ".json")
 
 
 def run(options: Namespace) -> Exit:
     """Print the world, draw it on request, and count the data that could not be read."""
+    from bigactors.drawings import draw
+    from bigactors.files import write_text
+    from bigactors.worlds import census, configuration_of, read_world
+    from bigraphs import draw_text
+    from physical import write_geojson
+    from physical.messages import counted
+    from physical.place_files import PLACES
+
     kinds = [kind.strip() for kind in (options.kinds or "").split(",") if kind.strip()]
     world = read_world(options.files, options.at, options.within, kinds)
     configuration = configuration_of(world)

@@ -34,8 +34,8 @@ from adapters.static_places import StaticPlaces
 from adapters.stations.shared_plugin import Shared
 from adapters.stations.sharing import Sharing
 from adapters.web import Listen
-from bigactors import feeds
-from bigactors.arguments.links import LIVING
+from bigactors.commands.run import feeds
+from bigactors.commands.run.option_values import LIVING
 from bigactors.testing import Connection, PluginContract, opened
 from physical import PhysicalProperty, box, circle, write_geojson
 

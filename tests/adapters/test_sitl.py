@@ -25,7 +25,7 @@ from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Refused, 
 from adapters.simulated import run
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
-from bigactors.commands.run import fly, prepare, record
+from bigactors.commands.run.flight import fly, prepare, record
 from bigactors.recordings import open_recording
 from physical import box, circle, contains, distance, point
 

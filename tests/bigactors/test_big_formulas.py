@@ -1,7 +1,7 @@
 import pytest
 
-from bigactors.big.formulas import MOST_NESTED, parse_claim
-from bigactors.big.temporal import Decider
+from bigactors.commands.big.formulas import MOST_NESTED, parse_claim
+from bigactors.commands.big.temporal import Decider
 from bigraphs.errors import NotationError
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system

@@ -7,8 +7,8 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
-from bigactors.big import storm
-from bigactors.big.storm import answers, check_queries, translated
+from bigactors.commands.big import storm
+from bigactors.commands.big.storm import answers, check_queries, translated
 from bigactors.mistakes import Mistake
 from bigraphs.errors import NotationError
 from bigraphs.exploration import explore

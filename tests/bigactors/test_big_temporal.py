@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bigactors.big.temporal import Decider, graph_of
+from bigactors.commands.big.temporal import Decider, graph_of
 from bigraphs.examples import example_names, example_text
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system

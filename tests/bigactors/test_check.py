@@ -10,7 +10,7 @@ import pytest
 from processes import begun
 
 from bigactors import checking, trace_files
-from bigactors.commands import check as command
+from bigactors.commands.check import check_report as command
 from checker.reports.report import MARKS
 
 

@@ -8,8 +8,8 @@ import sys
 import pytest
 
 from bigactors import __version__
-from bigactors.arguments import NAMES
 from bigactors.cli import main
+from bigactors.commands import NAMES
 from bigactors.commands import explain as command
 
 
@@ -94,7 +94,7 @@ def test_a_value_that_makes_no_sense_is_told(bigactors, words, said):
 
 
 def test_a_bug_of_ours_is_told_as_one(bigactors, monkeypatch):
-    monkeypatch.setattr(command, "explain", lambda _: 1 / 0)
+    monkeypatch.setattr(command, "run", lambda _: 1 / 0)
     code, _, err = bigactors("explain", "LS101")
     assert code == 4
     assert "ZeroDivisionError" in err
@@ -105,7 +105,7 @@ def test_an_interruption_is_incomplete(bigactors, monkeypatch):
     def interrupted(_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(command, "explain", interrupted)
+    monkeypatch.setattr(command, "run", interrupted)
     assert bigactors("explain", "LS101") == (3, "", "bigactors: interrupted, nothing is decided\n")
 
 

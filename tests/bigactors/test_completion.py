@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from bigactors.arguments.completion import SHELLS
+from bigactors.commands.completion import SHELLS
 
 MISSION = """
 signature { kind Location contains UAV  kind UAV driven }

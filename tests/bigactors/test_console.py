@@ -25,9 +25,9 @@ from cryptography.x509.oid import NameOID
 
 from adapters.console.requests import PROTOCOL
 from adapters.recording.reading import read_recording
-from bigactors import console_beside
 from bigactors.cli import main
 from bigactors.commands.console import PORT
+from bigactors.commands.run import console_beside
 from bigactors.mistakes import Mistake
 
 MISSION = """

@@ -12,9 +12,9 @@ from contextlib import suppress
 import pytest
 from processes import begun
 
-from bigactors import file_changes
-from bigactors.continuous_check import files_of
-from bigactors.file_changes import changed, look
+from bigactors.commands.check import file_changes
+from bigactors.commands.check.continuous_check import files_of
+from bigactors.commands.check.file_changes import changed, look
 from specs.elaboration import Variation
 
 WAITING = "waiting for a save of "

@@ -1,5 +1,5 @@
 from bigactors import docs
-from bigactors.arguments import NAMES
+from bigactors.commands import NAMES
 from semantics.extension import EXTENSION
 from semantics.rules import RULES, TIMED_RULES
 

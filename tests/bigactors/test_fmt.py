@@ -1,7 +1,7 @@
 import os
 import stat
 
-from bigactors.commands import fmt as command
+import specs
 
 UGLY = "mission   m\nsignature { kind Place // a place\n }\nworld { p0 : Place=box (1,2) (3 , 4) }\n"
 NEAT = (
@@ -67,7 +67,7 @@ def test_a_formatter_that_would_change_what_is_said_is_our_bug_and_destroys_noth
     missions, bigactors, monkeypatch
 ):
     (missions / "ugly.mission").write_text(UGLY)
-    monkeypatch.setattr(command, "format_mission", lambda *_: "mission other\n")
+    monkeypatch.setattr(specs, "format_mission", lambda *_: "mission other\n")
     code, _, err = bigactors("fmt", "ugly.mission")
     assert code == 4
     assert "would change what it says" in err

@@ -7,11 +7,11 @@ import pytest
 from adapters.addresses import SCHEMES
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
-from bigactors.feeds import FEEDS
+from bigactors.commands.run.connections import plugins_of
+from bigactors.commands.run.feeds import FEEDS
 from bigactors.installed_plugins import find_detector
 from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
-from bigactors.plugins import plugins_of
 from semantics.state.setting import Control, Scheduler
 from specs.elaboration import Variation
 

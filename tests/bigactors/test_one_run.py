@@ -5,7 +5,7 @@ import random
 import pytest
 from shipped import TIMED
 
-from bigactors.one_run import OneRun
+from bigactors.commands.simulate.one_run import OneRun
 from checker import replay, to_json
 from semantics.properties.propositions import holds
 from specs.elaboration import load_mission

@@ -8,7 +8,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from bigactors import __version__, outputs
-from bigactors.arguments import FORMATS
+from bigactors.arguments.values import FORMATS
 
 SCHEMA = Path(__file__).parents[2] / "docs" / "reference" / "sarif.schema.json"
 ALL = ("holds.mission", "race.mission", "endless.mission", "mistaken.mission", "nowhere.mission")

@@ -11,10 +11,10 @@ from adapters.mavlink.signing import load
 from adapters.naming import NameClash
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
-from bigactors.fences import fence_of
+from bigactors.commands.run.connections import plugins_of
+from bigactors.commands.run.fences import fence_of
 from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
-from bigactors.plugins import plugins_of
 from physical import box, contains, point
 from semantics.state.setting import Control, Scheduler
 from specs.elaboration import Variation

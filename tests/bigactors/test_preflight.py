@@ -9,7 +9,7 @@ import pytest
 from adapters.simulated import Kind, Simulator, Vehicle, run
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
-from bigactors.commands.run import fly, prepare
+from bigactors.commands.run.flight import fly, prepare
 from bigactors.mistakes import Mistake
 
 WORLD = """

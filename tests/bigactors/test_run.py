@@ -20,8 +20,8 @@ from adapters.plugin import TakenOver
 from adapters.recording.writing import Recorder
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
-from bigactors.commands.run import conclude, prepare, record
-from bigactors.foreign_recordings import watched
+from bigactors.commands.replay.foreign_recordings import watched
+from bigactors.commands.run.flight import conclude, prepare, record
 from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
 from bigactors.pictures.scene import palette_of

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from bigactors.commands import NAMES
+
 ROOT = Path(__file__).parents[2]
 KNOWN = {
     *(
@@ -70,6 +72,29 @@ def libraries(modules):
 @pytest.mark.parametrize("line", [["--help"], ["check", "--help"], ["--version"]])
 def test_help_loads_nothing(start, line):
     assert libraries(start(*line)) == set()
+
+
+def commands(modules):
+    """Return the commands whose modules are among them."""
+    return {name.split(".")[2] for name in modules if name.startswith("bigactors.commands.")}
+
+
+def test_the_list_of_commands_loads_no_command(start):
+    assert commands(start("--help")) == set()
+
+
+def test_a_line_loads_the_command_that_it_names_alone(start):
+    assert commands(start("--color", "never", "hold", "--help")) == {"hold"}
+
+
+def test_the_arguments_of_all_commands_load_nothing_of_their_work():
+    script = "import sys; from bigactors.arguments import make_parser; make_parser(); print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.split())
+    assert commands(loaded) == {name.replace("-", "_") for name in NAMES}
+    assert libraries(loaded) == set()
+    rooms = {"adapters", "bigraphs", "checker", "physical", "semantics", "specs"}
+    assert {name for name in loaded if name.split(".")[0] in rooms} == set()
 
 
 def test_explain_loads_the_codes_alone(start):

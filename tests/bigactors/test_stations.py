@@ -12,10 +12,10 @@ from adapters.stations.entries import Broke, Posted, Sent, Took
 from adapters.stations.journal import Journal
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
+from bigactors.commands.run.stations import company_of
 from bigactors.missions import digest_of, open_mission
 from bigactors.mistakes import Mistake
 from bigactors.recordings import Resumed, parting_of, trace_of
-from bigactors.stations import company_of
 from checker import ReplayError
 from semantics.behaviours.values import Text
 from semantics.state.parcel_serialization import parcel_json

@@ -11,7 +11,8 @@ import termios
 
 import pytest
 
-from bigactors.arguments import NAMES, parser_of
+from bigactors.arguments import parser_of
+from bigactors.commands import NAMES
 from bigactors.terminal import broken
 
 ESCAPE = "\x1b"

@@ -6,7 +6,7 @@ from jsonschema import Draft202012Validator
 
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
-from bigactors.commands import run
+from bigactors.commands.run import flight as run
 from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
 from bigactors.verdict_files import find_verdict, licence_for

@@ -51,8 +51,8 @@ def test_what_is_not_there_is_told():
 
 OWN = {
     "bigactors/__init__.py",
-    "bigactors/big/storm.py",
-    "bigactors/big/storm_worker.py",
+    "bigactors/commands/big/storm.py",
+    "bigactors/commands/big/storm_worker.py",
     "bigactors/build.py",
     "bigactors/commands/new.py",
     "bigactors/docs.py",

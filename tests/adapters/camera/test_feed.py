@@ -16,8 +16,8 @@ from adapters.camera.view import Lens, Pose
 from adapters.camera.votes import share
 from adapters.plugin import Trouble
 from adapters.simulated.camera import render
-from bigactors.arguments.cameras import camera
 from bigactors.cli import run
+from bigactors.commands.run.option_values import camera
 from physical import circle
 
 pytest.importorskip("cv2")

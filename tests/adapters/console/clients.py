@@ -14,7 +14,7 @@ from adapters.console.browser_session import Console
 from adapters.console.history import History
 from adapters.console.requests import PROTOCOL
 from adapters.console.server import Site, serving
-from bigactors.console import rules_of
+from bigactors.commands.console.recorded_history import rules_of
 
 DOCS = Path(__file__).parents[3] / "docs" / "reference"
 SCHEMA = json.loads((DOCS / "console.schema.json").read_text(encoding="utf-8"))

@@ -16,7 +16,7 @@ from adapters.recording.foxglove import OTHERS
 from adapters.recording.mcap_files import McapReader, McapWriter
 from adapters.recording.schemas import SCHEMAS
 from adapters.recording.writing import Recorder
-from bigactors.console import rules_of
+from bigactors.commands.console.recorded_history import rules_of
 from bigactors.missions import digest_of
 
 FLIGHT = f"""mission tour

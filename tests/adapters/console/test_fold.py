@@ -19,7 +19,7 @@ from adapters.console.mutable_facts import Draft
 from adapters.console.ticks import MOST, tick
 from adapters.recording.mcap_files import McapWriter
 from adapters.recording.schemas import SCHEMAS
-from bigactors.console import history_of
+from bigactors.commands.console.recorded_history import history_of
 from bigactors.live_demo import SPILL
 from bigactors.recordings import open_recording
 from physical.shape import canonical

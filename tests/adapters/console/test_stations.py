@@ -9,9 +9,9 @@ from adapters.live.state import Plan, Saying
 from adapters.plugin import Underway
 from adapters.recording.schemas import VERSION
 from adapters.recording.writing import Recorder
-from bigactors.console import rules_of
+from bigactors.commands.console.recorded_history import rules_of
+from bigactors.commands.run.stations import parting_json
 from bigactors.missions import digest_of, open_mission
-from bigactors.stations import parting_json
 from semantics.state.partition import Parting, parted
 
 STATIONS = {name: name for name in ("gcs0", "gcs1", "gcs2")}

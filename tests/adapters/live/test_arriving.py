@@ -12,7 +12,7 @@ from adapters.mavlink.constants import Cmd, MissionType
 from adapters.mavlink.items import Item
 from adapters.plugin import Accepted, GoTo
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
-from bigactors.commands.run import fly, prepare
+from bigactors.commands.run.flight import fly, prepare
 from bigactors.mistakes import Mistake
 from bigactors.watchers import Terminal
 from physical import circle, contains, overlaps, point, waypoint

@@ -9,7 +9,7 @@ from adapters.live.fates import RETRY
 from adapters.live.loop import Ending
 from adapters.live.state import Fate, GivingBack
 from adapters.plugin import Accepted, Arrived, Hold, Rejected, Sent, TakenOver
-from bigactors.commands.run import conclude
+from bigactors.commands.run.flight import conclude
 from bigactors.exits import Exit
 from bigactors.vehicle_lines import standing, vehicle_line
 from semantics.live_policy import LivePolicy, TimeLimit

@@ -11,7 +11,7 @@ from pyais.encode import encode_dict
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
-from bigactors.commands.run import fly, prepare, record
+from bigactors.commands.run.flight import fly, prepare, record
 from bigactors.mistakes import Mistake
 from bigactors.recordings import open_recording, trace_of
 from bigactors.watchers import Terminal

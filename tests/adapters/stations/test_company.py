@@ -7,7 +7,7 @@ from company import EAST, NOWHERE, WEST, WORLD, Cable, Station, agree, free_port
 
 from adapters.console.history import History
 from adapters.recording.reading import read_recording
-from bigactors.console import rules_of
+from bigactors.commands.console.recorded_history import rules_of
 
 pytestmark = pytest.mark.long
 

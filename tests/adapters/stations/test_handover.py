@@ -11,7 +11,7 @@ from company import WORLD, Station, free_port, peers_toml, running, until
 from adapters.console.history import History
 from adapters.recording.reading import read_recording
 from bigactors.cli import main
-from bigactors.console import rules_of
+from bigactors.commands.console.recorded_history import rules_of
 from checker.reports.lanes import lanes_of
 
 pytestmark = pytest.mark.long

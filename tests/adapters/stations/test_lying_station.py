@@ -11,7 +11,7 @@ from adapters.stations.bus import Bus
 from adapters.stations.entries import Entry, Posted, entry_text
 from adapters.stations.messages import Message, written
 from adapters.stations.peers import read_peers
-from bigactors.stations import digest_of
+from bigactors.commands.run.stations import digest_of
 from semantics.state.setting import Control, Scheduler
 from specs.elaboration import Variation, load_mission
 

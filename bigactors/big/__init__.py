@@ -1,1 +1,0 @@
-"""Verdicts, computations and output files of `bigactors big` on systems of bigraphs."""

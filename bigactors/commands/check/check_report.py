@@ -1,0 +1,194 @@
+"""A check: the exploration, the printed report, and the written files."""
+
+from __future__ import annotations
+
+import re
+import sys
+from argparse import Namespace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bigactors.checking import Checked, Failed, check_missions
+from bigactors.commands.check.settings import how_of, limits_of
+from bigactors.exits import Exit, worst
+from bigactors.files import check_writable, file_stem, make_folder, write_json
+from bigactors.missions import variation_of
+from bigactors.mistakes import Mistake
+from bigactors.outputs import Output, cautions_of, outputs_of, write_outputs
+from bigactors.terminal import paint, say, tell
+from checker import Interruption, report_text
+from checker.check import reductions_of
+from checker.engines.fast.loading import ALONE
+from checker.limits import Stop
+from checker.reports.report import MARKS, coverage_text
+from checker.reports.results import caution_text
+from checker.verdicts import Outcome, Report
+from physical.messages import counted
+from semantics.successors import rules_of
+
+if TYPE_CHECKING:
+    from bigactors.signatures import SigningKey
+    from specs.elaboration import ElaboratedMission
+
+COLOURS = {Outcome.HOLDS: "green", Outcome.VIOLATED: "red", Outcome.INCOMPLETE: "yellow"}
+SIGNS = {MARKS[outcome]: colour for outcome, colour in COLOURS.items()}
+
+WORDS = {
+    Exit.HOLDS: (MARKS[Outcome.HOLDS], "holds"),
+    Exit.VIOLATED: (MARKS[Outcome.VIOLATED], "violated"),
+    Exit.MISTAKE: ("!", "mistake"),
+    Exit.INCOMPLETE: (MARKS[Outcome.INCOMPLETE], "incomplete"),
+    Exit.BUG: ("!", "internal error"),
+}
+
+
+def check_and_report(options: Namespace) -> Exit:
+    """Check missions, with `--watch` at each save; print the reports and write the requested files."""
+    ALONE.set(True)
+    limits, how = limits_of(options), how_of(options)
+    if options.trace:
+        make_folder(options.trace)
+    key = _check_verdict(options)
+    outputs = outputs_of(options)
+    variation = variation_of(options)
+
+    def check(interruption: Interruption) -> Iterator[Checked | Failed]:
+        return check_missions(options.files, replace(limits, interruption=interruption), variation, how)
+
+    def report(results: Iterable[Checked | Failed]) -> Exit:
+        return report_all(results, options, outputs, key)
+
+    if not options.watch:
+        return report(check(Interruption()))
+    from bigactors.commands.check.continuous_check import check_at_each_save  # only --watch needs it
+
+    if any(output.to_standard_output for output in outputs):
+        raise Mistake("--watch prints its reports", "give a file in the place of -")
+    return check_at_each_save(options.files, variation, check, report)
+
+
+def report_all(
+    checked: Iterable[Checked | Failed], options: Namespace, outputs: Sequence[Output], key: SigningKey | None
+) -> Exit:
+    """Print the reports as they come, and write the requested files."""
+    alone = any(output.to_standard_output for output in outputs)
+    results: list[Checked | Failed] = []
+    folders: set[str] = set()
+    for result in checked:
+        results.append(result)
+        if not alone:
+            for line in report_lines(result, traces=not options.no_traces):
+                say(coloured(line))
+        if options.verdict and isinstance(result, Checked):
+            keep_verdict(result, options, key)
+        if options.trace and isinstance(result, Checked):
+            keep_evidence(result, options.trace, folders)
+    code = worst(result.exit for result in results)
+    if len(results) > 1 and not alone:
+        for line in summary(results):
+            say(coloured(line))
+    write_outputs(outputs, results, code)
+    return code
+
+
+def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
+    """Yield the printed lines about one mission; none for a failed one, whose message is already printed."""
+    if isinstance(result, Failed):
+        return
+    report = result.report
+    for caution in cautions_of(result.mission):
+        yield from caution_text(result.name, caution)
+    yield from report_text(result.name, report, traces=traces)
+    silent = [
+        rule.__name__
+        for rule in rules_of(result.mission.setting.control)
+        if rule.__name__ not in report.rules
+    ]
+    if silent:
+        when = "never used" if report.complete and not report.reduced else "not used so far"
+        yield f"  rules {when}: {', '.join(silent)}"
+    if not report.complete:
+        yield f"  to decide more: {remedies(result.mission, report)}"
+    if report.coverage is not None:
+        yield from coverage_text(result.name, report.coverage, result.mission.source.text)
+
+
+def remedies(mission: ElaboratedMission, report: Report) -> str:
+    """Return remedies for an exploration that a limit cut off."""
+    if all(bound.stop is Stop.PENDING for bound in report.bounds):
+        waits = "let each loop wait for what it asks for (LS708 names those that don't)"
+        return f"{waits}, or raise the limit that stopped it: --max-pending"
+    less: tuple[str, ...] = ()
+    if mission.setting.timing is not None:
+        less = ("give timing a larger tick, of which all durations are whole numbers",)
+    elif not report.reduced and (sound := reductions_of(mission)):
+        less = (f"visit less with --reduce {','.join(map(str, sound))} (docs/explanation/reduction.md)",)
+    smaller = "name fewer entities and places, or let fewer bigActors act at once"
+    return "; ".join((*less, smaller, "or raise the limit that stopped it: --max-configurations, --max-time"))
+
+
+def summary(results: list[Checked | Failed]) -> Iterator[str]:
+    """Yield a line for each of several missions."""
+    width = max(len(result.name) for result in results)
+    yield ""
+    for result in results:
+        sign, word = WORDS[result.exit]
+        if isinstance(result, Checked):
+            report = result.report
+            counts = f"{counted(report.configurations, 'configuration')}, {counted(report.transitions, 'transition')}"
+        else:
+            counts = result.message.splitlines()[0][:100]
+        yield f"  {sign} {result.name:<{width}}  {word:<10}  {counts}"
+
+
+def coloured(line: str) -> str:
+    """Return a line with its mark coloured, if the output shows colours.
+
+    >>> coloured("  ✓ deadlock_freedom  holds")
+    '  ✓ deadlock_freedom  holds'
+    """
+    found = re.match(r"  ([✓✗?!]) ", line)
+    if not found:
+        return line
+    colour = SIGNS.get(found[1], "red")
+    return f"  {paint(found[1], colour, sys.stdout)} {line[4:]}"
+
+
+def _check_verdict(options: Namespace) -> SigningKey | None:
+    """Return the key that signs the verdict, if any; raises Mistake before the exploration."""
+    if options.verdict is None:
+        if options.sign is not None:
+            raise Mistake("--sign signs a verdict", "say where it is written: --verdict FILE")
+        return None
+    if len(options.files) > 1:
+        raise Mistake("--verdict writes the verdict of one mission", "check the missions one by one")
+    check_writable(options.verdict)
+    if options.sign is None:
+        return None
+    from bigactors.signatures import load_key  # few verdicts are signed
+
+    return load_key(options.sign)
+
+
+def keep_verdict(checked: Checked, options: Namespace, key: SigningKey | None) -> None:
+    """Write the verdict on a mission, and print its path."""
+    from bigactors.verdict_files import verdict_json  # few checks are for a flight
+
+    data = verdict_json(checked, options.engine or "by size", key)
+    write_json(options.verdict, data)
+    tell(f"  verdict: {'holds' if data['holds'] else 'does not hold'}, written to {options.verdict}")
+
+
+def keep_evidence(checked: Checked, folder: str, taken: set[str]) -> None:
+    """Write the traces of a mission into a folder of its own, and print their paths."""
+    from bigactors.trace_files import write_evidence  # only --trace waits for pictures
+
+    stem = name = file_stem(Path(checked.name).stem)
+    number = 2
+    while name in taken:
+        name, number = f"{stem}-{number}", number + 1
+    taken.add(name)
+    for written in write_evidence(checked, Path(folder) / name):
+        tell(f"  trace: {written}/trace.html, .txt, .json and .svg")
