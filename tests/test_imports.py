@@ -58,6 +58,10 @@ LIBRARIES = {
     "zenoh": ("adapters/stations/bus.py", "adapters/ros/link.py", "adapters/ros/publisher.py"),
     "xxhash": ("adapters/ros/wire.py",),
     "rosbags": ("adapters/ros/",),
+    "msgspec": (
+        "adapters/typed_json.py",
+        "adapters/stations/",
+    ),
     "mcap": ("adapters/recording/mcap_files.py",),
     "zstandard": ("adapters/recording/decompression.py",),
     "lz4": ("adapters/recording/decompression.py",),
