@@ -58,10 +58,7 @@ LIBRARIES = {
     "zenoh": ("adapters/stations/bus.py", "adapters/ros/link.py", "adapters/ros/publisher.py"),
     "xxhash": ("adapters/ros/wire.py",),
     "rosbags": ("adapters/ros/",),
-    "msgspec": (
-        "adapters/typed_json.py",
-        "adapters/stations/",
-    ),
+    "msgspec": ("adapters/typed_json.py", "adapters/stations/", "adapters/console/requests.py"),
     "mcap": ("adapters/recording/mcap_files.py",),
     "zstandard": ("adapters/recording/decompression.py",),
     "lz4": ("adapters/recording/decompression.py",),
