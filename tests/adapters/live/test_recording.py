@@ -4,22 +4,24 @@ import signal
 import subprocess
 import sys
 from collections import Counter
+from dataclasses import fields
 from pathlib import Path
+from typing import get_args
 
 import jsonschema
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, mission, plan_of, seen
 
-from adapters.live.state import Acknowledging, GivingBack, Heard, Ordering, Saying
-from adapters.plugin import Accepted, Aged, Battery, Gone, Presence, Status, StatusText
-from adapters.recording.encoding import arrival_json
+from adapters.live.state import Acknowledging, Finding, GivingBack, Heard, Ordering, Saying
+from adapters.plugin import Accepted, Aged, Battery, Gone, Presence, Report, Seen, Status, StatusText
+from adapters.recording.encoding import arrival_json, command_json, finding_json, report_json, seen_json
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.reading import is_recording, read_recording
-from adapters.recording.schemas import SCHEMAS
+from adapters.recording.schemas import COMMANDS, SCHEMAS
 from adapters.recording.writing import MOST_ARRIVALS, Recorder
 from checker import ReplayError, replay, to_json
 from checker.traces import SCHEMA
-from physical import Band, PhysicalProperty, Velocity, box
+from physical import Band, PhysicalProperty, Surroundings, Velocity, box
 from semantics.live_policy import Fallback, LivePolicy
 
 FLIGHT = (
@@ -351,3 +353,37 @@ def test_an_arrival_is_as_its_schema_says(published):
     data = json.loads(json.dumps(arrival_json(Heard("p", published))))
     jsonschema.validate(data, SCHEMAS["arrivals"][1])
     assert (data["plugin"], data["entity"], data["time"]) == ("p", "a", 5.0)
+
+
+PARTS = {
+    **dict.fromkeys(
+        ("request", "entity", "name", "leave", "join", "source", "reason", "what", "detail"), "a"
+    ),
+    **dict.fromkeys(("station", "agent", "host", "node", "slot", "to", "assumption", "plugin", "mode"), "b"),
+    **dict.fromkeys(("kind", "about", "message", "fallback", "text", "lacks"), "c"),
+    **dict.fromkeys(("time", "since", "done", "heard", "heading", "height"), 1.5),
+    **dict.fromkeys(("count", "number", "severity"), 1),
+    **dict.fromkeys(("rebooted", "elsewhere", "reached", "armed", "returning", "follows"), True),
+    **dict.fromkeys(("names", "authority"), ("d",)),
+    **dict.fromkeys(("place", "waypoint", "shape"), box((1, 2), (3, 4))),
+    "path": (box((1, 2), (3, 4)), box((1, 2), (3, 5))),
+    "altitude": Band(1, 2),
+    "around": Surroundings(),
+    "parcel": {"Parcel": []},
+    "battery": Battery(87, 12.1),
+    "home": (37.0, -8.7),
+}
+"""A value for each field of commands, reports and findings."""
+
+
+@pytest.mark.parametrize("kind", [*COMMANDS, *get_args(Report), Finding], ids=lambda kind: kind.__name__)
+def test_a_command_a_report_or_a_finding_with_all_its_parts_has_no_member_that_its_schema_lacks(kind):
+    value = kind(**{part.name: PARTS[part.name] for part in fields(kind)})
+    if kind in COMMANDS:
+        topic, data = "commands", command_json(value)
+    elif kind is Finding:
+        topic, data = "findings", finding_json(value)
+    else:
+        topic, data = seen_json(value) if isinstance(value, Seen) else ("reports", report_json(value))
+    schema = SCHEMAS[topic][1] | {"additionalProperties": False}
+    jsonschema.validate(json.loads(json.dumps(data)), schema)
