@@ -59,6 +59,7 @@ LIBRARIES = {
     "xxhash": ("adapters/ros/wire.py",),
     "rosbags": ("adapters/ros/",),
     "msgspec": (
+        "adapters/location.py",
         "adapters/typed_json.py",
         "adapters/console/requests.py",
         "adapters/recording/type_schemas.py",

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Final
 
 from msgspec import UNSET, Meta, Struct, UnsetType, field, to_builtins
-from msgspec.structs import asdict
 
 from adapters.plugin import Aged, Gone, Published, entity_of
-from adapters.typed_json import typed
+from adapters.typed_json import Text, Word, check_printable, typed
 from physical import Band, PhysicalProperty, Velocity
-from physical.untrusted_text import MAX_WORD
 from semantics.state.observation_serialization import geometry_json, geometry_of
 
 MOST_BYTES: Final = 256 * 1024
@@ -25,8 +23,6 @@ MOST_WORDS: Final = 2_000
 LARGEST: Final = 10**15
 """The largest number, index or time."""
 
-Text = Annotated[str, Meta(max_length=MAX_WORD)]
-Word = Annotated[str, Meta(min_length=1, max_length=MAX_WORD)]
 Words = Annotated[tuple[Word, ...], Meta(max_length=MOST_CHANNELS)]
 Whole = Annotated[int, Meta(ge=1, le=LARGEST)]
 Count = Annotated[int, Meta(ge=0, le=LARGEST)]
@@ -261,19 +257,8 @@ def entry_of(station: str, data: Any) -> Entry:
     if kind is _Seen and data.get("gone") is True:
         kind = _Ended
     plain: _Data = typed(data, kind)
-    for text in _texts(plain):
-        if text and not (text.isprintable() and text.strip()):
-            raise ValueError(f"{text!r:.60} is no printable text")
+    check_printable(plain, "parcel")
     return Entry(station, number, _said(station, plain) if isinstance(plain, _Ended | _Seen) else plain)
-
-
-def _texts(plain: _Data) -> Iterator[str]:
-    """Yield the texts in an entry, but for those in a parcel."""
-    for name, value in asdict(plain).items():
-        if isinstance(value, str):
-            yield value
-        elif isinstance(value, tuple | dict) and name != "parcel":
-            yield from (each for each in value if isinstance(each, str))
 
 
 def _plain(said: Said) -> _Ended | _Seen:
