@@ -10,16 +10,18 @@ true), time (seconds since 1970) and channels are optional:
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
-from typing import Any, Final
+from typing import Annotated, Any, Final
+
+from msgspec import Meta, Struct
 
 from adapters.feed import Feed
 from adapters.issue_counter import Troubles
 from adapters.naming import NamingService
 from adapters.plugin import Aged, World
 from adapters.slices import in_slices
+from adapters.typed_json import Word, check_printable, read_typed, typed
 from adapters.web import MAX_BODY, fetching
-from physical import Band, PhysicalError, PhysicalProperty, Velocity, is_word, point, read_json
+from physical import Band, PhysicalError, PhysicalProperty, Velocity, point
 
 MAX_ENTITIES: Final = 10_000
 LARGEST: Final = 1e12
@@ -27,6 +29,25 @@ LARGEST: Final = 1e12
 
 FUTURE: Final = 1.0
 """Seconds by which the service's clock may be ahead of ours."""
+
+
+Number = Annotated[float, Meta(ge=-LARGEST, le=LARGEST)]
+
+
+class _Entity(Struct, frozen=True):
+    name: Word
+    kind: Word
+    latitude: Number
+    longitude: Number
+    altitude: Number | None = None
+    speed: Number | None = None
+    course: Number | None = None
+    time: Number | None = None
+    channels: tuple[Word, ...] = ()
+
+
+class _Answer(Struct, frozen=True):
+    entities: Annotated[list[Any], Meta(max_length=MAX_ENTITIES)]
 
 
 class LocationService(Feed):
@@ -70,7 +91,7 @@ class LocationService(Feed):
                 await asyncio.sleep(self._every)
 
     async def _take(self, world: World, body: bytes) -> None:
-        async for index, entry in in_slices(enumerate(_entries(body))):
+        async for index, entry in in_slices(enumerate(read_typed(body, MAX_BODY, _Answer).entities)):
             try:
                 known = _property(entry, world.now(), self._name)
                 self._naming.name(f"name:{known.entity}", known.kind)
@@ -89,61 +110,22 @@ class LocationService(Feed):
         world.publish(Aged(known, self._time_to_live))
 
 
-def _entries(body: bytes) -> list[Any]:
-    document = read_json(body, MAX_BODY)
-    entries = document.get("entities") if isinstance(document, dict) else None
-    if not isinstance(entries, list) or len(entries) > MAX_ENTITIES:
+def _property(entry: object, now: float, source: str) -> PhysicalProperty:
+    said = typed(entry, _Entity)
+    check_printable(said)
+    if said.time is not None and said.time > now + FUTURE:
         raise PhysicalError(
-            "location",
-            f"the answer has no list of at most {MAX_ENTITIES:,} entities",
-            'answer {"entities": [...]}',
-        )
-    return entries
-
-
-def _property(entry: Any, now: float, source: str) -> PhysicalProperty:
-    if not isinstance(entry, dict):
-        raise PhysicalError("location", f"{entry!r:.60} is no entity", 'write {"name": ..., "kind": ...}')
-    altitude, speed, course = (_optional(entry, name) for name in ("altitude", "speed", "course"))
-    time = _optional(entry, "time")
-    if time is not None and time > now + FUTURE:
-        raise PhysicalError(
-            "time", f"its time is {time - now:.0f} s in the future", "set the service's clock"
+            "time", f"its time is {said.time - now:.0f} s in the future", "set the service's clock"
         )
     return PhysicalProperty(
-        _word(entry, "name"),
-        _word(entry, "kind"),
-        point(_number(entry, "latitude"), _number(entry, "longitude")),
-        None if altitude is None else Band(altitude, altitude),
-        _channels(entry),
-        time=now if time is None else min(time, now),
+        said.name,
+        said.kind,
+        point(said.latitude, said.longitude),
+        None if said.altitude is None else Band(said.altitude, said.altitude),
+        said.channels,
+        time=now if said.time is None else min(said.time, now),
         source=source,
-        velocity=None if speed is None or course is None else Velocity(speed, course % 360),
+        velocity=None
+        if said.speed is None or said.course is None
+        else Velocity(said.speed, said.course % 360),
     )
-
-
-def _number(entry: Mapping[str, Any], name: str) -> float:
-    value = entry.get(name)
-    if (
-        isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST
-    ):  # excludes NaN
-        raise PhysicalError(name, f"the {name} {value!r:.60} is no number", "write degrees, metres or m/s")
-    return float(value)
-
-
-def _optional(entry: Mapping[str, Any], name: str) -> float | None:
-    return None if entry.get(name) is None else _number(entry, name)
-
-
-def _word(entry: Mapping[str, Any], name: str) -> str:
-    value = entry.get(name)
-    if not is_word(value):
-        raise PhysicalError(name, f"the {name} {value!r:.60} is no word", "write 1 to 200 characters")
-    return value
-
-
-def _channels(entry: Mapping[str, Any]) -> tuple[str, ...]:
-    channels = entry.get("channels", [])
-    if not isinstance(channels, list):
-        raise PhysicalError("channels", f"the channels {channels!r:.60} are no list", 'write ["wifi", ...]')
-    return tuple(_word({"channel": channel}, "channel") for channel in channels)

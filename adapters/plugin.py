@@ -146,7 +146,13 @@ class Return:
 
 @dataclass(frozen=True, slots=True)
 class Rebind:
-    """Accept a vehicle's messages from a new address (`HOST:PORT`), confirmed by an operator."""
+    """Accept a vehicle's messages from a new address, confirmed by an operator.
+
+    Attributes:
+        request: Identifies the request in reports; unique in a run.
+        entity: The vehicle.
+        source: The address (`HOST:PORT`).
+    """
 
     request: str
     entity: str
@@ -444,7 +450,14 @@ class Status:
 
 @dataclass(frozen=True, slots=True)
 class StatusText:
-    """A text from a vehicle; its severity is MAVLink's, from 0 (emergency) to 7 (debug)."""
+    """A text from a vehicle.
+
+    Attributes:
+        entity: The vehicle.
+        time: Time of the text.
+        text: Its text.
+        severity: MAVLink's, from 0 (emergency) to 7 (debug).
+    """
 
     entity: str
     time: float
@@ -454,7 +467,14 @@ class StatusText:
 
 @dataclass(frozen=True, slots=True)
 class Presence:
-    """Whether another station is reached, and the time of its last answer; None is *not known yet*, and *never*."""
+    """Whether another station is reached.
+
+    Attributes:
+        station: The station.
+        time: Time of the report.
+        reached: Whether it is reached; None while that is not known yet.
+        heard: Time of its last answer; None before the first.
+    """
 
     station: str
     time: float

@@ -58,6 +58,13 @@ LIBRARIES = {
     "zenoh": ("adapters/stations/bus.py", "adapters/ros/link.py", "adapters/ros/publisher.py"),
     "xxhash": ("adapters/ros/wire.py",),
     "rosbags": ("adapters/ros/",),
+    "msgspec": (
+        "adapters/location.py",
+        "adapters/typed_json.py",
+        "adapters/console/requests.py",
+        "adapters/recording/type_schemas.py",
+        "adapters/stations/",
+    ),
     "mcap": ("adapters/recording/mcap_files.py",),
     "zstandard": ("adapters/recording/decompression.py",),
     "lz4": ("adapters/recording/decompression.py",),

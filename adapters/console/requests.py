@@ -2,99 +2,101 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Final
+from typing import Annotated, Any, Final, Literal
+
+from msgspec import UNSET, Meta, Struct, UnsetType
+from msgspec.structs import astuple
 
 from adapters.console.playhead import FASTEST, SLOWEST
-from physical import PhysicalError, is_text, is_word, read_json
+from adapters.typed_json import read_typed
+from physical import PhysicalError
+from physical.untrusted_text import MAX_TEXT
 
 PROTOCOL: Final = "bigactors.console/1"
 MOST_BYTES: Final = 16_384
 MOST_ID: Final = 100
 
+Text = Annotated[str, Meta(max_length=MAX_TEXT)]
+
 
 class Unreadable(ValueError):
-    """A frame that is not a known request; the message names the expected ones."""
+    """A frame that is not a known request; the message names the place of the fault."""
 
 
-@dataclass(frozen=True, slots=True)
-class Hello:
-    """The first frame: the protocol, the token, and the user's name; None for an invalid name."""
+class Hello(Struct, frozen=True, tag_field="type", tag="hello"):
+    """The first frame: the protocol, the token, and the user's name, which is not checked yet."""
 
     protocol: str
     token: str
-    name: str | None
+    name: Any = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Seek:
+class Seek(Struct, frozen=True, tag_field="type", tag="seek"):
     """Show another time."""
 
     time: float
 
 
-@dataclass(frozen=True, slots=True)
-class Play:
+class Play(Struct, frozen=True, tag_field="type", tag="play"):
     """Play from the shown time, at a speed."""
 
-    speed: float
+    speed: Annotated[float, Meta(ge=SLOWEST, le=FASTEST)]
 
 
-@dataclass(frozen=True, slots=True)
-class Pause:
+class Pause(Struct, frozen=True, tag_field="type", tag="pause"):
     """Pause at the shown time."""
 
 
-@dataclass(frozen=True, slots=True)
-class Live:
+class Live(Struct, frozen=True, tag_field="type", tag="live"):
     """Show the newest moment."""
 
 
-@dataclass(frozen=True, slots=True)
-class Say:
+class Say(Struct, frozen=True):
     """Send an agent a message that the mission allows."""
 
-    agent: str
-    message: str
+    agent: Text
+    message: Text
 
 
-@dataclass(frozen=True, slots=True)
-class Order:
+class Order(Struct, frozen=True):
     """Order a vehicle, or all, to hold or to return."""
 
-    order: str
-    vehicle: str | None
+    order: Literal["hold", "return"]
+    vehicle: Text | None
 
 
-@dataclass(frozen=True, slots=True)
-class GiveBack:
+class GiveBack(Struct, frozen=True):
     """Let the mission command a vehicle again."""
 
-    vehicle: str
+    vehicle: Text
 
 
-@dataclass(frozen=True, slots=True)
-class Acknowledge:
-    """Acknowledge an alert."""
+class Acknowledge(Struct, frozen=True):
+    """Acknowledge an alert, the number of a finding."""
 
-    finding: int
-
-
-@dataclass(frozen=True, slots=True)
-class Start:
-    """Start a run that waits for its operator."""
+    alert: Annotated[str, Meta(pattern=r"\A[0-9]{1,9}\Z")]
 
 
-Action = Say | Order | GiveBack | Acknowledge | Start
+class Action(Struct, frozen=True, forbid_unknown_fields=True):
+    """One action: start the run that waits for its operator, or another."""
+
+    say: Say | UnsetType = UNSET
+    order: Order | UnsetType = UNSET
+    give_back: GiveBack | UnsetType = UNSET
+    acknowledge: Acknowledge | UnsetType = UNSET
+    start: bool | UnsetType = UNSET
+
+    def __post_init__(self) -> None:
+        if sum(each is not UNSET for each in astuple(self)) != 1 or self.start is False:
+            raise ValueError(
+                "expected one of 'say', 'order', 'give_back', 'acknowledge' and 'start' with true"
+            )
 
 
-@dataclass(frozen=True, slots=True)
-class Act:
+class Act(Struct, frozen=True, tag_field="type", tag="act"):
     """An action, and the identifier of its answer."""
 
-    id: str
+    id: Annotated[str, Meta(max_length=MOST_ID)]
     action: Action
 
 
@@ -108,58 +110,8 @@ def read_request(text: str) -> Request:
         Unreadable: The frame is not a known request.
     """
     try:
-        said = read_json(text.encode(errors="surrogatepass"), MOST_BYTES)
+        said = text.encode(errors="surrogatepass")
+        request: Request = read_typed(said, MOST_BYTES, Request)  # type: ignore[arg-type]  # a union
     except PhysicalError as error:
-        raise Unreadable(f"this is no JSON: {error.message:.200}") from error
-    if not isinstance(said, dict):
-        raise Unreadable("a frame is an object with a 'type'")
-    return _request(said)
-
-
-def _request(said: Mapping[str, object]) -> Request:
-    match said:
-        case {"type": "hello", "protocol": str(protocol), "token": str(token)}:
-            name = said.get("name", "")
-            return Hello(protocol, token, name if name == "" or is_word(name) else None)
-        case {"type": "seek", "time": time} if _is_number(time):
-            return Seek(float(time))  # type: ignore[arg-type]  # a number
-        case {"type": "play", "speed": speed} if _is_number(speed) and SLOWEST <= speed <= FASTEST:  # type: ignore[operator]
-            return Play(float(speed))  # type: ignore[arg-type]  # a number
-        case {"type": "pause"}:
-            return Pause()
-        case {"type": "live"}:
-            return Live()
-        case {"type": "act", "id": str(name), "action": {**action}} if (
-            len(name) <= MOST_ID and len(action) == 1
-        ):
-            return Act(name, _action(action))
-    raise Unreadable(
-        "expected 'hello', 'seek' with a 'time', 'play' with a 'speed' from 0.5 to 100, 'pause', 'live', or 'act' with "
-        "an 'id' and one 'action'"
-    )
-
-
-def _action(said: Mapping[object, object]) -> Action:
-    match said:
-        case {"say": {"agent": str(agent), "message": str(message)}} if is_text(agent) and is_text(message):
-            return Say(agent, message)
-        case {"order": {"order": "hold" | "return" as order, "vehicle": None}}:
-            return Order(order, None)
-        case {"order": {"order": "hold" | "return" as order, "vehicle": str(vehicle)}} if is_text(vehicle):
-            return Order(order, vehicle)
-        case {"give_back": {"vehicle": str(vehicle)}} if is_text(vehicle):
-            return GiveBack(vehicle)
-        case {"acknowledge": {"alert": str(alert)}} if (
-            alert.isascii() and alert.isdigit() and len(alert) < 10
-        ):
-            return Acknowledge(int(alert))
-        case {"start": True}:
-            return Start()
-    raise Unreadable(
-        "expected one of 'say' with 'agent' and 'message', 'order' with 'order' (hold or return) and 'vehicle', "
-        "'give_back' with 'vehicle', 'acknowledge' with 'alert', 'start' with true"
-    )
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+        raise Unreadable(f"this is no request: {error.message}: see docs/reference/console.md") from error
+    return request

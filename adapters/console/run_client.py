@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
-from adapters.console.requests import Acknowledge, Action, GiveBack, Order, Say, Start
+from adapters.console.requests import Acknowledge, Action, GiveBack, Order, Say
 from adapters.live.operator_socket import NobodyListens, Outcome, acknowledge, give_back, order, say, start
 
 Performing = Callable[[Action, str], Awaitable[Outcome]]
@@ -26,13 +26,12 @@ def performing(socket: Path) -> Performing:
 
 async def _perform(socket: Path, action: Action, by: str) -> Outcome:
     match action:
-        case Say(agent, message):
+        case Action(say=Say(agent, message)):
             return Outcome(await say(socket, agent, message, by))
-        case Order(what, vehicle):
+        case Action(order=Order(what, vehicle)):
             return await order(socket, what, vehicle, by)
-        case GiveBack(vehicle):
+        case Action(give_back=GiveBack(vehicle)):
             return await give_back(socket, vehicle, by=by)
-        case Acknowledge(finding):
-            return Outcome(await acknowledge(socket, finding, by))
-        case Start():
-            return Outcome(await start(socket, by))
+        case Action(acknowledge=Acknowledge(alert)):
+            return Outcome(await acknowledge(socket, int(alert), by))
+    return Outcome(await start(socket, by))

@@ -24,7 +24,7 @@ from adapters.console.coast import coast, window_of
 from adapters.console.requests import MOST_BYTES, PROTOCOL, Hello, Unreadable, read_request
 from adapters.recording.mcap_files import RecordingError
 from adapters.web import BACKLOG, Door, is_meant, library, quiet_log
-from physical import open_file
+from physical import is_word, open_file
 
 PAGE: Final = Path(__file__).with_name("page")
 INDEX: Final = "index.html"
@@ -279,7 +279,7 @@ class Service:
                 if said.protocol != PROTOCOL:
                     code, why = 4400, f"this is {PROTOCOL}".encode()
                 elif (role := self._console.access.role(said.token)) is not None:
-                    if said.name is not None:
+                    if said.name == "" or is_word(said.name):
                         return role, said.name
                     code, why = 4402, b"a name has 1 to 200 characters that can be printed"
         await socket.close(code=code, message=why)

@@ -8,8 +8,10 @@ from typing import Any
 
 from adapters.recording.foxglove import OTHERS
 from adapters.recording.mcap_files import MAGIC, McapReader, Message, RecordingError
-from adapters.recording.schemas import VERSION
 from physical import open_file
+
+VERSION = 1
+"""The version of the schemas of messages."""
 
 MOST_MESSAGES = 20_000_000
 

@@ -1,10 +1,19 @@
-"""JSON schemas of a recording's messages, one for each topic; docs/reference/recording.md prints them."""
+"""JSON schemas of a recording's messages, one for each topic; docs/reference/recording.md prints them.
+
+The members of a message that is one value of a type are generated from the type.
+"""
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Any, Final, get_args
 
-VERSION: Final = 1
+from adapters.live.state import Finding
+from adapters.plugin import Command, Presence, Report, Seen, Status, StatusText
+from adapters.recording.reading import VERSION
+from adapters.recording.type_schemas import BAND, RING, members_of
+
+COMMANDS: Final = get_args(Command)
+REPORTS: Final = tuple(kind for kind in get_args(Report) if kind not in get_args(Seen))
 
 _TEXT: Final = {"type": "string"}
 _NUMBER: Final = {"type": "number"}
@@ -12,11 +21,6 @@ _OPTIONAL: Final = {"type": ["string", "null"]}
 _BY: Final = {**_TEXT, "description": "Who said so; empty if unknown."}
 _TIME: Final = {**_NUMBER, "description": "In seconds since 1970 UTC."}
 _TEXTS: Final = {"type": "array", "items": _TEXT}
-_RING: Final = {
-    "type": "array",
-    "description": "Latitude and longitude of each vertex in 1e-7 degree; one vertex for a point.",
-    "items": {"type": "array", "items": {"type": "integer"}, "minItems": 2, "maxItems": 2},
-}
 _OBSERVED: Final = {
     "type": "object",
     "description": "What the world decided: the cells of P that were written, as [cell, value].",
@@ -48,6 +52,10 @@ def _object(description: str, required: tuple[str, ...], **properties: Any) -> d
         "required": list(required),
         "properties": properties,
     }
+
+
+def _name_of(*kinds: type) -> dict[str, Any]:
+    return {**_TEXT, "enum": [kind.__name__ for kind in kinds]}
 
 
 RUN: Final = _object(
@@ -101,12 +109,8 @@ ARRIVAL: Final = _object(
     plugin=_TEXT,
     entity=_TEXT,
     kind=_TEXT,
-    ring=_RING,
-    altitude={
-        "type": "array",
-        "items": _NUMBER,
-        "description": "Lowest and highest, metres above sea level.",
-    },
+    ring=RING,
+    altitude=BAND,
     channels=_TEXTS,
     carried_by=_TEXT,
     time={**_NUMBER, "description": "When it was observed, in seconds since 1970 UTC."},
@@ -171,6 +175,7 @@ FLIGHT: Final = _object(
         "description": "Null once it is over.",
         "required": ["to", "since", "least", "most"],
         "properties": {
+            "number": {"type": "integer", "minimum": 1},
             "to": {**_TEXT, "description": "Where it ends."},
             "since": _TIME,
             "least": {**_NUMBER, "description": "Seconds from `since`,"},
@@ -182,58 +187,27 @@ FLIGHT: Final = _object(
 COMMAND: Final = _object(
     "A command to a vehicle: written before it is sent.",
     ("command", "request", "entity"),
-    command={
-        "type": "string",
-        "enum": ["GoTo", "Follow", "HandOver", "Hold", "Return", "GiveBack", "Rebind"],
-    },
-    request=_TEXT,
-    entity=_TEXT,
-    ring=_RING,
-    altitude={"type": "array", "items": _NUMBER},
-    name=_TEXT,
-    leave=_TEXT,
-    join=_TEXT,
-    source={**_TEXT, "description": "The address from which the vehicle is heard from now on."},
+    command=_name_of(*COMMANDS),
+    **members_of(*COMMANDS, without=("around", "shape")),
 )
-
-REPORTS: Final = (
-    *(
-        "Sent",
-        "Accepted",
-        "Arrived",
-        "Rejected",
-        "Doubted",
-        "TakenOver",
-        "LinkLost",
-        "LinkRestored",
-        "Trouble",
-        "Failed",
-    ),
-    *("Delivered", "Underway", "Hosts", "Believes", "Broken"),
-)
-"""Those of a vehicle or a feed, then those of other stations."""
 
 REPORT: Final = _object(
     "A plugin's report on a request, a link or its input.",
     ("report",),
-    report={"type": "string", "enum": [*REPORTS]},
-    request=_TEXT,
-    entity=_TEXT,
-    waypoint={**_RING, "description": "Around which point the vehicle will stay."},
-    reason=_TEXT,
-    what=_TEXT,
-    detail=_TEXT,
-    source=_TEXT,
-    station=_TEXT,
-    number={"type": "integer", "minimum": 1},
-    to={**_TEXT, "description": "Where another station has sent a vehicle; empty when it has arrived."},
-    agent=_TEXT,
-    host=_TEXT,
-    assumption=_TEXT,
-    node=_TEXT,
-    slot=_TEXT,
-    names=_TEXTS,
-    parcel={"type": "object", "description": "A parcel from another station (docs/how-to/stations.md)."},
+    report=_name_of(*REPORTS),
+    **members_of(*REPORTS, without=("place",))
+    | {
+        "time": _TIME,
+        "number": {"type": "integer", "minimum": 1},
+        "to": {
+            **_TEXT,
+            "description": "Where another station has sent a vehicle; empty when it has arrived.",
+        },
+        "parcel": {
+            "type": "object",
+            "description": "A parcel from another station (docs/how-to/stations.md).",
+        },
+    },
 )
 
 SAYING: Final = _object(
@@ -282,56 +256,28 @@ ACKNOWLEDGED: Final = _object(
 STATUS: Final = _object(
     "What a vehicle says of itself, at most once a second; null is not told.",
     ("plugin", "entity", "time", "mode", "armed", "battery", "heading", "authority", "heard"),
-    plugin=_TEXT,
-    entity=_TEXT,
-    time=_TIME,
-    mode=_OPTIONAL,
-    armed={"type": ["boolean", "null"]},
-    battery={
-        "type": ["object", "null"],
-        "required": ["percent", "volts"],
-        "properties": {"percent": {"type": ["integer", "null"]}, "volts": {"type": ["number", "null"]}},
-    },
-    heading={"type": ["number", "null"], "description": "Degrees from true north."},
-    authority={**_TEXTS, "description": "The stations that it obeys."},
-    heard={"type": ["number", "null"], "description": "When its last message came."},
-    height={"type": ["number", "null"], "description": "Metres above its home."},
-    home={
-        "type": ["array", "null"],
-        "items": {"type": "number"},
-        "minItems": 2,
-        "maxItems": 2,
-        "description": "The latitude and longitude of its home, in degrees.",
-    },
-    lacks={**_TEXT, "description": "Why it has no position that counts; empty if it has one."},
-    follows={"type": ["boolean", "null"], "description": "Whether it follows the mission that is on board."},
-    returning={
-        "type": ["boolean", "null"],
-        "description": "Whether it is in the mode in which it flies home.",
-    },
+    **members_of(Status, nulls=True) | {"time": _TIME},
 )
 
 STATUS_TEXT: Final = _object(
     "A text that a vehicle has said.",
     ("entity", "time", "text", "severity"),
-    entity=_TEXT,
-    time=_TIME,
-    text=_TEXT,
-    severity={
-        "type": "integer",
-        "minimum": 0,
-        "maximum": 7,
-        "description": "From 0 (emergency) to 7 (debug).",
+    **members_of(StatusText, nulls=True)
+    | {
+        "time": _TIME,
+        "severity": {
+            "type": "integer",
+            "minimum": 0,
+            "maximum": 7,
+            "description": "From 0 (emergency) to 7 (debug).",
+        },
     },
 )
 
 PRESENCE: Final = _object(
     "Whether another station is reached, when that changes, and at most every 2 seconds.",
     ("station", "time", "reached", "heard"),
-    station=_TEXT,
-    time=_TIME,
-    reached={"type": ["boolean", "null"], "description": "Null while that is not known yet."},
-    heard={"type": ["number", "null"], "description": "When it answered last."},
+    **members_of(Presence, nulls=True) | {"time": _TIME},
 )
 
 PREFLIGHT: Final = _object(
@@ -353,10 +299,7 @@ PREFLIGHT: Final = _object(
 FINDING: Final = _object(
     "A message to the operator: a broken assumption, a refusal, a lost link, a request that takes too long.",
     ("kind", "about", "message"),
-    kind=_TEXT,
-    about=_TEXT,
-    message=_TEXT,
-    fallback=_TEXT,
+    **members_of(Finding) | {"time": _TIME},
     verdicts={**_TEXTS, "description": "The properties whose verdicts depend on the broken assumption."},
 )
 

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
-from adapters.plugin import (
-    Aged,
-    Gone,
-    Published,
-    entity_of,
-)
-from physical import PhysicalProperty, Velocity, is_word
-from semantics.state.observation_serialization import band_of, geometry_json, geometry_of
+from msgspec import UNSET, Meta, Struct, UnsetType, field, to_builtins
+
+from adapters.plugin import Aged, Gone, Published, entity_of
+from adapters.typed_json import Text, Word, check_printable, typed
+from physical import Band, PhysicalProperty, Velocity
+from semantics.state.observation_serialization import geometry_json, geometry_of
 
 MOST_BYTES: Final = 256 * 1024
 """The longest entry, as text."""
@@ -23,6 +22,12 @@ MOST_CHANNELS: Final = 100
 MOST_WORDS: Final = 2_000
 LARGEST: Final = 10**15
 """The largest number, index or time."""
+
+Words = Annotated[tuple[Word, ...], Meta(max_length=MOST_CHANNELS)]
+Whole = Annotated[int, Meta(ge=1, le=LARGEST)]
+Count = Annotated[int, Meta(ge=0, le=LARGEST)]
+Slot = Annotated[str, Meta(pattern=r"\A(parent|links)\Z")]
+Seconds = Annotated[float, Meta(ge=-LARGEST, le=LARGEST)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,13 +72,12 @@ class Said:
         return self.time + self.published.time_to_live if isinstance(self.published, Aged) else math.inf
 
 
-@dataclass(frozen=True, slots=True)
-class Sent:
+class Sent(Struct, frozen=True):
     """A vehicle was sent to a node, or (an empty name) is no longer under way."""
 
-    entity: str
-    to: str
-    time: float
+    entity: Word = field(name="sent")
+    to: Text
+    time: Seconds
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -81,13 +85,12 @@ class Sent:
         return ("sent", self.entity)
 
 
-@dataclass(frozen=True, slots=True)
-class Hosted:
+class Hosted(Struct, frozen=True):
     """The host of a bigActor that runs at the station."""
 
-    agent: str
-    host: str
-    time: float
+    agent: Word = field(name="hosted")
+    host: Word
+    time: Seconds
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -95,14 +98,13 @@ class Hosted:
         return ("hosted", self.agent)
 
 
-@dataclass(frozen=True, slots=True)
-class Believed:
+class Believed(Struct, frozen=True):
     """The station has written a slot of L: a node's `parent` (no name if L lacks the node) or its `links`."""
 
-    node: str
-    slot: str
-    names: tuple[str, ...]
-    time: float
+    node: Word = field(name="believed")
+    slot: Slot
+    names: Words
+    time: Seconds
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -110,12 +112,11 @@ class Believed:
         return ("believed", self.slot, self.node)
 
 
-@dataclass(frozen=True, slots=True)
-class Broke:
+class Broke(Struct, frozen=True):
     """The station has seen an assumption of the mission break; an empty text marks the start of a new run."""
 
-    assumption: str
-    time: float
+    assumption: Annotated[str, Meta(max_length=MOST_WORDS)] = field(name="broke")
+    time: Seconds
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -123,8 +124,7 @@ class Broke:
         return ("broke",)
 
 
-@dataclass(frozen=True, slots=True)
-class Posted:
+class Posted(Struct, frozen=True, omit_defaults=True):
     """A parcel for another station.
 
     Attributes:
@@ -132,14 +132,14 @@ class Posted:
         index: Its index among the parcels to that station.
         parcel: Its content, as plain data.
         knows: The last numbers of other stations that the sender had received: its content may depend on them.
-        time: Time of its departure; None in logs without it.
+        time: Time of its departure; `UNSET` in logs without it.
     """
 
-    to: str
-    index: int
+    to: Word
+    index: Whole
     parcel: Any
-    knows: tuple[tuple[str, int], ...] = ()
-    time: float | None = None
+    knows: Annotated[dict[Word, Whole], Meta(max_length=MOST_CHANNELS)] = {}
+    time: Seconds | UnsetType = UNSET
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -147,12 +147,11 @@ class Posted:
         return ("posted", self.to, str(self.index))
 
 
-@dataclass(frozen=True, slots=True)
-class Took:
+class Took(Struct, frozen=True):
     """All parcels of another station up to an index were taken: the acknowledgement."""
 
-    of: str
-    index: int
+    of: Word = field(name="took")
+    index: Whole
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -193,31 +192,56 @@ def stamped(published: Published, now: float) -> Published:
 # --- as plain data --------------------------------------------------------------------------------------
 
 
-def entry_json(entry: Entry) -> dict[str, Any]:
-    """Return an entry as plain data, without its station."""
-    match entry.content:
-        case Said(published, since, owned):
-            return {"n": entry.number, **_published_json(published), "since": since, "owned": owned}
-        case Sent(entity, to, time):
-            return {"n": entry.number, "sent": entity, "to": to, "time": time}
-        case Hosted(agent, host, time):
-            return {"n": entry.number, "hosted": agent, "host": host, "time": time}
-        case Believed(node, slot, names, time):
-            data = {"n": entry.number, "believed": node, "slot": slot, "names": list(names)}
-            return {**data, "time": time}
-        case Broke(assumption, time):
-            return {"n": entry.number, "broke": assumption, "time": time}
-        case Posted(to, index, parcel, knows, time):
-            data = {"n": entry.number, "to": to, "index": index, "parcel": parcel}
-            dated = {} if time is None else {"time": time}
-            return data | ({"knows": dict(knows)} if knows else {}) | dated
-        case Took(of, index):
-            return {"n": entry.number, "took": of, "index": index}
+class _Numbered(Struct, frozen=True):
+    n: Whole
+
+
+class _Ended(Struct, frozen=True):
+    """A `Said` of the end of an entity."""
+
+    entity: Word
+    time: Seconds
+    gone: bool
+    since: Seconds
+    owned: bool
+
+
+class _Seen(Struct, frozen=True, omit_defaults=True, kw_only=True):
+    """A `Said` of a property."""
+
+    entity: Word
+    kind: Word
+    at: Any
+    time: Seconds
+    altitude: tuple[Seconds, Seconds] | None = None
+    channels: Words = ()
+    by: Word | None = None
+    velocity: tuple[Seconds, Seconds] | None = None
+    ttl: Seconds | UnsetType = UNSET
+    clock: Whole | UnsetType = UNSET
+    since: Seconds
+    owned: bool
+
+
+_Data = Took | Sent | Hosted | Believed | Broke | Posted | _Ended | _Seen
+
+_KINDS: Final[Mapping[str, type[_Data]]] = {
+    "took": Took,
+    "sent": Sent,
+    "hosted": Hosted,
+    "believed": Believed,
+    "broke": Broke,
+    "parcel": Posted,
+    "entity": _Seen,
+}
+"""The type of an entry, by a member that only its type has."""
 
 
 def entry_text(entry: Entry) -> str:
-    """Return an entry as one line of JSON."""
-    return json.dumps(entry_json(entry), ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    """Return an entry as one line of JSON, without its station."""
+    content = _plain(entry.content) if isinstance(entry.content, Said) else entry.content
+    data = {"n": entry.number, **to_builtins(content)}
+    return json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
 
 
 def entry_of(station: str, data: Any) -> Entry:
@@ -226,118 +250,59 @@ def entry_of(station: str, data: Any) -> Entry:
     Raises:
         ValueError: The data are not an entry, for the reason in the message.
     """
-    if not isinstance(data, dict):
-        raise ValueError(f"{data!r:.60} is no entry")
-    number = _whole(data, "n")
-    match data:
-        case {"took": str()}:
-            return Entry(station, number, Took(_word(data, "took"), _whole(data, "index")))
-        case {"sent": str(), "to": str(to)}:
-            goal = _word(data, "to") if to else ""
-            return Entry(station, number, Sent(_word(data, "sent"), goal, seconds(data.get("time"))))
-        case {"hosted": str()}:
-            home = Hosted(_word(data, "hosted"), _word(data, "host"), seconds(data.get("time")))
-            return Entry(station, number, home)
-        case {"believed": str(), "slot": "parent" | "links" as slot, "names": names}:
-            node, time = _word(data, "believed"), seconds(data.get("time"))
-            return Entry(station, number, Believed(node, slot, _channels(names), time))
-        case {"broke": str(assumption)} if len(assumption) <= MOST_WORDS and assumption.isprintable():
-            return Entry(station, number, Broke(assumption, seconds(data.get("time"))))
-        case {"to": str(), "parcel": parcel}:
-            knows = _knows(data.get("knows", {}))
-            left = seconds(data["time"]) if "time" in data else None
-            return Entry(
-                station, number, Posted(_word(data, "to"), _whole(data, "index"), parcel, knows, left)
-            )
-        case {"entity": str(), "since": since, "owned": bool(owned)}:
-            return Entry(station, number, Said(_published(station, data), seconds(since), owned))
-    raise ValueError("an entry says or does none of what stations do")
+    number = typed(data, _Numbered).n
+    kind = next((kind for member, kind in _KINDS.items() if member in data), None)
+    if kind is None:
+        raise ValueError("an entry says or does none of what stations do")
+    if kind is _Seen and data.get("gone") is True:
+        kind = _Ended
+    plain: _Data = typed(data, kind)
+    check_printable(plain, "parcel")
+    return Entry(station, number, _said(station, plain) if isinstance(plain, _Ended | _Seen) else plain)
 
 
-def _published_json(published: Published) -> dict[str, Any]:
-    if isinstance(published, Gone):
-        return {"entity": published.entity, "time": published.time, "gone": True}
-    said = published.property if isinstance(published, Aged) else published
-    data: dict[str, Any] = {"entity": said.entity, "kind": said.kind, "at": geometry_json(said.geometry)}
-    data["time"] = said.time
-    if said.altitude is not None:
-        data["altitude"] = [said.altitude.low, said.altitude.high]
-    if said.channels:
-        data["channels"] = list(said.channels)
-    if said.carried_by is not None:
-        data["by"] = said.carried_by
-    if said.velocity is not None:
-        data["velocity"] = [said.velocity.speed, said.velocity.course]
-    if not isinstance(published, Aged):
-        return data
-    clock = {} if published.clock is None else {"clock": published.clock}
-    return {**data, "ttl": published.time_to_live, **clock}
-
-
-def _published(station: str, data: dict[str, Any]) -> Published:
-    entity, time = _word(data, "entity"), seconds(data.get("time"))
-    if data.get("gone") is True:
-        return Gone(entity, time, station)
-    said = PhysicalProperty(
-        entity,
-        _word(data, "kind"),
-        geometry_of(data.get("at")),
-        band_of(data.get("altitude")),
-        _channels(data.get("channels", [])),
-        None if data.get("by") is None else _word(data, "by"),
-        time,
-        station,
-        _velocity(data.get("velocity")),
+def _plain(said: Said) -> _Ended | _Seen:
+    ttl: float | None = None
+    clock: int | None = None
+    match said.published:
+        case Gone(entity, time):
+            return _Ended(entity, time, gone=True, since=said.since, owned=said.owned)
+        case Aged(seen, ttl, clock):
+            pass
+        case seen:
+            pass
+    band, velocity = seen.altitude, seen.velocity
+    return _Seen(
+        entity=seen.entity,
+        kind=seen.kind,
+        at=geometry_json(seen.geometry),
+        time=said.time,
+        altitude=None if band is None else (band.low, band.high),
+        channels=seen.channels,
+        by=seen.carried_by,
+        velocity=None if velocity is None else (velocity.speed, velocity.course),
+        ttl=UNSET if ttl is None else ttl,
+        clock=UNSET if clock is None else clock,
+        since=said.since,
+        owned=said.owned,
     )
-    if "ttl" not in data:
-        return said
-    return Aged(said, seconds(data["ttl"]), _whole(data, "clock") if "clock" in data else None)
 
 
-def _knows(data: Any) -> tuple[tuple[str, int], ...]:
-    if not isinstance(data, dict) or len(data) > MOST_CHANNELS:
-        raise ValueError("'knows' should give a number to each station")
-    return tuple((name, _whole(data, name)) for name in sorted(data))
-
-
-def _channels(data: Any) -> tuple[str, ...]:
-    if not isinstance(data, list) or len(data) > MOST_CHANNELS:
-        raise ValueError(f"channels should be a list of at most {MOST_CHANNELS}")
-    return tuple(_word({"channel": each}, "channel") for each in data)
-
-
-def _velocity(data: Any) -> Velocity | None:
-    match data:
-        case None:
-            return None
-        case [int() | float() as speed, int() | float() as course]:
-            return Velocity(seconds(speed), seconds(course))
-    raise ValueError(f"{data!r:.60} is no speed and course")
-
-
-def _word(data: dict[str, Any], name: str) -> str:
-    value = data.get(name)
-    if not is_word(value):
-        raise ValueError(f"'{name}' should be a word of 1 to 200 characters, not {value!r:.60}")
-    return value
-
-
-def _whole(data: dict[str, Any], name: str) -> int:
-    value = data.get(name)
-    if isinstance(value, bool) or not isinstance(value, int) or not 0 < value <= LARGEST:
-        raise ValueError(f"'{name}' should be a whole number from 1, not {value!r:.60}")
-    return value
-
-
-def count(value: Any) -> int:
-    """Return a whole number from 0 on; raises ValueError."""
-    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= LARGEST:
-        raise ValueError(f"{value!r:.60} is no whole number from 0 on")
-    return value
-
-
-def seconds(value: Any) -> float:
-    """Return a number of seconds, or another number; raises ValueError."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= LARGEST:
-        raise ValueError(f"{value!r:.60} is no number of seconds")
-    return float(value)
+def _said(station: str, plain: _Ended | _Seen) -> Said:
+    if isinstance(plain, _Ended):
+        return Said(Gone(plain.entity, plain.time, station), plain.since, plain.owned)
+    seen = PhysicalProperty(
+        plain.entity,
+        plain.kind,
+        geometry_of(plain.at),
+        None if plain.altitude is None else Band(*plain.altitude),
+        plain.channels,
+        plain.by,
+        plain.time,
+        station,
+        None if plain.velocity is None else Velocity(*plain.velocity),
+    )
+    if plain.ttl is UNSET:
+        return Said(seen, plain.since, plain.owned)
+    aged = Aged(seen, plain.ttl, None if plain.clock is UNSET else plain.clock)
+    return Said(aged, plain.since, plain.owned)

@@ -13,7 +13,10 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
-from adapters.stations.entries import MOST_BYTES, Content, Entry, Posted, Took, count, entry_of, entry_text
+from msgspec import Struct, to_builtins
+
+from adapters.stations.entries import MOST_BYTES, Content, Count, Entry, Posted, Took, entry_of, entry_text
+from adapters.typed_json import typed
 from adapters.written_files import open_private, writing
 from physical import PhysicalError, read_json
 
@@ -32,6 +35,13 @@ SPARE: Final = 10_000
 
 PASSED: Final = 1_000
 """Numbers skipped after a dropped last entry, since it may have been sent."""
+
+
+class _Used(Struct, frozen=True):
+    """The numbers used so far, and those of parcels to each station."""
+
+    last: Count
+    sent: dict[str, Count]
 
 
 class JournalError(ValueError):
@@ -188,9 +198,10 @@ class Journal:
 
     def _take(self, data: Any, schema: str) -> None:
         match data:
-            case {"last": last, "sent": dict(sent)}:
-                self.last = max(self.last, count(last))
-                self._sent |= {str(to): count(index) for to, index in sent.items()}
+            case {"last": _}:
+                used = typed(data, _Used)
+                self.last = max(self.last, used.last)
+                self._sent |= used.sent
             case _:
                 entry = entry_of(self.station, data)
                 if isinstance(entry.content, Posted) and schema != SCHEMA:
@@ -224,8 +235,8 @@ class Journal:
         part = self.path.with_name(self.path.name + ".part")
         part.unlink(missing_ok=True)
         old, self._file, self._sum = self._file, _locked(part), 0
-        state = {"last": self.last, "sent": self._sent}
-        lines = [json.dumps(self._head), json.dumps(state), *map(entry_text, self._entries.values())]
+        used = to_builtins(_Used(self.last, self._sent))
+        lines = [json.dumps(self._head), json.dumps(used), *map(entry_text, self._entries.values())]
         self._append(lines)
         os.replace(part, self.path)
         old.close()

@@ -36,7 +36,7 @@ def told(turn: Turn, vehicles: Collection[str], known: Mapping[str, int]) -> Ite
             yield Broke(finding.message, finding.time)
     yield from (Took(station, number) for station, number in entered(turn).items())
     for each in turn.parcels:
-        knows = tuple((name, number) for name, number in sorted(known.items()) if name != each.station)
+        knows = {name: number for name, number in sorted(known.items()) if name != each.station}
         yield Posted(each.station, each.number, parcel_json(each.parcel), knows, turn.steps[-1].time)
 
 

@@ -76,7 +76,7 @@ class Other:
         """
         self.delivered = max(self.delivered, took)
         while (parcel := self.parcels.get(self.delivered + 1)) is not None:
-            if self.heard < self.last or not all(_is_known(others, *known) for known in parcel.knows):
+            if self.heard < self.last or not all(_is_known(others, *known) for known in parcel.knows.items()):
                 return
             self.delivered += 1
             yield self.delivered, parcel

@@ -8,11 +8,13 @@ station's log acknowledges it, so it arrives exactly once in spite of crashes an
 from __future__ import annotations
 
 import asyncio
-import json
 from collections.abc import Container, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Final
+
+from msgspec import UNSET, Raw
+from msgspec.json import encode
 
 from adapters.issue_counter import Troubles
 from adapters.live.sightings import MOST_AHEAD
@@ -48,19 +50,19 @@ from adapters.stations.entries import (
     Said,
     Sent,
     Took,
-    count,
     entry_of,
     stamped,
 )
 from adapters.stations.journal import Journal
 from adapters.stations.merge import ABREAST, MOST_ENTITIES, Merge, channels_of, on
-from adapters.stations.messages import MOST_BYTES, MOST_ENTRIES, Message, fitting, read, written
+from adapters.stations.messages import MOST_BYTES, MOST_ENTRIES, Message, Question, fitting, read
 from adapters.stations.outgoing import believed, entered, moved, told
 from adapters.stations.peers import Peers
 from adapters.stations.remote_station import Other
 from adapters.stations.shared_plugin import Shared
 from adapters.stations.skew import measured
-from physical import PhysicalError, read_json
+from adapters.typed_json import read_typed
+from physical import PhysicalError
 
 NAME: Final = "stations"
 """The plugin's name."""
@@ -274,17 +276,15 @@ class Sharing:
             for entry in entries[: len(texts)]:
                 del self._unsaid[entry.content.key]
 
-    def _message(self, texts: Sequence[str], upto: int, after: int) -> bytes:
+    def _message(self, entries: Sequence[Raw], upto: int, after: int) -> bytes:
         assert self._world is not None
-        return written(Message(self._digest, self._world.now(), after, upto, self._journal.last), texts)
+        return encode(Message(self._digest, self._world.now(), after, upto, self._journal.last, entries))
 
     def _answer(self, _key: str, question: bytes) -> bytes:
         """Answer with the entries after a number."""
         after = 0
-        with suppress(PhysicalError, ValueError):
-            match read_json(question, MOST_BYTES):
-                case {"after": number}:
-                    after = count(number)
+        with suppress(PhysicalError):
+            after = read_typed(question, MOST_BYTES, Question).after
         texts, upto = fitting(*self._journal.after(after, MOST_ENTRIES))
         return self._message(texts, upto, after)
 
@@ -306,7 +306,7 @@ class Sharing:
         while True:
             asked = world.now()
             try:
-                answer = await bus.ask(station, json.dumps({"after": other.heard}).encode(), PATIENCE)
+                answer = await bus.ask(station, encode(Question(other.heard)), PATIENCE)
             except OSError:
                 self._silent(world, station, other)
                 await asyncio.sleep(POLL)
@@ -428,7 +428,7 @@ class Sharing:
         for station, other in self.others.items():
             if other.parcels:
                 for index, posted in other.due(self.others, self._journal.took(station)):
-                    done = None if posted.time is None else other.here(posted.time)
+                    done = None if posted.time is UNSET else other.here(posted.time)
                     self._world.report(Delivered(station, self._world.now(), index, posted.parcel, done))
 
     # --- links and clocks

@@ -5,12 +5,16 @@ import json
 import os
 import pty
 import socket
+from contextlib import suppress
 
 import aiohttp.web
 import pytest
+from hypothesis import given
+from json_mutations import mutated
+from scale import examples
 from worlds import DATA, World, running, until
 
-from adapters import web
+from adapters import location, web
 from adapters.ais import AisFeed
 from adapters.detections import Detections
 from adapters.lines import MAX_LINE, Lines
@@ -19,8 +23,9 @@ from adapters.naming import NamingService
 from adapters.plugin import Aged, Gone, Trouble
 from adapters.simulated import run
 from adapters.static_places import StaticPlaces
+from adapters.typed_json import read_typed
 from adapters.web import Listen, serve
-from physical import PhysicalError, box, point, write_geojson, write_plan, write_waypoints
+from physical import PhysicalError, box, is_word, point, write_geojson, write_plan, write_waypoints
 from physical.geojson import read_geojson
 from physical.physical_property import PhysicalProperty
 
@@ -639,6 +644,22 @@ def test_an_answer_that_cannot_be_used_is_reported(document, what):
         assert world.troubles() == {what}
 
     run(main())
+
+
+FULL = DRIFTER | {"altitude": 0, "speed": 0.4, "course": 120, "time": 1e9, "channels": ["sat"]}
+
+
+@examples(300)
+@given(mutated([{"entities": [FULL, DRIFTER]}]))
+def test_an_answer_with_a_fault_is_read_or_refused_and_so_is_each_of_its_entities(body):
+    with suppress(PhysicalError):
+        for entry in read_typed(body, web.MAX_BODY, location._Answer).entities:
+            with suppress(PhysicalError):
+                found = location._property(entry, 1e9, "cloud")
+                assert is_word(found.entity)
+                assert is_word(found.kind)
+                assert all(map(is_word, found.channels))
+                assert found.time <= 1e9
 
 
 def test_a_location_cannot_take_the_name_of_a_vehicle():

@@ -1,15 +1,23 @@
 import json
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from json_mutations import mutated
 from jsonschema import Draft202012Validator
+from scale import examples
 
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
 from bigactors.commands.run import flight as run
+from bigactors.files import MOST_JSON
 from bigactors.missions import open_mission
 from bigactors.mistakes import Mistake
-from bigactors.verdict_files import find_verdict, licence_for
+from bigactors.verdict_files import _seal, find_verdict, licence_for
+from physical import PhysicalError, read_json
+from semantics.state.setting import Scheduler
 from specs.elaboration.variation import AS_WRITTEN
 from specs.missions import shipped_missions
 
@@ -178,3 +186,25 @@ def test_a_mission_swapped_between_reading_and_licensing_does_not_fly(
     monkeypatch.setattr(run, "find_verdict", swapping)
     with pytest.raises(Mistake, match="the verdict is of another mission"):
         run.prepare(options)
+
+
+@pytest.fixture(scope="module")
+def licensed(tmp_path_factory):
+    """Return a path, the content of a verdict, and its mission."""
+    path = tmp_path_factory.mktemp("licensed") / "x.verdict.json"
+    main(["check", "--no-traces", "--verdict", str(path), "oil_spill", "--control", "timed"])
+    return path, json.loads(path.read_text()), open_mission("oil_spill", AS_WRITTEN)
+
+
+@examples(200)
+@given(data=st.data())
+def test_a_verdict_with_a_fault_is_a_licence_or_a_mistake_even_when_it_is_sealed_again(licensed, data):
+    path, verdict, mission = licensed
+    said = data.draw(mutated([verdict]))
+    with suppress(PhysicalError):
+        found = read_json(said, MOST_JSON)
+        if isinstance(found, dict) and "seal" in found:
+            said = json.dumps({**found, "seal": _seal(found)}).encode()
+    path.write_bytes(said)
+    with suppress(Mistake):
+        assert licence_for("oil_spill", str(path), mission).scheduler in Scheduler

@@ -87,6 +87,8 @@ def reads(node):
             return "rb" in words or "r" in words
         case ast.Attribute(ast.Name("json"), "load" | "loads"):
             return True
+        case ast.Attribute(ast.Attribute(ast.Name("msgspec")), "decode" | "Decoder"):
+            return True
     return isinstance(node.func, ast.Attribute) and node.func.attr in {"read_text", "read_bytes"}
 
 

@@ -4,11 +4,16 @@ import asyncio
 import json
 import re
 import sys
+from contextlib import suppress
 
 import pytest
 from clients import ACCESS, DOCS, HELLO, OF_CLIENT, SCHEMA, console
+from hypothesis import given
+from json_mutations import mutated
+from scale import examples
 
-from adapters.console.requests import Unreadable, read_request
+from adapters.console.requests import MOST_BYTES, Unreadable, read_request
+from physical import PhysicalError, read_json
 
 
 async def test_the_client_of_the_page_follows(recording):
@@ -28,14 +33,27 @@ async def test_the_client_of_the_page_follows(recording):
             await process.wait()
 
 
-@pytest.mark.parametrize(
-    "said",
-    [HELLO, {"type": "seek", "time": 1.5}, {"type": "play", "speed": 0.5}, {"type": "pause"}, {"type": "live"},
-     *({"type": "act", "id": "1", "action": action} for action in (
-         {"say": {"agent": "tower", "message": "handover"}}, {"order": {"order": "hold", "vehicle": None}},
-         {"order": {"order": "return", "vehicle": "uav0"}}, {"give_back": {"vehicle": "uav0"}},
-         {"acknowledge": {"alert": "17"}}))],
-)  # fmt: skip
+FRAMES = [
+    HELLO,
+    {"type": "seek", "time": 1.5},
+    {"type": "play", "speed": 0.5},
+    {"type": "pause"},
+    {"type": "live"},
+    *(
+        {"type": "act", "id": "1", "action": action}
+        for action in (
+            {"say": {"agent": "tower", "message": "handover"}},
+            {"order": {"order": "hold", "vehicle": None}},
+            {"order": {"order": "return", "vehicle": "uav0"}},
+            {"give_back": {"vehicle": "uav0"}},
+            {"acknowledge": {"alert": "17"}},
+            {"start": True},
+        )
+    ),
+]
+
+
+@pytest.mark.parametrize("said", FRAMES)
 def test_what_a_client_says_is_understood_and_in_the_schema(said):
     OF_CLIENT.validate(said)
     assert read_request(json.dumps(said))
@@ -47,6 +65,45 @@ def test_what_the_schema_refuses_is_not_understood(change):
     assert not OF_CLIENT.is_valid(said)
     with pytest.raises(Unreadable):
         read_request(json.dumps(said))
+
+
+@pytest.mark.parametrize(
+    ("said", "fault"),
+    [
+        ({"type": "stop"}, "`$.type`: invalid value 'stop'"),
+        ({"type": "play", "speed": 101}, "`$.speed`: expected `float` <= 100.0"),
+        ({"type": "seek", "time": True}, "`$.time`: expected `float`, got `bool`"),
+        ({"type": "seek"}, "`$`: it lacks `time`"),
+        ({"type": "act", "id": "1", "action": {"say": {"agent": "a"}}}, "`$.action.say`: it lacks `message`"),
+        ({"type": "act", "id": "1", "action": {}}, "`$.action`: expected one of 'say', 'order'"),
+        ({"type": "act", "id": "1", "action": {"start": False}}, "`$.action`: expected one of 'say'"),
+        (
+            {"type": "act", "id": "1", "action": {"start": True, "give_back": {"vehicle": "a"}}},
+            "`$.action`: expected one of 'say'",
+        ),
+        ({"type": "act", "id": "1", "action": {"fly": 1}}, "`$.action`: object contains unknown field `fly`"),
+        (
+            {"type": "act", "id": "1", "action": {"acknowledge": {"alert": "1\n"}}},
+            "`$.action.acknowledge.alert`: expected `str` matching regex",
+        ),
+        ([], "`$`: expected `object`, got `array`"),
+    ],
+)
+def test_a_refusal_names_the_place_of_the_fault(said, fault):
+    with pytest.raises(Unreadable, match=re.escape(fault)):
+        read_request(json.dumps(said))
+
+
+@examples(500)
+@given(mutated(FRAMES))
+def test_a_frame_with_a_fault_is_understood_or_refused_and_understood_if_it_is_in_the_schema(said):
+    text = said.decode("utf-8", "replace")
+    try:
+        read_request(text)
+    except Unreadable as refused:
+        assert len(str(refused)) < 1_000  # noqa: PT017
+        with suppress(PhysicalError):
+            assert not OF_CLIENT.is_valid(read_json(text, MOST_BYTES))
 
 
 def test_the_reference_lists_the_sections_of_the_schema_in_their_order():

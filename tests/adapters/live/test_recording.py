@@ -4,22 +4,44 @@ import signal
 import subprocess
 import sys
 from collections import Counter
+from contextlib import suppress
+from dataclasses import fields
 from pathlib import Path
+from typing import get_args
 
 import jsonschema
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from json_mutations import mutated
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, mission, plan_of, seen
+from scale import examples
 
-from adapters.live.state import Acknowledging, GivingBack, Heard, Ordering, Saying
-from adapters.plugin import Accepted, Aged, Battery, Gone, Presence, Status, StatusText
-from adapters.recording.encoding import arrival_json
-from adapters.recording.mcap_files import RecordingError
+from adapters.live.state import Acknowledging, Finding, GivingBack, Heard, Ordering, Saying
+from adapters.plugin import (
+    Accepted,
+    Aged,
+    Battery,
+    Gone,
+    Presence,
+    Report,
+    Seen,
+    Status,
+    StatusText,
+    TakenOver,
+)
+from adapters.recording import mcap_files
+from adapters.recording.encoding import arrival_json, command_json, finding_json, report_json, seen_json
+from adapters.recording.mcap_files import McapWriter, Message, RecordingError
 from adapters.recording.reading import is_recording, read_recording
-from adapters.recording.schemas import SCHEMAS
+from adapters.recording.schemas import COMMANDS, SCHEMAS
 from adapters.recording.writing import MOST_ARRIVALS, Recorder
+from bigactors.missions import digest_of
+from bigactors.mistakes import Mistake
+from bigactors.recordings import open_recording, resume, trace_of
 from checker import ReplayError, replay, to_json
 from checker.traces import SCHEMA
-from physical import Band, PhysicalProperty, Velocity, box
+from physical import Band, PhysicalProperty, Surroundings, Velocity, box
 from semantics.live_policy import Fallback, LivePolicy
 
 FLIGHT = (
@@ -351,3 +373,83 @@ def test_an_arrival_is_as_its_schema_says(published):
     data = json.loads(json.dumps(arrival_json(Heard("p", published))))
     jsonschema.validate(data, SCHEMAS["arrivals"][1])
     assert (data["plugin"], data["entity"], data["time"]) == ("p", "a", 5.0)
+
+
+PARTS = {
+    **dict.fromkeys(
+        ("request", "entity", "name", "leave", "join", "source", "reason", "what", "detail"), "a"
+    ),
+    **dict.fromkeys(("station", "agent", "host", "node", "slot", "to", "assumption", "plugin", "mode"), "b"),
+    **dict.fromkeys(("kind", "about", "message", "fallback", "text", "lacks"), "c"),
+    **dict.fromkeys(("time", "since", "done", "heard", "heading", "height"), 1.5),
+    **dict.fromkeys(("count", "number", "severity"), 1),
+    **dict.fromkeys(("rebooted", "elsewhere", "reached", "armed", "returning", "follows"), True),
+    **dict.fromkeys(("names", "authority"), ("d",)),
+    **dict.fromkeys(("place", "waypoint", "shape"), box((1, 2), (3, 4))),
+    "path": (box((1, 2), (3, 4)), box((1, 2), (3, 5))),
+    "altitude": Band(1, 2),
+    "around": Surroundings(),
+    "parcel": {"Parcel": []},
+    "battery": Battery(87, 12.1),
+    "home": (37.0, -8.7),
+}
+"""A value for each field of commands, reports and findings."""
+
+
+@pytest.mark.parametrize("kind", [*COMMANDS, *get_args(Report), Finding], ids=lambda kind: kind.__name__)
+def test_a_command_a_report_or_a_finding_with_all_its_parts_has_no_member_that_its_schema_lacks(kind):
+    value = kind(**{part.name: PARTS[part.name] for part in fields(kind)})
+    if kind in COMMANDS:
+        topic, data = "commands", command_json(value)
+    elif kind is Finding:
+        topic, data = "findings", finding_json(value)
+    else:
+        topic, data = seen_json(value) if isinstance(value, Seen) else ("reports", report_json(value))
+    schema = SCHEMAS[topic][1] | {"additionalProperties": False}
+    jsonschema.validate(json.loads(json.dumps(data)), schema)
+
+
+class AsItIs:
+    """Stands in for the writer's encoder: texts are JSON already."""
+
+    def encode(self, data):
+        return data.decode("utf-8", "surrogateescape") if isinstance(data, bytes) else json.dumps(data)
+
+
+@examples(60)
+@given(data=st.data())
+def test_a_recording_with_a_fault_in_a_message_is_read_or_refused(spoilt, data):
+    """The house's errors are Mistake, and ReplayError with the number of the step."""
+    path, messages, plan = spoilt
+    number = data.draw(st.integers(0, len(messages) - 1))
+    changed = data.draw(mutated([messages[number].data]))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(mcap_files, "_COMPACT", AsItIs())
+        writer = McapWriter(path, SCHEMAS)
+        for each, message in enumerate(messages):
+            writer.write(message.topic, message.time, changed if each == number else message.data)
+        writer.close()
+    with suppress(Mistake, ReplayError):
+        recording = open_recording(str(path))
+        assert recording.left_out >= 0
+        trace_of(recording, plan)
+        resume(str(path), plan)
+    path.unlink()
+
+
+@pytest.fixture(scope="module")
+def spoilt(tmp_path_factory):
+    """Return a path, the messages of a recording, and its mission."""
+    folder = tmp_path_factory.mktemp("spoilt")
+    plan = mission(FLIGHT)
+    header = HEADER | {"digest": digest_of(plan)}
+    recorder = Recorder(folder / "run.mcap", header, 0.0)
+    run = fly(recorder)
+    for word in (Ordering(Fallback.HOLD, "uav0", "Ana"), GivingBack("uav0", "", "Ben")):
+        recorder.turn(run.turn(3.0, sayings=[word]), 3.0, lambda _finding: ())
+    recorder.report(TakenOver("uav0", 3.0, "a pilot flies it"), 3.0)
+    recorder.close("done", 3.0)
+    whole = read_recording(folder / "run.mcap")
+    begun = Message("run", 0.0, {"schema": "bigactors.run/1", **header})
+    assert resume(str(folder / "run.mcap"), plan).steps
+    return folder / "spoilt.mcap", (begun, *whole.messages), plan

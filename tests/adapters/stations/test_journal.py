@@ -266,7 +266,7 @@ def test_what_is_no_log_is_refused(opened, tmp_path, text):
         Sent("uav0", "east0", 5.0),
         Sent("uav0", "", 5.0),
         Posted("gcs1", 3, {"x": [1]}),
-        Posted("gcs1", 3, {}, (("gcs2", 7),)),
+        Posted("gcs1", 3, {}, {"gcs2": 7}),
         Hosted("op0", "gcs0", 5.0),
         Broke("it rains", 5.0),
         Believed("uav0", "links", ("control:gcs0",), 5.0),

@@ -6,10 +6,12 @@ import time
 
 import pytest
 from company import WORLD, Station, free_port, peers_toml, running, until
+from msgspec import Raw
+from msgspec.json import encode
 
 from adapters.stations.bus import Bus
 from adapters.stations.entries import Entry, Posted, entry_text
-from adapters.stations.messages import Message, written
+from adapters.stations.messages import Message
 from adapters.stations.peers import read_peers
 from bigactors.commands.run.stations import digest_of
 from semantics.state.setting import Control, Scheduler
@@ -41,8 +43,7 @@ class Liar:
 
     def _message(self):
         upto = len(self.texts)
-        head = Message(digest_of(self.mission), time.time(), 0, upto, upto)
-        return written(head, self.texts)
+        return encode(Message(digest_of(self.mission), time.time(), 0, upto, upto, self.texts))
 
     async def lie(self, seconds):
         """Answer every question for a while."""
@@ -57,7 +58,7 @@ class Liar:
 
     def post(self, parcel):
         number = len(self.texts) + 1
-        self.texts.append(entry_text(Entry("gcs0", number, Posted("gcs1", number, parcel))))
+        self.texts.append(Raw(entry_text(Entry("gcs0", number, Posted("gcs1", number, parcel)))))
 
 
 def scout(code=(), store=(), requests=(), host="gcs1", says=()):

@@ -1,5 +1,7 @@
 """What stations say to each other, on links that lose, double, reorder and part: all come to know all of it."""
 
+import json
+import re
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
@@ -7,14 +9,17 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from json_mutations import mutated
 from live_missions import EAST, WEST
+from msgspec.json import encode
 from scale import examples
 from test_sharing import MISSION, Node, World
 
 from adapters.plugin import Delivered
-from adapters.stations.entries import Entry, Posted, Said
-from adapters.stations.messages import Message, fitting, read, written
+from adapters.stations.entries import Entry, Posted, Said, entry_of, entry_text
+from adapters.stations.messages import Message, fitting, read
 from adapters.stations.peers import peers_of
+from physical import PhysicalError
 
 NAMES = ("gcs0", "gcs1", "gcs2")
 TABLE = {name: {"connect": [f"tcp/127.0.0.1:{port}"]} for port, name in enumerate(NAMES, 1)}
@@ -108,9 +113,11 @@ def happens(data, company):
         rests_on = [
             (entry.station, entry.content.entity, entry.number) for each in words for entry in each.values()
         ]
-        knows = tuple((each, known.last) for each, known in node.sharing.others.items() if each != other)
+        knows = {
+            each: known.last for each, known in node.sharing.others.items() if each != other and known.last
+        }
         number = node.journal.sent(other) + 1
-        node.sharing._add([Posted(other, number, rests_on, tuple(known for known in knows if known[1]))])
+        node.sharing._add([Posted(other, number, rests_on, knows)])
     elif what == "put":
         company.put(name, data.draw(st.tuples(FATES, FATES)))
     elif what == "ask":
@@ -163,7 +170,7 @@ def test_a_parcel_enters_after_what_its_sender_had_heard_of_others_that_can_be_r
         company.put("gcs0", ("at once", "lost"))
         gcs2.sharing.others["gcs0"].reached = reached
         known = gcs1.sharing.others["gcs0"].last
-        gcs1.sharing._add([Posted("gcs2", 1, [], (("gcs0", known),))])
+        gcs1.sharing._add([Posted("gcs2", 1, [], {"gcs0": known})])
         company.put("gcs1", ("lost", "at once"))
         assert len(gcs2.world.of(Delivered)) == (0 if reached else 1)
         company.ask("gcs2", "gcs0")
@@ -177,7 +184,7 @@ def test_a_message_tells_up_to_where_it_is_whole():
     assert (len(texts), upto) == (5, 5)
     assert fitting(entries[:2], 20)[1] == 20
     assert len(fitting(entries[:1] * 2_000, 7)[0]) <= 500
-    message = read(written(Message(MISSION, 1.5, 3, upto, 20), texts))
+    message = read(encode(Message(MISSION, 1.5, 3, upto, 20, texts)))
     assert (message.mission, message.time, message.after, message.upto, message.last) == (
         MISSION,
         1.5,
@@ -218,3 +225,52 @@ def test_no_change_of_a_message_breaks_more_than_itself(data):
         company.nodes["gcs1"].sharing._hear("gcs0", said.encode())
         words = company.nodes["gcs1"].sharing.merge.words
         assert all(isinstance(entry.content, Said) for each in words.values() for entry in each.values())
+
+
+ENTRIES = [
+    {"n": 1, "sent": "uav0", "to": "east0", "time": 1.0},
+    {"n": 2, "hosted": "op0", "host": "gcs0", "time": 1.0},
+    {"n": 3, "believed": "uav0", "slot": "parent", "names": ["east0"], "time": 1.0},
+    {"n": 4, "to": "gcs1", "index": 1, "parcel": {"Parcel": []}, "knows": {"gcs1": 3}, "time": 2.0},
+    {"n": 5, "took": "gcs1", "index": 1},
+    {"n": 6, "broke": "it rains", "time": 2.0},
+    {"n": 7, "entity": "uav0", "kind": "UAV", "at": {"ring": [[370000000, -86500000]]}, "time": 1.0}
+    | {"altitude": [1.0, 2], "channels": ["c"], "by": "ship", "velocity": [1, 2.5]}
+    | {"since": 1.0, "owned": True, "ttl": 60.0, "clock": 7},
+    {"n": 8, "entity": "uav0", "time": 1.0, "gone": True, "since": 1.0, "owned": False},
+]
+
+
+@examples(400)
+@given(mutated([{"mission": MISSION, "time": 1.0, "after": 0, "upto": 9, "last": 9, "entries": ENTRIES}]))
+def test_a_message_with_a_fault_is_read_or_refused_and_so_is_each_of_its_entries(said):
+    message = read_or_none(said)
+    for data in () if message is None else message.entries:
+        try:
+            entry = entry_of("gcs0", data)
+        except ValueError:
+            continue
+        assert entry_of("gcs0", json.loads(entry_text(entry))) == entry
+
+
+@pytest.mark.parametrize("data", ENTRIES)
+def test_an_entry_without_one_of_its_members_names_it_or_is_another_entry(data):
+    for member in data:
+        rest = {name: value for name, value in data.items() if name != member}
+        try:
+            assert entry_of("gcs0", rest).number == data["n"]
+        except ValueError as error:
+            assert re.match(r"`\$`: it lacks `\w+`|an entry says or does none", str(error))  # noqa: PT017
+
+
+def test_what_is_wrong_with_a_message_names_its_place():
+    good = {"mission": MISSION, "time": 1.0, "after": 0, "upto": 9, "last": 9, "entries": []}
+    for member, value, fault in [
+        ("upto", True, "`$.upto`: expected `int`, got `bool`"),
+        ("time", 1e300, "`$.time`: expected `float` <= 1000000000000000.0"),
+        ("entries", [1] * 1_001, "`$.entries`: expected `array` of length <= 1000"),
+    ]:
+        with pytest.raises(PhysicalError, match=re.escape(fault)):
+            read(json.dumps({**good, member: value}).encode())
+    with pytest.raises(PhysicalError, match="the key 'upto' is there twice"):
+        read(json.dumps(good).replace('"upto"', '"upto": 1, "upto"').encode())
