@@ -9,13 +9,14 @@ from bigactors.files import write_text
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.pages import Story, page_of, telling
 from bigactors.pages.timeline_page import timeline_page
-from bigactors.pictures import PictureError, draw_configuration, draw_overview, draw_trace
+from bigactors.pictures import draw_configuration, draw_overview, draw_trace
 from bigactors.pictures.first_times import Curve, draw_curves
 from bigactors.pictures.timeline import draw_timeline
 from checker import Trace
 from checker.properties.schedule import Schedule
 from checker.reports.lanes import lanes_of_trace
 from semantics.state.configuration import Configuration
+from svg import PictureError
 
 MOST_PICTURES = 100
 """The longest trace with a drawing of every configuration. Longer traces get only the overview."""
@@ -24,7 +25,7 @@ MOST_PICTURES = 100
 def draw(configuration: Configuration, path: str, title: str, before: Configuration | None = None) -> None:
     """Draw a configuration into a file, with the changes since the one before."""
     with _mistakes(path):
-        draw_configuration(configuration, path, title=title, changed=before)
+        draw_configuration(configuration, title=title, changed=before).save(path)
 
 
 def draw_run(trace: Trace, folder: Path, title: str, *, each_step: bool) -> None:
@@ -42,13 +43,13 @@ def draw_run(trace: Trace, folder: Path, title: str, *, each_step: bool) -> None
                 race=trace.race,
             )
         else:
-            draw_overview(lanes_of_trace(trace), folder / "trace.svg", title=title)
+            draw_overview(lanes_of_trace(trace), title=title).save(folder / "trace.svg")
 
 
 def draw_lanes(trace: Trace, path: str, title: str, *, unfolded: bool = False) -> None:
     """Draw a trace into a file, with its steps in lanes."""
     with _mistakes(path):
-        draw_overview(lanes_of_trace(trace), path, title=title, unfolded=unfolded)
+        draw_overview(lanes_of_trace(trace), title=title, unfolded=unfolded).save(path)
 
 
 def draw_schedule(schedule: Schedule, path: str, title: str) -> None:
@@ -57,13 +58,13 @@ def draw_schedule(schedule: Schedule, path: str, title: str) -> None:
         if Path(path).suffix.lower() in (".html", ".htm"):
             write_text(path, timeline_page(schedule, title))
         else:
-            draw_timeline(schedule, path, title=title)
+            draw_timeline(schedule, title=title).save(path)
 
 
 def draw_first_times(curves: Sequence[Curve], path: str, title: str, **words: Any) -> None:
     """Draw the first times at which predicates hold into a file; see `draw_curves`."""
     with _mistakes(path):
-        draw_curves(curves, path, title=title, **words)
+        draw_curves(curves, title=title, **words).save(path)
 
 
 def write_page(story: Story, path: str) -> tuple[str, ...]:

@@ -5,13 +5,10 @@ also shown on sites that remove style sheets and scripts.
 """
 
 from collections.abc import Iterator
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Final
 
 from bigactors.pages.markup import element, text
 from bigactors.pictures import draw_configuration, shown_names
-from bigraphs.drawing import fitting
 from checker import Outcome, Report, Trace, Verdict, Violation
 from checker.reports.lanes import LaneStep, lanes_of_trace
 from checker.reports.report import MARKS, size_text, verdict_text
@@ -36,10 +33,7 @@ def configuration_svg(c: Configuration) -> str | None:
     """Return the picture of a configuration, the bigraph beside the map; None for a configuration that is too large."""
     if len(shown_names(c)) > MOST_ENTITIES:
         return None
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "configuration.svg"
-        draw_configuration(c, path)
-        return fitting(path.read_text(encoding="utf-8"))
+    return draw_configuration(c)._repr_svg_()
 
 
 def trace_html(trace: Trace) -> str:

@@ -94,9 +94,9 @@ class Bigraph:
         )
 
     def _repr_svg_(self) -> str | None:
-        from bigraphs.drawing import bigraph_svg  # noqa: PLC0415 - drawing imports this module
+        from bigraphs.drawing import draw_bigraph  # noqa: PLC0415 - drawing imports this module
 
-        return bigraph_svg(self) if len(self.nodes) <= MOST_DRAWN else None
+        return draw_bigraph(self)._repr_svg_() if len(self.nodes) <= MOST_DRAWN else None
 
     def __str__(self) -> str:
         from bigraphs.text import draw_text  # noqa: PLC0415 - drawing imports this module

@@ -15,6 +15,7 @@ from typing import Final, TypeAlias
 
 from bigraphs.bigraph import Bigraph, Link, Place, children, points, sites_in
 from bigraphs.folding import Folded, folded
+from svg import text_width
 
 FONT: Final = 10.0
 SMALL: Final = 7.5
@@ -25,6 +26,8 @@ LEAF_HEIGHT: Final = 32.0
 RIM: Final = 26.0
 PILL_HEIGHT: Final = 17.0
 SHAPE: Final = 1.7
+LOOSE: Final = 1.12
+"""The width of a label's place, as a multiple of its own width."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,29 +147,11 @@ def label_size(shown: Folded, item: Item) -> Size:
     if item.kind == "site":
         return text_width(f"${item.number}", FONT), LEAF_HEIGHT - 12
     name, kind = shown.lines[item.number]
-    width = max(text_width(name, FONT), text_width(kind, SMALL))
+    width = LOOSE * max(text_width(name, FONT, item.number in shown.members), text_width(kind, SMALL))
     return (
         (width, LEAF_HEIGHT if kind else LEAF_HEIGHT - 8)
         if item.kind == "node"
         else (width, LEAF_HEIGHT - 10)
-    )
-
-
-_NARROW: Final = frozenset("fijlrtI.,:;'|!/-()[] `\\")
-_BROAD: Final = frozenset("mwMWQ%@#&+=<>~^")
-
-
-def text_width(text: str, size: float) -> float:
-    """Return an upper bound of the width of a text in the drawing font, in points."""
-    return size * sum(
-        0.42
-        if letter in _NARROW
-        else 1.0
-        if letter in _BROAD or ord(letter) > 126
-        else 0.82
-        if letter.isupper()
-        else 0.66
-        for letter in text
     )
 
 

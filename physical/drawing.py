@@ -1,13 +1,13 @@
 """Maps of a physical model: places, movers, channels and flights on the earth, with a scale.
 
-matplotlib draws; the pure modules `map_view` and `map_labels` compute the positions.
+The pure modules `map_view` and `map_labels` compute the positions.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from physical.map_crowds import HIDING
 from physical.map_labels import Spot
@@ -17,9 +17,9 @@ from physical.map_marks import (
     draw_curve,
     draw_flight,
     draw_grid,
+    draw_ground,
     draw_halo,
     draw_icon,
-    draw_land,
     draw_leader,
     draw_mark,
     draw_polygon,
@@ -28,15 +28,21 @@ from physical.map_marks import (
     samples,
 )
 from physical.map_scene import MapEntity, Scene, Sheet, area_of, arranged, scene_of, shows_coasts
-from physical.map_style import PAPER, SEA, kind_colours
+from physical.map_style import PAPER, QUIET, SEA, kind_colours
 from physical.map_view import bounds, degrees_text, tick_step, ticks
 from physical.map_writing import Writing, write_labels, writing_of
 from physical.shape import Geometry
+from svg import Canvas, Paint, Words
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+__all__ = ["MapEntity", "draw_map"]
 
-__all__ = ["MapEntity", "Sheet", "draw_map"]
+LATITUDES: Final = 46.0
+"""The width of the latitudes, to the left of the sheet."""
+
+LONGITUDES: Final = 16.0
+"""The height of the longitudes, below the sheet."""
+
+FRAME: Final = Paint(stroke="#cfd6dd", width=0.8)
 
 REACHES: Final = (HIDING, 20.0, 35.0, 55.0, 80.0)
 """Distances in points within which markers of one kind are folded, tried in turn."""
@@ -47,42 +53,54 @@ BULGES: Final = (0.12, -0.12, 0.05, -0.05, 0.19, -0.19)
 
 def draw_map(  # noqa: PLR0913 - each is one aspect of the map
     entities: Iterable[MapEntity],
-    axes: Axes,
+    size: Spot,
     *,
     highlight: Collection[str] = frozenset(),
     marked: Collection[str] = frozenset(),
     colours: Mapping[str, str] | None = None,
     channel_colours: Mapping[str, str] | None = None,
     within: Sequence[Geometry] = (),
-) -> Sheet:
-    """Draw a map that fills the axes, whose place in the figure must not change afterwards.
+) -> Canvas:
+    """Draw a map of a width and a height in points, with latitudes to the left and longitudes below.
 
     Args:
         entities: The entities, with unique names, in any order.
-        axes: Empty axes. Their units become points.
+        size: The width and the height.
         highlight: Names with a glow, such as recently changed ones.
         marked: Names with a dashed outline, such as those with a different believed position.
         colours: A colour for each kind; other kinds take one of the palette.
         channel_colours: The same for channels.
         within: The geometries that the view must show, such as all of a run, so that its maps are alike; by default the
             entities.
-
-    Returns:
-        The sheet, which gives the axes coordinates of positions for further drawing.
     """
     in_order = sorted(entities, key=lambda entity: entity.name)
-    scene, writing = composed(in_order, _size(axes), colours or {}, (highlight, marked), within)
+    inner = size[0] - LATITUDES, size[1] - LONGITUDES
+    scene, writing = composed(in_order, inner, colours or {}, (highlight, marked), within)
+    canvas = Canvas(*size)
+    canvas.put(_draw_sheet(scene, writing, channel_colours or {}), (LATITUDES, 0.0), clipped=True)
+    canvas.rectangle((LATITUDES, 0.0), inner, FRAME)
+    meridians, parallels = _grid(scene.sheet)
+    for x, text in meridians:
+        canvas.text((LATITUDES + x, inner[1] + 10.0), text, Words(7.5, QUIET, anchor="middle"))
+    for y, text in parallels:
+        canvas.text((LATITUDES - 4.0, inner[1] - y + 2.5), text, Words(7.5, QUIET, anchor="end"))
+    return canvas
+
+
+def _draw_sheet(scene: Scene, writing: Writing, channel_colours: Mapping[str, str]) -> Canvas:
+    """Draw the map without its margins."""
     sheet = scene.sheet
-    axes.set(xlim=(0, sheet.width), ylim=(0, sheet.height), aspect="equal")
-    draw_grid(axes, *_grid(sheet), SEA if shows_coasts(sheet) else PAPER)
-    draw_land(axes, scene.land)
-    _draw_polygons(axes, scene)
-    _draw_channels(axes, scene, channel_colours or {})
+    canvas = Canvas(sheet.width, sheet.height, upwards=True)
+    meridians, parallels = _grid(sheet)
+    draw_ground(canvas, SEA if shows_coasts(sheet) else PAPER, scene.land)
+    draw_grid(canvas, [x for x, _ in meridians], [y for y, _ in parallels])
+    _draw_polygons(canvas, scene)
+    _draw_channels(canvas, scene, channel_colours)
     for name, curve in _flights(scene):
-        draw_flight(axes, curve, scene.colour(name))
-    _draw_markers(axes, scene)
-    write_labels(axes, scene, writing)
-    return sheet
+        draw_flight(canvas, curve, scene.colour(name))
+    _draw_markers(canvas, scene)
+    write_labels(canvas, scene, writing)
+    return canvas
 
 
 def composed(
@@ -101,12 +119,6 @@ def composed(
         if all(scene.is_polygon(name) for name in writing.unnamed):
             break
     return scene, writing
-
-
-def _size(axes: Axes) -> Spot:
-    """Return the width and height of axes, in points."""
-    window, dpi = axes.get_window_extent(), axes.figure.dpi
-    return (window.width * 72.0 / dpi, window.height * 72.0 / dpi)
 
 
 def _grid(sheet: Sheet) -> tuple[list[tuple[float, str]], list[tuple[float, str]]]:
@@ -129,23 +141,23 @@ def _grid(sheet: Sheet) -> tuple[list[tuple[float, str]], list[tuple[float, str]
     return meridians, parallels
 
 
-def _draw_polygons(axes: Axes, scene: Scene) -> None:
+def _draw_polygons(canvas: Canvas, scene: Scene) -> None:
     polygons = [name for name in scene.near() if scene.is_polygon(name)]
     for name in sorted(polygons, key=lambda each: (-area_of(scene.outlines[each]), each)):
         outline = scene.outlines[name]
         if name in scene.highlight:
-            draw_polygon_halo(axes, outline)
+            draw_polygon_halo(canvas, outline)
         strength = 0.09 if scene.entities[name].place else 0.32
-        draw_polygon(axes, outline, scene.colour(name), strength=strength)
+        draw_polygon(canvas, outline, scene.colour(name), strength=strength)
         if name in scene.marked:
-            draw_polygon_mark(axes, outline)
+            draw_polygon_mark(canvas, outline)
 
 
-def _draw_channels(axes: Axes, scene: Scene, colours: Mapping[str, str]) -> None:
+def _draw_channels(canvas: Canvas, scene: Scene, colours: Mapping[str, str]) -> None:
     curves = _channels(scene)
     own = kind_colours(channel for channel, _ in curves) | dict(colours)
     for channel, curve in curves:
-        draw_curve(axes, curve, own[channel])
+        draw_curve(canvas, curve, own[channel])
 
 
 def _channels(scene: Scene) -> list[tuple[str, Curve]]:
@@ -190,21 +202,21 @@ def _flights(scene: Scene) -> list[tuple[str, Curve]]:
     ]
 
 
-def _draw_markers(axes: Axes, scene: Scene) -> None:
+def _draw_markers(canvas: Canvas, scene: Scene) -> None:
     for spot, true in scene.moved():
-        draw_leader(axes, spot, true)
+        draw_leader(canvas, spot, true)
     for name in scene.near():
         if scene.is_polygon(name):
             continue
         spot = scene.middle(name)
         if name in scene.highlight:
-            draw_halo(axes, spot)
+            draw_halo(canvas, spot)
         draw_icon(
-            axes,
+            canvas,
             spot,
             scene.shape(name),
             scene.colour(name),
             hollow=scene.entities[name].towards is not None,
         )
         if name in scene.marked:
-            draw_mark(axes, spot)
+            draw_mark(canvas, spot)

@@ -55,7 +55,7 @@ class MapEntity:
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """A map's paper: the axes coordinates of positions, in points."""
+    """A map's paper: the coordinates of positions on it, in points to the right and up."""
 
     plane: Plane
     view: Box

@@ -1,10 +1,9 @@
-"""The style of a map: colours and markers of kinds, inks, and text sizes."""
+"""The style of a map: the colours and markers of kinds, and inks."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from functools import lru_cache
 from typing import Final
 
 INK: Final = "#1f2933"
@@ -82,26 +81,3 @@ def kind_shapes(kinds: Iterable[str]) -> dict[str, Outline]:
         left = [shape for shape in SHAPES if shape not in found.values()] or [DISC]
         found[kind] = next(named, left[0])
     return found
-
-
-@lru_cache(maxsize=1 << 12)
-def text_width(text: str, size: float, bold: bool = False) -> float:
-    """Return the width of a line of text, in points, in matplotlib's own font."""
-    from matplotlib.font_manager import FontProperties  # noqa: PLC0415 - only drawing needs matplotlib
-    from matplotlib.textpath import text_to_path  # noqa: PLC0415 - the same
-
-    font = FontProperties(family="DejaVu Sans", size=size, weight="bold" if bold else "normal")
-    width: float = text_to_path.get_text_width_height_descent(text, font, ismath=False)[0]
-    return width
-
-
-def shortened(text: str, width: float, size: float, bold: bool = False) -> str:
-    """Return the text, cut with an ellipsis if it is wider than `width` points."""
-    if text_width(text, size, bold) <= width:
-        return text
-    low, high = 0, len(text)
-    while low < high:
-        middle = (low + high + 1) // 2
-        fits = text_width(text[:middle].rstrip() + "…", size, bold) <= width
-        low, high = (middle, high) if fits else (low, middle - 1)
-    return text[:low].rstrip() + "…"

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import shapely
 
@@ -26,13 +26,11 @@ from physical.map_marks import (
     draw_scale,
 )
 from physical.map_scene import Scene, Sheet, area_of
-from physical.map_style import INK, QUIET, darker, text_width
+from physical.map_style import INK, QUIET, darker
 from physical.map_view import bounds, scale_length
 from physical.measure import metres_text
 from physical.outliers import apart
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from svg import Canvas, shortened, text_width
 
 MOST_CARRIED: Final = 8
 """The largest number of named cargo items of an entity."""
@@ -93,16 +91,16 @@ def writing_of(scene: Scene, lines: Sequence[Spot]) -> Writing:
     return Writing(blocks, wanted, boxes, pointers, markers, scale, (*absent, *folded), unnamed)
 
 
-def write_labels(axes: Axes, scene: Scene, writing: Writing) -> None:
+def write_labels(canvas: Canvas, scene: Scene, writing: Writing) -> None:
     """Write all names, the scale bar and the notes, so that no two overlap."""
-    draw_scale(axes, writing.scale, *_scale(scene.sheet), COAST_NOTE if scene.land else "")
+    draw_scale(canvas, writing.scale, *_scale(scene.sheet), COAST_NOTE if scene.land else "")
     for box, lines_of_note, names in writing.notes:
-        draw_block(axes, box, lines_of_note, names=names)
+        draw_block(canvas, box, lines_of_note, names=names)
     for name, box in writing.boxes.items():
-        draw_block(axes, box, writing.blocks[name], names=scene.members.get(name, ()))
-        _lead(axes, scene, name, box, writing.wanted[name])
+        draw_block(canvas, box, writing.blocks[name], names=scene.members.get(name, ()))
+        _lead(canvas, scene, name, box, writing.wanted[name])
     for name, (at, behind) in writing.pointers.items():
-        draw_pointer(axes, at, behind, scene.colour(name))
+        draw_pointer(canvas, at, behind, scene.colour(name))
 
 
 def _scale(sheet: Sheet) -> tuple[float, str]:
@@ -117,7 +115,9 @@ def _note(
     """Return a note about these names, empty without any."""
     if not names:
         return ()
-    lines = [Line(line, 7.0, ink=QUIET) for line in _wrapped(words, scene.sheet.width / 2)]
+    room = scene.sheet.width - 24.0
+    wrapped = _wrapped(words, scene.sheet.width / 2)
+    lines = [Line(shortened(line, room, 7.0), 7.0, ink=QUIET) for line in wrapped]
     return ((_corner(scene.sheet, block_size(lines), taken), lines, names),)
 
 
@@ -136,14 +136,14 @@ def _wrapped(words: Sequence[str], width: float) -> list[str]:
     return lines
 
 
-def _lead(axes: Axes, scene: Scene, name: str, box: Box, want: Wanted) -> None:
+def _lead(canvas: Canvas, scene: Scene, name: str, box: Box, want: Wanted) -> None:
     """Draw a leader line from a label to its object, unless it stands inside it or beside it."""
     named = shapely.Point(want.at)
     if scene.is_polygon(name) and name not in scene.far:
         named = shapely.Polygon(scene.outlines[name])
     gap = shapely.shortest_line(shapely.box(*box), named)
     if gap.length > max(want.clearance) + BESIDE or (scene.is_polygon(name) and gap.length > BESIDE):
-        draw_leader(axes, *gap.coords)
+        draw_leader(canvas, *gap.coords)
 
 
 def _freedom(scene: Scene, name: str) -> float:

@@ -17,13 +17,14 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 MAY_IMPORT = {
-    "bigraphs": set(),
-    "physical": set(),
+    "svg": set(),
+    "bigraphs": {"svg"},
+    "physical": {"svg"},
     "semantics": {"bigraphs", "physical"},
     "specs": {"semantics", "bigraphs", "physical"},
     "checker": {"semantics", "bigraphs", "physical"},
     "adapters": {"semantics", "bigraphs", "physical"},
-    "bigactors": {"adapters", "checker", "specs", "semantics", "bigraphs", "physical"},
+    "bigactors": {"adapters", "checker", "specs", "semantics", "bigraphs", "physical", "svg"},
 }
 
 # Where a library may be imported: a room, a folder or a file.
@@ -78,11 +79,11 @@ LIBRARIES = {
         f"{room}/__init__.py"
         for room in (*MAY_IMPORT, "bigraphs/exports", "bigraphs/notation", "checker/reduction")
     ),
-    "matplotlib": ("bigraphs/drawing.py", "physical/drawing.py", "physical/map_", "bigactors/pictures/"),
+    "resvg_py": ("svg/picture.py",),
 }
 
 # Libraries that take long to load or are extras: imported in the functions that need them, never with the module.
-LAZY = {"matplotlib"}
+LAZY = {"resvg_py"}
 """Of what every installation has, what takes long to load."""
 
 NEED_THEIR_EXTRA = {

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import chain, islice
 from typing import Final
 
-from bigactors.pictures import Panels, Picture
+from bigactors.pictures import Panel, Panels
 from checker import Trace
 from checker.reports.lanes import Lanes, LaneStep, Repetition, Row, bounded, folded, lanes_of_trace
 from semantics.state.configuration import Configuration
@@ -70,8 +70,8 @@ class Frame:
     step: LaneStep | None
     c: Configuration
     before: Configuration | None
-    logical: Picture | None
-    physical: Picture | None
+    logical: Panel | None
+    physical: Panel | None
 
     @property
     def label(self) -> str:

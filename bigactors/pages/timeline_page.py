@@ -3,9 +3,7 @@
 from typing import Final
 
 from bigactors.pages.markup import element, text
-from bigactors.pictures.page import plain_style
-from bigactors.pictures.timeline import page_of
-from bigactors.pictures.vector import svg_file
+from bigactors.pictures.timeline import draw_timeline
 from checker.properties.schedule import Schedule
 from checker.reports.times import times_rows
 
@@ -27,8 +25,7 @@ def timeline_page(schedule: Schedule, title: str) -> str:
         element("title", text(title)),
         element("style", STYLE),
     )
-    with plain_style():
-        picture = svg_file(page_of(schedule, title).figure, title)
+    picture = draw_timeline(schedule, title=title).svg
     first, *rows = times_rows(schedule)
     table = element("table", _row("th", first), *(_row("td", row) for row in rows))
     body = element("body", element("div", picture, class_="picture"), table)

@@ -9,7 +9,7 @@ from typing import Final
 
 from bigactors.pages.markup import element, text
 from bigactors.pages.story import Frame, Story, Telling, telling
-from bigactors.pictures import Look, Picture, channels_of, look_of, shown_names
+from bigactors.pictures import Look, Panel, channels_of, look_of, shown_names
 from bigraphs import Bigraph, draw_text
 from bigraphs.drawing import HIGHLIGHT
 from checker.properties.race_steps import RaceSteps
@@ -208,12 +208,12 @@ def _several(row: Repetition) -> str:
 
 def _stage(told: Telling) -> str:
     frames = told.frames
-    drawn = (picture for frame in frames for picture in (frame.logical, frame.physical))
-    pictures = dict(sorted((picture.key, picture) for picture in drawn if picture is not None))
+    drawn = (panel for frame in frames for panel in (frame.logical, frame.physical))
+    panels = dict(sorted((panel.key, panel) for panel in drawn if panel is not None))
     models = element(
         "div",
-        _model("L", "the logical model: what is believed", [p for p in pictures.values() if p.key[0] == "L"]),
-        _model("P", "the physical model: what is", [p for p in pictures.values() if p.key[0] == "P"]),
+        _model("L", "the logical model: what is believed", [p for p in panels.values() if p.key[0] == "L"]),
+        _model("P", "the physical model: what is", [p for p in panels.values() if p.key[0] == "P"]),
         class_="models",
     )
     believed = dict.fromkeys(frame.c.structure.logical.bigraph() for frame in frames)
@@ -265,29 +265,29 @@ def _controls(last: int) -> str:
     )
 
 
-def _model(name: str, gloss: str, pictures: Sequence[Picture]) -> str:
-    width = max((picture.width for picture in pictures), default=1.0)
-    height = max((picture.height for picture in pictures), default=1.0)
+def _model(name: str, gloss: str, panels: Sequence[Panel]) -> str:
+    width = max((panel.picture.width for panel in panels), default=1.0)
+    height = max((panel.picture.height for panel in panels), default=1.0)
     sheet = element(
         "div",
-        *(_svg(picture, name, width, height) for picture in pictures),
+        *(_svg(panel, name, width, height) for panel in panels),
         class_="sheet logical" if name == "L" else "sheet",
     )
     head = element("h2", text(name), " ", element("small", text(gloss)))
-    return element("figure", head, sheet if pictures else "")
+    return element("figure", head, sheet if panels else "")
 
 
-def _svg(picture: Picture, name: str, width: float, height: float) -> str:
+def _svg(panel: Panel, name: str, width: float, height: float) -> str:
     """Return a picture centred on a sheet of the largest size, so that nothing moves between two steps."""
-    left, top = (picture.width - width) / 2, (picture.height - height) / 2
+    left, top = (panel.picture.width - width) / 2, (panel.picture.height - height) / 2
     return element(
         "svg",
-        picture.shapes,
+        panel.picture.shapes,
         viewBox=f"{left:g} {top:g} {width:g} {height:g}",
         role="img",
         aria_label=f"{'the bigraph of L' if name == 'L' else 'the map of P'}; in words below",
         style=f"max-width: {width * LARGEST:.0f}px; --least: {width * SMALLEST[name]:.0f}px",
-        data_picture=picture.key,
+        data_picture=panel.key,
         hidden=True,
     )
 

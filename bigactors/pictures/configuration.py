@@ -2,10 +2,9 @@
 
 import re
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from bigactors.pictures.page import Page, plain_style
+from bigactors.pictures.page import Page
 from bigactors.pictures.scene import (
     Palette,
     changed_names,
@@ -17,18 +16,15 @@ from bigactors.pictures.scene import (
     shown_names,
 )
 from bigraphs.bigraph import Bigraph
-from bigraphs.drawing import MARGIN as BIGRAPH_MARGIN
 from bigraphs.drawing import draw_layout
-from bigraphs.layout import Layout, layout
+from bigraphs.layout import layout
 from physical.drawing import draw_map
 from physical.map_marks import draw_halo, draw_icon, draw_mark
-from physical.map_style import INK, MARK, QUIET, SQUARE, kind_shapes, shortened, text_width
+from physical.map_style import INK, QUIET, SQUARE, kind_shapes
 from semantics.state.configuration import Configuration
 from semantics.state.printing import print_agent
 from semantics.state.signature import Name
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from svg import Canvas, Paint, Picture, shortened, text_width
 
 WIDTH: Final = 960.0
 MARGIN: Final = 26.0
@@ -37,8 +33,6 @@ PANEL: Final = (WIDTH - 2 * MARGIN - GUTTER) / 2
 """The width of the bigraph, and of the map with its latitudes."""
 
 PANEL_HEIGHT: Final = 372.0
-LATITUDES: Final = 46.0
-LONGITUDES: Final = 16.0
 LARGEST: Final = 1.2
 """The largest magnification of a small bigraph."""
 
@@ -73,26 +67,16 @@ def look_of(c: Configuration, before: Configuration | None) -> Look:
 
 def draw_configuration(
     configuration: Configuration,
-    path: str | Path,
     *,
     title: str | None = None,
     changed: Configuration | None = None,
-) -> None:
-    """Write the picture of a configuration to a file, `.svg` or `.png`.
+) -> Picture:
+    """Return the picture of a configuration.
 
     Entities on which L and A(P) differ have a dashed outline in both. With `changed`, the configuration before, the
     changes since then glow.
-
-    Raises:
-        PictureError: The file has another suffix.
-        OSError: The file cannot be written.
     """
-    with plain_style():
-        _page(configuration, title, changed).save(Path(path), title or "configuration")
-
-
-def _page(c: Configuration, title: str | None, changed: Configuration | None) -> Page:
-    look = look_of(c, changed)
+    c, look = configuration, look_of(configuration, changed)
     legend = _legend_rows(_entries(c, look))
     rows = max(1, _shown(len(c.alpha.names())), _shown(len(c.eta.all())))
     top = MARGIN + (26.0 if title else 0.0)
@@ -110,7 +94,7 @@ def _page(c: Configuration, title: str | None, changed: Configuration | None) ->
     page.rule(MARGIN, WIDTH - MARGIN, foot)
     for rank, row in enumerate(legend):
         _draw_legend_row(page, c, row, foot + 16.0 + rank * LEGEND_ROW)
-    return page
+    return page.picture(title or "configuration")
 
 
 def _shown(count: int) -> int:
@@ -144,58 +128,30 @@ def _write_line(page: Page, x: float, y: float, line: str) -> None:
 
 def _draw_logical(page: Page, c: Configuration, top: float, look: Look) -> None:
     page.heading(MARGIN, top + 8, "L", "the logical model: what is believed")
-    plan = logical_layout(c.structure.logical.bigraph(), look)
-    width, height = plan.width + 2 * BIGRAPH_MARGIN, plan.height + 2 * BIGRAPH_MARGIN
-    scale = min(PANEL / width, PANEL_HEIGHT / height, LARGEST)
-    left = MARGIN + (PANEL - width * scale) / 2
-    above = top + 18.0 + (PANEL_HEIGHT - height * scale) / 2
-    draw_logical(page.panel(left, above, width * scale, height * scale), plan, scale, look)
+    canvas = draw_logical(c.structure.logical.bigraph(), look)
+    scale = min(PANEL / canvas.width, PANEL_HEIGHT / canvas.height, LARGEST)
+    left = MARGIN + (PANEL - canvas.width * scale) / 2
+    page.put(canvas, (left, top + 18.0 + (PANEL_HEIGHT - canvas.height * scale) / 2), scale)
 
 
-def logical_layout(bigraph: Bigraph, look: Look) -> Layout:
-    """Return the layout of L, in which every glowing or marked node has its own box."""
-    return layout(bigraph, look.glowing | look.marked)
-
-
-def draw_logical(axes: "Axes", plan: Layout, scale: float, look: Look) -> None:
-    """Draw L into axes of its plan's size times the scale."""
-    draw_layout(plan, axes, highlight=look.glowing)
-    numbers = [number for number, node in enumerate(plan.shown.bigraph.nodes) if node.name in look.marked]
-    for number in numbers:
-        _outline_node(axes, plan, number, scale)
-
-
-def _outline_node(axes: "Axes", plan: Layout, number: int, scale: float) -> None:
-    from matplotlib.patches import FancyBboxPatch  # noqa: PLC0415 - only drawing needs matplotlib
-
-    box = plan.box("node", number)
-    axes.add_patch(
-        FancyBboxPatch(
-            (box.x - 3, box.y - 3),
-            box.width + 6,
-            box.height + 6,
-            boxstyle="round,pad=0,rounding_size=9",
-            facecolor="none",
-            edgecolor=MARK,
-            linewidth=1.2 * scale,
-            linestyle=(0, (3, 2)),
-            zorder=2.5,
-        )
-    )
+def draw_logical(bigraph: Bigraph, look: Look) -> Canvas:
+    """Draw L; every glowing or marked node has its own box."""
+    plan = layout(bigraph, look.glowing | look.marked)
+    return draw_layout(plan, highlight=look.glowing, marked=look.marked)
 
 
 def _draw_physical(page: Page, c: Configuration, top: float, look: Look) -> None:
     left = MARGIN + PANEL + GUTTER
     page.heading(left, top + 8, "P", "the physical model: what is")
-    axes = page.panel(left + LATITUDES, top + 18.0, PANEL - LATITUDES, PANEL_HEIGHT - LONGITUDES)
-    draw_map(
+    canvas = draw_map(
         map_entities(c),
-        axes,
+        (PANEL, PANEL_HEIGHT),
         highlight=look.glowing,
         marked=look.marked,
         colours=look.palette.kinds,
         channel_colours=look.palette.channels,
     )
+    page.put(canvas, (left, top + 18.0))
 
 
 # --- the legend -----------------------------------------------------------------------------------
@@ -234,11 +190,11 @@ def _draw_legend_row(page: Page, c: Configuration, row: list[tuple[float, Entry]
         at = (x + 7.0, y - 3.0)
         if entry.look == "kind":
             shape = SQUARE if entry.name in places else tuple((a, -b) for a, b in shapes[entry.name])
-            draw_icon(page.axes, at, shape, entry.colour, radius=4.6)
+            draw_icon(page, at, shape, entry.colour, radius=4.6)
         elif entry.look == "channel":
-            page.axes.plot([x, x + 14], [at[1], at[1]], color=entry.colour, linewidth=1.6)
+            page.line([(x, at[1]), (x + 14, at[1])], Paint(stroke=entry.colour, width=1.6))
         elif entry.look == "changed":
-            draw_halo(page.axes, at, 6.0)
+            draw_halo(page, at, 6.0)
         else:
-            draw_mark(page.axes, at, 5.5)
+            draw_mark(page, at, 5.5)
         page.write(x + 19.0, y, entry.name, 8.0, ink=QUIET)

@@ -8,13 +8,13 @@ edge, and is open there.
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Final
 
-from bigactors.pictures.page import Page, plain_style
+from bigactors.pictures.page import Page
 from checker.properties.critical_path import interval_text
 from checker.properties.schedule import Flight, Milestone, Moments, Schedule
-from physical.map_style import QUIET, text_width
+from physical.map_style import QUIET
+from svg import Paint, Picture, text_width
 
 MARGIN: Final = 26.0
 CHART: Final = 560.0
@@ -58,19 +58,8 @@ class Bar:
         return (begin, end) if begin < end < math.inf else None
 
 
-def draw_timeline(schedule: Schedule, path: str | Path, *, title: str) -> None:
-    """Write one picture of a schedule.
-
-    Raises:
-        PictureError: The file has another suffix than `.svg` or `.png`, or is too high for a PNG.
-        OSError: The file cannot be written.
-    """
-    with plain_style():
-        page_of(schedule, title).save(Path(path), title)
-
-
-def page_of(schedule: Schedule, title: str) -> Page:
-    """Return the picture of a schedule as a page."""
+def draw_timeline(schedule: Schedule, *, title: str) -> Picture:
+    """Return one picture of a schedule."""
     groups = list(groups_of(schedule))
     bars = [bar for _, each in groups for bar in each]
     names = [text_width(bar.name, 8.0) for bar in bars] or [0.0]
@@ -90,7 +79,7 @@ def page_of(schedule: Schedule, title: str) -> Page:
         for bar in each:
             _draw_bar(page, bar, left, y, span)
             y += ROW
-    return page
+    return page.picture(title)
 
 
 def groups_of(schedule: Schedule) -> Iterator[tuple[str, tuple[Bar, ...]]]:
@@ -160,8 +149,8 @@ def _draw_axis(page: Page, left: float, rows: tuple[float, float], span: float) 
     top, bottom = rows
     for second in marks(span):
         x = left + CHART * second / span
-        page.axes.plot([x, x], [top, bottom + 5.0], color="#e3e8ee", linewidth=0.8, zorder=1)
-        page.write(x, bottom + 17.0, clock_text(int(second) * 1000), 8.0, ink=QUIET, ha="center")
+        page.line([(x, top), (x, bottom + 5.0)], Paint(stroke="#e3e8ee", width=0.8))
+        page.write(x, bottom + 17.0, clock_text(int(second) * 1000), 8.0, ink=QUIET, anchor="middle")
     page.write(left, bottom + 34.0, "from the start of the mission", 8.0, ink=QUIET)
 
 
@@ -177,26 +166,21 @@ def _draw_bar(page: Page, bar: Bar, left: float, y: float, span: float) -> None:
         _box(page, at(bar.surely[0]), at(bar.surely[1]), y, full, full)
     if math.isinf(bar.ends[1]):
         edge = left + CHART
-        page.axes.plot([edge, edge], [y + 1.0, y + 3.5 + BAR], color="#ffffff", linewidth=2.0, zorder=6)
+        page.line([(edge, y + 1.0), (edge, y + 3.5 + BAR)], Paint(stroke="#fff", width=2.0))
         page.write(edge + 3.0, y + 12.5, "…", 9.0, ink=full)
     _write_beside(page, bar, begin, max(end, begin + 2.0), y, left)
 
 
 def _box(page: Page, begin: float, end: float, y: float, fill: str, edge: str) -> None:
-    from matplotlib.patches import Rectangle  # noqa: PLC0415 - only drawing needs matplotlib
-
-    box = Rectangle(
-        (begin, y + 2.5), end - begin, BAR, facecolor=fill, edgecolor=edge, linewidth=0.9, zorder=4
-    )
-    page.axes.add_patch(box)
+    page.rectangle((begin, y + 2.5), (end - begin, BAR), Paint(fill, edge, 0.9))
 
 
 def _write_beside(page: Page, bar: Bar, begin: float, end: float, y: float, left: float) -> None:
     """Write a bar's words to its right, else to its left, else into it."""
     width = text_width(bar.words, 7.5)
     if end + 5.0 + width <= left + CHART:
-        page.write(end + 5.0, y + 12.5, bar.words, 7.5, ink=QUIET, zorder=7)
+        page.write(end + 5.0, y + 12.5, bar.words, 7.5, ink=QUIET, halo=True)
     elif begin - 5.0 - width >= left:
-        page.write(begin - 5.0, y + 12.5, bar.words, 7.5, ink=QUIET, ha="right", zorder=7)
+        page.write(begin - 5.0, y + 12.5, bar.words, 7.5, ink=QUIET, anchor="end", halo=True)
     else:
-        page.write(begin + 5.0, y + 12.5, bar.words, 7.5, width=end - begin - 10.0, zorder=7)
+        page.write(begin + 5.0, y + 12.5, bar.words, 7.5, width=end - begin - 10.0)

@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import Final
 
 from bigactors.pictures.configuration import draw_configuration
-from bigactors.pictures.page import Page, plain_style, wrapped
+from bigactors.pictures.page import Page, wrapped
 from checker.properties.race_steps import RaceSteps
 from checker.reports.lanes import Lanes, LaneStep, Repetition, bounded, folded, lanes_of, lapses, steps_of
 from physical.map_style import INK, QUIET
 from semantics.state.configuration import Configuration, Label
 from semantics.timing.dates import lapse_text
+from svg import Paint, Picture
 
 MARGIN: Final = 26.0
 NUMBERS: Final = 30.0
@@ -41,6 +42,8 @@ TIME: Final = "#4f86c6"
 AGAIN: Final = ("#f4f6f8", "#9fadbb")
 RACE: Final = "#b3261e"
 """The words *sensed*, *changed* and *acted*."""
+
+LANE_LINE: Final = Paint(stroke="#d8dee4")
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,34 +114,24 @@ def draw_trace(  # noqa: PLR0913 - all but three are optional, and passed by nam
     captions = ["", *(f"{word}{label}" for word, label in zip(words, labels, strict=True))]
     for name, before, c, caption in zip(names, befores, configurations, captions, strict=True):
         heading = " ".join(part for part in (title, Path(name).stem, caption) if part)
-        draw_configuration(c, folder / name, title=heading, changed=before)
+        draw_configuration(c, title=heading, changed=before).save(folder / name)
     overview = folder / "trace.svg"
-    draw_overview(
-        lanes_of(configurations, labels, loop, moments, race), overview, title=title, links=names[1:]
-    )
+    lanes = lanes_of(configurations, labels, loop, moments, race)
+    draw_overview(lanes, title=title, links=names[1:]).save(overview)
     return (*(folder / name for name in names), overview)
 
 
 def draw_overview(
-    lanes: Lanes,
-    path: str | Path,
-    *,
-    title: str | None = None,
-    links: Sequence[str] = (),
-    unfolded: bool = False,
-) -> None:
-    """Write one picture of a trace: the steps in their lanes from top to bottom, with their changes.
+    lanes: Lanes, *, title: str | None = None, links: Sequence[str] = (), unfolded: bool = False
+) -> Picture:
+    """Return one picture of a trace: the steps in their lanes from top to bottom, with their changes.
 
     `links` are the link targets of the boxes in an SVG, one for each step. Consecutive steps that only repeat others
     share a box, unless `unfolded`.
-
-    Raises:
-        PictureError: The file has another suffix than `.svg` or `.png`, or is too high for a PNG.
-        OSError: The file cannot be written.
     """
     rows = rows_of(lanes, unfolded=unfolded)
-    with plain_style():
-        _page(lanes, rows, title and title.rstrip(":"), links).save(Path(path), title or "trace")
+    page = _page(lanes, rows, title and title.rstrip(":"), links)
+    return page.picture(title or "trace")
 
 
 def rows_of(lanes: Lanes, *, unfolded: bool = False) -> tuple[Row, ...]:
@@ -199,44 +192,31 @@ def _page(lanes: Lanes, rows: Sequence[Row], title: str | None, links: Sequence[
 
 def _draw_lane(page: Page, name: str, start: float, span: tuple[float, float]) -> None:
     middle = start + LANE / 2
-    page.write(middle, span[0] + 15, name, 9.0, bold=True, width=LANE, ha="center")
-    page.axes.plot([middle, middle], [span[0] + HEAD - 6, span[1]], color="#d8dee4", linewidth=1.0, zorder=1)
+    page.write(middle, span[0] + 15, name, 9.0, bold=True, width=LANE, anchor="middle")
+    page.line([(middle, span[0] + HEAD - 6), (middle, span[1])], LANE_LINE)
 
 
 def _draw_axis(page: Page, rows: Sequence[Row], tops: Sequence[float], x: float) -> None:
     """Draw the dates of rows, each once, and the time between them."""
-    page.write(x, tops[0] - HEAD + 15, "time", 9.0, bold=True, ha="right")
-    page.axes.plot([x, x], [tops[0], tops[-1]], color="#d8dee4", linewidth=1.0, zorder=1)
+    page.write(x, tops[0] - HEAD + 15, "time", 9.0, bold=True, anchor="end")
+    page.line([(x, tops[0]), (x, tops[-1])], LANE_LINE)
     for number, (row, y) in enumerate(zip(rows, tops, strict=False)):
         if row.gap:
-            page.axes.plot([x, x], [y - 2.0, y + row.gap - 2.0], color=TIME, linewidth=3.0, zorder=2)
+            page.line([(x, y - 2.0), (x, y + row.gap - 2.0)], Paint(stroke=TIME, width=3.0))
             words = f"+ {lapse_text(row.lapse)}"
-            page.write(x - 6.0, y + row.gap / 2 + 0.5, words, 7.0, ink=TIME, ha="right")
+            page.write(x - 6.0, y + row.gap / 2 + 0.5, words, 7.0, ink=TIME, anchor="end")
         if row.gap or not number:
             here = y + row.gap
-            page.axes.plot([x - 4.0, x + 4.0], [here - 2.0, here - 2.0], color=TIME, linewidth=1.2, zorder=3)
-            page.write(x - 6.0, here + 14.0, row.date, 8.0, ha="right")
+            page.line([(x - 4.0, here - 2.0), (x + 4.0, here - 2.0)], Paint(stroke=TIME, width=1.2))
+            page.write(x - 6.0, here + 14.0, row.date, 8.0, anchor="end")
 
 
 def _draw_row(page: Page, row: Row, start: float, y: float, link: str | None) -> None:
-    from matplotlib.patches import FancyBboxPatch  # noqa: PLC0415 - only drawing needs matplotlib
-
     fill, border = row.colours
-    box = FancyBboxPatch(
-        (start + 4, y),
-        LANE - 8,
-        row.box_height,
-        boxstyle="round,pad=0,rounding_size=5",
-        facecolor=fill,
-        edgecolor=RACE if row.role else border,
-        linewidth=2.2 if row.role else 1.1,
-        zorder=4,
-    )
-    if link:
-        box.set_url(link)
-    page.axes.add_patch(box)
-    page.write(start + 12, y + 12.5, row.rule, 8.0, bold=True, ink=INK, zorder=5)
+    paint = Paint(fill, RACE, 2.2) if row.role else Paint(fill, border, 1.1)
+    page.rectangle((start + 4, y), (LANE - 8, row.box_height), paint, radius=5, link=link)
+    page.write(start + 12, y + 12.5, row.rule, 8.0, bold=True, ink=INK)
     if row.role:
-        page.write(start + LANE - 12, y + 12.5, row.role, 8.0, bold=True, ink=RACE, ha="right", zorder=5)
+        page.write(start + LANE - 12, y + 12.5, row.role, 8.0, bold=True, ink=RACE, anchor="end")
     for rank, line in enumerate(row.words):
-        page.write(start + 12, y + 23.0 + rank * 10.0, line, 7.0, ink="#3b4252", zorder=5)
+        page.write(start + 12, y + 23.0 + rank * 10.0, line, 7.0, ink="#3b4252")

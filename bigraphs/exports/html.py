@@ -16,7 +16,7 @@ from typing import Any, Final
 from bigraphs.bigraph import Bigraph
 from bigraphs.drawing import KINDS, LINKS
 from bigraphs.exports.dot import describe
-from bigraphs.exports.svg import RADIUS, places_of
+from bigraphs.exports.state_graph import RADIUS, places_of
 from bigraphs.labels import link_label
 from bigraphs.transitions import TransitionSystem
 

@@ -112,7 +112,7 @@ def test_an_interruption_is_incomplete(bigactors, monkeypatch):
 def test_help_is_there_at_once_and_loads_no_library():
     code = (
         "import sys, bigactors.cli; bigactors.cli.main(['check', '--help']);"
-        "heavy = {'shapely', 'pyproj', 'lark', 'matplotlib', 'numpy', 'networkx', 'checker', 'specs'};"
+        "heavy = {'shapely', 'pyproj', 'lark', 'resvg_py', 'numpy', 'networkx', 'checker', 'specs'};"
         "heavy &= set(sys.modules);"
         "sys.exit(str(sorted(heavy)) if heavy else 0)"
     )

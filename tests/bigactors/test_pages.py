@@ -13,8 +13,6 @@ from drawn_missions import CHANNELS, KINDS, PLACEMENTS, SIGNATURE, observing, oi
 
 from bigactors.pages import Story, page_of, telling, trace_page
 from bigactors.pictures import Panels
-from bigactors.pictures.page import Page
-from bigactors.pictures.vector import svg_of
 from checker import Step, Trace, check
 from checker.reports.lanes import Repetition
 from semantics.behaviours.program import Program
@@ -208,7 +206,8 @@ def test_a_trace_without_steps_is_a_page(trace):
 def test_all_maps_of_a_run_have_one_view(trace):
     panels = Panels.of(trace.configurations, 100)
     grids = {
-        tuple(re.findall(r">([\d.]+°[NSEW])<", panels.physical(c, None).shapes)) for c in trace.configurations
+        tuple(re.findall(r">([\d.]+°[NSEW])<", panels.physical(c, None).picture.shapes))
+        for c in trace.configurations
     }
     assert len(grids) == 1
 
@@ -293,15 +292,6 @@ def test_the_first_stop_of_the_tab_key_is_play(any_page):
     stops = ("a", "button", "input", "summary", "select", "textarea")
     first = next(attributes for tag, attributes in Reader(any_page).elements if tag in stops)
     assert first["id"] == "play"
-
-
-def test_only_known_shapes_pass_into_a_picture():
-    page = Page(100, 100)
-    page.write(10, 10, "<b>&\x00")
-    shapes = svg_of(page.figure, "K")
-    assert "&lt;b&gt;&amp;\N{REPLACEMENT CHARACTER}" in shapes
-    assert not re.search(r"<(metadata|style|script|image|!--)", shapes)
-    assert re.findall(r'<text [^>]*textLength="[\d.]+"', shapes)
 
 
 def test_the_page_of_a_run_with_dates_has_gaps_where_time_passes():

@@ -50,15 +50,15 @@ def loaded_by(code):
 
 
 def test_importing_the_package_loads_no_room_and_no_library():
-    rooms = {"bigraphs", "checker", "physical", "semantics", "specs"}
-    assert not loaded_by("import bigactors") & {"shapely", "pyproj", "lark", "matplotlib", *rooms}
+    rooms = {"bigraphs", "checker", "physical", "semantics", "specs", "svg"}
+    assert not loaded_by("import bigactors") & {"shapely", "pyproj", "lark", "resvg_py", *rooms}
 
 
 @pytest.mark.usefixtures("missions")
-def test_no_picture_no_matplotlib():
+def test_no_picture_no_font_and_no_png():
     found = loaded_by(
         "import bigactors.cli, bigactors.drawings; bigactors.cli.main(['check', 'holds.mission', '--json', 'r.json'])"
     )
     assert "shapely" in found
-    assert "matplotlib" not in found
+    assert not found & {"matplotlib", "resvg_py"}
     assert "hypothesis" not in found

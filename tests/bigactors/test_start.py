@@ -18,12 +18,11 @@ KNOWN = {
         "lark",
         "lazy_loader",
         "llvmlite",
-        "matplotlib",
         "mcap",
         "networkx",
         "numba",
     ),
-    *("numpy", "pyais", "pymavlink", "pyproj", "ray", "scipy", "shapely", "zenoh"),
+    *("numpy", "pyais", "pymavlink", "pyproj", "ray", "resvg_py", "scipy", "shapely", "zenoh"),
 }
 SCRIPT = """
 import contextlib, io, json, sys

@@ -6,7 +6,7 @@ import re
 import pytest
 from test_json import validator
 
-from bigactors.pictures.timeline import groups_of, marks, page_of
+from bigactors.pictures.timeline import draw_timeline, groups_of, marks
 from checker.properties.schedule import Flight, Milestone, Moments, Schedule
 from semantics.timing.bounds import Bound
 from semantics.timing.intervals import Interval
@@ -81,7 +81,7 @@ def test_what_is_not_bounded_goes_on_to_the_edge_of_the_picture():
     ((_, (there, nowhere)),) = groups_of(schedule)
     assert (there.words, there.ends) == ("1:00 or later, if at all", (60, INFINITE))
     assert nowhere.words == "never"
-    assert page_of(schedule, "m").width > 600
+    assert draw_timeline(schedule, title="m").width > 600
 
 
 @pytest.mark.parametrize("span", [1.0, 59.0, 3600.0, 86_400.0, 6e7])

@@ -3,11 +3,9 @@ from itertools import combinations, pairwise
 from bigraph_strategies import bigraphs
 from hypothesis import given
 from hypothesis import strategies as st
-from matplotlib.font_manager import FontProperties
-from matplotlib.textpath import TextToPath
 from scale import examples
 
-from bigraphs.layout import GAP, Box, label_size, layout, pill_width, text_width
+from bigraphs.layout import GAP, Box, label_size, layout, pill_width
 from bigraphs.link_curves import route
 from bigraphs.relations import from_relations
 
@@ -93,20 +91,6 @@ def test_curves_run_from_the_border_of_their_nodes_to_their_name(bigraph):
 def test_the_layout_is_the_same_again(bigraph):
     assert layout(bigraph) == layout(bigraph)
     assert route(layout(bigraph)) == route(layout(bigraph))
-
-
-@given(
-    st.text(
-        st.characters(min_codepoint=32, max_codepoint=0x17F, exclude_categories=["Cc"]),
-        min_size=1,
-        max_size=20,
-    )
-)
-def test_the_width_of_text_is_never_underestimated(text):
-    width, _, _ = TextToPath().get_text_width_height_descent(
-        text.replace("$", "S"), FontProperties(size=10.0), ismath=False
-    )
-    assert text_width(text.replace("$", "S"), 10.0) >= width - 1e-6
 
 
 def test_rows_keep_the_order_of_names():

@@ -4,8 +4,8 @@ import { html, useEffect, useLayoutEffect, useRef, useSections, useState } from 
 const SVG = "http://www.w3.org/2000/svg";
 const ELEMENTS = new Set(["svg", "g", "path", "text", "tspan", "use", "defs", "clipPath", "rect", "circle", "ellipse", "line", "polygon", "polyline", "title"]);
 const ATTRIBUTES = new Set(["d", "x", "y", "x1", "x2", "y1", "y2", "dx", "dy", "width", "height", "transform", "clip-path", "id", "r", "cx", "cy", "rx", "ry", "points",
-  "viewBox", "fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "opacity", "fill-opacity", "stroke-opacity",
-  "font-family", "font-size", "font-weight", "font-style", "text-anchor", "textLength", "lengthAdjust", "class"]);
+  "viewBox", "fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "opacity", "fill-opacity", "stroke-opacity", "fill-rule", "paint-order",
+  "font-family", "font-size", "font-weight", "font-style", "text-anchor", "textLength", "lengthAdjust", "class", "xml:space"]);
 /** A reference to something outside the picture. */
 const ELSEWHERE = /url\s*\((?!\s*['"]?#)/i;
 const LARGEST = 12;

@@ -203,7 +203,7 @@ def curves(samples: Sequence[Sample], found: Sequence[FirstTimes]) -> Iterator[C
 
 
 def _draw(options: Namespace, system: System, samples: Sequence[Sample], found: Sequence[FirstTimes]) -> None:
-    from bigactors.drawings import draw_first_times  # only drawing needs matplotlib
+    from bigactors.drawings import draw_first_times  # only drawing needs pictures
 
     end = options.until if options.until is not None else max(each.time for each in samples)
     left = len(found) - len(PALETTE)

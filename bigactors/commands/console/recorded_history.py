@@ -18,7 +18,7 @@ from adapters.console.facts import Change, Rules, Unreplayable
 from adapters.console.history import History
 from adapters.recording.reading import Recording
 from bigactors.mistakes import Mistake
-from bigactors.pictures import Look, logical_svg, look_of
+from bigactors.pictures import Look, logical_picture, look_of
 from bigactors.recordings import mission_of, parting_of
 from bigraphs.bigraph import Bigraph
 from checker import ReplayError
@@ -177,6 +177,6 @@ def _draw(line: Connection) -> None:
     while True:
         try:
             bigraph, look, title = line.recv()
-            line.send(logical_svg(bigraph, look, title))
+            line.send(logical_picture(bigraph, look, title).svg)
         except (EOFError, OSError):
             return
