@@ -15,7 +15,7 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any, Final
 
-ROOMS: Final = ("adapters", "bigraphs", "checker", "physical", "semantics", "specs", "svg")
+ROOMS: Final = ("adapters", "bigraphs", "checker", "physical", "semantics", "specs")
 PREFIX: Final = "bigactors."
 
 

@@ -15,8 +15,8 @@ from bigactors.pictures.timeline import draw_timeline
 from checker import Trace
 from checker.properties.schedule import Schedule
 from checker.reports.lanes import lanes_of_trace
+from physical.svg import PictureError
 from semantics.state.configuration import Configuration
-from svg import PictureError
 
 MOST_PICTURES = 100
 """The longest trace with a drawing of every configuration. Longer traces get only the overview."""

@@ -12,7 +12,7 @@ from bigraphs.errors import BigraphError
 from bigraphs.labels import link_label
 from bigraphs.layout import FONT, HEADER, PAD, SMALL, Box, Item, Layout, layout
 from bigraphs.link_curves import Route, route
-from svg import Canvas, Paint, Picture, PictureError, Point, Words
+from physical.svg import Canvas, Paint, Picture, PictureError, Point, Words
 
 # Fill, border and text colours of the kinds of node, assigned in alphabetical order.
 KINDS: Final = (

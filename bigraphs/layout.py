@@ -15,7 +15,7 @@ from typing import Final, TypeAlias
 
 from bigraphs.bigraph import Bigraph, Link, Place, children, points, sites_in
 from bigraphs.folding import Folded, folded
-from svg import text_width
+from physical.svg import text_width
 
 FONT: Final = 10.0
 SMALL: Final = 7.5

@@ -32,7 +32,7 @@ from physical.map_style import PAPER, QUIET, SEA, kind_colours
 from physical.map_view import bounds, degrees_text, tick_step, ticks
 from physical.map_writing import Writing, write_labels, writing_of
 from physical.shape import Geometry
-from svg import Canvas, Paint, Words
+from physical.svg import Canvas, Paint, Words
 
 __all__ = ["MapEntity", "draw_map"]
 

@@ -9,7 +9,7 @@ from typing import Final
 
 from physical.map_labels import Box, Spot
 from physical.map_style import COAST, FAINT, HALO, INK, LAND, MARK, QUIET, Outline
-from svg import Canvas, Paint, Words, text_width
+from physical.svg import Canvas, Paint, Words, text_width
 
 RADIUS: Final = 5.5
 """The radius of a marker, in points."""

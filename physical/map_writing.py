@@ -30,7 +30,7 @@ from physical.map_style import INK, QUIET, darker
 from physical.map_view import bounds, scale_length
 from physical.measure import metres_text
 from physical.outliers import apart
-from svg import Canvas, shortened, text_width
+from physical.svg import Canvas, shortened, text_width
 
 MOST_CARRIED: Final = 8
 """The largest number of named cargo items of an entity."""

@@ -11,7 +11,7 @@ PAGES = [
     *sorted((ROOT / "docs").rglob("*.md")),
 ]
 LINKED = [*PAGES, ROOT / "CHANGELOG.md", ROOT / "benchmarks" / "README.md"]
-ROOMS = "adapters|bigactors|bigraphs|checker|physical|semantics|specs|svg"
+ROOMS = "adapters|bigactors|bigraphs|checker|physical|semantics|specs"
 
 PATH = re.compile(rf"`((?:{ROOMS}|tests|benchmarks|docs)/[\w./]*)`")
 FILE = re.compile(r"`(\w+\.py)`")

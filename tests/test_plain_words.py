@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-ROOMS = ("adapters", "bigactors", "bigraphs", "checker", "physical", "semantics", "specs", "svg")
+ROOMS = ("adapters", "bigactors", "bigraphs", "checker", "physical", "semantics", "specs")
 
 CLAUSES = re.compile(r"\b(what|whatever|whose|whom|whoever|nobody)\b", re.IGNORECASE)
 TELLING = re.compile(r"\b(tell|tells|telling|told|say|says|saying|said)\b", re.IGNORECASE)

@@ -21,10 +21,10 @@ from bigraphs.layout import layout
 from physical.drawing import draw_map
 from physical.map_marks import draw_halo, draw_icon, draw_mark
 from physical.map_style import INK, QUIET, SQUARE, kind_shapes
+from physical.svg import Canvas, Paint, Picture, shortened, text_width
 from semantics.state.configuration import Configuration
 from semantics.state.printing import print_agent
 from semantics.state.signature import Name
-from svg import Canvas, Paint, Picture, shortened, text_width
 
 WIDTH: Final = 960.0
 MARGIN: Final = 26.0

@@ -8,7 +8,7 @@ from typing import Final
 
 from bigactors.pictures.page import Page
 from physical.map_style import FAINT, PALETTE, QUIET
-from svg import Paint, Picture, Point
+from physical.svg import Paint, Picture, Point
 
 WIDTH: Final = 640.0
 HEIGHT: Final = 360.0

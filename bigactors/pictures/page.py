@@ -4,7 +4,7 @@ import re
 from typing import Final
 
 from physical.map_style import INK, QUIET
-from svg import Canvas, Paint, Words, shortened, text_width
+from physical.svg import Canvas, Paint, Words, shortened, text_width
 
 RULE: Final = Paint(stroke="#d8dee4", width=0.8)
 

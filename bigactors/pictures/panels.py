@@ -10,8 +10,8 @@ from bigactors.pictures.scene import map_entities
 from bigraphs.bigraph import Bigraph
 from physical.drawing import MapEntity, draw_map
 from physical.shape import Geometry
+from physical.svg import Picture
 from semantics.state.configuration import Configuration
-from svg import Picture
 
 MAP: Final = (600.0, 400.0)
 INSET: Final = 6.0

@@ -14,7 +14,7 @@ from bigactors.pictures.page import Page
 from checker.properties.critical_path import interval_text
 from checker.properties.schedule import Flight, Milestone, Moments, Schedule
 from physical.map_style import QUIET
-from svg import Paint, Picture, text_width
+from physical.svg import Paint, Picture, text_width
 
 MARGIN: Final = 26.0
 CHART: Final = 560.0

@@ -15,9 +15,9 @@ from bigactors.pictures.page import Page, wrapped
 from checker.properties.race_steps import RaceSteps
 from checker.reports.lanes import Lanes, LaneStep, Repetition, bounded, folded, lanes_of, lapses, steps_of
 from physical.map_style import INK, QUIET
+from physical.svg import Paint, Picture
 from semantics.state.configuration import Configuration, Label
 from semantics.timing.dates import lapse_text
-from svg import Paint, Picture
 
 MARGIN: Final = 26.0
 NUMBERS: Final = 30.0

@@ -9,7 +9,7 @@ from bigraphs.drawing import INK
 from bigraphs.exports.dot import describe
 from bigraphs.layout import FONT
 from bigraphs.transitions import TransitionSystem
-from svg import Canvas, Paint, Point, Words
+from physical.svg import Canvas, Paint, Point, Words
 
 RADIUS: Final = 15.0
 ARROW: Final = Paint(stroke="#9aa3b2")

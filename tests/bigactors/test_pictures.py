@@ -19,13 +19,13 @@ from bigraphs.link_curves import route
 from checker.properties.race_steps import RaceSteps
 from checker.reports.lanes import lanes_of
 from physical import circle, point
+from physical.svg import PictureError, text_width
 from semantics.behaviours.program import Program
 from semantics.environment import Appears
 from semantics.state.configuration import Label
 from semantics.state.initial import Beliefs, initial
 from semantics.state.physical_model import Placed, channels_cell, placement_cell
 from semantics.state.setting import Setting
-from svg import PictureError, text_width
 
 ROOT = Path(__file__).parents[2]
 

@@ -50,7 +50,7 @@ def loaded_by(code):
 
 
 def test_importing_the_package_loads_no_room_and_no_library():
-    rooms = {"bigraphs", "checker", "physical", "semantics", "specs", "svg"}
+    rooms = {"bigraphs", "checker", "physical", "semantics", "specs"}
     assert not loaded_by("import bigactors") & {"shapely", "pyproj", "lark", "resvg_py", *rooms}
 
 

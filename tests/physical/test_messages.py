@@ -5,7 +5,7 @@ from pathlib import Path
 from physical.messages import install_extra
 
 ROOT = Path(__file__).parents[2]
-ROOMS = ("adapters", "bigactors", "bigraphs", "checker", "physical", "semantics", "specs", "svg")
+ROOMS = ("adapters", "bigactors", "bigraphs", "checker", "physical", "semantics", "specs")
 
 
 def sources():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from svg import shortened, text_width
+from physical.svg import shortened, text_width
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from html import escape
 from pathlib import Path
 from typing import Final
 
-from svg.widths import FONTS
+from physical.svg.widths import FONTS
 
 FORMATS: Final = ("svg", "png")
 RESOLUTION: Final = 144

@@ -5,7 +5,7 @@ import struct
 
 import pytest
 
-from svg import Canvas, Paint, PictureError, Words
+from physical.svg import Canvas, Paint, PictureError, Words
 
 
 def picture():

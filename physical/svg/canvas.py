@@ -9,8 +9,8 @@ from html import escape
 from itertools import groupby
 from typing import Final, TypeAlias
 
-from svg.picture import Picture
-from svg.widths import text_width
+from physical.svg.picture import Picture
+from physical.svg.widths import text_width
 
 Point: TypeAlias = tuple[float, float]
 

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from svg import Canvas, Paint, Words
+from physical.svg import Canvas, Paint, Words
 
 RED = Paint("#f00")
 PLAIN = Words(10.0, "#000")
