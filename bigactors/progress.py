@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TextIO
 
 from bigactors.terminal import broken, is_terminal, paint, write
 from checker.limits import Interruption
-from physical.messages import counted
+from physical.wordings import counted
 
 if TYPE_CHECKING:
     from checker import Progress

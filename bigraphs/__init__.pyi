@@ -26,8 +26,8 @@ from .bigraph import find as find
 from .bigraph import links as links
 from .bigraph import points as points
 from .bigraph import sites_in as sites_in
-from .canonical import canonical as canonical
-from .canonical import equal as equal
+from .canonical_form import canonical as canonical
+from .canonical_form import equal as equal
 from .decomposition import Parts as Parts
 from .decomposition import recompose as recompose
 from .decomposition import take_apart as take_apart

@@ -14,7 +14,7 @@ from bigraphs.folding import Folded
 from bigraphs.labels import link_label
 from bigraphs.layout import FONT, HEADER, PAD, SMALL, Box, Item, Layout, layout
 from bigraphs.link_curves import Route, route
-from bigraphs.obstacles import Point
+from bigraphs.link_detours import Point
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,7 +8,7 @@ from enum import Enum
 
 from bigraphs.errors import BigraphError
 from bigraphs.notation.spelling import did_you_mean
-from bigraphs.properties import Property, Situation, holds
+from bigraphs.properties import StateContext, SystemProperty, holds
 from bigraphs.transitions import TransitionSystem
 
 
@@ -20,7 +20,7 @@ class Quantifier(Enum):
     REACHABLE = "reachable"
 
 
-class Outcome(Enum):
+class ClaimOutcome(Enum):
     """The outcome of a claim; *incomplete* if the explored states do not decide it."""
 
     HOLDS = "holds"
@@ -29,11 +29,11 @@ class Outcome(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class ClaimVerdict:
     """The outcome of one claim, with the nearest state that demonstrates it, if one does."""
 
     claim: str
-    outcome: Outcome
+    outcome: ClaimOutcome
     state: int | None
 
 
@@ -49,7 +49,7 @@ def predicate_hint(name: str, labels: Sequence[str]) -> str:
     return did_you_mean(name, labels) or f"the predicates are {', '.join(labels[:8])}{more}"
 
 
-def predicate_verdict(system: TransitionSystem, quantifier: Quantifier, label: str) -> Verdict:
+def predicate_verdict(system: TransitionSystem, quantifier: Quantifier, label: str) -> ClaimVerdict:
     """Decide whether a predicate holds always, never or in a reachable state.
 
     Raises:
@@ -63,35 +63,37 @@ def predicate_verdict(system: TransitionSystem, quantifier: Quantifier, label: s
     state = None if found < 0 else found
     claim = f"{quantifier.value} {label}"
     if quantifier is Quantifier.REACHABLE:
-        return Verdict(
-            claim, Outcome.HOLDS if state is not None else _nothing(system, Outcome.VIOLATED), state
+        return ClaimVerdict(
+            claim, ClaimOutcome.HOLDS if state is not None else _nothing(system, ClaimOutcome.VIOLATED), state
         )
-    return Verdict(claim, Outcome.VIOLATED if state is not None else _nothing(system, Outcome.HOLDS), state)
+    return ClaimVerdict(
+        claim, ClaimOutcome.VIOLATED if state is not None else _nothing(system, ClaimOutcome.HOLDS), state
+    )
 
 
-def deadlock_verdict(system: TransitionSystem) -> Verdict:
+def deadlock_verdict(system: TransitionSystem) -> ClaimVerdict:
     """Decide whether every state has a transition."""
     found = next((state for state in range(system.expanded) if not system.leaving(state)), None)
-    outcome = Outcome.VIOLATED if found is not None else _nothing(system, Outcome.HOLDS)
-    return Verdict("no deadlock", outcome, found)
+    outcome = ClaimOutcome.VIOLATED if found is not None else _nothing(system, ClaimOutcome.HOLDS)
+    return ClaimVerdict("no deadlock", outcome, found)
 
 
-def property_verdict(system: TransitionSystem, claim: Property) -> Verdict:
+def property_verdict(system: TransitionSystem, claim: SystemProperty) -> ClaimVerdict:
     """Decide whether a property of a `.bgm` file holds in every expanded state."""
     found = next(
         (state for state, here in _situations(system) if not holds(claim.formula, here)),
         None,
     )
-    outcome = Outcome.VIOLATED if found is not None else _nothing(system, Outcome.HOLDS)
-    return Verdict(claim.name, outcome, found)
+    outcome = ClaimOutcome.VIOLATED if found is not None else _nothing(system, ClaimOutcome.HOLDS)
+    return ClaimVerdict(claim.name, outcome, found)
 
 
-def _nothing(system: TransitionSystem, outcome: Outcome) -> Outcome:
+def _nothing(system: TransitionSystem, outcome: ClaimOutcome) -> ClaimOutcome:
     """Return the outcome of a search without a finding: the given one if the system is complete, else incomplete."""
-    return outcome if system.complete else Outcome.INCOMPLETE
+    return outcome if system.complete else ClaimOutcome.INCOMPLETE
 
 
-def _situations(system: TransitionSystem) -> Iterator[tuple[int, Situation]]:
+def _situations(system: TransitionSystem) -> Iterator[tuple[int, StateContext]]:
     before: list[list[int]] = [[] for _ in range(len(system))]
     after: list[list[int]] = [[] for _ in range(len(system))]
     for each in system.transitions():
@@ -101,7 +103,7 @@ def _situations(system: TransitionSystem) -> Iterator[tuple[int, Situation]]:
     for state in range(system.expanded):
         yield (
             state,
-            Situation(
+            StateContext(
                 bigraphs[state],
                 tuple(bigraphs[other] for other in before[state]),
                 tuple(bigraphs[other] for other in after[state]),
@@ -110,7 +112,7 @@ def _situations(system: TransitionSystem) -> Iterator[tuple[int, Situation]]:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class WitnessStep:
     """A step of a run: its rules (none after a deadlock) and the number of the state after it.
 
     For a probabilistic claim, `action` is the chosen action and `chance` the probability of the step under that choice.
@@ -123,10 +125,10 @@ class Step:
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class WitnessRun:
     """A run from the initial state; the steps from number `loop` on repeat forever, unless it is None."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[WitnessStep, ...]
     loop: int | None = None
 
 
@@ -151,8 +153,8 @@ class Decided:
     """
 
     claim: str
-    outcome: Outcome
-    run: Run | None = None
+    outcome: ClaimOutcome
+    run: WitnessRun | None = None
     what: str = ""
     note: str = ""
     remarks: tuple[str, ...] = ()

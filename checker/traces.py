@@ -15,7 +15,7 @@ from checker.properties.races import STALE
 from checker.properties.stale_steps import stale_steps
 from checker.reduction.original_run import run_to
 from checker.steps import Step, alike, candidates, step_between, step_of
-from physical.messages import counted
+from physical.wordings import counted
 from semantics.observed_steps import Sight
 from semantics.races.monitor import monitored
 from semantics.state.canonical import digest_of_step

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from checker.engines.contract import Exploration
 from checker.engines.graph import Graph, graph_of
 from checker.steps import step_of
-from physical.messages import install_extra
+from physical.wordings import install_extra
 from semantics.state.requests import Received
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from physical.frame import E7, TURN, PositionE7
 from physical.written_times import LATEST
 
 
-class Fix(NamedTuple):
+class PositionFix(NamedTuple):
     """A position in 1e-7 degree, with its time (seconds since 1970 UTC) and its height in metres, if known."""
 
     position: PositionE7
@@ -25,7 +25,7 @@ class Track(NamedTuple):
 
     name: str
     kind: str
-    fixes: tuple[Fix, ...]
+    fixes: tuple[PositionFix, ...]
 
 
 def write_tracks(tracks: Iterable[Track]) -> str:
@@ -61,7 +61,7 @@ def _feature(track: Track) -> dict[str, Any]:
     }
 
 
-def _parts(fixes: Sequence[Fix]) -> Iterator[list[Fix]]:
+def _parts(fixes: Sequence[PositionFix]) -> Iterator[list[PositionFix]]:
     """Yield the parts of a track, split where it crosses the antimeridian."""
     part = list(fixes[:1])
     for before, here in pairwise(fixes):
@@ -73,7 +73,7 @@ def _parts(fixes: Sequence[Fix]) -> Iterator[list[Fix]]:
     yield part
 
 
-def _crossing(before: Fix, after: Fix) -> tuple[Fix, Fix]:
+def _crossing(before: PositionFix, after: PositionFix) -> tuple[PositionFix, PositionFix]:
     """Return the points where a track leaves one side of the antimeridian and enters the other."""
     side = TURN // 2 if before.position[1] > 0 else -TURN // 2
     to_side, from_side = abs(side - before.position[1]), abs(after.position[1] + side)
@@ -88,7 +88,7 @@ def _between(a: float | None, b: float | None, share: float) -> float | None:
     return None if a is None or b is None else a + share * (b - a)
 
 
-def _coordinates(fix: Fix, *, high: bool) -> list[float | None]:
+def _coordinates(fix: PositionFix, *, high: bool) -> list[float | None]:
     north, east = fix.position
     return [east / E7, north / E7, *([fix.height] if high else [])]
 

@@ -18,8 +18,8 @@ from bigactors.installed_plugins import find_detector
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.terminal import say, tell
 from physical import PhysicalError, write_geojson
-from physical.messages import counted
 from physical.shape import planar
+from physical.wordings import counted
 
 
 def run(options: Namespace) -> Exit:

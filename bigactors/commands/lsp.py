@@ -7,7 +7,7 @@ from argparse import Namespace
 
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
-from physical.messages import install_extra
+from physical.wordings import install_extra
 
 
 def run(options: Namespace) -> Exit:

@@ -20,8 +20,8 @@ from bigactors.terminal import is_terminal, paint, say, tell
 from bigactors.waypoint_export import write_route
 from bigraphs import draw_text
 from checker import ReplayError, Trace, print_loop, print_trace, replay
-from physical.messages import counted
 from physical.nmea_lines import has_frame
+from physical.wordings import counted
 from semantics.races.monitor import monitored
 from semantics.state.abstraction import all_as_it_is
 from semantics.state.printing import print_configuration

@@ -19,8 +19,8 @@ from checker.reports.comparison import comparison_text
 from checker.reports.lanes import lanes_of_trace, lanes_text
 from checker.reports.times import times_text
 from checker.traces import print_step
-from physical.messages import counted
 from physical.place_files import GEOJSON
+from physical.wordings import counted
 from semantics.state.printing import print_configuration
 
 PAGES = (".html", ".htm")

@@ -15,7 +15,7 @@ from bigactors.mistakes import Mistake
 from bigactors.one_run import OneRun, nothing_more, print_step
 from bigactors.terminal import say, say_text, tell
 from checker import to_json
-from physical.messages import counted
+from physical.wordings import counted
 from semantics.state.configuration import Configuration
 from semantics.state.printing import print_configuration
 from specs.elaboration import ElaboratedMission

@@ -10,8 +10,8 @@ from bigactors.terminal import say, tell
 from bigactors.worlds import census, configuration_of, read_world
 from bigraphs import draw_text
 from physical import write_geojson
-from physical.messages import counted
 from physical.place_files import PLACES
+from physical.wordings import counted
 
 GEOJSON = (".geojson", ".json")
 

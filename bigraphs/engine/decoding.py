@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from bigraphs.bigraph import Bigraph, Link, Node, assemble
-from bigraphs.canonical import canonical
+from bigraphs.canonical_form import canonical
+from bigraphs.engine.intern_tables import REFERENCE, InternTables
 from bigraphs.engine.state import Key, State, bits, codes_in
-from bigraphs.engine.world import REFERENCE, World
 
 
 def to_bigraph(state: State) -> Bigraph:
@@ -30,7 +30,7 @@ def _live_edges(state: State) -> list[int]:
     return [edge for edge in range(len(state.world.names), len(state.points)) if state.points[edge]]
 
 
-def from_key(world: World, key: Key) -> State:
+def from_key(world: InternTables, key: Key) -> State:
     """Return a state with this key of `State.key`; the key alone determines the order of its nodes."""
     builder = _Builder(world)
     *regions, shared = codes_in(world, key)
@@ -43,7 +43,7 @@ def from_key(world: World, key: Key) -> State:
 class _Builder:
     """A state under construction, from the regions inwards."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: InternTables) -> None:
         self.world = world
         self.labels: list[int] = []
         self.parents: list[list[int]] = []

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
-from bigraphs.engine.reactions import Reaction
+from bigraphs.engine.reactions import CompiledReaction
 from bigraphs.engine.state import State, bits
 
 _GROUP: Final = 16
@@ -68,7 +68,7 @@ def _lacking(group: Sequence[tuple[int, list[int]]], state: State) -> int:
 class ReactionIndex(RuleIndex):
     """The reactions of a system, by the changes that may create or destroy an occurrence of each."""
 
-    def __init__(self, reactions: Sequence[Reaction]) -> None:
+    def __init__(self, reactions: Sequence[CompiledReaction]) -> None:
         super().__init__([reaction.controls for reaction in reactions])
         self.reactions = tuple(reactions)
         self._holding = _by_control((reaction.number, reaction.controls) for reaction in reactions)

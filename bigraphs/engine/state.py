@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Any, TypeAlias
 
 from bigraphs.bigraph import Bigraph
-from bigraphs.engine.world import REFERENCE, World
+from bigraphs.engine.intern_tables import REFERENCE, InternTables
 
 Key: TypeAlias = bytes
 
@@ -32,7 +32,7 @@ class State:
 
     __slots__ = ("by_control", "codes", "free", "kids", "labels", "parents", "points", "ports", "world")
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: InternTables) -> None:
         self.world = world
         self.labels: list[int] = []
         self.parents: list[tuple[int, ...]] = []
@@ -125,7 +125,7 @@ class State:
         codes[slot] = self.world.code(row) if found is None else found
 
 
-def to_key(world: World, codes: list[list[int]]) -> Key:
+def to_key(world: InternTables, codes: list[list[int]]) -> Key:
     """Return the key of a state with these codes in its regions and, last, of its shared nodes."""
     if world.regions == 1 and not world.sharing:
         return array("I", sorted(codes[0])).tobytes()
@@ -133,7 +133,7 @@ def to_key(world: World, codes: list[list[int]]) -> Key:
     return array("I", parts + sorted(codes[-1])).tobytes()
 
 
-def codes_in(world: World, key: Key) -> list[list[int]]:
+def codes_in(world: InternTables, key: Key) -> list[list[int]]:
     """Return the codes in each region of a state and, last, of its shared nodes."""
     numbers = array("I", key).tolist()
     if world.regions == 1 and not world.sharing:
@@ -157,7 +157,7 @@ def bits(mask: int) -> tuple[int, ...]:
     return tuple(found)
 
 
-def make_state(world: World, bigraph: Bigraph) -> State:
+def make_state(world: InternTables, bigraph: Bigraph) -> State:
     """Return a ground bigraph as a state; node `n` has slot `n`."""
     state = State(world)
     number = {name: link for link, name in enumerate(world.names)}

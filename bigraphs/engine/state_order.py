@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TypeAlias
 
 from bigraphs.engine.decoding import history_free
+from bigraphs.engine.intern_tables import REFERENCE
 from bigraphs.engine.labelling import Labelling
 from bigraphs.engine.state import State, bits
-from bigraphs.engine.world import REFERENCE
 
 Outline: TypeAlias = list[list[bytes]]
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from bigraphs.errors import BigraphError, NotationError
 from bigraphs.notation.big.systems import read_system
-from bigraphs.notation.reading import MAX_BYTES
+from bigraphs.notation.bounded_parsing import MAX_BYTES
 from bigraphs.system import System, Value
 
 

@@ -7,7 +7,7 @@ from typing import Final
 
 from checker.steps import Step
 from checker.traces import Trace, print_step
-from physical.messages import counted
+from physical.wordings import counted
 from semantics.state.differences import Difference, differences
 
 MOST_ALIGNED: Final = 1_000

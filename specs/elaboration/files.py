@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Final
 
 from physical import GeoJSONError, Geometry, PhysicalError, PhysicalProperty, circle, contains, open_file
+from physical.file_account import Counting, Read
 from physical.geojson import MAX_BYTES as MAX_GEOJSON
 from physical.mmsi import KINDS
 from physical.place_files import PLACES, read_place_file
-from physical.tally import Counting, Read
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.findings import shorten

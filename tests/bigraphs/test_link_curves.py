@@ -6,7 +6,7 @@ import pytest
 
 from bigraphs.layout import layout
 from bigraphs.link_curves import route
-from bigraphs.obstacles import innermost, label_boxes
+from bigraphs.link_detours import innermost, label_boxes
 from bigraphs.relations import from_relations
 
 

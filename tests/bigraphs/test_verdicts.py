@@ -6,7 +6,7 @@ from bigraphs.errors import BigraphError
 from bigraphs.exploration import explore
 from bigraphs.notation import read_bgm, read_system
 from bigraphs.verdicts import (
-    Outcome,
+    ClaimOutcome,
     Quantifier,
     deadlock_verdict,
     predicate_hint,
@@ -31,9 +31,9 @@ def counted(**limits):
 @pytest.mark.parametrize(
     ("quantifier", "label", "outcome", "state"),
     [
-        (Quantifier.ALWAYS, "fresh", Outcome.VIOLATED, 3),
-        (Quantifier.NEVER, "over", Outcome.VIOLATED, 3),
-        (Quantifier.REACHABLE, "over", Outcome.HOLDS, 3),
+        (Quantifier.ALWAYS, "fresh", ClaimOutcome.VIOLATED, 3),
+        (Quantifier.NEVER, "over", ClaimOutcome.VIOLATED, 3),
+        (Quantifier.REACHABLE, "over", ClaimOutcome.HOLDS, 3),
     ],
 )
 def test_a_predicate_is_decided_by_the_nearest_state(quantifier, label, outcome, state):
@@ -43,15 +43,18 @@ def test_a_predicate_is_decided_by_the_nearest_state(quantifier, label, outcome,
 
 def test_what_was_not_looked_at_decides_nothing():
     cut = counted(max_states=2)
-    assert predicate_verdict(cut, Quantifier.NEVER, "over").outcome is Outcome.INCOMPLETE
-    assert predicate_verdict(cut, Quantifier.REACHABLE, "over").outcome is Outcome.INCOMPLETE
-    assert predicate_verdict(cut, Quantifier.ALWAYS, "fresh").outcome is Outcome.INCOMPLETE
-    assert predicate_verdict(cut, Quantifier.REACHABLE, "fresh").outcome is Outcome.HOLDS
-    assert deadlock_verdict(cut).outcome is Outcome.INCOMPLETE
+    assert predicate_verdict(cut, Quantifier.NEVER, "over").outcome is ClaimOutcome.INCOMPLETE
+    assert predicate_verdict(cut, Quantifier.REACHABLE, "over").outcome is ClaimOutcome.INCOMPLETE
+    assert predicate_verdict(cut, Quantifier.ALWAYS, "fresh").outcome is ClaimOutcome.INCOMPLETE
+    assert predicate_verdict(cut, Quantifier.REACHABLE, "fresh").outcome is ClaimOutcome.HOLDS
+    assert deadlock_verdict(cut).outcome is ClaimOutcome.INCOMPLETE
 
 
 def test_a_state_in_which_nothing_can_happen_is_a_deadlock():
-    assert (deadlock_verdict(counted()).outcome, deadlock_verdict(counted()).state) == (Outcome.VIOLATED, 3)
+    assert (deadlock_verdict(counted()).outcome, deadlock_verdict(counted()).state) == (
+        ClaimOutcome.VIOLATED,
+        3,
+    )
 
 
 def test_an_unknown_predicate_is_a_mistake():
@@ -75,9 +78,9 @@ def test_properties_see_the_states_before_and_after():
     %%check
     """
     held = explore(read_bgm(text % "size() == 4"))
-    assert property_verdict(held, held.system.properties[0]).outcome is Outcome.HOLDS
+    assert property_verdict(held, held.system.properties[0]).outcome is ClaimOutcome.HOLDS
     broken = explore(read_bgm(text % "!terminal()"))
     verdict = property_verdict(broken, broken.system.properties[0])
-    assert (verdict.outcome, len(broken.path_to(verdict.state))) == (Outcome.VIOLATED, 3)
+    assert (verdict.outcome, len(broken.path_to(verdict.state))) == (ClaimOutcome.VIOLATED, 3)
     cut = explore(read_bgm(text % "size() == 4"), max_states=1)
-    assert property_verdict(cut, cut.system.properties[0]).outcome is Outcome.INCOMPLETE
+    assert property_verdict(cut, cut.system.properties[0]).outcome is ClaimOutcome.INCOMPLETE

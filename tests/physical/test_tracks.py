@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from shapely.geometry import shape
 
 from physical.frame import E7
-from physical.tracks import Fix, Track, write_tracks
+from physical.tracks import PositionFix, Track, write_tracks
 
 HALF = 180 * E7
 
@@ -19,7 +19,9 @@ def written(*fixes):
 
 
 def test_a_track_is_a_line_with_the_time_of_each_position():
-    geometry, properties = written(Fix((10 * E7, -E7), 0.0, 5.0), Fix((11 * E7, -E7), 1.5, 6.0))
+    geometry, properties = written(
+        PositionFix((10 * E7, -E7), 0.0, 5.0), PositionFix((11 * E7, -E7), 1.5, 6.0)
+    )
     assert geometry == {"type": "LineString", "coordinates": [[-1, 10, 5.0], [-1, 11, 6.0]]}
     assert properties == {
         "name": "uav0",
@@ -29,20 +31,22 @@ def test_a_track_is_a_line_with_the_time_of_each_position():
 
 
 def test_heights_and_times_are_written_where_all_are_known():
-    geometry, properties = written(Fix((0, 0), 0.0, 5.0), Fix((1, 0), None, None))
+    geometry, properties = written(PositionFix((0, 0), 0.0, 5.0), PositionFix((1, 0), None, None))
     assert {len(position) for position in geometry["coordinates"]} == {2}
     assert "coordTimes" not in properties
 
 
 def test_one_position_is_a_point():
-    geometry, properties = written(Fix((0, E7), 1e300))
+    geometry, properties = written(PositionFix((0, E7), 1e300))
     assert geometry == {"type": "Point", "coordinates": [1, 0]}
     assert properties["time"] == "2106-02-07T06:28:16.000Z"
 
 
 def test_what_crosses_the_antimeridian_is_cut_there():
     geometry, properties = written(
-        Fix((0, HALF - 3 * E7), 0.0), Fix((4 * E7, E7 - HALF), 4.0), Fix((4 * E7, HALF - 1), 5.0)
+        PositionFix((0, HALF - 3 * E7), 0.0),
+        PositionFix((4 * E7, E7 - HALF), 4.0),
+        PositionFix((4 * E7, HALF - 1), 5.0),
     )
     assert geometry["type"] == "MultiLineString"
     assert geometry["coordinates"][:2] == [[[177, 0], [180, 3]], [[-180, 3], [-179, 4], [-180, 4]]]
@@ -58,7 +62,7 @@ def test_what_crosses_the_antimeridian_is_cut_there():
     )
 )
 def test_no_part_of_a_track_goes_around_the_earth(positions):
-    geometry, properties = written(*(Fix(position, float(k)) for k, position in enumerate(positions)))
+    geometry, properties = written(*(PositionFix(position, float(k)) for k, position in enumerate(positions)))
     multi = geometry["type"] == "MultiLineString"
     parts = geometry["coordinates"] if multi else [geometry["coordinates"]]
     times = properties["coordTimes"] if multi else [properties["coordTimes"]]

@@ -20,9 +20,9 @@ from bigraphs.properties import (
     IfElse,
     Matches,
     Not,
-    Scope,
     Size,
-    Terminal,
+    StateScope,
+    TerminalState,
 )
 from bigraphs.properties import Scoped as Within
 
@@ -72,7 +72,7 @@ class _Queries:
             case Count(value):
                 return value
             case Ask("size", None, scope):
-                return Size(Scope(scope or "this"))
+                return Size(StateScope(scope or "this"))
             case _:
                 self.wrong("only numbers and size() can be compared", query)
                 return None
@@ -84,7 +84,7 @@ class _Queries:
         if scope in ("pred", "succ") and _looks_further(operand):
             self.wrong(f"of the states that ${scope} means, only patterns and sizes are known", operand)
             return None
-        return Within(Scope(scope), found)
+        return Within(StateScope(scope), found)
 
     def asked(self, ask: Ask) -> Formula | None:
         wants = ask.predicate in ("matches", "equal")
@@ -93,7 +93,7 @@ class _Queries:
             return None
         match ask.predicate:
             case "terminal":
-                return Terminal()
+                return TerminalState()
             case "empty":
                 return Compare("==", Size(), 0)
             case "size":

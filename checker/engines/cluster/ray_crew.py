@@ -35,7 +35,7 @@ from checker.engines.contract import (
     MachineError,
     Options,
 )
-from physical.messages import install_extra
+from physical.wordings import install_extra
 from semantics.state.configuration import Configuration
 
 PATIENCE = 120.0

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from physical.messages import counted
 from physical.physical_property import PhysicalProperty
+from physical.wordings import counted
 
 MAX_KINDS: Final = 100
 """The largest number of separately counted kinds; a file may have any number of them."""
@@ -20,7 +20,7 @@ Kinds = tuple[tuple[str, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Tally:
+class FileAccount:
     """The account of a file: every thing in it belongs to one kind, taken or left out.
 
     Attributes:
@@ -70,7 +70,7 @@ class Read:
     """The result of a reader: properties of entities, and the accounts of the file's content."""
 
     properties: tuple[PhysicalProperty, ...]
-    tallies: tuple[Tally, ...]
+    tallies: tuple[FileAccount, ...]
 
     def missing(self) -> tuple[str, ...]:
         """Return a row for each kind left out."""
@@ -102,10 +102,10 @@ class Counting:
         """The number of counted things."""
         return self.taken.total() + self.left_out.total()
 
-    def tally(self, total: int, one: str, many: str = "") -> Tally:
+    def tally(self, total: int, one: str, many: str = "") -> FileAccount:
         """Return the account of a file with `total` things."""
         listed = (_sorted(each) for each in (self.taken, self.left_out, self.asides))
-        return Tally(total, one, many or f"{one}s", *listed)
+        return FileAccount(total, one, many or f"{one}s", *listed)
 
 
 def _add(counts: Counter[str], kind: str, count: int) -> None:

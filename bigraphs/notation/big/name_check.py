@@ -42,7 +42,7 @@ def survey(model: Model, names: Names, findings: Findings, given: Iterable[str] 
     """Record every undeclared name and every wrong number of links or arguments; `given` are external constants."""
     constants = frozenset(given) | names.constants.keys()
     ranging = () if model.system is None else model.system.parameters
-    look = Survey(names, findings, constants, frozenset(name for each in ranging for name in each.names))
+    look = SyntaxWalk(names, findings, constants, frozenset(name for each in ranging for name in each.names))
     for declaration in model.declarations:
         look.declaration(declaration)
     names.free.update(look.free())
@@ -53,7 +53,7 @@ def survey(model: Model, names: Names, findings: Findings, given: Iterable[str] 
         findings.add("name", f"no constant '{name}' is in the file", Span(0, 1), "leave it out")
 
 
-class Survey:
+class SyntaxWalk:
     """A walk over syntax that knows the visible values at each point."""
 
     def __init__(

@@ -35,7 +35,7 @@ class Codes:
         return [code if code < first else here[code - first] for code in codes]
 
 
-class World:
+class InternTables:
     """The tables of one system; they only grow.
 
     Attributes:

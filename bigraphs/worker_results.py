@@ -10,17 +10,17 @@ from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from bigraphs.columns import Column
-from bigraphs.engine.frontier import Block, Waiting
+from bigraphs.compact_lists import DictionaryColumn
+from bigraphs.engine.frontier import Block, Frontier
+from bigraphs.engine.intern_tables import Codes, InternTables, Row
 from bigraphs.engine.labelling import labels_in
 from bigraphs.engine.state import Key, codes_in, to_key
-from bigraphs.engine.world import Codes, Row, World
-from bigraphs.state_store import Reached
-from bigraphs.transitions import Kind
+from bigraphs.state_store import StateStore
+from bigraphs.transitions import TransitionKind
 
 
 @dataclass(frozen=True, slots=True)
-class Slice:
+class StateSlice:
     """The additions of a copy after the expansion of some states.
 
     Attributes:
@@ -42,15 +42,15 @@ class Slice:
     raw: list[Key]
     doubtful: frozenset[int]
     found_from: array[int]
-    holding: Column[tuple[int, ...]]
+    holding: DictionaryColumn[tuple[int, ...]]
     blocks: list[Block]
     ends: array[int]
     targets: array[int]
-    kinds: Column[Kind]
+    kinds: DictionaryColumn[TransitionKind]
     occurrences: array[int]
 
 
-def slices_of(copy: Reached, pieces: Sequence[tuple[int, int]]) -> Iterator[bytes]:
+def slices_of(copy: StateStore, pieces: Sequence[tuple[int, int]]) -> Iterator[bytes]:
     """Expand pieces of the queue in a copy, which is useless afterwards; a piece skips states, then expands some."""
     import pickle  # noqa: PLC0415 - a small system has no workers
 
@@ -62,11 +62,11 @@ def slices_of(copy: Reached, pieces: Sequence[tuple[int, int]]) -> Iterator[byte
         source += skipped + count
 
 
-def _slice(copy: Reached, queue: Waiting, sources: range, labels: int) -> Slice:
+def _slice(copy: StateStore, queue: Frontier, sources: range, labels: int) -> StateSlice:
     """Expand the first states of a queue; the labels of canonical keys below `labels` are known to the original."""
     world, expanded, occurrences = copy.machine.world, copy.expanded, array("Q")
     states, rows, transitions = len(copy), len(world.rows), len(copy.targets)
-    copy.waiting = Waiting(copy.start)
+    copy.waiting = Frontier(copy.start)
     for source in sources:
         copy.occurrences = 0
         copy.expand(queue.popleft(), source)
@@ -74,17 +74,17 @@ def _slice(copy: Reached, queue: Waiting, sources: range, labels: int) -> Slice:
     raw = copy.keys[states:]
     keys = raw if world.plain else copy.visited.texts[states:]
     new_labels = len(copy.machine.labelling) > labels
-    return Slice(
+    return StateSlice(
         world.rows[rows:],
         keys,
         raw,
         frozenset(_doubtful(keys, labels) if new_labels else ()),
         copy.found_from[states:],
-        Column(copy.holding[states:]),
+        DictionaryColumn(copy.holding[states:]),
         copy.waiting.blocks(),
         array("Q", [end - transitions for end in copy.first[expanded + 1 :]]),
         copy.targets[transitions:],
-        Column(copy.kinds[transitions:]),
+        DictionaryColumn(copy.kinds[transitions:]),
         occurrences,
     )
 
@@ -96,7 +96,7 @@ def _doubtful(keys: Sequence[Key], labels: int) -> Iterator[int]:
 class Copy:
     """The translation of a copy's numbers to this exploration; numbers assigned before the copy are equal."""
 
-    def __init__(self, reached: Reached) -> None:
+    def __init__(self, reached: StateStore) -> None:
         """Store the sizes of the tables at the creation of the copy."""
         self.reached = reached
         self.states = len(reached)
@@ -107,7 +107,7 @@ class Copy:
         """Merge a copy's slice for the longest waiting states; return whether the limit of states allowed all of it."""
         import pickle  # noqa: PLC0415 - a small system has no workers
 
-        found: Slice = pickle.loads(answer)
+        found: StateSlice = pickle.loads(answer)
         reached, first, before = self.reached, len(self.reached), len(self.numbers)
         reached.machine.world.adopt(self.codes, found.rows)
         self._number(found)
@@ -119,7 +119,7 @@ class Copy:
         reached.waiting.extend(self._new_blocks(found.blocks, [number >= first for number in numbers]))
         return whole
 
-    def _number(self, found: Slice) -> None:
+    def _number(self, found: StateSlice) -> None:
         """Number the states that were new to the copy, up to the limit of states."""
         reached, machine = self.reached, self.reached.machine
         for place, raw in enumerate(found.raw):
@@ -135,7 +135,7 @@ class Copy:
                 reached.remember(known, number)
             self.numbers.append(number)
 
-    def _keep(self, found: Slice, expanded: int) -> None:
+    def _keep(self, found: StateSlice, expanded: int) -> None:
         """Add the transitions of the first expanded states of a slice."""
         reached, states, numbers = self.reached, self.states, self.numbers
         end, before = found.ends[expanded - 1] if expanded else 0, len(reached.targets)
@@ -156,5 +156,5 @@ class Copy:
                 yield replace(block, kept=array("I", kept), codes=self.codes if self.codes.here else None)
 
 
-def _recoded(world: World, key: Key, codes: Codes) -> Key:
+def _recoded(world: InternTables, key: Key, codes: Codes) -> Key:
     return to_key(world, [codes.translated(inside) for inside in codes_in(world, key)])

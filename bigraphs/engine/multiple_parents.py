@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from bigraphs.engine.patterns import Pattern
+from bigraphs.engine.patterns import CompiledPattern
 from bigraphs.engine.state import State, bits
 
 
-def shared_places_fit(pattern: Pattern, state: State, nodes: Sequence[int], used: int) -> bool:
+def shared_places_fit(pattern: CompiledPattern, state: State, nodes: Sequence[int], used: int) -> bool:
     """Return whether the regions and sites cover all outer parents and all content of an occurrence's nodes."""
     places = region_places(pattern, state, nodes, used)
     tops = _tops(pattern, nodes)
@@ -30,7 +30,7 @@ def shared_places_fit(pattern: Pattern, state: State, nodes: Sequence[int], used
     return True
 
 
-def region_places(pattern: Pattern, state: State, nodes: Sequence[int], used: int) -> list[list[int]]:
+def region_places(pattern: CompiledPattern, state: State, nodes: Sequence[int], used: int) -> list[list[int]]:
     """Return the places of each region, sorted."""
     tops = _tops(pattern, nodes)
     found: list[list[int]] = [[] for _ in tops]
@@ -42,7 +42,7 @@ def region_places(pattern: Pattern, state: State, nodes: Sequence[int], used: in
     return found
 
 
-def site_contents(pattern: Pattern, state: State, nodes: Sequence[int], used: int) -> list[int]:
+def site_contents(pattern: CompiledPattern, state: State, nodes: Sequence[int], used: int) -> list[int]:
     """Return the mask of the topmost slots in each site."""
     homes = _site_masks(pattern, nodes)
     found = [0] * len(homes)
@@ -61,7 +61,7 @@ def _smaller(one: int, other: int) -> bool:
     return one != other and one & ~other == 0
 
 
-def _tops(pattern: Pattern, nodes: Sequence[int]) -> list[int]:
+def _tops(pattern: CompiledPattern, nodes: Sequence[int]) -> list[int]:
     found = [0] * pattern.regions
     for node, homes in enumerate(pattern.homes):
         for region in homes:
@@ -69,7 +69,7 @@ def _tops(pattern: Pattern, nodes: Sequence[int]) -> list[int]:
     return found
 
 
-def _site_masks(pattern: Pattern, nodes: Sequence[int]) -> list[int]:
+def _site_masks(pattern: CompiledPattern, nodes: Sequence[int]) -> list[int]:
     return [_union(1 << nodes[place] for place in parents) for parents in pattern.sites]
 
 

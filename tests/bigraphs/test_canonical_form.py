@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from bigraphs.algebra import atom, close, ion, merge, nest
 from bigraphs.bigraph import Node, assemble, normal
-from bigraphs.canonical import canonical, equal
+from bigraphs.canonical_form import canonical, equal
 from bigraphs.interface import Interface
 from bigraphs.relations import from_relations
 

@@ -6,22 +6,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bigraphs.columns import Column, Numbering, Texts
+from bigraphs.compact_lists import DictionaryColumn, Numbering, Texts
 
 
 @given(st.lists(st.integers(0, 5)), st.slices(8))
 def test_a_column_is_the_list_of_its_values(values, part):
-    column = Column(values)
+    column = DictionaryColumn(values)
     assert isinstance(column, Sequence)
     assert list(column) == values
     assert column[part] == values[part]
-    assert column == Column(tuple(values))
+    assert column == DictionaryColumn(tuple(values))
     assert sorted(column.values) == sorted(set(values))
 
 
 @pytest.mark.parametrize(("distinct", "code"), [(256, "B"), (257, "H"), (65_536, "H"), (65_537, "I")])
 def test_a_column_widens_with_the_number_of_its_values(distinct, code):
-    column = Column(range(distinct))
+    column = DictionaryColumn(range(distinct))
     column.append(0)
     assert column.codes.typecode == code
     assert list(column) == [*range(distinct), 0]

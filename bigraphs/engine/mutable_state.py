@@ -6,7 +6,7 @@ from bigraphs.engine.state import State, bits
 from bigraphs.errors import BigraphError
 
 
-class Draft:
+class MutableState:
     """A changing copy of a state.
 
     Attributes:

@@ -2,7 +2,7 @@ import re
 import tomllib
 from pathlib import Path
 
-from physical.messages import install_extra
+from physical.wordings import install_extra
 
 ROOT = Path(__file__).parents[2]
 ROOMS = ("adapters", "bigactors", "bigraphs", "checker", "physical", "semantics", "specs")
@@ -32,4 +32,4 @@ def test_every_hint_of_an_extra_is_of_one_wording_and_names_an_extra_that_there_
     named = {extra for text in texts.values() for extra in re.findall(r"install_extra\(.(\w+).\)", text)}
     assert named <= set(extras)
     assert named >= {"ais", "cluster", "live", "stations"}
-    assert [path.name for path, text in texts.items() if "pip install" in text] == ["messages.py"]
+    assert [path.name for path, text in texts.items() if "pip install" in text] == ["wordings.py"]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from bigraphs.errors import NotationError
-from bigraphs.notation.lalr import Tables, Unread
+from bigraphs.notation.lalr import ParsingStopped, Tables
 
 if TYPE_CHECKING:
     from lark import Lark
@@ -48,7 +48,7 @@ def read_into(
     check_bounds(text)
     try:
         return tables.read(text, start, builder)
-    except Unread:
+    except ParsingStopped:
         read(make(), text, words, start)
         raise
 

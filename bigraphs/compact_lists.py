@@ -11,7 +11,7 @@ Value = TypeVar("Value", bound=Hashable)
 _WIDER: Final = {"B": "H", "H": "I"}
 
 
-class Column(Sequence[Value]):
+class DictionaryColumn(Sequence[Value]):
     """A list with few distinct values: it stores each distinct value once and a code for each position.
 
     Attributes:
@@ -32,7 +32,7 @@ class Column(Sequence[Value]):
         """Add a value."""
         self._put(self.code(value))
 
-    def extend(self, other: Column[Value], count: int) -> None:
+    def extend(self, other: DictionaryColumn[Value], count: int) -> None:
         """Add the first `count` values of another list."""
         codes = [self.code(value) for value in other.values]
         for code in other.codes[:count]:
@@ -66,7 +66,7 @@ class Column(Sequence[Value]):
         return self.values[self.codes[place]]
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Column) and list(self) == list(other)
+        return isinstance(other, DictionaryColumn) and list(self) == list(other)
 
     __hash__ = None  # type: ignore[assignment]  # mutable
 
