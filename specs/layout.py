@@ -16,7 +16,7 @@ _STEP: Final = "  "
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class WrappedLine:
     """A line whose `pieces` may be wrapped; `anchor` is the offset of its beginning in the source."""
 
     depth: int
@@ -39,17 +39,17 @@ class Line:
 
 
 @dataclass(slots=True)
-class Layout:
+class MissionLayout:
     """The layout of a mission. `source` is its text with comments blanked out, `comments` their offsets."""
 
     source: str = ""
     comments: tuple[int, ...] = ()
-    lines: list[Line] = field(default_factory=list)
+    lines: list[WrappedLine] = field(default_factory=list)
     depth: int = 0
 
     def line(self, anchor: int, *pieces: str, apart: bool = False) -> None:
         """Add a line."""
-        self.lines.append(Line(self.depth, pieces, anchor, apart))
+        self.lines.append(WrappedLine(self.depth, pieces, anchor, apart))
 
     def block(self, span: s.Span, head: Sequence[str], items: Sequence[s.Node]) -> None:
         """Add `head { items }`, with the items on lines of their own."""
@@ -87,9 +87,9 @@ class Layout:
             self.line(node.span.start, *pieces(node))
 
 
-def lay_out(mission: s.Mission, source: str = "", comments: tuple[int, ...] = ()) -> tuple[Line, ...]:
+def lay_out(mission: s.Mission, source: str = "", comments: tuple[int, ...] = ()) -> tuple[WrappedLine, ...]:
     """Return the lines of a mission; empty lines separate declarations of several lines."""
-    layout = Layout(source, comments)
+    layout = MissionLayout(source, comments)
     if mission.name:
         layout.line(mission.span.start, f"mission {write(mission.name)}")
     long_before = bool(mission.name)
@@ -99,7 +99,7 @@ def lay_out(mission: s.Mission, source: str = "", comments: tuple[int, ...] = ()
         long = len(layout.lines) - first > 1
         if (number or mission.name) and (long or long_before):
             head = layout.lines[first]
-            layout.lines[first] = Line(head.depth, head.pieces, head.anchor, apart=True)
+            layout.lines[first] = WrappedLine(head.depth, head.pieces, head.anchor, apart=True)
         long_before = long
     return tuple(layout.lines)
 
@@ -107,13 +107,13 @@ def lay_out(mission: s.Mission, source: str = "", comments: tuple[int, ...] = ()
 # --- constructs with blocks
 
 
-def _if(layout: Layout, node: s.If) -> None:
+def _if(layout: MissionLayout, node: s.If) -> None:
     layout.line(node.span.start, f"if {write(node.condition)} {{")
     _branches(layout, node)
     layout.line(max(node.span.end - 1, 0), "}")
 
 
-def _branches(layout: Layout, node: s.If) -> None:
+def _branches(layout: MissionLayout, node: s.If) -> None:
     layout.below(node.then)
     end = layout.closing(node.then[-1].span.end if node.then else node.condition.span.end)
     match node.otherwise:
@@ -127,24 +127,24 @@ def _branches(layout: Layout, node: s.If) -> None:
             layout.below(node.otherwise)
 
 
-def _case(layout: Layout, node: s.Case) -> None:
+def _case(layout: MissionLayout, node: s.Case) -> None:
     guard = f" if {write(node.guard)}" if node.guard else ""
     _arrow(layout, node.span, f"case {write(node.pattern)}{guard} =>", node.body)
 
 
-def _after(layout: Layout, node: s.After) -> None:
+def _after(layout: MissionLayout, node: s.After) -> None:
     _arrow(layout, node.span, f"after {write(node.duration)} =>", node.body)
 
 
-def _react(layout: Layout, node: s.React) -> None:
+def _react(layout: MissionLayout, node: s.React) -> None:
     layout.block(node.span, ["react"], (*node.cases, *([node.after] if node.after else [])))
 
 
-def _alternative(layout: Layout, node: s.Alternative) -> None:
+def _alternative(layout: MissionLayout, node: s.Alternative) -> None:
     _arrow(layout, node.span, "case =>", node.body)
 
 
-def _arrow(layout: Layout, span: s.Span, head: str, body: tuple[s.Statement, ...]) -> None:
+def _arrow(layout: MissionLayout, span: s.Span, head: str, body: tuple[s.Statement, ...]) -> None:
     if len(body) == 1 and type(body[0]) not in _BLOCKS and not layout.commented(span):
         text = f"{head} {' '.join(pieces(body[0]))}"
         if len(text) + len(_STEP) * layout.depth <= WIDTH:
@@ -154,11 +154,11 @@ def _arrow(layout: Layout, span: s.Span, head: str, body: tuple[s.Statement, ...
     layout.below(body)
 
 
-def _block(head: Callable[[s.Node], str], items: str) -> Callable[[Layout, s.Node], None]:
+def _block(head: Callable[[s.Node], str], items: str) -> Callable[[MissionLayout, s.Node], None]:
     return lambda layout, node: layout.block(node.span, [head(node)], getattr(node, items))
 
 
-def _signature(layout: Layout, node: s.Signature) -> None:
+def _signature(layout: MissionLayout, node: s.Signature) -> None:
     if node.standard and not node.kinds and not layout.commented(node.span):
         layout.line(node.span.start, _head(node))
     else:

@@ -22,7 +22,7 @@ from semantics.properties.propositions import And, Not, holds
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
 from semantics.timing.actor_clocks import is_restored
-from semantics.timing.clocks import Situation
+from semantics.timing.clocks import TimedView
 from semantics.timing.dates import clock_text, lapse_text
 from semantics.timing.timing import Timing
 
@@ -135,7 +135,7 @@ class Deadlines:
 
     def _unsaid(self, c: Configuration) -> Iterator[str]:
         """Yield in words the possible steps of a configuration without an upper time bound."""
-        for words in dict.fromkeys(map(str, Situation(c).unbounded())):
+        for words in dict.fromkeys(map(str, TimedView(c).unbounded())):
             yield f"nothing says how long {words} takes"
 
     # --- first moments

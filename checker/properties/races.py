@@ -13,7 +13,7 @@ from semantics.races.provenance import EVERYTHING, Dependency
 from semantics.rules import TIMED_RULES, actuate
 from semantics.state.cells import MONITOR, VOYAGE
 from semantics.state.configuration import Configuration, Transition
-from semantics.state.eta import Pending
+from semantics.state.eta import PendingRequest
 from semantics.state.requests import CTR, FLY, Request
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
@@ -169,12 +169,12 @@ def asked_in_words(stale: Dependency) -> str:
     return _QUESTIONS[question].format(seen=f"observe({stale.query})", name=" ".join(names))
 
 
-def is_stale(c: Configuration, pending: Pending) -> tuple[Dependency, ...]:
+def is_stale(c: Configuration, pending: PendingRequest) -> tuple[Dependency, ...]:
     """Return the dependencies of a control that other agents have changed since they were observed."""
     return stale_tests(pending.request, pending.rests_on, used_slots(c, pending))
 
 
-def used_slots(c: Configuration, pending: Pending) -> frozenset[tuple[str, ...]]:
+def used_slots(c: Configuration, pending: PendingRequest) -> frozenset[tuple[str, ...]]:
     """Return the slots that the redex of a pending control uses, in any match."""
     request = pending.request
     assert isinstance(request, CTR | FLY)

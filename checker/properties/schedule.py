@@ -11,8 +11,8 @@ from semantics.behaviours.reaction_rules import moved
 from semantics.state.configuration import Configuration
 from semantics.state.requests import FLY
 from semantics.state.signature import REGION, Name
-from semantics.timing.bounds import Bound, bound_of, timed_by
-from semantics.timing.clocks import Situation, TimedStep
+from semantics.timing.bounds import WrittenBound, bound_of, timed_by
+from semantics.timing.clocks import TimedStep, TimedView
 from semantics.timing.dates import clock_text
 from semantics.timing.intervals import ANY_TIME, Interval
 
@@ -59,7 +59,7 @@ class Flight:
     takes: Interval
     begins: Moments
     ends: Moments
-    bound: Bound
+    bound: WrittenBound
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +104,7 @@ def flights_of(times: Times) -> tuple[Flight, ...]:
     begun: dict[_Key, set[TakenStep]] = {}
     ended: dict[_Key, set[TakenStep]] = {}
     set_out: dict[tuple[FLY, Name], dict[_Key, None]] = {}
-    said: dict[_Key, tuple[Interval, Bound]] = {}
+    said: dict[_Key, tuple[Interval, WrittenBound]] = {}
     for at, situation, fly in _steps_of_flights(times, "command"):
         for key in _keys(situation.c, fly):
             begun.setdefault(key, set()).add(at)
@@ -125,7 +125,7 @@ def flights_of(times: Times) -> tuple[Flight, ...]:
             said.get(key, (ANY_TIME,))[0],
             Moments(*begins.get(key, NO_SPAN)),
             Moments(*ends.get(key, NO_SPAN)),
-            said.get(key, (ANY_TIME, Bound()))[1],
+            said.get(key, (ANY_TIME, WrittenBound()))[1],
         )
         for key in dict.fromkeys((*begun, *ended))
     ]
@@ -136,7 +136,7 @@ def _key(flight: Flight) -> _Key:
     return flight.vehicle, flight.agent, flight.origin, flight.destination
 
 
-def _steps_of_flights(times: Times, rule: str) -> Iterator[tuple[TakenStep, Situation, FLY]]:
+def _steps_of_flights(times: Times, rule: str) -> Iterator[tuple[TakenStep, TimedView, FLY]]:
     """Yield the steps by a rule that are taken at some time, with the flights that they begin or end."""
     for place, situation in enumerate(times.situations):
         for at in sorted(times.taken(place)):

@@ -26,7 +26,7 @@ from semantics.properties.propositions import (
     holds,
 )
 from semantics.state import cells
-from semantics.state.cells import Cell, Cells, Changes, Edit, Question, State, Written, is_, merged
+from semantics.state.cells import Cell, Cells, Changes, Edit, Question, WritableCells, Written, is_, merged
 from semantics.state.configuration import Configuration
 
 MOST_ATOMS: Final = 64
@@ -155,7 +155,7 @@ class Asking:
         """Return the cells with the changes of each part written over them."""
         return Written(self, merged(parts.values()))
 
-    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # nothing is earlier
+    def changed(self, since: WritableCells) -> Set[Cell]:  # noqa: ARG002  # nothing is earlier
         """Return the empty set: nothing was written."""
         return frozenset()
 

@@ -28,7 +28,7 @@ from semantics.races.monitor import marked, slots_used
 from semantics.races.provenance import ANY, Dependency, Key
 from semantics.races.relevance import questions_of, relevant, slots_of, told_ever
 from semantics.rules import env, rcv_obs
-from semantics.state.agents import Watch, mailbox_cell, watch_cell
+from semantics.state.agents import AgentProvenance, mailbox_cell, watch_cell
 from semantics.state.cells import MONITOR, Cell, Changes, Row, has, is_something
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.physical_model import is_aboard
@@ -310,7 +310,7 @@ class _Held:
             for each, _, _, rests_on in after.eta.all()
         ]
         for agent in after.alpha.names():
-            watch = after.alpha.watch(agent) or Watch()
+            watch = after.alpha.watch(agent) or AgentProvenance()
             kept += [
                 (agent, rests_on) for rests_on in (*watch.code, *watch.store, *watch.mailbox, watch.host)
             ]
@@ -398,7 +398,7 @@ def unheeded(c: Configuration) -> Iterator[str]:
 
 def _asked(c: Configuration, agent: Name) -> frozenset[Key]:
     """Return the questions behind an agent's provenance, and the slots that its controls may use."""
-    requests, watch = c.eta.of(agent), c.alpha.watch(agent) or Watch()
+    requests, watch = c.eta.of(agent), c.alpha.watch(agent) or AgentProvenance()
     kept = (*watch.code, *watch.store, *watch.mailbox, watch.host, *(each.rests_on for each in requests))
     asked = {one.asked for rests_on in kept for one in rests_on if one.asked is not None}
     used = (slots_of(each.request.reaction.redex) for each in requests if isinstance(each.request, CTR | FLY))

@@ -18,7 +18,7 @@ from semantics.behaviours.program import reachable
 from semantics.behaviours.statements import Observe
 from semantics.races.provenance import ANY, SLOT, Key, Provenance
 from semantics.races.relevance import Questions, anybodys, hosts_of, questions_in, slots_of, tells
-from semantics.state.agents import Code, Watch, watch_cell
+from semantics.state.agents import AgentProvenance, Code, watch_cell
 from semantics.state.cells import MONITOR
 from semantics.state.configuration import Configuration
 from semantics.state.eta import line_cell, sends_cell
@@ -167,7 +167,7 @@ class Marks:
                 yield from ((kind, holder, name) for name in (self.bounds.names if ANY in names else names))
 
 
-def _is_blank(watch: Watch | None) -> bool:
+def _is_blank(watch: AgentProvenance | None) -> bool:
     return watch is None or not any((*watch.code, *watch.store, *watch.mailbox, watch.host))
 
 

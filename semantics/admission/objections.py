@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from semantics.admission.abstract_values import Abstract
 from semantics.admission.control_points import is_point
-from semantics.admission.value_flow import Role, ValueFlow
+from semantics.admission.value_flow import PossibleBehaviour, ValueFlow
 from semantics.behaviours.expressions import Fault, QueryOf
 from semantics.behaviours.observations import All, Nodes, Query
 from semantics.behaviours.program import reachable
@@ -40,7 +40,7 @@ class _Reading:
         self.flow = flow
         self.agent = agent
         self.program = setting.program
-        self.role = flow.roles.get(agent, Role())
+        self.role = flow.roles.get(agent, PossibleBehaviour())
         self.names = flow.vocabulary_of(setting)
 
     def objections(self, parcel: Parcel) -> Iterator[str]:

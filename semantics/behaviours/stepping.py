@@ -1,16 +1,16 @@
 """Conversion between the agents of configurations and processes: starting a computation, and writing its result."""
 
 from semantics.behaviours.computation import Process
-from semantics.behaviours.expressions import Scope
+from semantics.behaviours.expressions import EvaluationScope
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import React, Statement
 from semantics.behaviours.values import Value
 from semantics.races.provenance import NOTHING, Provenance, held
 from semantics.races.relevance import HOSTED, heirs, told_by, uses_host
 from semantics.state.agents import (
+    AgentProvenance,
     Code,
     Store,
-    Watch,
     code_cell,
     host_cell,
     mailbox_cell,
@@ -68,10 +68,12 @@ def _variables(process: Process) -> tuple[Store, tuple[Provenance, ...]]:
     return store, tuple(each if name in told else _untold(each) for (name, _), each in kept)
 
 
-def _watch(process: Process, store: tuple[Provenance, ...], mailbox: tuple[Provenance, ...] = ()) -> Watch:
+def _watch(
+    process: Process, store: tuple[Provenance, ...], mailbox: tuple[Provenance, ...] = ()
+) -> AgentProvenance:
     code, variables = (tuple(_held(process, each) for each in part) for part in (process.rests_on, store))
     begun = tuple(sorted(process.begun))
-    return Watch(code, variables, mailbox, placed(process, process.scope.placed), begun)
+    return AgentProvenance(code, variables, mailbox, placed(process, process.scope.placed), begun)
 
 
 def _held(process: Process, provenance: Provenance) -> Provenance:
@@ -117,9 +119,9 @@ def new_process(setting: Setting, a: Name, host: Name, code: tuple[int, ...]) ->
 
 def scope_of(
     setting: Setting, a: Name, host: Name, store: dict[str, Value], rests_on: dict[str, Provenance]
-) -> Scope:
+) -> EvaluationScope:
     """Return the scope of an agent in a mission."""
-    return Scope(a, host, store, rests_on, setting.kinds, setting.program.kept.get(a, {}))
+    return EvaluationScope(a, host, store, rests_on, setting.kinds, setting.program.kept.get(a, {}))
 
 
 def joining(c: Configuration, a: Name) -> Changes:

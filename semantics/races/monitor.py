@@ -9,7 +9,7 @@ from functools import cache, partial
 from typing import NamedTuple
 
 from semantics.behaviours.endings import begun_loops
-from semantics.behaviours.observations import QueryOperator, Step, Steps
+from semantics.behaviours.observations import QueryOperator, QueryStep, Steps
 from semantics.behaviours.queries import answers, denoted
 from semantics.races.provenance import (
     ANY,
@@ -38,7 +38,7 @@ from semantics.races.relevance import (
     told_by,
     told_ever,
 )
-from semantics.state.agents import Watch, watch_cell
+from semantics.state.agents import AgentProvenance, watch_cell
 from semantics.state.cells import MONITOR, QUEUE, Cell, Changes, merged
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.eta import line_cell, sends_cell
@@ -114,7 +114,7 @@ def resolved_anew(
         if anew == passed and _denotes_the_same(before, after, passed, names):
             anew += (step,)
         else:
-            anew += (Step(step.operator, denoted(anew, after.structure.physical, after.alpha)),)
+            anew += (QueryStep(step.operator, denoted(anew, after.structure.physical, after.alpha)),)
     return anew
 
 
@@ -303,7 +303,7 @@ def monitored(c: Configuration) -> Configuration:
         lengths = (len(agents.code(agent)), len(agents.store(agent)), len(agents.mailbox(agent)))
         code, store, mailbox = ((NOTHING,) * length for length in lengths)
         begun = begun_loops(setting.program, agents.code(agent))
-        cells[watch_cell(agent)] = Watch(code, store, mailbox, begun=begun)
+        cells[watch_cell(agent)] = AgentProvenance(code, store, mailbox, begun=begun)
         lines = (line_cell(agent), sends_cell(agent), QUEUE)
         cells |= {
             (MONITOR, *cell): (NOTHING,) * len(c.read(cell)) for cell in lines if c.read(cell) is not None

@@ -13,7 +13,6 @@ from math import prod
 from semantics.behaviours.expressions import (
     OPERATORS,
     Apply,
-    Either,
     Expression,
     Fault,
     Host,
@@ -21,6 +20,7 @@ from semantics.behaviours.expressions import (
     QueryOf,
     RouteOf,
     SetOf,
+    ShortCircuit,
     TupleOf,
     free,
     members_asked,
@@ -238,7 +238,7 @@ def _asked(expression: Expression | QueryOf | None) -> Iterator[Key]:
         case TupleOf(items) | SetOf(items) | RouteOf(items):
             for each in items:
                 yield from _asked(each)
-        case Either(_, first, second):
+        case ShortCircuit(_, first, second):
             yield from (*_asked(first), *_asked(second))
         case QueryOf(_, argument):
             yield from _asked(argument)

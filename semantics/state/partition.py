@@ -76,7 +76,7 @@ class Passage:
 
 
 @dataclass(frozen=True, slots=True)
-class Whereabouts:
+class HostReport:
     """Another station's report of an agent's host."""
 
     agent: Name
@@ -98,7 +98,7 @@ class Belief:
     names: tuple[Name, ...]
 
 
-Elsewhere = Passage | Whereabouts | Belief
+Elsewhere = Passage | HostReport | Belief
 """The events that involve other stations, as steps record them."""
 
 
@@ -258,7 +258,7 @@ PASSING: tuple[Callable[..., Iterator[Transition]], ...] = (leave, enter, learn,
 
 def passing(c: Configuration, passage: Elsewhere) -> Iterator[Transition]:
     """Yield the transition of an event that involves other stations."""
-    if isinstance(passage, Whereabouts):
+    if isinstance(passage, HostReport):
         yield from learn(c, passage.agent, passage.host)
         return
     if isinstance(passage, Belief):

@@ -16,7 +16,7 @@ MOST_WRITTEN: Final = 100_000
 
 
 @dataclass(frozen=True, slots=True)
-class Actor:
+class InitialActor:
     """An initial bigActor.
 
     Attributes:
@@ -36,16 +36,16 @@ class Actor:
     constants: Mapping[str, Value] = field(default_factory=dict)
 
 
-def first_actors(mission: s.Mission, names: Names) -> tuple[Actor, ...]:
+def first_actors(mission: s.Mission, names: Names) -> tuple[InitialActor, ...]:
     """Return the initial bigActors, families expanded; those without a name are bigActor0, bigActor1 and so on."""
     singles = mission.each(s.BigActor)
     taken = {actor.name.text for actor in singles if actor.name is not None}
     free = (name for number in range(len(singles) + len(taken)) if (name := f"bigActor{number}") not in taken)
-    found, written = list[Actor](), 0
+    found, written = list[InitialActor](), 0
     for item in mission.declarations:
         if isinstance(item, s.BigActor):
             name = item.name.text if item.name is not None else next(free)
-            found.append(Actor(name, item.host, item.body, item.name or item))
+            found.append(InitialActor(name, item.host, item.body, item.name or item))
         elif isinstance(item, s.Family) and written <= MOST_WRITTEN:
             members = tuple(_members(item, names))
             written += len(members) * sum(1 for _ in s.walk(item))
@@ -57,7 +57,7 @@ def first_actors(mission: s.Mission, names: Names) -> tuple[Actor, ...]:
     return tuple(found)
 
 
-def _members(family: s.Family, names: Names) -> Iterator[Actor]:
+def _members(family: s.Family, names: Names) -> Iterator[InitialActor]:
     """Yield the members of a family, and declare it."""
     name, nodes = family.name.text, tuple(_nodes(family, names))
     if not nodes:
@@ -75,7 +75,7 @@ def _members(family: s.Family, names: Names) -> Iterator[Actor]:
         own = family.host.text == family.variable.text
         host = s.Name(node, span=family.host.span) if own else family.host
         constants: dict[str, Value] = {family.index.text: number, family.variable.text: node}
-        yield Actor(f"{name}[{node}]", host, family.body, family.name, name, constants)
+        yield InitialActor(f"{name}[{node}]", host, family.body, family.name, name, constants)
 
 
 def _nodes(family: s.Family, names: Names) -> Iterator[str]:

@@ -6,16 +6,16 @@ import re
 from dataclasses import replace
 from typing import Final, TypeVar
 
-from semantics.properties.kinds import Asked, PropertyKind, asked_by
+from semantics.properties.kinds import PropertyKind, RequestMode, asked_by
 from semantics.properties.property import Property
 from semantics.state.setting import Control, Scheduler
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.bodies import Bodies
-from specs.elaboration.formulas import Formulas
+from specs.elaboration.formulas import FormulaElaborator
 from specs.elaboration.names import Names
 from specs.elaboration.temporal import TemporalFormulas
-from specs.elaboration.timing import Ticks
+from specs.elaboration.timing import TickConversion
 from specs.elaboration.value_types import Types
 
 _COMMENT: Final = re.compile(r"(?://|#)[^\n]*")
@@ -35,7 +35,9 @@ def elaborate_control(mission: s.Mission, names: Names) -> Control:
     return Control(named.name) if named is not None else Control.ATOMIC
 
 
-def _of_time(item: s.Deadline | s.FirstTime, formulas: Formulas, ticks: Ticks | None, line: int) -> Property:
+def _of_time(
+    item: s.Deadline | s.FirstTime, formulas: FormulaElaborator, ticks: TickConversion | None, line: int
+) -> Property:
     formula, then = item.formula, None
     if isinstance(item, s.FirstTime):
         kind, bound = PropertyKind.TIME, 0
@@ -80,15 +82,15 @@ def _written(item: s.Property, text: str) -> str:
 
 
 def elaborate_checks(
-    mission: s.Mission, names: Names, bodies: Bodies, types: Types, ticks: Ticks | None
+    mission: s.Mission, names: Names, bodies: Bodies, types: Types, ticks: TickConversion | None
 ) -> tuple[Property, ...]:
     """Return the properties in written order, or the default ones, followed by those that are always checked.
 
     `ticks` is None in a mission without `timing`.
     """
     written = [item for section in mission.each(s.Check) for item in section.properties]
-    formulas, found = Formulas(names, bodies, types, is_timed=ticks is not None), list[Property]()
-    always = tuple(Property(kind, kind.value) for kind in asked_by(Asked.ALWAYS))
+    formulas, found = FormulaElaborator(names, bodies, types, is_timed=ticks is not None), list[Property]()
+    always = tuple(Property(kind, kind.value) for kind in asked_by(RequestMode.ALWAYS))
     seen = {prop.name for prop in always}
     temporal = TemporalFormulas(formulas)
     for item in written:
@@ -113,5 +115,5 @@ def elaborate_checks(
         seen.add(prop.name)
         text = _written(item, names.findings.source.text)
         found.append(replace(prop, ranges=tuple(sorted(formulas.ranges)), written=text))
-    usual = [Property(kind, kind.value) for kind in asked_by(Asked.BY_DEFAULT)]
+    usual = [Property(kind, kind.value) for kind in asked_by(RequestMode.BY_DEFAULT)]
     return (*(found or usual), *always)

@@ -33,7 +33,7 @@ _GIVEN_BY_FILES: Final = ("entity", "name", "channel")
 """The sorts of names that a file may declare; the names in an unreadable file are unknown."""
 
 
-class Refused(Exception):
+class UnusableFileError(Exception):
     """A file cannot be used; carries the code, message and hint for the user."""
 
     def __init__(self, code: Code, message: str, hint: str = "") -> None:
@@ -49,25 +49,27 @@ class Library:
     instead: Mapping[str, Path] = field(default_factory=dict)
 
     def locate(self, name: str) -> Path:
-        """Return the path of a file that a mission names; raises Refused if there is none."""
+        """Return the path of a file that a mission names; raises UnusableFileError if there is none."""
         if name in self.instead:
             return self.instead[name]
         try:
             if Path(name).is_absolute() or re.match(r"[A-Za-z]:|[\\/~]", name):
-                raise Refused(
+                raise UnusableFileError(
                     Code.UNREADABLE_FILE,
                     f"'{shorten(name)}' is an absolute path",
                     "give it relative to the mission",
                 )
             path = (self.directory / name).resolve()
             if not path.exists() or path.is_dir():
-                raise Refused(
+                raise UnusableFileError(
                     Code.UNREADABLE_FILE,
                     f"there is no file '{shorten(name)}' beside the mission",
                     "check the path",
                 )
         except (OSError, ValueError, RuntimeError) as error:
-            raise Refused(Code.UNREADABLE_FILE, f"'{shorten(name)}' is no path of a file") from error
+            raise UnusableFileError(
+                Code.UNREADABLE_FILE, f"'{shorten(name)}' is no path of a file"
+            ) from error
         return path
 
 
@@ -80,7 +82,7 @@ def read_source(
         names.kind(keep.kind)
     try:
         read = _read(entry, library.locate(entry.file.value), area)
-    except Refused as refused:
+    except UnusableFileError as refused:
         names.findings.add(refused.code, entry.file, refused.message, refused.hint)
         names.findings.unread.update(_GIVEN_BY_FILES)
         return ()
@@ -106,13 +108,13 @@ def _read(entry: s.FromSource, path: Path, area: Geometry | None) -> Read:
     suffix = path.suffix.lower()
     if suffix in PLACES:
         if entry.time is not None:
-            raise Refused(Code.BAD_FILE, "a file of places has no times", "leave out 'at'")
+            raise UnusableFileError(Code.BAD_FILE, "a file of places has no times", "leave out 'at'")
         read = _places(suffix, path)
         return replace(read, properties=tuple(sorted(read.properties, key=lambda item: item.entity)))
     if suffix in AIS:
         return _ais(entry, path, area)
     known = ", ".join((*PLACES, *AIS))
-    raise Refused(
+    raise UnusableFileError(
         Code.BAD_FILE,
         f"'{shorten(suffix)}' is the ending of no format that is read here",
         f"they are {known}",
@@ -125,15 +127,17 @@ def _places(suffix: str, path: Path) -> Read:
             data = file.read(MAX_GEOJSON + 1)
         return read_place_file(suffix, data)
     except OSError as error:
-        raise Refused(Code.UNREADABLE_FILE, f"it cannot be read: {error.strerror or error}") from error
+        raise UnusableFileError(
+            Code.UNREADABLE_FILE, f"it cannot be read: {error.strerror or error}"
+        ) from error
     except GeoJSONError as error:
         shown, more = error.problems[:MOST_PROBLEMS], len(error.problems) - MOST_PROBLEMS
         told = [f"{each.where}: {each.message}" if each.where else each.message for each in shown]
         told += [f"and {more} more"] if more > 0 else []
-        raise Refused(Code.BAD_FILE, "; ".join(told), error.hint) from error
+        raise UnusableFileError(Code.BAD_FILE, "; ".join(told), error.hint) from error
     except PhysicalError as error:
         where = f"{error.where}: " if error.where else ""
-        raise Refused(Code.BAD_FILE, f"{where}{error.message}", error.hint) from error
+        raise UnusableFileError(Code.BAD_FILE, f"{where}{error.message}", error.hint) from error
 
 
 def _ais(entry: s.FromSource, path: Path, area: Geometry | None) -> Read:
@@ -147,13 +151,13 @@ def _ais(entry: s.FromSource, path: Path, area: Geometry | None) -> Read:
         recording = read_recording(path)
         if recording.tally.total and not has_sentences(recording.tally):
             found = f"none of its {recording.tally.total:,} lines is an AIS sentence, or has one in it (!AIVDM,...)"
-            raise Refused(Code.BAD_FILE, found, "give a recording of AIS")
+            raise UnusableFileError(Code.BAD_FILE, found, "give a recording of AIS")
         check_time(recording, time)
         return seen_at(recording, time, area, kinds)
     except AisError as error:
         code = Code.MISSING_EXTRA if error.code == "ais-extra" else Code.BAD_FILE
         unread = Code.UNREADABLE_FILE if error.code == "ais-unreadable" else code
-        raise Refused(unread, error.message, error.hint) from error
+        raise UnusableFileError(unread, error.message, error.hint) from error
 
 
 def _seconds(text: str) -> float:
@@ -162,7 +166,7 @@ def _seconds(text: str) -> float:
         return (time if time.tzinfo else time.replace(tzinfo=UTC)).timestamp()
     except (ValueError, OverflowError) as error:
         hint = "write it as 2020-04-07T21:42:00Z; without a zone it is UTC"
-        raise Refused(Code.BAD_FILE, f"'{shorten(text)}' is no time", hint) from error
+        raise UnusableFileError(Code.BAD_FILE, f"'{shorten(text)}' is no time", hint) from error
 
 
 def _check_keep(entry: s.FromSource, found: tuple[PhysicalProperty, ...], names: Names) -> None:

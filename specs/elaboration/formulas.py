@@ -99,7 +99,7 @@ class TooLarge(Exception):
     """A formula exceeds a bound; carries the message and the hint."""
 
 
-class Formulas:
+class FormulaElaborator:
     """Elaborates the formulas of a mission; `atoms` counts all their atoms, `left` the quantifiers not expanded."""
 
     def __init__(self, names: Names, bodies: Bodies, types: Types, *, is_timed: bool = False) -> None:

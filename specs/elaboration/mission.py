@@ -35,7 +35,7 @@ from specs.elaboration.overflights import warn_of_overflights
 from specs.elaboration.realisability import Ground, check_controls
 from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
-from specs.elaboration.timing import Ticks, elaborate_timing
+from specs.elaboration.timing import TickConversion, elaborate_timing
 from specs.elaboration.unread import independent
 from specs.elaboration.value_types import Inference
 from specs.elaboration.variation import AS_WRITTEN, Variation
@@ -131,7 +131,7 @@ def elaborate(
     said = tuple(clause.message for clause in clauses if isinstance(clause, Says))
     inference = Inference(program, frozenset(names.kinds), frozenset(names.agents), said)
     types = check_types(names.demands, inference, names.findings)
-    ticks = None if timing is None else Ticks(timing.tick, names.findings)
+    ticks = None if timing is None else TickConversion(timing.tick, names.findings)
     properties = elaborate_checks(mission, names, bodies, types, ticks)
     precautions = elaborate_live(mission, names)
     _stop(names.findings)

@@ -8,7 +8,7 @@ from test_json import validator
 
 from bigactors.pictures.timeline import groups_of, marks, page_of
 from checker.properties.schedule import Flight, Milestone, Moments, Schedule
-from semantics.timing.bounds import Bound
+from semantics.timing.bounds import WrittenBound
 from semantics.timing.intervals import Interval
 
 INFINITE = float("inf")
@@ -62,7 +62,7 @@ def test_a_timeline_is_of_all_runs(bigactors):
 
 
 def bar(takes, begins, ends):
-    flight = Flight("uav0", "a", "west0", "east0", takes, begins, ends, Bound())
+    flight = Flight("uav0", "a", "west0", "east0", takes, begins, ends, WrittenBound())
     ((_, (found,)),) = groups_of(Schedule(1000, (flight,)))
     return found
 

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from bigraphs.errors import NotationError
+from bigraphs.notation.big.build_syntax import Build
 from bigraphs.notation.big.declarations import Model
 from bigraphs.notation.big.grammar import GRAMMAR, WORDS
 from bigraphs.notation.big.syntax import Expression
-from bigraphs.notation.big.syntax_builder import Build
 from bigraphs.notation.bounded_parsing import read_into
 from bigraphs.notation.lalr import Tables, kept_tables
 

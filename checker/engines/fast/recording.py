@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from checker.engines.fast.value_templates import Hole, has_no_holes, put_together, taken_apart
 from semantics.behaviours.observations import Fact
-from semantics.state.cells import Cell, Changes, Edit, Part, Question, Row, State, merged
+from semantics.state.cells import Cell, Changes, Edit, Part, Question, Row, WritableCells, merged
 from semantics.state.signature import Name
 
 
@@ -150,7 +150,7 @@ class Recorder:
         """Return the cells with the parts of a conclusion applied."""
         return Conclusion(self, {}, (parts,))
 
-    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # the recorder is the initial state
+    def changed(self, since: WritableCells) -> Set[Cell]:  # noqa: ARG002  # the recorder is the initial state
         """Return the empty set: nothing was written."""
         return frozenset()
 
@@ -274,7 +274,7 @@ class Conclusion:
         """Return the cells with a pointwise definition applied; no changes may follow it."""
         return Conclusion(self.recorder, self.changes, (*self.families, parts))
 
-    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # all that was written is known
+    def changed(self, since: WritableCells) -> Set[Cell]:  # noqa: ARG002  # all that was written is known
         """Return the written cells."""
         return (
             merged(each for family in self.families for each in family.values()).keys() | self.changes.keys()

@@ -14,7 +14,7 @@ from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.signature import Name
 from semantics.successors import Expansion
-from semantics.timing.clocks import Situation
+from semantics.timing.clocks import TimedView
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +96,7 @@ class Times(Protocol):
         """The size of the searched state space, in words."""
 
     @property
-    def situations(self) -> Sequence[Situation]:
+    def situations(self) -> Sequence[TimedView]:
         """The timed situation of each configuration, in the order of the exploration."""
 
     def taken(self, place: int) -> set[int]:
@@ -164,7 +164,7 @@ def shown_to(inspection: object) -> InTime:
     return shown
 
 
-def _taken(situation: Situation, steps: set[int]) -> Expansion:
+def _taken(situation: TimedView, steps: set[int]) -> Expansion:
     taken = {situation.steps[at].transition for at in steps}
     expansion = situation.expansion
     by_agents = tuple(each for each in expansion.by_agents if each in taken)

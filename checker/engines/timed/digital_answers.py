@@ -19,7 +19,7 @@ from semantics.state.configuration import Configuration, Transition
 from semantics.state.requests import FLY
 from semantics.state.signature import Name
 from semantics.timing.actor_clocks import Sort
-from semantics.timing.clocks import Situation, TimedStep
+from semantics.timing.clocks import TimedStep, TimedView
 
 Awaiting = tuple[int, float | None]
 """A state, and the ticks since something is awaited; None if nothing is."""
@@ -42,7 +42,7 @@ class Ticks:
         return f"{len(self.timeline.states):,} timed configurations"
 
     @cached_property
-    def situations(self) -> tuple[Situation, ...]:
+    def situations(self) -> tuple[TimedView, ...]:
         """The timed situation of each configuration."""
         return tuple(self.timeline.situations[number] for number in self.timeline.order)
 
@@ -248,7 +248,7 @@ class Ticks:
         return Stop(run, seen[state])
 
 
-def control_pairs(situation: Situation) -> Iterable[tuple[list[TimedStep], list[TimedStep]]]:
+def control_pairs(situation: TimedView) -> Iterable[tuple[list[TimedStep], list[TimedStep]]]:
     """Return the pairs of pending controls, each as the steps that serve it."""
     controls: dict[object, list[TimedStep]] = {}
     for step in situation.steps:

@@ -9,8 +9,8 @@ from collections import deque
 
 from checker.engines.timed.first_runs import DELAY, Edge
 from semantics.state.configuration import Configuration
-from semantics.timing.actor_clocks import Clock, Sort
-from semantics.timing.clocks import Passage, Situation, TimedStep
+from semantics.timing.actor_clocks import ActorClock, Sort
+from semantics.timing.clocks import ClockUpdate, TimedStep, TimedView
 
 Edges = tuple[Edge, ...]
 
@@ -29,9 +29,9 @@ class Timeline:
     def __init__(self, initial: Configuration) -> None:
         self.initial = initial
         self.numbers: dict[Configuration, int] = {}
-        self.situations: list[Situation] = []
-        self.passages: dict[tuple[int, int], tuple[int, Passage]] = {}
-        self.constants: dict[Clock, int] = {}
+        self.situations: list[TimedView] = []
+        self.passages: dict[tuple[int, int], tuple[int, ClockUpdate]] = {}
+        self.constants: dict[ActorClock, int] = {}
         self.caps: list[tuple[int, ...]] = []
         self.order: list[int] = []
         self.taken: set[tuple[int, int]] = set()
@@ -53,7 +53,7 @@ class Timeline:
         number = self.numbers.get(c)
         if number is None:
             number = self.numbers[c] = len(self.situations)
-            situation = Situation(c)
+            situation = TimedView(c)
             self.situations.append(situation)
             for clock, constant in zip(situation.clocks, situation.constants, strict=True):
                 before = self.constants.get(clock)
@@ -62,7 +62,7 @@ class Timeline:
             self.caps.append(self._caps(situation))
         return number
 
-    def _caps(self, situation: Situation) -> tuple[int, ...]:
+    def _caps(self, situation: TimedView) -> tuple[int, ...]:
         return tuple(0 if each.sort is Sort.WINDOW else self.constants[each] for each in situation.clocks)
 
     def reach(self, number: int, ages: tuple[int, ...]) -> int:
@@ -89,12 +89,12 @@ class Timeline:
             found.append(Edge(DELAY, self.reach(number, older(ages, self.caps[number]))))
         self.edges[index] = tuple(found)
 
-    def passage(self, number: int, at: int, step: TimedStep) -> tuple[int, Passage]:
+    def passage(self, number: int, at: int, step: TimedStep) -> tuple[int, ClockUpdate]:
         """Return the target of a step, and its effect on the clocks."""
         known = self.passages.get((number, at))
         if known is None:
             target = self.number(step.transition.target)
-            known = target, Passage(self.situations[number], step, self.situations[target])
+            known = target, ClockUpdate(self.situations[number], step, self.situations[target])
             self.passages[number, at] = known
         return known
 

@@ -41,8 +41,8 @@ from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
-from semantics.timing.actor_clocks import Clock, Sort, Test
-from semantics.timing.clocks import Situation, TimedStep
+from semantics.timing.actor_clocks import ActorClock, Sort, Test
+from semantics.timing.clocks import TimedStep, TimedView
 from semantics.timing.timing import Sayable
 
 Made = TypeVar("Made")
@@ -91,7 +91,7 @@ class ZoneTimes:
         return f"{self.search.count:,} zones"
 
     @property
-    def situations(self) -> Sequence[Situation]:
+    def situations(self) -> Sequence[TimedView]:
         """The timed situation of each configuration."""
         return OfRows(self.network.situation, self.order)
 
@@ -114,7 +114,7 @@ class ZoneTimes:
         found: NDArray[np.int64] = self.search.ranks.room[rows].astype(np.int64)
         return found
 
-    def latest(self, zones: NDArray[np.int64], clock: Clock) -> NDArray[np.int32]:
+    def latest(self, zones: NDArray[np.int64], clock: ActorClock) -> NDArray[np.int32]:
         """Return the greatest value of a clock in some zones; `NONE` where it doesn't run."""
         indices = self.network.indices(clock)[self._locations[zones]]
         sizes = self.network.automaton.locations.used[SIZE::LOCATION][self._locations[zones]]
@@ -251,7 +251,7 @@ class ZoneTimes:
             return [(frozenset(), every)]
         latest = np.zeros(len(self.order), np.int64)
         zones = np.arange(len(self.places))
-        np.maximum.at(latest, self.places, self.latest(zones, Clock(Sort.MISSION)))
+        np.maximum.at(latest, self.places, self.latest(zones, ActorClock(Sort.MISSION)))
         late = np.stack([latest > until for until in ends.values()])
         kinds, which = np.unique(late, axis=1, return_inverse=True)
         return [
@@ -286,7 +286,7 @@ class ZoneTimes:
         situation, found = self.network.situation(0), list[Transition]()
         for at in run.steps:
             found.append(situation.steps[at].transition)
-            situation = Situation(found[-1].target)
+            situation = TimedView(found[-1].target)
         return tuple(found)
 
     def run_before(self, place: int, by: Transition | None) -> Run:
@@ -452,7 +452,7 @@ class ZoneTimes:
         """Return the first run that exhausts each vehicle, and the number of configurations with an exhausted one."""
         zones, first, where = np.arange(len(self.places)), dict[Name, int](), np.zeros(0, np.int64)
         for vehicle, endurance in self.network.timing.endurances:
-            late = self.latest(zones, Clock(Sort.ALOFT, vehicle)) > endurance.lasts
+            late = self.latest(zones, ActorClock(Sort.ALOFT, vehicle)) > endurance.lasts
             showing = zones[self._aloft[vehicle][self.places] & late]
             if len(showing):
                 first[vehicle] = int(showing[0])
@@ -471,7 +471,9 @@ class ZoneTimes:
         """Return the clock constraint in a location for each vehicle that has exceeded its endurance."""
         place = int(self.search.ranks.room[self.network.place(location).number])
         return {
-            vehicle: Constraint(self.network.index(location, Clock(Sort.ALOFT, vehicle)), endurance.lasts + 1)
+            vehicle: Constraint(
+                self.network.index(location, ActorClock(Sort.ALOFT, vehicle)), endurance.lasts + 1
+            )
             for vehicle, endurance in self.network.timing.endurances
             if place >= 0 and self._aloft[vehicle][place]
         }

@@ -20,7 +20,7 @@ from checker.engines.zones.observers import Meter, Observer, Watch
 from checker.engines.zones.timed_automaton_of import Network
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
-from semantics.timing.actor_clocks import Clock
+from semantics.timing.actor_clocks import ActorClock
 
 FIRST: Final = "first"
 """The initial location; no time passes in it."""
@@ -133,12 +133,12 @@ class _Walk:
     wrong: Mapping[int, Sequence[Constraint]]
     spots: dict[_Spot, str] = field(default_factory=dict)
     met: Counter[tuple[int, bool]] = field(default_factory=Counter)
-    names: Mapping[Clock | None, tuple[str, ...]] = field(init=False)
+    names: Mapping[ActorClock | None, tuple[str, ...]] = field(init=False)
 
     def __post_init__(self) -> None:
         self.names = _named([Counter(self.clocks(at)) for at in range(len(self.automaton))])
 
-    def clocks(self, at: int) -> tuple[Clock | None, ...]:
+    def clocks(self, at: int) -> tuple[ActorClock | None, ...]:
         """Return the measured subjects of a location's clocks."""
         measured = self.network.clocks(self.locations[at])
         return (*measured, *([None] if len(self.automaton.location(at).clocks) > len(measured) else []))
@@ -219,18 +219,18 @@ class _Walk:
                 yield Place(name, tuple(f"{spot.names[clock - 1]} <= {most}" for clock, most in deadlines))
 
 
-def _named(locations: Sequence[Counter[Clock | None]]) -> dict[Clock | None, tuple[str, ...]]:
+def _named(locations: Sequence[Counter[ActorClock | None]]) -> dict[ActorClock | None, tuple[str, ...]]:
     """Return the names of each clock, as many as ever run at once, given the counts of clocks in each location.
 
     Clocks that never run together may share a name, so names are few.
     """
-    most: Counter[Clock | None] = Counter()
-    beside: defaultdict[Clock | None, set[Clock | None]] = defaultdict(set)
+    most: Counter[ActorClock | None] = Counter()
+    beside: defaultdict[ActorClock | None, set[ActorClock | None]] = defaultdict(set)
     for each in locations:
         most |= each
         for clock in each:
             beside[clock].update(each)
-    numbers: dict[Clock | None, list[int]] = {}
+    numbers: dict[ActorClock | None, list[int]] = {}
     for clock, others in beside.items():
         taken = {number for other in others for number in numbers.get(other, ())}
         numbers[clock] = list(islice((each for each in count() if each not in taken), most[clock]))

@@ -43,9 +43,9 @@ from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
 from semantics.successors import by_clause, moves, served
 from semantics.timing.actor_clocks import (
+    ActorClock,
     ActorClocks,
-    Clock,
-    Running,
+    RunningClock,
     Sort,
     StepClocks,
     lasting,
@@ -55,7 +55,7 @@ from semantics.timing.actor_clocks import (
     of_vehicle,
     timing_of,
 )
-from semantics.timing.clocks import STRICT, Situation, TimedStep
+from semantics.timing.clocks import STRICT, TimedStep, TimedView
 from semantics.timing.intervals import Interval
 from semantics.timing.timing import Window
 
@@ -91,9 +91,9 @@ class Network(Space):
         self.initial = initial
         self.timing = timing_of(initial)
         self.automaton = Automaton()
-        self.numbers: dict[tuple[Clock, Hashable], int] = {}
-        self.clocks_of: list[Clock] = []
-        self.caps: dict[Clock, int] = {}
+        self.numbers: dict[tuple[ActorClock, Hashable], int] = {}
+        self.clocks_of: list[ActorClock] = []
+        self.caps: dict[ActorClock, int] = {}
         self.outgrown = False
         self.windows = [
             number for number, each in enumerate(self.timing.clauses) if isinstance(each.step, Window)
@@ -111,7 +111,7 @@ class Network(Space):
         self.questions: dict[tuple[object, Name | int], int] = {}
         self.timed: Timed
         super().__init__(Learner(initial.setting, initial.state, pending), None)  # type: ignore[arg-type]  # a stored one
-        self.situation = lru_cache(1 << 12)(lambda number: Situation(self.configuration(number)))
+        self.situation = lru_cache(1 << 12)(lambda number: TimedView(self.configuration(number)))
         situation = self.situation(0)
         ages = situation.first_ages()
         windows = [age for age, each in zip(ages, situation.clocks, strict=True) if each.sort is Sort.WINDOW]
@@ -195,7 +195,7 @@ class Network(Space):
             len(self.times) // location_successors.TIMES,
         ]
 
-    def _number(self, running: Running) -> int:
+    def _number(self, running: RunningClock) -> int:
         """Return the number of a clock, a new one at its first use; below 0 for a window's clock."""
         clock, interval, aim = running
         if clock.sort is Sort.WINDOW:
@@ -214,10 +214,10 @@ class Network(Space):
     def _restoring(self, vehicle: Name) -> tuple[int, int, int]:
         """Return the clocks RESTORED and ALOFT of a vehicle, and the time that its restoring takes."""
         endurance = dict(self.timing.endurances)[vehicle]
-        restored = self._number(Running(Clock(Sort.RESTORED, vehicle), Interval(endurance.after)))
+        restored = self._number(RunningClock(ActorClock(Sort.RESTORED, vehicle), Interval(endurance.after)))
         return (
             restored,
-            self._number(Running(Clock(Sort.ALOFT, vehicle), Interval(endurance.lasts))),
+            self._number(RunningClock(ActorClock(Sort.ALOFT, vehicle), Interval(endurance.lasts))),
             endurance.after,
         )
 
@@ -335,15 +335,15 @@ class Network(Space):
         ends = records[records[:, DEADLINES] < records[:, DEADLINES + 1]][:, DEADLINES]
         return bool(np.any(self.automaton.deadlines.room[DEADLINE * ends + 1] < 0))
 
-    def clocks(self, location: int) -> tuple[Clock, ...]:
+    def clocks(self, location: int) -> tuple[ActorClock, ...]:
         """Return the clocks of a location, from its first."""
         return tuple(self.clocks_of[each] for each in self.automaton.location(location).clocks)
 
-    def index(self, location: int, clock: Clock) -> int:
+    def index(self, location: int, clock: ActorClock) -> int:
         """Return the index of a clock that runs in a location."""
         return self.clocks(location).index(clock) + 1
 
-    def indices(self, clock: Clock) -> NDArray[np.int64]:
+    def indices(self, clock: ActorClock) -> NDArray[np.int64]:
         """Return the index of a clock without an aim in each location, 0 where it doesn't run."""
         automaton = self.automaton
         records = automaton.locations.used.reshape(-1, LOCATION)
@@ -355,7 +355,7 @@ class Network(Space):
         found[locations] = at - records[locations, CLOCKS] + 1
         return found
 
-    def measured(self, situation: Situation, ages: Iterable[int]) -> tuple[int, ...]:
+    def measured(self, situation: TimedView, ages: Iterable[int]) -> tuple[int, ...]:
         """Return the values of the clocks that measure time, in the order of locations."""
         return tuple(
             age for age, clock in zip(ages, situation.clocks, strict=True) if clock.sort is not Sort.WINDOW
@@ -406,16 +406,16 @@ def _asked(of: Callable[..., ActorClocks], about: Name | int, c: Configuration) 
     )
 
 
-def _settled(clock: Clock) -> Clock:
+def _settled(clock: ActorClock) -> ActorClock:
     return clock._replace(of=settled(clock.of))
 
 
-def cap(clock: Clock, interval: Interval) -> int:
+def cap(clock: ActorClock, interval: Interval) -> int:
     """Return the cap of a clock: its constant, plus one where a test may find it exceeded."""
     return max(interval.lo, interval.hi or 0) + (clock.sort in STRICT)
 
 
-def compared(clock: Clock, interval: Interval) -> tuple[int, int]:
+def compared(clock: ActorClock, interval: Interval) -> tuple[int, int]:
     """Return the largest constants of a clock's lower and upper bounds."""
     lo, hi = interval.lo or NONE, NONE if interval.hi is None else interval.hi
     match clock.sort:

@@ -12,8 +12,8 @@ from scale import examples
 from bigraphs.examples import example_names, example_text
 from bigraphs.notation import lalr
 from bigraphs.notation.bgm import parser as bgm
+from bigraphs.notation.big.build_syntax import Build
 from bigraphs.notation.big.parser import GRAMMAR, OPTIONS, make_parser, tables
-from bigraphs.notation.big.syntax_builder import Build
 from bigraphs.notation.lalr import ParsingStopped, Span, kept_tables
 
 TEXTS = [example_text(name) for name in example_names()]
