@@ -17,10 +17,10 @@ from bigraphs.transitions import TransitionSystem
 from bigraphs.verdicts import ClaimOutcome, Decided, WitnessRun, WitnessStep
 from checker.engines.graph import STUTTER, Bools, Graph
 from checker.properties.temporal.components import Conditions
-from checker.properties.temporal.decision import Decision, Formulas
+from checker.properties.temporal.decision import Decision, FormulaDecider
 from checker.properties.temporal.fairness import classes, conditions_of
 from checker.properties.temporal.lassos import Lasso
-from checker.properties.temporal.truth import Truth
+from checker.properties.temporal.truth import FormulaTruth
 from checker.verdicts import Outcome as Known
 from physical.wordings import counted
 from semantics.properties.propositions import Proposition
@@ -73,20 +73,20 @@ class Decider:
         return graph_of(self.found).total()
 
     @cached_property
-    def formulas(self) -> Formulas:
+    def formulas(self) -> FormulaDecider:
         """The decision procedures, given the states in which predicates occur."""
         columns = zip(self.found.system.predicates, self.found.labels, strict=True)
         values = {
             cast("Proposition", Occurs(predicate.label)): np.frombuffer(bytes(holds), dtype=np.uint8) > 0
             for predicate, holds in columns
         }
-        truth = Truth(self.graph, values)
+        truth = FormulaTruth(self.graph, values)
 
         def is_still(formula: Temporal) -> bool:
             asked = tuple(atoms(formula))
             return all(isinstance(each, Now) and _is_constant(truth.here(each)) for each in asked)
 
-        return Formulas(truth, self.found.complete, is_still)
+        return FormulaDecider(truth, self.found.complete, is_still)
 
     def decide(self, logic: str, text: str) -> Decided:
         """Decide a formula of a logic, `ltl` or `ctl`; raises NotationError for an invalid formula.

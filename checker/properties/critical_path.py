@@ -7,7 +7,7 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, TypeVar
 
-from checker.engines.timed.first_runs import Run
+from checker.engines.timed.first_runs import TimedRun
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.timing.actor_clocks import ActorClock
 from semantics.timing.bounds import WrittenBound, bound_of, going_on, running_in, timed_by
@@ -78,7 +78,7 @@ def interval_text(interval: Interval, tick: int) -> str:
 def critical_path(
     initial: Configuration,
     done: Sequence[Transition],
-    run: Run,
+    run: TimedRun,
     onward: Sequence[Transition] = (),
     since: int = 0,
 ) -> tuple[Leg, ...]:

@@ -5,7 +5,7 @@ from itertools import combinations
 from typing import Final
 
 from checker.properties.control_sites import common_sites
-from checker.properties.findings import Seen
+from checker.properties.findings import Inspected
 from checker.properties.inspections import Excerpt, Inspection, InTime
 from semantics.control import applicable
 from semantics.races.monitor import CONTROLS, slots_used, stale_tests
@@ -28,19 +28,19 @@ class ControlRaces(Inspection):
 
     in_time = InTime.TOGETHER
 
-    def seen(self, of: Excerpt) -> Iterator[Seen]:
+    def seen(self, of: Excerpt) -> Iterator[Inspected]:
         """Yield every pair of controls that are enabled, regardless of turns."""
         return self.between(of)
 
-    def between(self, of: Excerpt, pair: Set[Name] | None = None) -> Iterator[Seen]:
+    def between(self, of: Excerpt, pair: Set[Name] | None = None) -> Iterator[Inspected]:
         """Yield every pair of controls, or those of one or two agents."""
         for one, other, problem in compared(of.c, enabled_controls(of.steps.enabled), pair):
-            yield Seen(by=one[0]) if problem is None else _race(of.c, problem, one[0], other[0])
+            yield Inspected(by=one[0]) if problem is None else _race(of.c, problem, one[0], other[0])
 
 
-def _race(c: Configuration, problem: tuple[str, str], one: Transition, other: Transition) -> Seen:
+def _race(c: Configuration, problem: tuple[str, str], one: Transition, other: Transition) -> Inspected:
     message, about = problem
-    return Seen(
+    return Inspected(
         ("control race", about),
         None,
         message,
@@ -131,19 +131,19 @@ class StaleObservationRaces(Inspection):
     in_turn = True
     in_time = InTime.TAKEN
 
-    def seen(self, of: Excerpt) -> Iterator[Seen]:
+    def seen(self, of: Excerpt) -> Iterator[Inspected]:
         """Yield every control that is served; the configuration must be monitored."""
         for step in of.steps.by_agents:
             if step.label.rule in CONTROLS and step.served is not None:
                 stale = is_stale(of.c, step.served)
-                yield _resting_on(of.c, stale[0], step) if stale else Seen(by=step)
+                yield _resting_on(of.c, stale[0], step) if stale else Inspected(by=step)
 
 
-def _resting_on(c: Configuration, stale: Dependency, by: Transition) -> Seen:
+def _resting_on(c: Configuration, stale: Dependency, by: Transition) -> Inspected:
     request = _request(by)
     changed = "that answer" if stale.stale else "a relation that it uses"
     message = f"{request} rests on {asked_in_words(stale)}, and another agent has changed {changed} since it was sensed"
-    return Seen((STALE, str(request)), by, message, alike=lambda: common_sites(c, request))
+    return Inspected((STALE, str(request)), by, message, alike=lambda: common_sites(c, request))
 
 
 _QUESTIONS: Final[Mapping[str, str]] = {

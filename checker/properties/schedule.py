@@ -18,7 +18,7 @@ from semantics.timing.intervals import ANY_TIME, Interval
 
 
 @dataclass(frozen=True, slots=True)
-class Moments:
+class EventDates:
     """The dates of an event, in ticks from the start.
 
     Attributes:
@@ -38,7 +38,7 @@ class Moments:
 
 
 @dataclass(frozen=True, slots=True)
-class Flight:
+class PossibleFlight:
     """A possible flight of a mission: of one vehicle, by one request, from one place to another.
 
     Attributes:
@@ -57,8 +57,8 @@ class Flight:
     origin: Name
     destination: Name
     takes: Interval
-    begins: Moments
-    ends: Moments
+    begins: EventDates
+    ends: EventDates
     bound: WrittenBound
 
 
@@ -67,7 +67,7 @@ class Milestone:
     """The first moments of a `time` property's proposition."""
 
     name: str
-    moments: Moments
+    moments: EventDates
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +82,7 @@ class Schedule:
     """
 
     tick: int
-    flights: tuple[Flight, ...] = ()
+    flights: tuple[PossibleFlight, ...] = ()
     milestones: tuple[Milestone, ...] = ()
     complete: bool = True
 
@@ -99,7 +99,7 @@ _Key = tuple[Name, Name, Name, Name]
 """Vehicle, agent, origin, destination."""
 
 
-def flights_of(times: Times) -> tuple[Flight, ...]:
+def flights_of(times: Times) -> tuple[PossibleFlight, ...]:
     """Return the flights that are made in time, in the order of their first starts."""
     begun: dict[_Key, set[TakenStep]] = {}
     ended: dict[_Key, set[TakenStep]] = {}
@@ -120,11 +120,11 @@ def flights_of(times: Times) -> tuple[Flight, ...]:
     begins = dict(zip(begun, spans, strict=False))
     ends = dict(zip(ended, spans[len(begun) :], strict=True))
     found = [
-        Flight(
+        PossibleFlight(
             *key,
             said.get(key, (ANY_TIME,))[0],
-            Moments(*begins.get(key, NO_SPAN)),
-            Moments(*ends.get(key, NO_SPAN)),
+            EventDates(*begins.get(key, NO_SPAN)),
+            EventDates(*ends.get(key, NO_SPAN)),
             said.get(key, (ANY_TIME, WrittenBound()))[1],
         )
         for key in dict.fromkeys((*begun, *ended))
@@ -132,7 +132,7 @@ def flights_of(times: Times) -> tuple[Flight, ...]:
     return tuple(sorted(found, key=lambda each: (each.begins.earliest, each.ends.earliest, *_key(each))))
 
 
-def _key(flight: Flight) -> _Key:
+def _key(flight: PossibleFlight) -> _Key:
     return flight.vehicle, flight.agent, flight.origin, flight.destination
 
 

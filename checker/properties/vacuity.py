@@ -10,7 +10,7 @@ from operator import and_, or_
 from typing import Any, Final
 
 from checker.limits import look
-from checker.properties.subformulas import STILL, Part, few, never_needed, unneeded
+from checker.properties.subformulas import STILL, Subformula, few, never_needed, unneeded
 from semantics.properties.property import Ranges
 from semantics.properties.propositions import (
     Always,
@@ -217,7 +217,7 @@ def remarks_on(formula: Proposition, columns: Columns, count: int, ranges: Range
         yield from (_remark(*each, columns, every) for each in unneeded(formula, ranges, is_true))
 
 
-def _remark(around: Part, part: Part, columns: Columns, every: int) -> str:
+def _remark(around: Subformula, part: Subformula, columns: Columns, every: int) -> str:
     """Return the remark that a part is never needed, with the reason."""
     many, said = len(part.paths) > 1, never_needed(around, part)
     match around.formula:
@@ -241,7 +241,7 @@ def _remark(around: Part, part: Part, columns: Columns, every: int) -> str:
             return f"{said}: it holds without"
 
 
-def _others(parts: Formulas, part: Part) -> tuple[Proposition, ...]:
+def _others(parts: Formulas, part: Subformula) -> tuple[Proposition, ...]:
     """Return the operands of a connective without one of them."""
     rank = part.paths[0][-1]
     return (*parts[:rank], *parts[rank + 1 :])

@@ -11,7 +11,7 @@ from semantics.state.signature import REGION, Name
 Names = frozenset[Name]
 
 
-class Bounds:
+class Overapproximation:
     """Over-approximations of all reachable configurations.
 
     Attributes:

@@ -12,7 +12,7 @@ from semantics.behaviours.values import Value
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class ConstantMessage:
     """A message with a constant value."""
 
     value: Value
@@ -30,14 +30,14 @@ class Unknown:
     """A message about which nothing is known statically."""
 
 
-Message = Known | Tuple | Unknown
+Message = ConstantMessage | Tuple | Unknown
 
 
 def message_of(expression: Expression) -> Message:
     """Return the static knowledge about a message."""
     match expression:
         case Literal(value):
-            return Known(value)
+            return ConstantMessage(value)
         case TupleOf(items):
             return Tuple(tuple(map(message_of, items)))
         case _:
@@ -47,7 +47,7 @@ def message_of(expression: Expression) -> Message:
 def may_take(pattern: Pattern, message: Message) -> bool:
     """Return whether a pattern may take a message."""
     match message:
-        case Known(value):
+        case ConstantMessage(value):
             return bind(pattern, value) is not None
         case Unknown():
             return True

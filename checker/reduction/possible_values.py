@@ -7,7 +7,7 @@ assign. A value may be any name, unless it is a constant, a host, or the observe
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from checker.reduction.bounds import Bounds, Names, reached
+from checker.reduction.bounds import Names, Overapproximation, reached
 from checker.reduction.messages import may_take, message_of
 from semantics.behaviours.expressions import (
     Apply,
@@ -65,7 +65,7 @@ class Roles:
         first: The first agents; no agent ever leaves.
     """
 
-    def __init__(self, bounds: Bounds) -> None:
+    def __init__(self, bounds: Overapproximation) -> None:
         self.bounds = bounds
         self.program = bounds.setting.program
         self.roles: dict[Name, Role] = {}

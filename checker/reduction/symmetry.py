@@ -26,7 +26,7 @@ MOST_PAIRS = 2_000
 """The most pairs of entities without agents that are tried."""
 
 
-class Symmetry:
+class MissionSymmetry:
     """The interchangeable parts of a mission, and representatives.
 
     Raises:

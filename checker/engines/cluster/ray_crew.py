@@ -51,7 +51,7 @@ class ForgottenError(Exception):
     """An actor was restarted since it joined a crew."""
 
 
-class Process:
+class RayProcess:
     """A Ray actor; it can work in any number of crews.
 
     Attributes:
@@ -105,7 +105,7 @@ def processes(node: str, workers: int) -> tuple[Any, ...]:  # noqa: ARG001  # ea
     """Return `workers` actors, spread over the machines of the cluster; a second call returns the same ones."""
     # Ray must not repeat a call: a restarted actor has lost its memory, and only all together can resume.
     options = {"num_cpus": 0, "max_restarts": -1, "max_task_retries": 0, "scheduling_strategy": "SPREAD"}
-    actor = load_ray().remote(Process).options(**options)
+    actor = load_ray().remote(RayProcess).options(**options)
     return tuple(actor.remote() for _ in range(workers))
 
 

@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from checker.engines.cluster import checkpoints
 from checker.engines.cluster.links import Links
-from checker.engines.cluster.rounds import Mark, Stage, kept, mark
-from checker.engines.cluster.shard import Shard, Standing
-from checker.engines.cluster.transfer import Parcel
+from checker.engines.cluster.rounds import Mark, RoundLimits, kept, mark
+from checker.engines.cluster.shard import Shard, ShardProgress
+from checker.engines.cluster.transfer import RowParcel
 from checker.engines.contract import CheckpointError, Inspect
 from checker.engines.fast import kernel as loops
 from checker.engines.fast.graph import pending_in_space
 from checker.engines.fast.inspecting import inspect_fast, is_still, truths
 from checker.engines.fast.kernel import AT, GATHERED
-from checker.engines.fast.survey import Survey
+from checker.engines.fast.survey import RowSurvey
 from checker.properties.inspections import Invariant
 from checker.properties.vacuity import asked
 from checker.properties.visited import Visited
@@ -53,12 +53,12 @@ class Worker:
 
     # --- rounds ---------------------------------------------------------------------------------------------------
 
-    def start(self) -> Standing:
+    def start(self) -> ShardProgress:
         """Begin with the initial configuration."""
         self.shard.start()
         return self.shard.standing()
 
-    def explore(self, layer: int, stage: Stage) -> tuple[int, Standing]:
+    def explore(self, layer: int, stage: RoundLimits) -> tuple[int, ShardProgress]:
         """Explore from a layer for at least one round; return the layer and the worker's progress.
 
         In a round each worker expands rows of the layer and stores the successors that the others send. The next layer
@@ -94,7 +94,7 @@ class Worker:
         """Remove a checkpoint, if there is one."""
         checkpoints.path_of(Path(folder), number, self.shard.me).unlink(missing_ok=True)
 
-    def load(self, folder: str, number: int, digest: str, layer: int) -> Standing:
+    def load(self, folder: str, number: int, digest: str, layer: int) -> ShardProgress:
         """Return to a checkpoint with a layer in expansion; the workers exchange the values of their rows again.
 
         Raises:
@@ -126,7 +126,7 @@ class Worker:
 
     # --- results ----------------------------------------------------------------------------------------------------
 
-    def standing(self) -> Standing:
+    def standing(self) -> ShardProgress:
         """Return the worker's progress."""
         return self.shard.standing()
 
@@ -146,7 +146,7 @@ class Worker:
     def inspect(self, inspections: tuple[Inspect, ...]) -> tuple[Inspect, ...]:
         """Return the inspections, with the findings in its rows."""
         shard = self.shard
-        inspect_fast(Survey(shard), inspections)
+        inspect_fast(RowSurvey(shard), inspections)
         for each in inspections:
             if isinstance(each, Visited):
                 each.happened |= shard.happened_before
@@ -161,18 +161,18 @@ class Worker:
 
     def truths(self, formulas: Iterable[Proposition]) -> list[NDArray[np.bool_]]:
         """Return the truth of propositions in each row."""
-        survey = Survey(self.shard)
+        survey = RowSurvey(self.shard)
         return [truths(survey, each, self.shard.size) for each in formulas]
 
     def is_still(self, atoms: tuple[Atom, ...]) -> bool:
         """Return whether everything that the atoms read equals its value in the initial configuration, in all rows."""
         if not self.shard.expanded:
             return True
-        return is_still(Survey(self.shard), atoms) and self._answers_as_first(atoms)
+        return is_still(RowSurvey(self.shard), atoms) and self._answers_as_first(atoms)
 
     def pending(self) -> dict[Request, NDArray[Any]]:
         """Return the rows in which each request is pending."""
-        return pending_in_space(Survey(self.shard))
+        return pending_in_space(RowSurvey(self.shard))
 
     def edges(self, first: int, most: int) -> Edges:
         """Return the transitions of a range of rows."""
@@ -221,7 +221,7 @@ class Worker:
         rows, steps, owners, targets = (np.concatenate(each) for each in zip(nothing, *found, strict=True))
         return rows, action_of[steps], owners, targets, tuple(numbers)
 
-    def _find(self, parcels: Sequence[Parcel]) -> list[NDArray[np.int64]]:
+    def _find(self, parcels: Sequence[RowParcel]) -> list[NDArray[np.int64]]:
         """Return, for each worker, the own row numbers of the rows in its parcel, less than 0 for none."""
         self.shard.hear(parcels)
         found = []

@@ -36,9 +36,9 @@ from checker.engines.fast.kernel import (
     NODE,
     SIZE,
     WORDS,
-    Batch,
-    Model,
+    LearnedModel,
     State,
+    SuccessorBatch,
     add_row,
     code_at,
 )
@@ -47,11 +47,11 @@ from checker.engines.fast.path_ends import Trails, begin_row, end_of, lead_on
 from checker.engines.fast.persistent import find_set
 from checker.engines.fast.successors import list_steps, make, make_representative, without_repetitions
 from checker.engines.fast.table import Words, bits_for, entry_of, find
-from checker.engines.fast.tree_compression import NO_ROOM, Folded, intern, unfold
+from checker.engines.fast.tree_compression import NO_ROOM, FoldedTable, intern, unfold
 
 
 @inner(cache=True)
-def is_seen(m: Model, r: Members, here: Words, target: Words, to: int, width: int) -> bool:
+def is_seen(m: LearnedModel, r: Members, here: Words, target: Words, to: int, width: int) -> bool:
     """Return whether a proposition may differ between a row and its successor."""
     asked = False
     for j in range(width):
@@ -69,7 +69,7 @@ def is_seen(m: Model, r: Members, here: Words, target: Words, to: int, width: in
 
 
 @inner(cache=True)
-def attribute(r: Members, batch: Batch, count: int, wide: int) -> None:
+def attribute(r: Members, batch: SuccessorBatch, count: int, wide: int) -> None:
     """Note the actor of each transition of a row, by its position among the row's actors."""
     for word in range(wide):
         r.owners[word] = r.inside[word] = r.whole[word] = np.uint64(0)
@@ -80,7 +80,14 @@ def attribute(r: Members, batch: Batch, count: int, wide: int) -> None:
 
 @inner(cache=True)
 def is_ample(
-    m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, count: int, at: int, state: State
+    m: LearnedModel,
+    r: Members,
+    f: FoldedTable | None,
+    here: Words,
+    batch: SuccessorBatch,
+    count: int,
+    at: int,
+    state: State,
 ) -> int:
     """Return 1 if the set is ample: its steps are invisible and one of them is fair; 0 if not, or UNKNOWN."""
     width, fair = state[WORDS], np.int64(0)
@@ -133,16 +140,16 @@ def let_join(r: Members, actors: int, wide: int, at: int) -> None:
 
 @inner(cache=True)
 def join(
-    m: Model,
+    m: LearnedModel,
     r: Members,
     x: Any,
     d: Any,
     trails: Trails,
-    f: Folded | None,
+    f: FoldedTable | None,
     here: Words,
     words: Words,
     table: Any,
-    batch: Batch,
+    batch: SuccessorBatch,
     count: int,
     actors: int,
     at: int,
@@ -180,16 +187,16 @@ def join(
 
 @inner(cache=True)
 def choose(
-    m: Model,
+    m: LearnedModel,
     r: Members,
     x: Any,
     d: Any,
     trails: Trails,
-    f: Folded | None,
+    f: FoldedTable | None,
     here: Words,
     words: Words,
     table: Any,
-    batch: Batch,
+    batch: SuccessorBatch,
     count: int,
     state: State,
 ) -> int:
@@ -256,16 +263,16 @@ def choose(
 
 @njit(cache=True)
 def expand_reduced(
-    m: Model,
+    m: LearnedModel,
     r: Members,
     x: Any,
     d: Any,
     trails: Trails,
     words: Words,
-    f: Folded | None,
+    f: FoldedTable | None,
     origins: Any,
     table: Any,
-    batch: Batch,
+    batch: SuccessorBatch,
     until: int,
     room: int,
     met: State,

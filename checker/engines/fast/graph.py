@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from checker.engines.fast.inspecting import is_still, truths
-from checker.engines.fast.survey import Survey
+from checker.engines.fast.survey import RowSurvey
 from checker.engines.graph import Graph
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Label
@@ -14,7 +14,7 @@ from semantics.state.requests import Request
 from semantics.state.signature import Name
 
 
-class GraphSurvey(Survey):
+class GraphSurvey(RowSurvey):
     """A survey that also builds the graph."""
 
     def graph(self) -> Graph:
@@ -34,7 +34,7 @@ class GraphSurvey(Survey):
         return pending_in_space(self)
 
 
-def graph_of_space(survey: Survey) -> Graph:
+def graph_of_space(survey: RowSurvey) -> Graph:
     """Return every transition of the expanded configurations, in the order of the rules.
 
     The label of a `rcv_obs` omits the received observation, which only a decoded configuration has.
@@ -67,7 +67,7 @@ def _without_steps(origins: np.ndarray, size: int) -> np.ndarray:
     return np.asarray(np.bincount(origins, minlength=size) == 0)
 
 
-def pending_in_space(survey: Survey) -> dict[Request, np.ndarray]:
+def pending_in_space(survey: RowSurvey) -> dict[Request, np.ndarray]:
     """Return, for each request, the configurations in which it is pending, in ascending order."""
     space = survey.space
     found: dict[Request, list[np.ndarray]] = {}

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.contract import Inspect
-from checker.engines.fast.learner import Actor
+from checker.engines.fast.learner import TransitionGroup
 from checker.engines.fast.leaves import COPIES, COPIES_END, PAIR, PARTS, PARTS_END, STEP, WRITES, WRITES_END
 from checker.engines.fast.proposition_table import Profiles
-from checker.engines.fast.survey import Survey, distinct
+from checker.engines.fast.survey import RowSurvey, distinct
 from checker.limits import look
 from checker.properties.findings import Collected, Key
 from checker.properties.inspections import Excerpt, Inspection, Invariant, Reachability, Rules
@@ -37,7 +37,7 @@ ALL = 1 << 62
 """An unreachable limit on the number of different findings."""
 
 
-def inspect_fast(survey: Survey, inspections: Iterable[Inspect]) -> None:
+def inspect_fast(survey: RowSurvey, inspections: Iterable[Inspect]) -> None:
     """Give each inspection the findings that it would have after visiting every expanded configuration."""
     setting = survey.space.learner.setting
     takes_turns = setting.scheduler is Scheduler.FCFS
@@ -59,7 +59,7 @@ def inspect_fast(survey: Survey, inspections: Iterable[Inspect]) -> None:
                 look_at_each(survey, each)
 
 
-def look_at_each(survey: Survey, inspection: Inspect) -> None:
+def look_at_each(survey: RowSurvey, inspection: Inspect) -> None:
     """Run an inspection on every configuration."""
     for number in range(survey.size):
         look()
@@ -68,7 +68,7 @@ def look_at_each(survey: Survey, inspection: Inspect) -> None:
 
 
 def collect(
-    survey: Survey, inspection: Inspection, tallies: Iterable[Tally], make: Callable[[], Inspection]
+    survey: RowSurvey, inspection: Inspection, tallies: Iterable[Tally], make: Callable[[], Inspection]
 ) -> None:
     """Give an inspection its findings from tallies; a fresh copy inspects the first configuration of each."""
 
@@ -105,13 +105,13 @@ def _by_discovery(found: dict[Key, tuple[int, int]], again: Callable[[int], Coll
 # --- agents ---------------------------------------------------------------------------------------------------
 
 
-def look_at_agents(survey: Survey, inspection: Inspection) -> None:
+def look_at_agents(survey: RowSurvey, inspection: Inspection) -> None:
     """Collect the findings of an inspection about single agents, and about all agents together."""
     tallies = [*_alone(survey, inspection), *together(survey, inspection)]
     collect(survey, inspection, tallies, lambda: type(inspection)(ALL))
 
 
-def _alone(survey: Survey, inspection: Inspection) -> Iterator[Tally]:
+def _alone(survey: RowSurvey, inspection: Inspection) -> Iterator[Tally]:
     for a in survey.agents() if inspection.alone else ():
         for answer in survey.answers(partial(_seen, inspection, a)):
             yield from ((key, answer.count, answer.first) for key in answer.value)
@@ -127,7 +127,7 @@ def as_it_is(c: Configuration) -> Configuration:
 
 
 def together(
-    survey: Survey, inspection: Inspection, view: Callable[[Configuration], Configuration] = as_it_is
+    survey: RowSurvey, inspection: Inspection, view: Callable[[Configuration], Configuration] = as_it_is
 ) -> Iterator[Tally]:
     """Yield the findings in configurations in which no agent must move.
 
@@ -168,12 +168,12 @@ def excerpt(c: Configuration, rules: Iterable[Rules], agents: Iterable[Name]) ->
 # --- races ----------------------------------------------------------------------------------------------------
 
 
-def look_at_races(survey: Survey, inspection: ControlRaces) -> None:
+def look_at_races(survey: RowSurvey, inspection: ControlRaces) -> None:
     """Collect control races; a pair of agents with independent steps has none and is not examined."""
     space = survey.space
     tallies: list[Tally] = []
     agents = survey.agents()
-    trees = {a: survey.of_actor(Actor(served, a)) for a in agents}
+    trees = {a: survey.of_actor(TransitionGroup(served, a)) for a in agents}
     unordered = space.learner.setting.scheduler is Scheduler.UNORDERED
     pairs = [(a, b) for a, b in combinations_with_replacement(agents, 2) if a != b or unordered]
     asked = {pair: space.learner.question(partial(_between, inspection, pair)) for pair in pairs}
@@ -193,7 +193,7 @@ def look_at_races(survey: Survey, inspection: ControlRaces) -> None:
 
 
 def of_pairs(
-    survey: Survey,
+    survey: RowSurvey,
     tree: int,
     rows: NDArray[np.int64],
     leaves: tuple[NDArray[np.int32], NDArray[np.int32]],
@@ -218,7 +218,7 @@ def _between(inspection: ControlRaces, pair: tuple[Name, Name], c: Configuration
     return tuple(each.wrong for each in inspection.between(excerpt(c, (served,), pair), frozenset(pair)))
 
 
-def of_rows(survey: Survey, tree: int, rows: NDArray[np.int64]) -> Iterator[Tally]:
+def of_rows(survey: RowSurvey, tree: int, rows: NDArray[np.int64]) -> Iterator[Tally]:
     """Yield the findings of a question in some rows."""
     if len(rows):
         leaves = survey.classify(tree, rows)
@@ -227,13 +227,13 @@ def of_rows(survey: Survey, tree: int, rows: NDArray[np.int64]) -> Iterator[Tall
                 yield key, count, int(rows[first])
 
 
-def has_control(survey: Survey, leaf: int) -> bool:
+def has_control(survey: RowSurvey, leaf: int) -> bool:
     """Return whether a leaf has a transition that serves a control."""
     learner = survey.space.learner
     return any(learner.steps[step].rule in CONTROLS for step in learner.leaves.steps_of(leaf))
 
 
-def are_independent(survey: Survey, one: int, other: int) -> bool:
+def are_independent(survey: RowSurvey, one: int, other: int) -> bool:
     """Return whether two leaves write disjoint columns, and neither changes an answer on the path to the other."""
     writes = [written(survey, leaf) for leaf in (one, other)]
     if writes[0] is None or writes[1] is None or not writes[0].keys().isdisjoint(writes[1]):
@@ -241,7 +241,7 @@ def are_independent(survey: Survey, one: int, other: int) -> bool:
     return leaves_alone(survey, writes[0], other) and leaves_alone(survey, writes[1], one)
 
 
-def leaves_alone(survey: Survey, writes: dict[int, list[int]], leaf: int) -> bool:
+def leaves_alone(survey: RowSurvey, writes: dict[int, list[int]], leaf: int) -> bool:
     """Return whether writes change no answer on the path to a leaf."""
     columns = survey.space.learner.columns.all
     for column, ask, said in survey.space.learner.reads[leaf]:
@@ -251,7 +251,7 @@ def leaves_alone(survey: Survey, writes: dict[int, list[int]], leaf: int) -> boo
     return True
 
 
-def written(survey: Survey, leaf: int) -> dict[int, list[int]] | None:
+def written(survey: RowSurvey, leaf: int) -> dict[int, list[int]] | None:
     """Return the columns that a leaf's transitions write, with the codes; None if copies or parts write others."""
     leaves = survey.space.learner.leaves
     found: dict[int, list[int]] = {}
@@ -268,18 +268,18 @@ def written(survey: Survey, leaf: int) -> dict[int, list[int]] | None:
 # --- propositions ---------------------------------------------------------------------------------------------
 
 
-def truths(survey: Survey, formula: Proposition, size: int) -> Bools:
+def truths(survey: RowSurvey, formula: Proposition, size: int) -> Bools:
     """Return whether a proposition is true, for each of the first `size` configurations."""
     return Profiles(survey, formula).truths(size)
 
 
-def is_still(survey: Survey, atoms: Iterable[Proposition]) -> bool:
+def is_still(survey: RowSurvey, atoms: Iterable[Proposition]) -> bool:
     """Return whether everything that the atoms read is constant."""
     asked = tuple(dict.fromkeys(atoms))
     return not any(survey.where_with_change(partial(holds, each))[1] for each in (*asked, *bindings(asked)))
 
 
-def look_at_invariant(survey: Survey, inspection: Invariant) -> None:
+def look_at_invariant(survey: RowSurvey, inspection: Invariant) -> None:
     """Collect the violations of an invariant, and the valuations of its atoms that occur."""
     valuations, size = inspection.valuations, survey.size
     found = np.zeros(size, np.uint64)
@@ -307,7 +307,7 @@ def look_at_invariant(survey: Survey, inspection: Invariant) -> None:
     collect(survey, inspection, tallies, lambda: Invariant(inspection.formula, inspection.shown))
 
 
-def look_at_reachability(survey: Survey, inspection: Reachability) -> None:
+def look_at_reachability(survey: RowSurvey, inspection: Reachability) -> None:
     """Collect the configurations in which a proposition is true."""
     true = np.flatnonzero(truths(survey, inspection.formula, survey.size))
     if len(true):
@@ -317,7 +317,7 @@ def look_at_reachability(survey: Survey, inspection: Reachability) -> None:
 # --- visited places and events --------------------------------------------------------------------------------
 
 
-def look_at_visited(survey: Survey, inspection: Visited) -> None:
+def look_at_visited(survey: RowSurvey, inspection: Visited) -> None:
     """Collect the places where agents stood or passed, and the events of the environment."""
     for a in survey.agents():
         for answer in survey.answers(partial(where_it_stands, a)):

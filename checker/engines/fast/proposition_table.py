@@ -13,7 +13,7 @@ from operator import and_, or_
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.survey import Survey, known
+from checker.engines.fast.survey import RowSurvey, known
 from semantics.properties.propositions import (
     Always,
     And,
@@ -80,7 +80,7 @@ class Profiles:
         changing: Whether a read value differs between rows; set by `truths`.
     """
 
-    def __init__(self, survey: Survey, formula: Proposition) -> None:
+    def __init__(self, survey: RowSurvey, formula: Proposition) -> None:
         self.survey = survey
         self.formula = formula
         self.changing = False

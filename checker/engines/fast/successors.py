@@ -21,9 +21,9 @@ from checker.engines.fast.kernel import (
     UNSORTED,
     WIDE,
     WORDS,
-    Batch,
-    Model,
+    LearnedModel,
     State,
+    SuccessorBatch,
     code_at,
     conclude,
     copy_columns,
@@ -46,11 +46,11 @@ from checker.engines.fast.leaves import (
 from checker.engines.fast.leaves import PARTS as TREES_OF_PARTS
 from checker.engines.fast.loops import inner
 from checker.engines.fast.table import Words, hashed
-from checker.engines.fast.tree_compression import NO_ROOM, Folded, fold, take
+from checker.engines.fast.tree_compression import NO_ROOM, FoldedTable, fold, take
 
 
 @inner(cache=True)
-def list_steps(m: Model, here: Words, batch: Batch, state: State) -> int:
+def list_steps(m: LearnedModel, here: Words, batch: SuccessorBatch, state: State) -> int:
     """Note the enabled transitions of a row without their successors; return their number, or UNKNOWN."""
     first, last = np.int64(0), np.int64(len(m.agents))
     if state[ALPHA] >= 0:
@@ -78,7 +78,15 @@ def list_steps(m: Model, here: Words, batch: Batch, state: State) -> int:
 
 
 @inner(cache=True)
-def make(m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, k: int, state: State) -> bool:
+def make(
+    m: LearnedModel,
+    r: Members,
+    f: FoldedTable | None,
+    here: Words,
+    batch: SuccessorBatch,
+    k: int,
+    state: State,
+) -> bool:
     """Make the successor of a transition unless it is made; return False at something not learned yet."""
     if r.made[k]:
         return True
@@ -105,7 +113,7 @@ def make(m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, k: i
 
 
 @inner(cache=True)
-def keep(f: Folded | None, batch: Batch, k: int, state: State) -> bool:
+def keep(f: FoldedTable | None, batch: SuccessorBatch, k: int, state: State) -> bool:
     """Compress a successor if rows are compressed, and hash its stored form; return False if there is no room."""
     width, kept = state[WORDS], state[KEPT]
     if f is not None:
@@ -120,7 +128,15 @@ def keep(f: Folded | None, batch: Batch, k: int, state: State) -> bool:
 
 @inner(cache=True)
 def make_representative(
-    m: Model, r: Members, x: Any, d: Any, f: Folded | None, here: Words, batch: Batch, k: int, state: State
+    m: LearnedModel,
+    r: Members,
+    x: Any,
+    d: Any,
+    f: FoldedTable | None,
+    here: Words,
+    batch: SuccessorBatch,
+    k: int,
+    state: State,
 ) -> bool:
     """Make the canonical representative of a transition's successor, unless it is made.
 
@@ -141,7 +157,13 @@ def make_representative(
 
 @inner(cache=True)
 def without_repetitions(
-    m: Model, r: Members, f: Folded | None, here: Words, batch: Batch, count: int, state: State
+    m: LearnedModel,
+    r: Members,
+    f: FoldedTable | None,
+    here: Words,
+    batch: SuccessorBatch,
+    count: int,
+    state: State,
 ) -> int:
     """Drop transitions with the same label and successor as an earlier one; return the number left, or UNKNOWN."""
     width, alike = state[WORDS], False

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.learner import Actor
+from checker.engines.fast.learner import TransitionGroup
 from checker.engines.fast.space import Space
 from semantics.state.cells import AGENTS
 from semantics.state.configuration import Configuration
@@ -19,7 +19,7 @@ BLOCK = 1 << 18
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class SurveyAnswer:
     """One answer to a question.
 
     Attributes:
@@ -33,7 +33,7 @@ class Answer:
     first: int
 
 
-class Survey:
+class RowSurvey:
     """Evaluates questions on the expanded configurations."""
 
     def __init__(self, space: Space) -> None:
@@ -62,16 +62,16 @@ class Survey:
         c = self.configuration(number)
         yield c, expand(c)
 
-    def answers(self, question: Callable[[Configuration], Hashable]) -> list[Answer]:
+    def answers(self, question: Callable[[Configuration], Hashable]) -> list[SurveyAnswer]:
         """Return each distinct answer once, in the order of first occurrence."""
-        found: dict[Hashable, Answer] = {}
+        found: dict[Hashable, SurveyAnswer] = {}
         tree = self.space.learner.question(question)
         for rows, leaves in self.leaves(tree):
             for leaf, first, count in distinct(leaves):
                 value = self.space.learner.answers[leaf]
                 before = found.get(value)
                 start = int(rows[first]) if before is None else min(before.first, int(rows[first]))
-                found[value] = Answer(value, count + (0 if before is None else before.count), start)
+                found[value] = SurveyAnswer(value, count + (0 if before is None else before.count), start)
         return sorted(found.values(), key=lambda answer: answer.first)
 
     def blocks(self, size: int | None = None) -> Iterator[NDArray[np.int64]]:
@@ -109,7 +109,7 @@ class Survey:
         found[there] = [numbers.setdefault(self.space.learner.answers[leaf], len(numbers)) for leaf in there]
         return found[leaves]
 
-    def of_actor(self, actor: Actor) -> int:
+    def of_actor(self, actor: TransitionGroup) -> int:
         """Return the tree of an actor."""
         return self.space.learner.tree(actor)
 

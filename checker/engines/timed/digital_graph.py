@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections import deque
 
-from checker.engines.timed.first_runs import DELAY, Edge
+from checker.engines.timed.first_runs import DELAY, RunEdge
 from semantics.state.configuration import Configuration
 from semantics.timing.actor_clocks import ActorClock, Sort
 from semantics.timing.clocks import ClockUpdate, TimedStep, TimedView
 
-Edges = tuple[Edge, ...]
+Edges = tuple[RunEdge, ...]
 
 
 class Timeline:
@@ -80,13 +80,13 @@ class Timeline:
         """Follow every enabled step of a state, and a tick if the deadlines allow it."""
         number, ages = self.states[index]
         situation = self.situations[number]
-        found: list[Edge] = []
+        found: list[RunEdge] = []
         for at, step in enumerate(situation.steps):
             if step.in_turn and step.is_due(ages):
                 target, passage = self.passage(number, at, step)
-                found += (Edge(at, self.reach(target, each)) for each in passage.ages(ages))
+                found += (RunEdge(at, self.reach(target, each)) for each in passage.ages(ages))
         if situation.slack(ages) != 0:
-            found.append(Edge(DELAY, self.reach(number, older(ages, self.caps[number]))))
+            found.append(RunEdge(DELAY, self.reach(number, older(ages, self.caps[number]))))
         self.edges[index] = tuple(found)
 
     def passage(self, number: int, at: int, step: TimedStep) -> tuple[int, ClockUpdate]:

@@ -58,7 +58,7 @@ class Location(NamedTuple):
     goal: Constraint | None = None
 
 
-class TooLargeError(Exception):
+class ConstantTooLargeError(Exception):
     """A constant that exceeds the largest one for clocks."""
 
 
@@ -74,7 +74,7 @@ def _numbers() -> Growing:
 
 
 @dataclass(slots=True)
-class Automaton:
+class TimedAutomaton:
     """A timed automaton.
 
     Attributes:
@@ -186,4 +186,6 @@ class Automaton:
 
 def _look(*constants: int) -> None:
     if max(constants) > MOST:
-        raise TooLargeError(f"{max(constants):,} ticks are more than the engine 'fast' counts ({MOST:,})")
+        raise ConstantTooLargeError(
+            f"{max(constants):,} ticks are more than the engine 'fast' counts ({MOST:,})"
+        )

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.timed.first_runs import Run
-from checker.engines.zones.automaton import Automaton, Constraint, Edge
+from checker.engines.timed.first_runs import TimedRun
+from checker.engines.zones.automaton import Constraint, Edge, TimedAutomaton
 from checker.engines.zones.bounds import FREE, close, restrict
 
 Zone = NDArray[np.int32]
@@ -24,7 +24,7 @@ Goal = Callable[[int], list[Zone]]
 """The accepted clock values in a location at the end of a run, as a union of zones."""
 
 
-class Moment(NamedTuple):
+class TimedState(NamedTuple):
     """A state of a run: its location and its clock values."""
 
     location: int
@@ -62,7 +62,7 @@ def before_edge(edge: Edge, clocks: int, zone: Zone) -> Zone | None:
     return tested(found, edge.tests) if close(found, len(found)) else None
 
 
-def before_delay(automaton: Automaton, location: int, zone: Zone) -> Iterator[Zone]:
+def before_delay(automaton: TimedAutomaton, location: int, zone: Zone) -> Iterator[Zone]:
     """Yield a zone, and its predecessors by a delay within the deadlines."""
     yield zone
     deadlines = automaton.location(location).deadlines
@@ -93,7 +93,9 @@ def least_delay(zone: Zone, ages: Ages) -> int | None:
 class Dates:
     """The earliest dates of a sequence of steps from a moment to a goal."""
 
-    def __init__(self, automaton: Automaton, first: Moment, steps: Sequence[int], goal: Goal) -> None:
+    def __init__(
+        self, automaton: TimedAutomaton, first: TimedState, steps: Sequence[int], goal: Goal
+    ) -> None:
         self.automaton = automaton
         self.first = first
         self.steps = tuple(steps)
@@ -140,11 +142,11 @@ class Dates:
                 found += [] if earlier is None else [earlier]
         yield from spread(found)
 
-    def run(self) -> Run:
+    def run(self) -> TimedRun:
         """Return the run with its earliest dates."""
-        return Run(self.steps, tuple(self._dates[1:-1]), self._dates[-1])
+        return TimedRun(self.steps, tuple(self._dates[1:-1]), self._dates[-1])
 
-    def history(self) -> list[tuple[int, Moment]]:
+    def history(self) -> list[tuple[int, TimedState]]:
         """Return the date and the moment of each entry into a location; last those of the end."""
         state = min(self.ends)
         found = [(self._dates[-1], state)]
@@ -154,14 +156,14 @@ class Dates:
         return found[::-1]
 
     @property
-    def ends(self) -> tuple[Moment, ...]:
+    def ends(self) -> tuple[TimedState, ...]:
         """The possible last moments of the run with these dates."""
         return tuple(self._before_each[-1])
 
     def _date(self) -> None:
         now, states = 0, dict.fromkeys([self.first])
         self._dates = [now]
-        self._before_each: list[dict[Moment, Moment]] = []
+        self._before_each: list[dict[TimedState, TimedState]] = []
         for done in range(len(self.steps) + 1):
             delays = {
                 (state, delay): None
@@ -180,17 +182,17 @@ class Dates:
             self._before_each.append(before)
             self._dates.append(now)
 
-    def _may_wait(self, state: Moment, delay: int) -> bool:
+    def _may_wait(self, state: TimedState, delay: int) -> bool:
         bounds = self.automaton.location(state.location).deadlines
         return not delay or all(clock and state.ages[clock - 1] + delay <= most for clock, most in bounds)
 
-    def _after(self, done: int, states: Iterable[Moment]) -> dict[Moment, Moment]:
+    def _after(self, done: int, states: Iterable[TimedState]) -> dict[TimedState, TimedState]:
         """Return the moments after a step, each with the moment before it."""
-        found: dict[Moment, Moment] = {}
+        found: dict[TimedState, TimedState] = {}
         for state in states:
             for edge in self._edges(state.location, self.steps[done]):
                 if passes(edge, state.ages):
-                    after = Moment(edge.target, moved(edge, state.ages))
+                    after = TimedState(edge.target, moved(edge, state.ages))
                     if any(holds(zone, after.ages) for zone in self.entered[done + 1][after.location]):
                         found.setdefault(after, state)
         return found
@@ -209,8 +211,8 @@ def moved(edge: Edge, ages: Ages) -> Ages:
     return tuple(0 if source == 0 else ages[source - 1] for source in edge.sources)
 
 
-def _later(state: Moment, ticks: int) -> Moment:
-    return Moment(state.location, tuple(age + ticks for age in state.ages))
+def _later(state: TimedState, ticks: int) -> TimedState:
+    return TimedState(state.location, tuple(age + ticks for age in state.ages))
 
 
 def spread(zones: Sequence[Zone]) -> list[Zone]:

@@ -19,7 +19,7 @@ from checker.engines.fast.inspecting import (
     of_rows,
     together,
 )
-from checker.engines.fast.learner import Actor
+from checker.engines.fast.learner import TransitionGroup
 from checker.engines.timed.answers import shown_to, without_sayings
 from checker.engines.timed.zone_answers import ZoneTimes
 from checker.engines.zones.questions import (
@@ -77,7 +77,7 @@ def _look_at_races(times: ZoneTimes, inspection: ControlRaces) -> None:
     unordered = space.learner.setting.scheduler is Scheduler.UNORDERED
     independent = cache(partial(are_independent, survey))
     agents = survey.agents()
-    trees = {a: survey.of_actor(Actor(served, a)) for a in agents}
+    trees = {a: survey.of_actor(TransitionGroup(served, a)) for a in agents}
     due = {a: list(_due(times, a)) for a in agents}
     tallies: list[Tally] = []
     for a, b in combinations_with_replacement(agents, 2):

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.zones import kernel
-from checker.engines.zones.automaton import EDGES, LOCATION, SIZE, UNKNOWN, Automaton
+from checker.engines.zones.automaton import EDGES, LOCATION, SIZE, UNKNOWN, TimedAutomaton
 from checker.engines.zones.bounds import FREE
 from checker.engines.zones.kernel import (
     AT,
@@ -38,7 +38,7 @@ class Search:
         layers: The first zone of each layer.
     """
 
-    def __init__(self, automaton: Automaton, location: int, ages: Sequence[int]) -> None:
+    def __init__(self, automaton: TimedAutomaton, location: int, ages: Sequence[int]) -> None:
         self.automaton = automaton
         self.begins, self.sums = Growing(np.int64), Growing(np.int64)
         self.bounds, self.places, self.following = (Growing(np.int32) for _ in range(3))
@@ -146,7 +146,7 @@ class Search:
             automaton.deadlines,
         )
         clocks = (automaton.clocks, automaton.lower, automaton.upper, automaton.rows, self.left)
-        self.model = kernel.Model._make(each.room for each in (*parts, *clocks))
+        self.model = kernel.CompiledAutomaton._make(each.room for each in (*parts, *clocks))
         found = (self.bounds, self.begins, self.sums, self.places, self.following, self.heads)
         self.zones = kernel.Zones(*(each.room for each in (*found, self.ranks, self.rows, self.groups)))
         shape = (self._largest, self._largest)
@@ -210,14 +210,14 @@ class Search:
         return ((self.place(zone), self.matrix(zone)) for zone in range(self.count))
 
 
-class Route(Search):
+class ShortestRun(Search):
     """The first sequence of a number of steps to a goal that fewer steps don't reach.
 
     The search proceeds by groups (see `kernel`) and prunes locations from which the remaining steps don't suffice.
     """
 
     def __init__(
-        self, automaton: Automaton, location: int, ages: Sequence[int], length: int, ends: Sequence[int]
+        self, automaton: TimedAutomaton, location: int, ages: Sequence[int], length: int, ends: Sequence[int]
     ) -> None:
         self.length = length
         self.ends = list(ends)
@@ -262,7 +262,7 @@ class Route(Search):
         return range(int(begins[group]), end)
 
 
-def steps_left(automaton: Automaton, ends: Sequence[int]) -> NDArray[np.int32]:
+def steps_left(automaton: TimedAutomaton, ends: Sequence[int]) -> NDArray[np.int32]:
     """Return for each location the least number of edges to an end, `FREE` if no end is reachable."""
     sources, targets = automaton.arrows()
     left = np.full(len(automaton), FREE, np.int32)

@@ -32,11 +32,17 @@ from checker.engines.zones.automaton import (
     EDGE,
     LOCATION,
     TEST,
-    Automaton,
     Constraint,
+    TimedAutomaton,
 )
 from checker.engines.zones.bounds import NONE
-from checker.engines.zones.location_successors import ANSWER, CHOICE, Growth, Timed, View
+from checker.engines.zones.location_successors import (
+    ANSWER,
+    CHOICE,
+    AutomatonGrowth,
+    LearnedClocks,
+    LocationView,
+)
 from checker.limits import look
 from semantics.environment import Clause
 from semantics.state.configuration import Configuration
@@ -66,7 +72,7 @@ MARGIN = 1 << 12
 """The number of further locations, and edges, for which room is reserved."""
 
 
-class Place(NamedTuple):
+class MissionLocation(NamedTuple):
     """A location of a mission: the number of its row, and the states of the windows' clocks."""
 
     number: int
@@ -90,7 +96,7 @@ class Network(Space):
     def __init__(self, initial: Configuration, pending: int) -> None:
         self.initial = initial
         self.timing = timing_of(initial)
-        self.automaton = Automaton()
+        self.automaton = TimedAutomaton()
         self.numbers: dict[tuple[ActorClock, Hashable], int] = {}
         self.clocks_of: list[ActorClock] = []
         self.caps: dict[ActorClock, int] = {}
@@ -109,7 +115,7 @@ class Network(Space):
         self.lasting = {each.clock: self._number(each) for each in lasting(self.timing)}
         self.restored = [self._restoring(vehicle) for vehicle, _ in self.timing.endurances]
         self.questions: dict[tuple[object, Name | int], int] = {}
-        self.timed: Timed
+        self.timed: LearnedClocks
         super().__init__(Learner(initial.setting, initial.state, pending), None)  # type: ignore[arg-type]  # a stored one
         self.situation = lru_cache(1 << 12)(lambda number: TimedView(self.configuration(number)))
         situation = self.situation(0)
@@ -145,7 +151,7 @@ class Network(Space):
         arrays = (self.answers, self.running, self.times, self.done, self.tested, self.served)
         lasting = [number for number in self.lasting.values() if number >= 0]
         always = (lasting, [each for several in self.restored for each in several], windows)
-        self.timed = Timed._make(
+        self.timed = LearnedClocks._make(
             (
                 *(np.array(each, np.int32) for each in numbers),
                 *(each.room for each in arrays),
@@ -228,7 +234,7 @@ class Network(Space):
         self.counts_of[location_successors.DONE] = 0
         choices = np.zeros(CHOICE * (len(self.restored) + len(self.windows) + 1), np.int32)
 
-        def work(model: object, timed: Timed, growth: Growth, view: View) -> int:
+        def work(model: object, timed: LearnedClocks, growth: AutomatonGrowth, view: LocationView) -> int:
             other, arrays = self._view(), (self.rows.words, self.rows.origins.loops, self.table.room)
             most = min(self.rows.room, most_in(len(self.table.room)), int(self.state[LIMIT]))
             scratch = np.zeros(self.packing.words, np.uint64), np.zeros(2 * self.margin, np.int32), choices
@@ -275,7 +281,7 @@ class Network(Space):
         ):
             each.reserve(size * self.margin)
 
-    def _growth(self) -> Growth:
+    def _growth(self) -> AutomatonGrowth:
         automaton = self.automaton
         arrays = (
             automaton.locations,
@@ -285,13 +291,13 @@ class Network(Space):
             automaton.deadlines,
         )
         known = (automaton.clocks, self.of_locations, self.said, self.of_rows, self.before)
-        return Growth(*(each.room for each in (*arrays, *known)))
+        return AutomatonGrowth(*(each.room for each in (*arrays, *known)))
 
-    def _view(self) -> View:
+    def _view(self) -> LocationView:
         clocks = len(self.clocks_of)
         actors = np.zeros(self.actors, np.int32), np.zeros(self.actors + len(self.restored), np.int32)
         numbers = np.zeros(location_successors.CLOCKS + 1, np.int64)
-        return View(
+        return LocationView(
             *actors,
             numbers,
             np.zeros(clocks, np.int32),
@@ -315,10 +321,10 @@ class Network(Space):
     first = 0
     """The first location."""
 
-    def place(self, location: int) -> Place:
+    def place(self, location: int) -> MissionLocation:
         """Return the row and the windows of a location."""
         said = int(self.said.room[location])
-        return Place(
+        return MissionLocation(
             int(self.of_locations.room[location]), tuple(said // 3**at % 3 for at in range(len(self.windows)))
         )
 

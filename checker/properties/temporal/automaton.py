@@ -13,7 +13,7 @@ from itertools import product
 import networkx as nx
 
 from checker.limits import look
-from checker.properties.temporal.negation_normal_form import FALSE, TRUE, Formulas, Literal, Number
+from checker.properties.temporal.negation_normal_form import FALSE, TRUE, FormulaFactory, Literal, Number
 from semantics.properties.temporal import Temporal
 
 MOST_STATES = 128
@@ -22,7 +22,7 @@ MOST_UNTILS = 60
 """The limits of an automaton: untils are bits of a 64-bit word, the others bound time and memory."""
 
 
-class TooLargeError(Exception):
+class AutomatonTooLargeError(Exception):
     """A formula whose automaton would be too large."""
 
 
@@ -36,7 +36,7 @@ class Move:
 
 
 @dataclass(frozen=True, slots=True)
-class Automaton:
+class BuchiAutomaton:
     """A generalized Büchi automaton.
 
     Attributes:
@@ -52,13 +52,13 @@ class Automaton:
     whatever: int | None
 
 
-def automaton_of(formula: Temporal, claimed: bool = True) -> Automaton:
+def automaton_of(formula: Temporal, claimed: bool = True) -> BuchiAutomaton:
     """Return an automaton that accepts the runs of which a formula, or its negation, is true.
 
     Raises:
-        TooLargeError: It would have too many states.
+        AutomatonTooLargeError: It would have too many states.
     """
-    formulas = Formulas()
+    formulas = FormulaFactory()
     return _Tableau(formulas, formulas.normal(formula, claimed)).automaton()
 
 
@@ -88,16 +88,16 @@ class _Term:
 
 
 class _Tableau:
-    def __init__(self, formulas: Formulas, start: Number) -> None:
+    def __init__(self, formulas: FormulaFactory, start: Number) -> None:
         self.formulas = formulas
         self.start = start
         self.terms: dict[Number, tuple[_Term, ...]] = {FALSE: (), TRUE: (_Term(),)}
 
-    def automaton(self) -> Automaton:
+    def automaton(self) -> BuchiAutomaton:
         states = self.states()
         untils = sorted({u for terms in states.values() for term in terms for u in term.postponed})
         if len(untils) > MOST_UNTILS:
-            raise TooLargeError(f"more than {MOST_UNTILS} promises")
+            raise AutomatonTooLargeError(f"more than {MOST_UNTILS} promises")
         numbers = {state: number for number, state in enumerate(states)}
         moves = [
             tuple(
@@ -108,7 +108,7 @@ class _Tableau:
         ]
         final = _numbered(_merged(_useful(moves, len(untils))))
         literals = {number: self.literal(number) for out in final for move in out for number in move.literals}
-        return Automaton(final, literals, len(untils), _whatever(final, len(untils)))
+        return BuchiAutomaton(final, literals, len(untils), _whatever(final, len(untils)))
 
     def states(self) -> dict[State, tuple[_Term, ...]]:
         first: State = self.state(_Term(after=frozenset({self.start})))
@@ -120,7 +120,7 @@ class _Tableau:
             if state in found:
                 continue
             if len(found) == MOST_STATES:
-                raise TooLargeError(f"its automaton has more than {MOST_STATES} states")
+                raise AutomatonTooLargeError(f"its automaton has more than {MOST_STATES} states")
             found[state] = self.join(self.unfolded(each) for each in state)
             waiting += (self.state(term) for term in found[state])
         return found
@@ -175,7 +175,7 @@ class _Tableau:
         found: tuple[_Term, ...] = (_Term(),)
         for factor in factors:
             if len(found) * len(factor) > MOST_TERMS:
-                raise TooLargeError(f"it unfolds in more than {MOST_TERMS:,} ways")
+                raise AutomatonTooLargeError(f"it unfolds in more than {MOST_TERMS:,} ways")
             pairs = (one.joined(other) for one, other in product(found, factor))
             found = least(term for term in pairs if self.possible(term))
         return found

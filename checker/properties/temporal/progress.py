@@ -64,7 +64,7 @@ class Starved:
 
 
 @dataclass(frozen=True, eq=False)
-class Progress:
+class ProgressSearch:
     """Searches for requests that are never served.
 
     Attributes:

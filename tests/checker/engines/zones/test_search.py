@@ -1,7 +1,7 @@
 """Searches through small automata: layers, what is dropped, and the first run."""
 
 from checker.engines.zones import dates
-from checker.engines.zones.automaton import Automaton, Constraint, Edge, Location
+from checker.engines.zones.automaton import Constraint, Edge, Location, TimedAutomaton
 from checker.engines.zones.first_run import first_run
 from checker.engines.zones.search import Search, steps_left
 
@@ -11,7 +11,7 @@ STANDS = ((0, -1),)
 
 def searched(ways):
     """Search an automaton that goes from its first location to its second one by some tests, and on from there."""
-    automaton = Automaton()
+    automaton = TimedAutomaton()
     clock = automaton.clock(9, 9)
     first, second, third = (automaton.add(Location((clock,), ends)) for ends in ((), STANDS, STANDS))
     automaton.leave(first, [Edge(step, tests, second, (1,)) for step, tests in enumerate(ways)])

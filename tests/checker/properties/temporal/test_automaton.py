@@ -3,7 +3,7 @@
 import pytest
 from structures import P, Q
 
-from checker.properties.temporal.automaton import TooLargeError, automaton_of
+from checker.properties.temporal.automaton import AutomatonTooLargeError, automaton_of
 from checker.properties.temporal.linear import conjuncts
 from semantics.properties.propositions import Always, Known
 from semantics.properties.temporal import (
@@ -70,7 +70,7 @@ def test_a_large_formula_is_refused():
     formula = each[0]
     for more in each[1:]:
         formula = Both(formula, more)
-    with pytest.raises(TooLargeError):
+    with pytest.raises(AutomatonTooLargeError):
         automaton_of(formula)
 
 

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from scale import examples
 
 from checker import Limits, explore
-from checker.properties.temporal.decide import Decider
+from checker.properties.temporal.decide import TemporalDecider
 from checker.properties.temporal.fairness import EACH_RULE_AND_REQUEST
 from checker.properties.temporal.linear import counterexample
-from checker.properties.temporal.progress import Progress, owed, pending_requests
-from checker.properties.temporal.truth import Truth
+from checker.properties.temporal.progress import ProgressSearch, owed, pending_requests
+from checker.properties.temporal.truth import FormulaTruth
 from semantics.properties.propositions import Known
 from semantics.properties.temporal import (
     SERVES,
@@ -43,11 +43,11 @@ EXTRA = st.lists(
 def test_a_request_is_starved_where_linear_time_says_so(c, extra):
     found = explore(c, limits=Limits(configurations=400), edges=True)
     assume(found.complete)
-    decider = Decider(found, [])
+    decider = TemporalDecider(found, [])
     arriving = decider.setting.arriving
     pending = owed(pending_requests(found.configurations), arriving)
     fairness = decider.conditions((*EACH_RULE_AND_REQUEST, *extra))
-    progress = Progress(decider.graph, pending, fairness, arriving)
+    progress = ProgressSearch(decider.graph, pending, fairness, arriving)
     for request, numbers in pending.items():
         starved = bool((progress.waiting(request) >= 0).any())
         assert starved == is_violated(decider, fairness, request, numbers)
@@ -63,7 +63,8 @@ def is_violated(decider, fairness, request, numbers):
     taken = graph.taken(np.array(labels, dtype=np.bool_))
     formula = Globally(Either(Denied(Now(pending)), Eventually(served)))
     return (
-        counterexample(graph, Truth(graph, {pending: here}, {served: taken}), formula, fairness) is not None
+        counterexample(graph, FormulaTruth(graph, {pending: here}, {served: taken}), formula, fairness)
+        is not None
     )
 
 
