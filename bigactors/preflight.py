@@ -19,7 +19,7 @@ from adapters.plugin import Plugin, Preflight, preflights
 from bigactors.fences import placements_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import tell
-from checker.reduction.bounds import Overapproximation
+from checker.reduction.overapproximation import Overapproximation
 from checker.reduction.possible_values import Roles
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction

@@ -11,8 +11,8 @@ from adapters.recording.mcap_files import McapReader, RecordingError
 from bigactors.files import write_text
 from bigactors.mistakes import Mistake, unreadable
 from checker import Trace
+from physical.geojson_tracks import PositionFix, Track, write_tracks
 from physical.shape import Geometry
-from physical.tracks import PositionFix, Track, write_tracks
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Placed
 

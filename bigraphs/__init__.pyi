@@ -44,7 +44,7 @@ from .layout import layout as layout
 from .matching import Match as Match
 from .matching import find_matches as find_matches
 from .networkx_graphs import to_networkx as to_networkx
-from .relations import from_relations as from_relations
+from .relational_bigraphs import from_relations as from_relations
 from .rewriting import rewrite as rewrite
 from .rewriting import successors as successors
 from .rules import ReactionRule as ReactionRule

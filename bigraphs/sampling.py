@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 
 from bigraphs.engine.machine import Machine
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.state import Key
+from bigraphs.engine.state_arrays import Key
 from bigraphs.simulation import Bounds, Draw, chances, ordered_steps
 from bigraphs.system import System
 

@@ -13,7 +13,7 @@ from bigraphs.engine.decoding import to_bigraph
 from bigraphs.engine.machine import Machine, RewritingStep
 from bigraphs.engine.node_identity import identities
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.state import State
+from bigraphs.engine.state_arrays import State
 from bigraphs.system import Rule, System, SystemKind
 
 

@@ -10,7 +10,7 @@ from bigraphs.compact_lists import DictionaryColumn, Numbering, Texts
 from bigraphs.engine.frontier import Frontier
 from bigraphs.engine.machine import Machine
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.state import Key
+from bigraphs.engine.state_arrays import Key
 from bigraphs.system import SystemKind
 from bigraphs.transitions import TransitionKind, TransitionSystem
 

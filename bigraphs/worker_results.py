@@ -14,7 +14,7 @@ from bigraphs.compact_lists import DictionaryColumn
 from bigraphs.engine.frontier import Block, Frontier
 from bigraphs.engine.intern_tables import Codes, InternTables, Row
 from bigraphs.engine.labelling import labels_in
-from bigraphs.engine.state import Key, codes_in, to_key
+from bigraphs.engine.state_arrays import Key, codes_in, to_key
 from bigraphs.state_store import StateStore
 from bigraphs.transitions import TransitionKind
 

@@ -10,8 +10,8 @@ from typing import IO, Final
 from physical.ais_receiver import PART, POSITION, STATIC, TAKEN, ReceivedLine, ReceiverState, hear
 from physical.ais_reports import AisError, PositionReport, Report, StaticReport
 from physical.file_account import Counting, FileAccount
-from physical.files import open_file
 from physical.nmea import MAX_LINE, DecodingFailure
+from physical.regular_files import open_file
 
 CHUNK: Final = 65_536
 NOTHING: Final = FileAccount()

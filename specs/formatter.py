@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from specs.diagnostics import Source
-from specs.layout import WrappedLine, lay_out
+from specs.mission_layout import WrappedLine, lay_out
 from specs.parser import build
 from specs.preprocessing import Comment, Prepared, prepare
 from specs.syntax import Mission

@@ -12,10 +12,7 @@ from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import paint
 from bigraphs import NotationError
-from bigraphs.exports.json import bigraph_json
-from bigraphs.system import System
-from bigraphs.transitions import TransitionSystem
-from bigraphs.verdicts import (
+from bigraphs.claims import (
     ClaimOutcome,
     ClaimVerdict,
     Decided,
@@ -27,6 +24,9 @@ from bigraphs.verdicts import (
     predicate_verdict,
     property_verdict,
 )
+from bigraphs.exports.json import bigraph_json
+from bigraphs.system import System
+from bigraphs.transitions import TransitionSystem
 from physical.wordings import counted
 
 LOGICS: Final = ("ltl", "ctl")

@@ -15,13 +15,13 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 from bigactors.mistakes import Mistake
+from bigraphs.claims import ClaimOutcome, Decided, Value, WitnessRun, WitnessStep, predicate_hint
 from bigraphs.errors import NotationError
 from bigraphs.exports.markov import KINDS, OWN_LABELS, MarkovKind, label_names
 from bigraphs.exports.storm import storm_files
 from bigraphs.likeliest import Likeliest, decisions, likeliest_run
 from bigraphs.system import System
 from bigraphs.transitions import TransitionSystem
-from bigraphs.verdicts import ClaimOutcome, Decided, Value, WitnessRun, WitnessStep, predicate_hint
 from physical.wordings import counted, install_extra
 
 EXAMPLES: Final = "write P=? [F goal], Pmax=? [a U b], P>=0.9 [G !bad], T=? [F goal] or R=? [C<=10]"

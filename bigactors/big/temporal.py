@@ -13,8 +13,8 @@ from typing import Final, cast
 import numpy as np
 
 from bigactors.big.formulas import EACH_RULE, Claim, Occurs, fair_to, parse_claim
+from bigraphs.claims import ClaimOutcome, Decided, WitnessRun, WitnessStep
 from bigraphs.transitions import TransitionSystem
-from bigraphs.verdicts import ClaimOutcome, Decided, WitnessRun, WitnessStep
 from checker.engines.graph import STUTTER, Bools, Graph
 from checker.properties.temporal.components import Conditions
 from checker.properties.temporal.decision import Decision, FormulaDecider

@@ -15,7 +15,7 @@ from bigraphs.engine.intern_tables import InternTables, has_sharing
 from bigraphs.engine.patterns import CompiledPattern, compile_pattern
 from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import PatternOccurrence
-from bigraphs.engine.state import make_state
+from bigraphs.engine.state_arrays import make_state
 from bigraphs.signature import Control, Signature
 from bigraphs.system import Rule
 

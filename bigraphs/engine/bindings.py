@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.patterns import CompiledPattern
 from bigraphs.engine.search_state import OFTEN, PatternSearch, Placing, Step
-from bigraphs.engine.state import State
+from bigraphs.engine.state_arrays import State
 
 
 def binding(world: InternTables, pattern: CompiledPattern, node: int, then: Step) -> Placing:

@@ -8,7 +8,7 @@ from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.patterns import CompiledPattern, compile_pattern
 from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import PatternOccurrence
-from bigraphs.engine.state import State, bits
+from bigraphs.engine.state_arrays import State, bits
 from bigraphs.system import Condition, Where
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bigraphs.bigraph import Bigraph, Link, Node, assemble
 from bigraphs.canonical_form import canonical
 from bigraphs.engine.intern_tables import REFERENCE, InternTables
-from bigraphs.engine.state import Key, State, bits, codes_in
+from bigraphs.engine.state_arrays import Key, State, bits, codes_in
 
 
 def to_bigraph(state: State) -> Bigraph:

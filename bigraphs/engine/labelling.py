@@ -18,7 +18,7 @@ from collections.abc import Iterator
 from typing import NamedTuple, TypeAlias
 
 from bigraphs.engine.intern_tables import REFERENCE, InternTables, Row
-from bigraphs.engine.state import Key, State, codes_in
+from bigraphs.engine.state_arrays import Key, State, codes_in
 
 Incidence: TypeAlias = tuple[int, int]
 """A label and an edge; the negative number of a shared node serves as an edge."""

@@ -20,7 +20,7 @@ from bigraphs.engine.reactions import CompiledReaction
 from bigraphs.engine.rule_index import ReactionIndex, RuleIndex, numbers_in
 from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import PatternOccurrence
-from bigraphs.engine.state import Key, State, make_state
+from bigraphs.engine.state_arrays import Key, State, make_state
 from bigraphs.engine.state_order import Outlines
 from bigraphs.errors import BigraphError
 from bigraphs.system import System

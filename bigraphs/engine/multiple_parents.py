@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from bigraphs.engine.patterns import CompiledPattern
-from bigraphs.engine.state import State, bits
+from bigraphs.engine.state_arrays import State, bits
 
 
 def shared_places_fit(pattern: CompiledPattern, state: State, nodes: Sequence[int], used: int) -> bool:

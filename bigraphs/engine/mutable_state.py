@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bigraphs.engine.state import State, bits
+from bigraphs.engine.state_arrays import State, bits
 from bigraphs.errors import BigraphError
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from bigraphs.engine.machine import RewritingStep
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.state import State, bits
+from bigraphs.engine.state_arrays import State, bits
 
 
 def identities(spot: Spot, step: RewritingStep) -> Iterator[tuple[int, int]]:

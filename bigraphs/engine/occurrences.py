@@ -10,7 +10,7 @@ from bigraphs.engine.mutable_state import MutableState
 from bigraphs.engine.reactions import CompiledReaction
 from bigraphs.engine.rule_index import ReactionIndex, numbers_in
 from bigraphs.engine.search_state import PatternOccurrence
-from bigraphs.engine.state import State
+from bigraphs.engine.state_arrays import State
 
 
 class Spot:

@@ -17,7 +17,7 @@ from bigraphs.engine.mutable_state import MutableState
 from bigraphs.engine.patterns import CompiledPattern, check_size, check_solid, compile_pattern
 from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import PatternOccurrence
-from bigraphs.engine.state import State, bits
+from bigraphs.engine.state_arrays import State, bits
 from bigraphs.engine.tracking import top_down, traced, track, track_edges
 from bigraphs.errors import BigraphError
 from bigraphs.system import Rule

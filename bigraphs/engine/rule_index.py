@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
 from bigraphs.engine.reactions import CompiledReaction
-from bigraphs.engine.state import State, bits
+from bigraphs.engine.state_arrays import State, bits
 
 _GROUP: Final = 16
 

@@ -17,7 +17,7 @@ from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.multiple_parents import shared_places_fit
 from bigraphs.engine.patterns import CompiledPattern
 from bigraphs.engine.search_state import OFTEN, PatternOccurrence, PatternSearch, Placing, Step
-from bigraphs.engine.state import State, bits
+from bigraphs.engine.state_arrays import State, bits
 
 _SELDOM: Final = 8
 """Up to this number of searches, a pattern is searched everywhere instead of only at touched nodes."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Final, NamedTuple, TypeAlias
 
 from bigraphs.engine.patterns import CompiledPattern
-from bigraphs.engine.state import State
+from bigraphs.engine.state_arrays import State
 
 OFTEN: Final = 0x3FF
 """The number of steps between two pauses of a search, minus one."""

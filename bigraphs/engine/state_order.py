@@ -7,7 +7,7 @@ from typing import TypeAlias
 from bigraphs.engine.decoding import history_free
 from bigraphs.engine.intern_tables import REFERENCE
 from bigraphs.engine.labelling import Labelling
-from bigraphs.engine.state import State, bits
+from bigraphs.engine.state_arrays import State, bits
 
 Outline: TypeAlias = list[list[bytes]]
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
-from checker.reduction.messages import may_take, message_of
+from checker.reduction.static_messages import may_take, message_of
 from semantics.behaviours.expressions import Literal
 from semantics.behaviours.patterns import Anything, Elements, Exactly, Pattern, bind
 from semantics.behaviours.program import reachable

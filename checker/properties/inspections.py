@@ -10,8 +10,8 @@ from typing import ClassVar, NamedTuple
 from checker.properties.control_sites import common_sites
 from checker.properties.deadlock_causes import causes
 from checker.properties.findings import MOST_VIOLATIONS, Collected, Inspected, Key
+from checker.properties.invariant_vacuity import Valuations
 from checker.properties.obstacles import lacking
-from checker.properties.vacuity import Valuations
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.patterns import bind
 from semantics.behaviours.reaction_rules import moved

@@ -14,11 +14,11 @@ from itertools import product
 from math import prod
 from typing import NamedTuple
 
-from checker.reduction.bounds import Overapproximation
 from checker.reduction.footprints import Footprints
-from checker.reduction.messages import ConstantMessage, message_of
+from checker.reduction.overapproximation import Overapproximation
 from checker.reduction.possible_values import Roles
 from checker.reduction.race_footprints import Marks
+from checker.reduction.static_messages import ConstantMessage, message_of
 from checker.reduction.variables import NOTHING, SlotFootprint, joined
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.program import reachable

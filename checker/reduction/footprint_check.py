@@ -14,9 +14,9 @@ from checker.engines.fast.recording import Asked, CellRecorder, CellSource, Colu
 from checker.engines.fast.value_templates import settled
 from checker.reduction.actors import Acting, Actor, Actors
 from checker.reduction.ample import Ample, disturbed
-from checker.reduction.messages import ConstantMessage
+from checker.reduction.configuration_renaming import Renaming
 from checker.reduction.race_footprints import ANSWERS, MARKS, slot_of_mark
-from checker.reduction.renaming import Renaming
+from checker.reduction.static_messages import ConstantMessage
 from checker.reduction.symmetry import MissionSymmetry
 from checker.reduction.variables import NOTHING, Slot, SlotFootprint
 from semantics.behaviours.expressions import Fault

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from typing import assert_never
 
-from checker.reduction.bounds import Names, Overapproximation
-from checker.reduction.messages import ConstantMessage, Message, wakes
+from checker.reduction.overapproximation import Names, Overapproximation
 from checker.reduction.possible_values import Roles
+from checker.reduction.static_messages import ConstantMessage, Message, wakes
 from checker.reduction.variables import NOTHING, Slot, SlotFootprint, Slots
 from semantics.behaviours.observations import All, Nodes, Query, QueryOperator
 from semantics.behaviours.reaction_rules import (

@@ -7,8 +7,8 @@ assign. A value may be any name, unless it is a constant, a host, or the observe
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from checker.reduction.bounds import Names, Overapproximation, reached
-from checker.reduction.messages import may_take, message_of
+from checker.reduction.overapproximation import Names, Overapproximation, reached
+from checker.reduction.static_messages import may_take, message_of
 from semantics.behaviours.expressions import (
     Apply,
     Expression,

@@ -9,9 +9,9 @@ neither control changes the inputs of the other's marks.
 from collections.abc import Iterable, Iterator
 from functools import cache
 
-from checker.reduction.bounds import Names
 from checker.reduction.footprints import Footprints
 from checker.reduction.observation_flow import tellers
+from checker.reduction.overapproximation import Names
 from checker.reduction.variables import NOTHING, Slot, SlotFootprint, joined
 from semantics.behaviours.observations import Nodes, Of, Query, QueryOperator
 from semantics.behaviours.program import reachable

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from checker.reduction.bounds import Overapproximation
+from checker.reduction.overapproximation import Overapproximation
 from semantics.behaviours.stepping import waits
 from semantics.properties.propositions import (
     Atom,

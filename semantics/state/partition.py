@@ -8,7 +8,7 @@ on an agent of another station then *leaves* in a parcel and *enters* there, whi
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from semantics.admission.objections import may_be_hosted, text_objection
+from semantics.admission.parcel_refusals import may_be_hosted, text_objection
 from semantics.admission.value_flow import flow_of
 from semantics.behaviours.stepping import joining
 from semantics.environment import Says

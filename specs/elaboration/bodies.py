@@ -13,7 +13,7 @@ from semantics.behaviours.program import Behaviour, Program, reachable
 from semantics.behaviours.statements import Block, Loop
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.actors import InitialActor
+from specs.elaboration.initial_actors import InitialActor
 from specs.elaboration.names import Names
 from specs.elaboration.patterns import warn_of_hiding
 from specs.elaboration.rule_schemas import CommandReactions, Maker, Schema

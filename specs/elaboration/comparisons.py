@@ -9,10 +9,10 @@ from semantics.behaviours.values import Value, show
 from semantics.properties.propositions import ORDERS
 from specs import syntax as s
 from specs.codes import Code
+from specs.construct_text import write
 from specs.elaboration.names import Names
 from specs.elaboration.needs import requoted, unquoted
 from specs.elaboration.value_types import ANY, NAMES, NOTHING, Sorts, Types, ValueSort, sort_of
-from specs.writing import write
 
 _PLURALS: Final = {
     ValueSort.NUMBER: "numbers",

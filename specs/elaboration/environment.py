@@ -9,7 +9,7 @@ from semantics.environment import Appears, Clause, Drops, Leaves, Says, Vanishes
 from semantics.state.physical_model import Carried, Placed
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.constants import elaborate_constant
+from specs.elaboration.constant_values import elaborate_constant
 from specs.elaboration.drifts import Spots, drifts_among, drifts_within
 from specs.elaboration.mobility import Mobility, carries
 from specs.elaboration.names import Names

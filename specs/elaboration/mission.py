@@ -20,13 +20,12 @@ from semantics.state.signature import Name
 from specs import syntax as s
 from specs.codes import Code
 from specs.diagnostics import Diagnostic, MissionError, Source
-from specs.elaboration.actors import first_actors
 from specs.elaboration.beliefs import check_forest, elaborate_beliefs, settled
 from specs.elaboration.bodies import declare_behaviours, elaborate_bodies
-from specs.elaboration.checks import elaborate_checks, elaborate_control, elaborate_scheduler
+from specs.elaboration.check_section import elaborate_checks, elaborate_control, elaborate_scheduler
 from specs.elaboration.environment import appearing_channels, elaborate_environment
-from specs.elaboration.files import Library
 from specs.elaboration.findings import Findings
+from specs.elaboration.initial_actors import first_actors
 from specs.elaboration.live import elaborate_live
 from specs.elaboration.mobility import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
 from specs.elaboration.names import Names
@@ -40,6 +39,7 @@ from specs.elaboration.unread import independent
 from specs.elaboration.value_types import Inference
 from specs.elaboration.variation import AS_WRITTEN, Variation
 from specs.elaboration.world import elaborate_world
+from specs.elaboration.world_files import Library
 from specs.missions import shipped_missions
 from specs.parser import read
 from specs.preprocessing import MAX_BYTES, decode

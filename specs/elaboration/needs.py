@@ -13,6 +13,7 @@ from semantics.behaviours.values import Value, show
 from semantics.state.signature import NO_ENTITIES
 from specs import syntax as s
 from specs.codes import Code
+from specs.construct_text import write
 from specs.elaboration.findings import Findings, shorten
 from specs.elaboration.value_types import (
     COLLECTIONS,
@@ -29,7 +30,6 @@ from specs.elaboration.value_types import (
     may_take,
     members_of,
 )
-from specs.writing import write
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,6 +17,7 @@ from semantics.behaviours.values import Value
 from specs import syntax as s
 from specs.autopilot_words import ORDERS
 from specs.codes import Code
+from specs.construct_text import write
 from specs.elaboration.expressions import (
     check_arity,
     elaborate_agent,
@@ -33,7 +34,6 @@ from specs.elaboration.rule_schemas import Schema, SchemaParameter
 from specs.elaboration.rules import elaborate_rule, word_of
 from specs.elaboration.scopes import Scope, Variables
 from specs.foreign_words import DONE
-from specs.writing import write
 
 LONGEST: Final = 7 * 24 * 3600.0
 """The longest duration in seconds."""

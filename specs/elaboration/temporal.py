@@ -14,9 +14,9 @@ from semantics.state.setting import Control
 from semantics.successors import rules_of
 from specs import syntax as s
 from specs.codes import Code
+from specs.construct_text import write
 from specs.elaboration.formulas import IMPLICATIONS, Context, FormulaElaborator, TooLarge, implications
 from specs.elaboration.names import Names
-from specs.writing import write
 
 MOST_NESTED: Final = 32
 """The largest nesting depth of path operators."""

@@ -27,13 +27,13 @@ from semantics.timing.timing import (
 )
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.constants import elaborate_constant
+from specs.construct_text import write
+from specs.elaboration.constant_values import elaborate_constant
 from specs.elaboration.findings import Findings, a
 from specs.elaboration.names import Names
 from specs.elaboration.world import InitialWorld
-from specs.layout import pieces
+from specs.mission_layout import pieces
 from specs.timing_mistakes import BEGINNING
-from specs.writing import write
 
 LONGEST: Final = 7 * 24 * 3600
 """The longest duration in seconds."""

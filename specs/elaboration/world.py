@@ -10,10 +10,10 @@ from physical import centroid, point
 from semantics.state.physical_model import Carried, Placed, Placement
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.files import Library, read_source
 from specs.elaboration.findings import a
 from specs.elaboration.geometry import elaborate_placement
 from specs.elaboration.names import Names
+from specs.elaboration.world_files import Library, read_source
 
 MOST_ENTITIES: Final = 2_000
 MOST_PAIRS: Final = 1_200_000

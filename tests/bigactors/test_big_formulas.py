@@ -2,11 +2,11 @@ import pytest
 
 from bigactors.big.formulas import MOST_NESTED, parse_claim
 from bigactors.big.temporal import Decider
+from bigraphs.claims import ClaimOutcome
 from bigraphs.errors import NotationError
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system
 from bigraphs.notation.formulas import MOST_WORDS
-from bigraphs.verdicts import ClaimOutcome
 
 SYSTEM = read_system("""\
 ctrl Room = 0; atomic ctrl Ball = 0; atomic fun ctrl Lamp(n) = 0;

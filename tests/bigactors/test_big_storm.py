@@ -10,10 +10,10 @@ import pytest
 from bigactors.big import storm
 from bigactors.big.storm import answers, check_queries, translated
 from bigactors.mistakes import Mistake
+from bigraphs.claims import ClaimOutcome
 from bigraphs.errors import NotationError
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system
-from bigraphs.verdicts import ClaimOutcome
 
 needs_storm = pytest.mark.skipif(find_spec("stormpy") is None, reason="stormpy is not installed")
 

@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bigactors.big.temporal import Decider, graph_of
+from bigraphs.claims import ClaimOutcome, WitnessRun, WitnessStep
 from bigraphs.examples import example_names, example_text
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system
-from bigraphs.verdicts import ClaimOutcome, WitnessRun, WitnessStep
 
 HOLDS, VIOLATED, INCOMPLETE = ClaimOutcome.HOLDS, ClaimOutcome.VIOLATED, ClaimOutcome.INCOMPLETE
 

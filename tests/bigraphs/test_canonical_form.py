@@ -9,7 +9,7 @@ from bigraphs.algebra import atom, close, ion, merge, nest
 from bigraphs.bigraph import Node, assemble, normal
 from bigraphs.canonical_form import canonical, equal
 from bigraphs.interface import Interface
-from bigraphs.relations import from_relations
+from bigraphs.relational_bigraphs import from_relations
 
 SMALL = bigraphs(Interface(), Interface(1, ("x",)), max_nodes=5, max_edges=3, controls=("A", "C", "U"))
 

@@ -9,7 +9,7 @@ from scale import examples
 from bigraphs.algebra import close
 from bigraphs.drawing import draw_bigraph, save_bigraph
 from bigraphs.errors import BigraphError
-from bigraphs.relations import from_relations
+from bigraphs.relational_bigraphs import from_relations
 
 WORLD = close(
     from_relations(

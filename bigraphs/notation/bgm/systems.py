@@ -8,7 +8,7 @@ from typing import Final
 from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph
 from bigraphs.errors import NotationError
-from bigraphs.notation.bgm import queries
+from bigraphs.notation.bgm import property_elaboration
 from bigraphs.notation.bgm.parser import parse_bgm
 from bigraphs.notation.bgm.syntax import (
     ControlLine,
@@ -215,7 +215,7 @@ class _Reading:
         lines = [line for line in self.lines if isinstance(line, PropertyLine)]
         self.refuse_again("property", [(line.name, line.offset) for line in lines])
         for line in lines:
-            found = queries.formula(line.query, self.terms, self.declared)
+            found = property_elaboration.formula(line.query, self.terms, self.declared)
             if found is not None:
                 yield SystemProperty(line.name, found)
 

@@ -35,7 +35,7 @@ DEEPEST: Final = 90
 def write_big(bigraph: Bigraph) -> str:
     """Return the text of a bigraph; raises BigraphError for a named node, and for places that nest too deeply.
 
-    >>> from bigraphs.relations import from_relations
+    >>> from bigraphs.relational_bigraphs import from_relations
     >>> from dataclasses import replace
     >>> one = from_relations({"u": "UAV", "a": "Area"}, {"u": "a"}, {"net": ["u"]})
     >>> write_big(replace(one, nodes=tuple(replace(node, name=None) for node in one.nodes)))

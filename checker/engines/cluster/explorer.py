@@ -13,7 +13,7 @@ from typing import TypeVar
 from checker.engines.cluster.checkpoints import Latest, read_latest, write_latest
 from checker.engines.cluster.crew import Crew, LostError
 from checker.engines.cluster.lookup import CrewConfigurations, CrewOrigins, CrewRows, CrewSurvey, look_at_each
-from checker.engines.cluster.merging import is_mergeable, merge
+from checker.engines.cluster.merged_findings import is_mergeable, merge
 from checker.engines.cluster.numbering import Places
 from checker.engines.cluster.rounds import RoundLimits
 from checker.engines.cluster.shard import ShardProgress

@@ -7,9 +7,9 @@ from typing import Any, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from checker.engines.cluster.cluster_worker import Edges
 from checker.engines.cluster.crew import Crew
 from checker.engines.cluster.numbering import Places
-from checker.engines.cluster.worker import Edges
 from checker.engines.contract import Inspect
 from checker.engines.graph import Graph
 from semantics.properties.propositions import Proposition

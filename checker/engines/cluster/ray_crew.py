@@ -22,11 +22,11 @@ from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
+from checker.engines.cluster.cluster_worker import Worker
 from checker.engines.cluster.crew import ClusterError, LostError
 from checker.engines.cluster.explorer import Expedition
-from checker.engines.cluster.links import Address, Sockets
 from checker.engines.cluster.transfer import WORKERS_AT_MOST
-from checker.engines.cluster.worker import Worker
+from checker.engines.cluster.worker_links import Address, Sockets
 from checker.engines.contract import (
     CheckpointError,
     Cluster,

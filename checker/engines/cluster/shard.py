@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.cluster import kernel
-from checker.engines.cluster.keys import Keys
+from checker.engines.cluster.row_keys import Keys
 from checker.engines.cluster.transfer import ColumnUpdate, Dictionary, RowParcel, SentValues
 from checker.engines.fast import kernel as loops
 from checker.engines.fast.columns import WORD, Packing, shifts

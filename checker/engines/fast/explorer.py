@@ -16,9 +16,9 @@ from checker.engines.contract import Exploration, Inspect, Options, Progress
 from checker.engines.estimate import estimate
 from checker.engines.fast.checkpoint import Journey, resume, save
 from checker.engines.fast.compiling import compilation_uncounted
-from checker.engines.fast.graph import GraphSurvey
-from checker.engines.fast.inspecting import inspect_fast
 from checker.engines.fast.learner import Learner
+from checker.engines.fast.row_graph import GraphSurvey
+from checker.engines.fast.row_inspection import inspect_fast
 from checker.engines.fast.space import Space
 from checker.limits import Bound, BoundMet, CheckPart, Limits, Stop, bounded, is_full, memory_left
 from semantics.state.configuration import Configuration

@@ -8,7 +8,7 @@ from typing import Any
 
 from checker.engines.fast.recording import QuestionScope
 from checker.engines.fast.rule_cache import Exchange, NoImage, names_in
-from checker.reduction.automorphisms import Automorphisms
+from checker.reduction.mission_automorphisms import Automorphisms
 from checker.reduction.pairing import Pairing, Unlike
 from semantics.behaviours.observations import AGENT
 from semantics.state.cells import Cell, Row

@@ -13,7 +13,7 @@ from operator import and_, or_
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.survey import RowSurvey, known
+from checker.engines.fast.row_survey import RowSurvey, known
 from semantics.properties.propositions import (
     Always,
     And,

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from checker.engines.fast.columns import ABSENT, Place
 from checker.engines.fast.recording import ColumnQuestion, Edited
 from checker.engines.fast.value_templates import put_together, taken_apart
-from checker.reduction.renaming import WORD, Renaming, asked
+from checker.reduction.configuration_renaming import WORD, Renaming, asked
 from semantics.behaviours.observations import AGENT
 from semantics.state.cells import Cell
 from semantics.state.configuration import Label

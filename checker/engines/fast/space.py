@@ -212,7 +212,7 @@ class Space:
 
     def _expand(self, choosing: "Choosing", until: int, room: int) -> bool:
         """Expand rows until row `until` or until there are `room` rows; return False at something not learned yet."""
-        from checker.engines.fast.ample import expand_reduced  # noqa: PLC0415  # compiled only for a reduction
+        from checker.engines.fast.ample_kernel import expand_reduced  # noqa: PLC0415  # compiled only for a reduction
 
         loop: Callable[..., bool] = expand_reduced
         swaps = self.exchanging

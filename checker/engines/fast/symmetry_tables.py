@@ -29,7 +29,7 @@ from checker.engines.fast.columns import Packing, Writes
 from checker.engines.fast.kernel import AT, GATHERED, NODE, UNSORTED, State, SuccessorBatch
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.value_templates import holes, taken_apart
-from checker.reduction.items import Items, Member, Place, Roles
+from checker.reduction.member_items import Items, Member, Place, Roles
 from checker.reduction.representatives import MOST_ORDERS
 from semantics.state.cells import AGENTS, NAMES
 

@@ -10,11 +10,16 @@ from typing import TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.inspecting import truths
+from checker.engines.fast.row_inspection import truths
 from checker.engines.timed.answers import DateSpan, FirstMoments, TakenStep, TimelockRun, WaitAnswer
 from checker.engines.timed.digital_answers import control_pairs
 from checker.engines.timed.first_runs import TimedRun
-from checker.engines.zones.automaton import (
+from checker.engines.zones.difference_bounds import MOST, NONE
+from checker.engines.zones.earliest_dates import Dates, Zone, tested, whole
+from checker.engines.zones.first_run import run_of
+from checker.engines.zones.observers import Meter, Observer, ObserverClock, Rule
+from checker.engines.zones.questions import NO_TURN, first_turn, is_aloft, longest_flight, unbounded
+from checker.engines.zones.timed_automaton import (
     EDGE,
     EDGES,
     EDGES_END,
@@ -25,14 +30,9 @@ from checker.engines.zones.automaton import (
     STEP,
     Constraint,
 )
-from checker.engines.zones.bounds import MOST, NONE
-from checker.engines.zones.dates import Dates, Zone, tested, whole
-from checker.engines.zones.first_run import run_of
-from checker.engines.zones.observers import Meter, Observer, ObserverClock, Rule
-from checker.engines.zones.questions import NO_TURN, first_turn, is_aloft, longest_flight, unbounded
-from checker.engines.zones.search import Search
 from checker.engines.zones.timed_automaton_of import Network
 from checker.engines.zones.timed_survey import TimedSurvey
+from checker.engines.zones.zone_search import Search
 from checker.limits import look
 from checker.properties.critical_path import way_to
 from checker.properties.inspections import InTime

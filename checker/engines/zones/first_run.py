@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from checker.engines.zones.bounds import close
-from checker.engines.zones.dates import Dates, TimedState, Zone
-from checker.engines.zones.search import Search, ShortestRun
+from checker.engines.zones.difference_bounds import close
+from checker.engines.zones.earliest_dates import Dates, TimedState, Zone
+from checker.engines.zones.zone_search import Search, ShortestRun
 from checker.limits import look
 
 Wanted = Callable[[int], list[Zone]]

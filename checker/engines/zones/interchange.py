@@ -15,8 +15,8 @@ from itertools import count, islice
 from typing import Final, NamedTuple
 
 from checker.engines.timed.zone_answers import ZoneTimes
-from checker.engines.zones.automaton import Constraint, Edge, TimedAutomaton
 from checker.engines.zones.observers import Meter, Observer, ObserverClock
+from checker.engines.zones.timed_automaton import Constraint, Edge, TimedAutomaton
 from checker.engines.zones.timed_automaton_of import Network
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property

@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.loops import inner, njit
-from checker.engines.zones.automaton import (
+from checker.engines.zones.difference_bounds import Matrix, end, extrapolate, let_pass, restrict
+from checker.engines.zones.timed_automaton import (
     CLOCKS,
     DEADLINE,
     DEADLINES,
@@ -38,7 +39,6 @@ from checker.engines.zones.automaton import (
     TESTS,
     TESTS_END,
 )
-from checker.engines.zones.bounds import Matrix, end, extrapolate, let_pass, restrict
 
 Ints = NDArray[np.int32]
 State = NDArray[np.int64]

@@ -41,9 +41,9 @@ from checker.engines.fast.leaves import (
 )
 from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
-from checker.engines.zones import automaton as automata
-from checker.engines.zones.automaton import DEADLINE, EDGE, LOCATION, TEST
-from checker.engines.zones.bounds import NONE
+from checker.engines.zones import timed_automaton as automata
+from checker.engines.zones.difference_bounds import NONE
+from checker.engines.zones.timed_automaton import DEADLINE, EDGE, LOCATION, TEST
 from semantics.timing.actor_clocks import BOUND
 from semantics.timing.actor_clocks import FREE as UNBOUND
 

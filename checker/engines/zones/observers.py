@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from enum import Enum, auto
 from typing import NamedTuple
 
-from checker.engines.zones.automaton import Constraint, Edge, Location, TimedAutomaton
-from checker.engines.zones.bounds import NONE
+from checker.engines.zones.difference_bounds import NONE
+from checker.engines.zones.timed_automaton import Constraint, Edge, Location, TimedAutomaton
 from checker.engines.zones.timed_automaton_of import NOWHERE, Network
 
 

@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.timed.answers import NO_SPAN, DateSpan, TakenStep
-from checker.engines.zones.automaton import Constraint, Edge
-from checker.engines.zones.bounds import FREE, MOST
-from checker.engines.zones.dates import Dates, Zone, tested, whole
+from checker.engines.zones.difference_bounds import FREE, MOST
+from checker.engines.zones.earliest_dates import Dates, Zone, tested, whole
 from checker.engines.zones.first_run import run_of
 from checker.engines.zones.observers import Meter, Observer, ObserverClock
-from checker.engines.zones.search import Search
+from checker.engines.zones.timed_automaton import Constraint, Edge
 from checker.engines.zones.timed_automaton_of import Network
+from checker.engines.zones.zone_search import Search
 
 Asked = list[list[tuple[Edge, int]]]
 """For each location the edges of requested steps, each with the number of its set."""

@@ -25,7 +25,15 @@ from checker.engines.fast.space import Space
 from checker.engines.fast.table import most_in
 from checker.engines.fast.value_templates import settled
 from checker.engines.zones import location_successors
-from checker.engines.zones.automaton import (
+from checker.engines.zones.difference_bounds import NONE
+from checker.engines.zones.location_successors import (
+    ANSWER,
+    CHOICE,
+    AutomatonGrowth,
+    LearnedClocks,
+    LocationView,
+)
+from checker.engines.zones.timed_automaton import (
     CLOCKS,
     DEADLINE,
     DEADLINES,
@@ -34,14 +42,6 @@ from checker.engines.zones.automaton import (
     TEST,
     Constraint,
     TimedAutomaton,
-)
-from checker.engines.zones.bounds import NONE
-from checker.engines.zones.location_successors import (
-    ANSWER,
-    CHOICE,
-    AutomatonGrowth,
-    LearnedClocks,
-    LocationView,
 )
 from checker.limits import look
 from semantics.environment import Clause

@@ -11,8 +11,7 @@ import networkx as nx
 
 from checker.engines.timed.answers import TimelockRun
 from checker.engines.timed.first_runs import TimedRun
-from checker.engines.zones.automaton import Constraint, TimedAutomaton
-from checker.engines.zones.dates import (
+from checker.engines.zones.earliest_dates import (
     Dates,
     TimedState,
     Zone,
@@ -26,8 +25,9 @@ from checker.engines.zones.dates import (
 )
 from checker.engines.zones.first_run import first_run
 from checker.engines.zones.observers import Meter, Observer, ObserverClock
-from checker.engines.zones.search import Search
+from checker.engines.zones.timed_automaton import Constraint, TimedAutomaton
 from checker.engines.zones.timed_automaton_of import Network
+from checker.engines.zones.zone_search import Search
 from checker.limits import look
 from semantics.timing.actor_clocks import Sort
 

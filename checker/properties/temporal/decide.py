@@ -10,7 +10,7 @@ import numpy as np
 from checker.engines.contract import Exploration
 from checker.engines.graph import Graph, graph_of
 from checker.limits import BoundMet
-from checker.properties import vacuity
+from checker.properties import invariant_vacuity
 from checker.properties.findings import MOST_VIOLATIONS, Finding
 from checker.properties.inspections import DeadlockFreedom
 from checker.properties.temporal.components import Conditions
@@ -18,7 +18,13 @@ from checker.properties.temporal.deadlock import Deadlocks
 from checker.properties.temporal.decision import Decision, FormulaDecider
 from checker.properties.temporal.fairness import EACH_RULE_AND_REQUEST, classes, conditions_of, optional
 from checker.properties.temporal.lassos import Lasso
-from checker.properties.temporal.progress import Pending, ProgressSearch, Starved, owed, pending_requests
+from checker.properties.temporal.served_requests import (
+    Pending,
+    ProgressSearch,
+    Starved,
+    owed,
+    pending_requests,
+)
 from checker.properties.temporal.truth import FormulaTruth, Valuation, valuation
 from checker.properties.temporal.vacuity import is_judged
 from checker.steps import step_of
@@ -58,7 +64,7 @@ def is_still(found: Exploration, formula: Temporal) -> bool:
     try:
         if found.survey is not None:
             return found.survey.is_still(parts)
-        return vacuity.is_still(found.configurations, parts)
+        return invariant_vacuity.is_still(found.configurations, parts)
     except BoundMet:
         return False
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from checker.properties.subformulas import STILL
-from checker.properties.temporal.automaton import AutomatonTooLargeError
 from checker.properties.temporal.branching import Branching
+from checker.properties.temporal.buchi_automaton import AutomatonTooLargeError
 from checker.properties.temporal.components import Conditions
 from checker.properties.temporal.evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso

@@ -1,7 +1,7 @@
 """Linear time: a short fair run on which a formula is false, if there is one."""
 
 from checker.engines.graph import Bools, Graph
-from checker.properties.temporal.automaton import automaton_of
+from checker.properties.temporal.buchi_automaton import automaton_of
 from checker.properties.temporal.components import Conditions, fair_components
 from checker.properties.temporal.lassos import Lasso, fair_cycles, tightened
 from checker.properties.temporal.product import Product, product_of

@@ -7,7 +7,7 @@ import numpy as np
 
 from checker.engines.graph import Bools, Graph, Numbers
 from checker.limits import look
-from checker.properties.temporal.automaton import BuchiAutomaton, Move
+from checker.properties.temporal.buchi_automaton import BuchiAutomaton, Move
 from checker.properties.temporal.components import Conditions
 from checker.properties.temporal.digraph import leaving
 from checker.properties.temporal.truth import FormulaTruth, is_about_steps

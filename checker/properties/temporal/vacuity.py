@@ -12,8 +12,8 @@ from typing import Final, cast
 from checker.engines.graph import Graph
 from checker.limits import BoundMet
 from checker.properties.subformulas import Formula, Subformula, at, few, never_needed, unneeded
-from checker.properties.temporal.automaton import AutomatonTooLargeError
 from checker.properties.temporal.branching import Branching
+from checker.properties.temporal.buchi_automaton import AutomatonTooLargeError
 from checker.properties.temporal.components import Conditions, fair_components
 from checker.properties.temporal.digraph import shortest
 from checker.properties.temporal.effort import Exhausted

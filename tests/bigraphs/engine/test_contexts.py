@@ -13,7 +13,7 @@ from bigraphs.engine.contexts import ConditionCheck, without_idle
 from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.patterns import compile_pattern
 from bigraphs.engine.search import Matcher
-from bigraphs.engine.state import make_state
+from bigraphs.engine.state_arrays import make_state
 from bigraphs.matching import find_matches
 from bigraphs.notation import read_big
 from bigraphs.signature import Control, Signature

@@ -15,7 +15,7 @@ from bigraphs.engine.intern_tables import InternTables, has_sharing
 from bigraphs.engine.machine import Machine
 from bigraphs.engine.patterns import compile_pattern
 from bigraphs.engine.search import Matcher
-from bigraphs.engine.state import make_state
+from bigraphs.engine.state_arrays import make_state
 from bigraphs.notation import read_system
 
 

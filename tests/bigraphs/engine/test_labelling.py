@@ -11,8 +11,8 @@ from bigraphs.bigraph import Node, assemble, normal
 from bigraphs.canonical_form import equal
 from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.labelling import Labelling
-from bigraphs.engine.state import make_state
-from bigraphs.relations import from_relations
+from bigraphs.engine.state_arrays import make_state
+from bigraphs.relational_bigraphs import from_relations
 
 SMALL = grounds(max_nodes=5, max_edges=3, controls=("A", "B", "U"), names=("x",), sharing=True)
 

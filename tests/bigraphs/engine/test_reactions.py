@@ -14,7 +14,7 @@ from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.occurrences import Spot
 from bigraphs.engine.reactions import CompiledReaction
 from bigraphs.engine.rule_index import ReactionIndex
-from bigraphs.engine.state import bits, make_state
+from bigraphs.engine.state_arrays import bits, make_state
 from bigraphs.errors import BigraphError
 from bigraphs.matching import find_matches
 from bigraphs.rewriting import rewrite

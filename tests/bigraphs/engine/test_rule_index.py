@@ -12,7 +12,7 @@ from bigraphs.engine.occurrences import Spot
 from bigraphs.engine.reactions import CompiledReaction
 from bigraphs.engine.rule_index import ReactionIndex
 from bigraphs.engine.search import Matcher
-from bigraphs.engine.state import make_state
+from bigraphs.engine.state_arrays import make_state
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system
 

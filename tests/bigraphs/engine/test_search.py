@@ -16,7 +16,7 @@ from bigraphs.engine.contexts import PlaceContexts
 from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.patterns import check_solid, compile_pattern
 from bigraphs.engine.search import Matcher
-from bigraphs.engine.state import make_state
+from bigraphs.engine.state_arrays import make_state
 from bigraphs.errors import BigraphError
 from bigraphs.matching import find_matches
 

@@ -9,7 +9,7 @@ from bigraphs.engine import state_order
 from bigraphs.engine.decoding import to_bigraph
 from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.labelling import Labelling
-from bigraphs.engine.state import make_state
+from bigraphs.engine.state_arrays import make_state
 from bigraphs.engine.state_order import Outlines
 from bigraphs.notation import read_system
 

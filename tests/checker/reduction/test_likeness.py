@@ -17,7 +17,7 @@ from checker import Engine, Limits, explore
 from checker.engines.fast.interchangeable import Likeness
 from checker.engines.fast.recording import ColumnQuestion
 from checker.engines.fast.rule_cache import Exchange, Lesson, Lessons, LessonStage, NoImage
-from checker.reduction.renaming import Renaming
+from checker.reduction.configuration_renaming import Renaming
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Nodes, agent_key
 from semantics.state.cells import is_

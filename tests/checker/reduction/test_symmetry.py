@@ -16,8 +16,8 @@ from shipped import UNTIMED
 from checker import Keeping, Limits, Outcome, Reduction, RefusedError, check, explore
 from checker.check import reductions_of
 from checker.reduction import Reduced
+from checker.reduction.configuration_renaming import Renaming
 from checker.reduction.footprint_check import Drift
-from checker.reduction.renaming import Renaming
 from checker.reduction.symmetry import MissionSymmetry
 from checker.traces import replay, to_json
 from semantics import Scheduler, control

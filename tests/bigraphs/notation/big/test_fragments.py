@@ -7,7 +7,7 @@ from bigraphs.canonical_form import equal
 from bigraphs.errors import BigraphError, NotationError
 from bigraphs.notation.big.expression_of import write_big
 from bigraphs.notation.big.fragments import read_big, read_theory
-from bigraphs.relations import from_relations
+from bigraphs.relational_bigraphs import from_relations
 from bigraphs.rewriting import successors
 
 THEORY = """

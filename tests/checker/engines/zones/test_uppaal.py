@@ -14,9 +14,9 @@ from timed_missions import with_timing
 from timed_models import ENDURANCE, EQUAL, agree, found_by_tchecker, questions, timed_verdicts, written
 
 from checker import check
-from checker.engines.zones.automaton import Constraint, Edge, Location, TimedAutomaton
-from checker.engines.zones.search import Search
+from checker.engines.zones.timed_automaton import Constraint, Edge, Location, TimedAutomaton
 from checker.engines.zones.uppaal import uppaal_text
+from checker.engines.zones.zone_search import Search
 from checker.verdicts import Outcome
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property

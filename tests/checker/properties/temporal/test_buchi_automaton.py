@@ -3,7 +3,7 @@
 import pytest
 from structures import P, Q
 
-from checker.properties.temporal.automaton import AutomatonTooLargeError, automaton_of
+from checker.properties.temporal.buchi_automaton import AutomatonTooLargeError, automaton_of
 from checker.properties.temporal.linear import conjuncts
 from semantics.properties.propositions import Always, Known
 from semantics.properties.temporal import (

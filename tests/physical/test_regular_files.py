@@ -71,7 +71,7 @@ OWN = {
 }
 """Which read files of ours, or what a process of ours says."""
 
-ALONE = {"physical/files.py", "physical/untrusted_text.py", "bigraphs/notation/files.py"}
+ALONE = {"physical/regular_files.py", "physical/untrusted_text.py", "bigraphs/notation/system_files.py"}
 """Who reads what others wrote; bigraphs know none of our rooms."""
 
 

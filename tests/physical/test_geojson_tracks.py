@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from shapely.geometry import shape
 
 from physical.frame import E7
-from physical.tracks import PositionFix, Track, write_tracks
+from physical.geojson_tracks import PositionFix, Track, write_tracks
 
 HALF = 180 * E7
 

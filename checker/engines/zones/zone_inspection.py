@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.contract import Inspect
-from checker.engines.fast.inspecting import (
+from checker.engines.fast.learner import TransitionGroup
+from checker.engines.fast.row_inspection import (
     ALL,
     are_independent,
     collect,
@@ -19,7 +20,6 @@ from checker.engines.fast.inspecting import (
     of_rows,
     together,
 )
-from checker.engines.fast.learner import TransitionGroup
 from checker.engines.timed.answers import shown_to, without_sayings
 from checker.engines.timed.zone_answers import ZoneTimes
 from checker.engines.zones.questions import (

@@ -9,18 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.cluster import checkpoints
-from checker.engines.cluster.links import Links
 from checker.engines.cluster.rounds import Mark, RoundLimits, kept, mark
 from checker.engines.cluster.shard import Shard, ShardProgress
 from checker.engines.cluster.transfer import RowParcel
+from checker.engines.cluster.worker_links import Links
 from checker.engines.contract import CheckpointError, Inspect
 from checker.engines.fast import kernel as loops
-from checker.engines.fast.graph import pending_in_space
-from checker.engines.fast.inspecting import inspect_fast, is_still, truths
 from checker.engines.fast.kernel import AT, GATHERED
-from checker.engines.fast.survey import RowSurvey
+from checker.engines.fast.row_graph import pending_in_space
+from checker.engines.fast.row_inspection import inspect_fast, is_still, truths
+from checker.engines.fast.row_survey import RowSurvey
 from checker.properties.inspections import Invariant
-from checker.properties.vacuity import asked
+from checker.properties.invariant_vacuity import asked
 from checker.properties.visited import Visited
 from semantics.properties.propositions import Atom, Proposition, atoms_of
 from semantics.state.cells import Row

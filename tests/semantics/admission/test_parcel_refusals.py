@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semantics.admission.objections import text_objection
+from semantics.admission.parcel_refusals import text_objection
 from semantics.admission.value_flow import flow_of
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault

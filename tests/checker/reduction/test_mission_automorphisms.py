@@ -5,9 +5,9 @@ from itertools import combinations
 import pytest
 from shipped import UNTIMED
 
-from checker.reduction.automorphisms import Automorphisms, restated
+from checker.reduction.configuration_renaming import Renaming, asked
+from checker.reduction.mission_automorphisms import Automorphisms, restated
 from checker.reduction.pairing import Pairing, Unlike
-from checker.reduction.renaming import Renaming, asked
 from specs.elaboration import load_mission
 
 OF_THE_WORLD = ("they are not in the same place", "they are on different channels", "what is said of")

@@ -7,11 +7,11 @@ import pytest
 from semantics.behaviours.commands import COMMANDS, WAY
 from semantics.behaviours.observations import QueryOperator
 from specs import syntax as s
+from specs.construct_text import write
 from specs.diagnostics import Source
 from specs.formatter import format_mission
+from specs.language_reference import EXAMPLES, NODES, forms, grammar_parts, language_reference
 from specs.parser import parse
-from specs.reference import EXAMPLES, NODES, forms, grammar_parts, language_reference
-from specs.writing import write
 
 FRAMES = {
     "Geometry": "world {{ a: B = {} }}",

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from specs import syntax as s
+from specs.construct_text import constant, listed, placed, separated, shape, write
 from specs.layout_timing import TIMING_PIECES
-from specs.writing import constant, listed, placed, separated, shape, write
 
 WIDTH: Final = 100
 _STEP: Final = "  "

@@ -13,7 +13,7 @@ from checker import Limits, explore
 from checker.properties.temporal.decide import TemporalDecider
 from checker.properties.temporal.fairness import EACH_RULE_AND_REQUEST
 from checker.properties.temporal.linear import counterexample
-from checker.properties.temporal.progress import ProgressSearch, owed, pending_requests
+from checker.properties.temporal.served_requests import ProgressSearch, owed, pending_requests
 from checker.properties.temporal.truth import FormulaTruth
 from semantics.properties.propositions import Known
 from semantics.properties.temporal import (

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scale import examples
 
-from checker.engines.zones.automaton import Constraint, Edge
-from checker.engines.zones.bounds import FREE, close, extrapolate, let_pass, restrict
-from checker.engines.zones.dates import before_edge, holds, least_delay, without
+from checker.engines.zones.difference_bounds import FREE, close, extrapolate, let_pass, restrict
+from checker.engines.zones.earliest_dates import before_edge, holds, least_delay, without
+from checker.engines.zones.timed_automaton import Constraint, Edge
 
 MOST = 3
 SOME = examples(120, deadline=None)

@@ -6,8 +6,8 @@ from functools import cached_property, partial
 from itertools import product
 from typing import Any
 
+from checker.reduction.configuration_renaming import WORD, Mentions, Renaming
 from checker.reduction.pairing import VARIABLES, Pairing, Unlike
-from checker.reduction.renaming import WORD, Mentions, Renaming
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault, Literal
 from semantics.behaviours.patterns import Exactly

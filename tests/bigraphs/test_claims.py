@@ -2,10 +2,7 @@
 
 import pytest
 
-from bigraphs.errors import BigraphError
-from bigraphs.exploration import explore
-from bigraphs.notation import read_bgm, read_system
-from bigraphs.verdicts import (
+from bigraphs.claims import (
     ClaimOutcome,
     Quantifier,
     deadlock_verdict,
@@ -13,6 +10,9 @@ from bigraphs.verdicts import (
     predicate_verdict,
     property_verdict,
 )
+from bigraphs.errors import BigraphError
+from bigraphs.exploration import explore
+from bigraphs.notation import read_bgm, read_system
 
 COUNT = """
 atomic ctrl Tick = 0; atomic ctrl Tock = 0;

@@ -5,8 +5,8 @@ from functools import partial
 
 import numpy as np
 
-from checker.engines.fast.inspecting import is_still, truths
-from checker.engines.fast.survey import RowSurvey
+from checker.engines.fast.row_inspection import is_still, truths
+from checker.engines.fast.row_survey import RowSurvey
 from checker.engines.graph import Graph
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Label

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
-from checker.engines.zones.bounds import MOST, NONE
+from checker.engines.zones.difference_bounds import MOST, NONE
 
 UNKNOWN = -1
 """The start of a location's edges before they are worked out."""

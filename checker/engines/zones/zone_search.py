@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.zones import kernel
-from checker.engines.zones.automaton import EDGES, LOCATION, SIZE, UNKNOWN, TimedAutomaton
-from checker.engines.zones.bounds import FREE
+from checker.engines.zones.difference_bounds import FREE
 from checker.engines.zones.kernel import (
     AT,
     COUNT,
@@ -24,6 +23,7 @@ from checker.engines.zones.kernel import (
     RANKED,
     USED,
 )
+from checker.engines.zones.timed_automaton import EDGES, LOCATION, SIZE, UNKNOWN, TimedAutomaton
 
 CHUNK = 1 << 14
 """Zones kept between two checks of the time."""

@@ -1,9 +1,9 @@
 """Searches through small automata: layers, what is dropped, and the first run."""
 
-from checker.engines.zones import dates
-from checker.engines.zones.automaton import Constraint, Edge, Location, TimedAutomaton
+from checker.engines.zones import earliest_dates
 from checker.engines.zones.first_run import first_run
-from checker.engines.zones.search import Search, steps_left
+from checker.engines.zones.timed_automaton import Constraint, Edge, Location, TimedAutomaton
+from checker.engines.zones.zone_search import Search, steps_left
 
 STANDS = ((0, -1),)
 """No time passes."""
@@ -24,7 +24,9 @@ def searched(ways):
 
 def late(least):
     """Return what the clock has to show in the last location."""
-    return lambda place: [dates.tested(dates.whole(1), [Constraint(1, least)])] if place == 2 else []
+    return lambda place: (
+        [earliest_dates.tested(earliest_dates.whole(1), [Constraint(1, least)])] if place == 2 else []
+    )
 
 
 def test_what_another_zone_of_its_layer_holds_is_not_followed():

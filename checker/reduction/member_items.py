@@ -12,7 +12,7 @@ from hashlib import blake2b
 from typing import Any
 
 from checker.engines.fast.value_templates import holes, put_together, taken_apart
-from checker.reduction.renaming import Renaming, mentioned, spelled
+from checker.reduction.configuration_renaming import Renaming, mentioned, spelled
 from semantics.behaviours.observations import NOTHING_SEEN, Observation
 from semantics.state.cells import AGENTS, NAMES, Cell, Row
 from semantics.state.configuration import Configuration

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.timed.first_runs import TimedRun
-from checker.engines.zones.automaton import Constraint, Edge, TimedAutomaton
-from checker.engines.zones.bounds import FREE, close, restrict
+from checker.engines.zones.difference_bounds import FREE, close, restrict
+from checker.engines.zones.timed_automaton import Constraint, Edge, TimedAutomaton
 
 Zone = NDArray[np.int32]
 Union = dict[int, list[Zone]]

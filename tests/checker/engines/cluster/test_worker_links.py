@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from checker.engines.cluster.crew import LostError
-from checker.engines.cluster.links import Sockets
+from checker.engines.cluster.worker_links import Sockets
 
 SECRET = b"s" * 32
 
@@ -45,7 +45,7 @@ def test_each_gets_what_each_gave_it_more_than_the_system_buffers_too(linked, wo
 
 
 def test_who_does_not_know_the_secret_is_told_nothing(linked, monkeypatch):
-    monkeypatch.setattr("checker.engines.cluster.links.PATIENCE", 1.0)
+    monkeypatch.setattr("checker.engines.cluster.worker_links.PATIENCE", 1.0)
     with pytest.raises(LostError, match="could not meet the others"):
         linked([SECRET, b"another"])
 

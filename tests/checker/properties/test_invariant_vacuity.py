@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from checker import check
+from checker.properties.invariant_vacuity import Valuations, atoms_of, remarks_on, truth
 from checker.properties.subformulas import is_quantified, replaced
-from checker.properties.vacuity import Valuations, atoms_of, remarks_on, truth
 from semantics.properties.propositions import Always, And, Ended, Inside, LinkedWith, Not, Or, Waiting, holds
 
 A, B, C = Waiting("a"), Waiting("b"), Waiting("c")

@@ -45,7 +45,7 @@ from checker.engines.fast.kernel import (
 from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.path_ends import Trails, begin_row, end_of, lead_on
 from checker.engines.fast.persistent import find_set
-from checker.engines.fast.successors import list_steps, make, make_representative, without_repetitions
+from checker.engines.fast.row_successors import list_steps, make, make_representative, without_repetitions
 from checker.engines.fast.table import Words, bits_for, entry_of, find
 from checker.engines.fast.tree_compression import NO_ROOM, FoldedTable, intern, unfold
 
