@@ -13,7 +13,7 @@ from bigraphs.engine.decoding import to_bigraph
 from bigraphs.engine.machine import Machine, RewritingStep
 from bigraphs.engine.node_identity import identities
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.state_arrays import State
+from bigraphs.engine.state_arrays import GroundState
 from bigraphs.system import Rule, System, SystemKind
 
 
@@ -124,6 +124,6 @@ def _stage(
     )
 
 
-def _labels(machine: Machine, state: State) -> tuple[str, ...]:
+def _labels(machine: Machine, state: GroundState) -> tuple[str, ...]:
     holding, predicates = machine.holding(state), enumerate(machine.system.predicates)
     return tuple(predicate.label for number, predicate in predicates if number in holding)

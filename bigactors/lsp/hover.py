@@ -17,8 +17,8 @@ from semantics.properties.kinds import ABOUT, PropertyKind
 from specs import explain
 from specs import syntax as s
 from specs.construct_text import write
-from specs.elaboration.findings import Findings
 from specs.elaboration.geometry import elaborate_geometry
+from specs.elaboration.mission_mistakes import Findings
 from specs.standard_signature import STANDARD
 
 N = TypeVar("N", bound=s.Node)

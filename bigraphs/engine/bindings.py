@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.patterns import CompiledPattern
 from bigraphs.engine.search_state import OFTEN, PatternSearch, Placing, Step
-from bigraphs.engine.state_arrays import State
+from bigraphs.engine.state_arrays import GroundState
 
 
 def binding(world: InternTables, pattern: CompiledPattern, node: int, then: Step) -> Placing:
@@ -78,12 +78,12 @@ def _in_any_order(
     return bind
 
 
-def _fitting(world: InternTables, pattern: CompiledPattern) -> Callable[[State, int, int], bool]:
+def _fitting(world: InternTables, pattern: CompiledPattern) -> Callable[[GroundState, int, int], bool]:
     """Return the test whether a pattern link may bind a state link; an edge needs an edge of the same size."""
     names, fixed = pattern.names, len(world.names)
     sizes = [len(nodes) for nodes in pattern.on]
 
-    def fits(state: State, link: int, target: int) -> bool:
+    def fits(state: GroundState, link: int, target: int) -> bool:
         return link < names or (target >= fixed and state.points[target].bit_count() == sizes[link])
 
     return fits

@@ -8,14 +8,14 @@ from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.patterns import CompiledPattern, compile_pattern
 from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import PatternOccurrence
-from bigraphs.engine.state_arrays import State, bits
+from bigraphs.engine.state_arrays import GroundState, bits
 from bigraphs.system import Condition, Where
 
 
 class PlaceContexts:
     """The ancestors of places in one state, cached; `passive` is whether passive controls have to be considered."""
 
-    def __init__(self, state: State, *, passive: bool) -> None:
+    def __init__(self, state: GroundState, *, passive: bool) -> None:
         self.state = state
         self.passive = passive
         self._above: dict[int, int] = {}
@@ -73,7 +73,7 @@ class ConditionCheck:
         self.where = condition.where
         self.matcher = Matcher(world, compile_pattern(world, without_idle(condition.pattern)))
 
-    def holds(self, state: State, occurrence: PatternOccurrence) -> bool:
+    def holds(self, state: GroundState, occurrence: PatternOccurrence) -> bool:
         """Return whether the condition holds at an occurrence; it skips the search if a needed control is missing."""
         if not all(state.by_control[control] & ~occurrence.mask for control in self.matcher.pattern.controls):
             return not self.positive
@@ -83,7 +83,7 @@ class ConditionCheck:
         return occurs(self.matcher, state, state.occupied() & ~inside & ~occurrence.mask) is self.positive
 
 
-def occurs(matcher: Matcher, state: State, allowed: int = -1) -> bool:
+def occurs(matcher: Matcher, state: GroundState, allowed: int = -1) -> bool:
     """Return whether a pattern occurs among the allowed slots, in active places or not."""
     if not matcher.wide:
         return bool(matcher.find(state, allowed, once=True))
@@ -91,7 +91,7 @@ def occurs(matcher: Matcher, state: State, allowed: int = -1) -> bool:
     return any(around.admits(matcher.pattern, found) for found in matcher.find(state, allowed))
 
 
-def below(state: State, slots: int) -> int:
+def below(state: GroundState, slots: int) -> int:
     """Return the mask of all descendants of these nodes."""
     found, waiting = 0, slots
     while waiting:

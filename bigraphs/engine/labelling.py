@@ -18,7 +18,7 @@ from collections.abc import Iterator
 from typing import NamedTuple, TypeAlias
 
 from bigraphs.engine.intern_tables import REFERENCE, InternTables, Row
-from bigraphs.engine.state_arrays import Key, State, codes_in
+from bigraphs.engine.state_arrays import GroundState, Key, codes_in
 
 Incidence: TypeAlias = tuple[int, int]
 """A label and an edge; the negative number of a shared node serves as an edge."""
@@ -47,7 +47,7 @@ class Labelling:
         self._labels: dict[object, int] = {}
         self._profiles: dict[int, SubtreeProfile] = {}
 
-    def canonical(self, state: State) -> Key:
+    def canonical(self, state: GroundState) -> Key:
         """Return a key that two states of this world share if and only if they are the same bigraph."""
         return self.canonical_of(state.key())
 

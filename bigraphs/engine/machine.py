@@ -20,7 +20,7 @@ from bigraphs.engine.reactions import CompiledReaction
 from bigraphs.engine.rule_index import ReactionIndex, RuleIndex, numbers_in
 from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import PatternOccurrence
-from bigraphs.engine.state_arrays import Key, State, make_state
+from bigraphs.engine.state_arrays import GroundState, Key, make_state
 from bigraphs.engine.state_order import Outlines
 from bigraphs.errors import BigraphError
 from bigraphs.system import System
@@ -97,7 +97,7 @@ class Machine:
         """Return the initial state before the instantaneous rules."""
         return Spot(make_state(self.world, self.initial), self.index)
 
-    def holding(self, state: State) -> set[int]:
+    def holding(self, state: GroundState) -> set[int]:
         """Return the numbers of the predicates that hold in a state."""
         possible = numbers_in(self.predicate_index.possible(state))
         return {number for number in possible if occurs(self._predicate(number), state)}

@@ -12,10 +12,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from bigraphs.engine.patterns import CompiledPattern
-from bigraphs.engine.state_arrays import State, bits
+from bigraphs.engine.state_arrays import GroundState, bits
 
 
-def shared_places_fit(pattern: CompiledPattern, state: State, nodes: Sequence[int], used: int) -> bool:
+def shared_places_fit(pattern: CompiledPattern, state: GroundState, nodes: Sequence[int], used: int) -> bool:
     """Return whether the regions and sites cover all outer parents and all content of an occurrence's nodes."""
     places = region_places(pattern, state, nodes, used)
     tops = _tops(pattern, nodes)
@@ -30,7 +30,9 @@ def shared_places_fit(pattern: CompiledPattern, state: State, nodes: Sequence[in
     return True
 
 
-def region_places(pattern: CompiledPattern, state: State, nodes: Sequence[int], used: int) -> list[list[int]]:
+def region_places(
+    pattern: CompiledPattern, state: GroundState, nodes: Sequence[int], used: int
+) -> list[list[int]]:
     """Return the places of each region, sorted."""
     tops = _tops(pattern, nodes)
     found: list[list[int]] = [[] for _ in tops]
@@ -42,7 +44,7 @@ def region_places(pattern: CompiledPattern, state: State, nodes: Sequence[int], 
     return found
 
 
-def site_contents(pattern: CompiledPattern, state: State, nodes: Sequence[int], used: int) -> list[int]:
+def site_contents(pattern: CompiledPattern, state: GroundState, nodes: Sequence[int], used: int) -> list[int]:
     """Return the mask of the topmost slots in each site."""
     homes = _site_masks(pattern, nodes)
     found = [0] * len(homes)
@@ -73,7 +75,7 @@ def _site_masks(pattern: CompiledPattern, nodes: Sequence[int]) -> list[int]:
     return [_union(1 << nodes[place] for place in parents) for parents in pattern.sites]
 
 
-def _around(state: State, nodes: Sequence[int], used: int) -> dict[int, int]:
+def _around(state: GroundState, nodes: Sequence[int], used: int) -> dict[int, int]:
     """Return the places around an occurrence, each with the mask of the occurrence's nodes in it."""
     found: dict[int, int] = {}
     for slot in nodes:
@@ -83,11 +85,11 @@ def _around(state: State, nodes: Sequence[int], used: int) -> dict[int, int]:
     return found
 
 
-def _held(state: State, nodes: Sequence[int]) -> int:
+def _held(state: GroundState, nodes: Sequence[int]) -> int:
     return _union(state.kids[slot] for slot in nodes)
 
 
-def _matched_parents(state: State, slot: int, used: int) -> int:
+def _matched_parents(state: GroundState, slot: int, used: int) -> int:
     return _union(1 << place for place in state.parents[slot] if place >= 0) & used
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bigraphs.engine.state_arrays import State, bits
+from bigraphs.engine.state_arrays import GroundState, bits
 from bigraphs.errors import BigraphError
 
 
@@ -19,7 +19,7 @@ class MutableState:
 
     __slots__ = ("changed", "counted", "emptied", "relinked", "removed", "state")
 
-    def __init__(self, state: State) -> None:
+    def __init__(self, state: GroundState) -> None:
         self.state = state.copy()
         self.changed = 0
         self.emptied = 0
@@ -141,7 +141,7 @@ class MutableState:
         if shared:
             raise BigraphError("copy", "the rule would copy a node that other places share")
 
-    def finish(self) -> State:
+    def finish(self) -> GroundState:
         """Return the state with updated codes."""
         self.state.recode((self.changed | self.emptied) & ~self.state.free)
         return self.state

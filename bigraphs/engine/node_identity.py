@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from bigraphs.engine.machine import RewritingStep
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.state_arrays import State, bits
+from bigraphs.engine.state_arrays import GroundState, bits
 
 
 def identities(spot: Spot, step: RewritingStep) -> Iterator[tuple[int, int]]:
@@ -21,7 +21,7 @@ def identities(spot: Spot, step: RewritingStep) -> Iterator[tuple[int, int]]:
             yield number, after[slot]
 
 
-def _numbers(state: State) -> dict[int, int]:
+def _numbers(state: GroundState) -> dict[int, int]:
     """Return the number of each slot in the bigraph of a state: named nodes first, by name."""
     names = state.world.name_of
 

@@ -10,7 +10,7 @@ from bigraphs.engine.mutable_state import MutableState
 from bigraphs.engine.reactions import CompiledReaction
 from bigraphs.engine.rule_index import ReactionIndex, numbers_in
 from bigraphs.engine.search_state import PatternOccurrence
-from bigraphs.engine.state_arrays import State
+from bigraphs.engine.state_arrays import GroundState
 
 
 class Spot:
@@ -49,7 +49,7 @@ class Spot:
         "state",
     )
 
-    def __init__(self, state: State, index: ReactionIndex) -> None:
+    def __init__(self, state: GroundState, index: ReactionIndex) -> None:
         self.state = state
         self.known = self._known_before = 0
         self.found: dict[int, list[PatternOccurrence]] = {}

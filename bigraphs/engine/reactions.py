@@ -17,7 +17,7 @@ from bigraphs.engine.mutable_state import MutableState
 from bigraphs.engine.patterns import CompiledPattern, check_size, check_solid, compile_pattern
 from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import PatternOccurrence
-from bigraphs.engine.state_arrays import State, bits
+from bigraphs.engine.state_arrays import GroundState, bits
 from bigraphs.engine.tracking import top_down, traced, track, track_edges
 from bigraphs.errors import BigraphError
 from bigraphs.system import Rule
@@ -187,7 +187,7 @@ class CompiledReaction:
             uses.remove(use)
         return SiteChange(site, (*staying, *uses), bool(staying))
 
-    def apply(self, state: State, occurrence: PatternOccurrence) -> tuple[MutableState, dict[int, int]]:
+    def apply(self, state: GroundState, occurrence: PatternOccurrence) -> tuple[MutableState, dict[int, int]]:
         """Return the state after the rule acts at an occurrence, and the slots of the reactum's nodes in it."""
         nodes = occurrence.nodes
         regions = self._region_places(state, occurrence) if self.placed else []
@@ -216,7 +216,7 @@ class CompiledReaction:
             draft.remove(nodes[old])
         return draft, slots
 
-    def _name(self, draft: MutableState, state: State, slots: dict[int, int]) -> None:
+    def _name(self, draft: MutableState, state: GroundState, slots: dict[int, int]) -> None:
         """Name the nodes of the reactum; a node that an anonymous redex node matched loses its name."""
         for number, label in enumerate(self.labels):
             name = self.world.name_of[label]
@@ -226,7 +226,7 @@ class CompiledReaction:
             if draft.state.labels[slots[number]] != label:
                 draft.relabel(slots[number], label)
 
-    def _region_places(self, state: State, occurrence: PatternOccurrence) -> list[list[int]]:
+    def _region_places(self, state: GroundState, occurrence: PatternOccurrence) -> list[list[int]]:
         if self.world.sharing:
             return region_places(self.pattern, state, occurrence.nodes, occurrence.mask)
         found: list[list[int]] = [[] for _ in range(self.pattern.regions)]
@@ -235,7 +235,7 @@ class CompiledReaction:
                 found[region] = [state.parents[occurrence.nodes[node]][0]]
         return found
 
-    def _contents(self, state: State, occurrence: PatternOccurrence) -> list[int]:
+    def _contents(self, state: GroundState, occurrence: PatternOccurrence) -> list[int]:
         """Return the mask of the content of each site."""
         if self.world.sharing:
             return site_contents(self.pattern, state, occurrence.nodes, occurrence.mask)
@@ -255,7 +255,7 @@ class CompiledReaction:
     def _change_contents(
         self,
         draft: MutableState,
-        state: State,
+        state: GroundState,
         occurrence: PatternOccurrence,
         contents: list[int],
         places: _Places,

@@ -17,7 +17,7 @@ from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.multiple_parents import shared_places_fit
 from bigraphs.engine.patterns import CompiledPattern
 from bigraphs.engine.search_state import OFTEN, PatternOccurrence, PatternSearch, Placing, Step
-from bigraphs.engine.state_arrays import State, bits
+from bigraphs.engine.state_arrays import GroundState, bits
 
 _SELDOM: Final = 8
 """Up to this number of searches, a pattern is searched everywhere instead of only at touched nodes."""
@@ -53,7 +53,7 @@ class Matcher:
         """Return whether searches were so rare that a full search costs less than a plan for each start node."""
         return self._plans.searches < _SELDOM
 
-    def find(self, state: State, allowed: int = -1, *, once: bool = False) -> list[PatternOccurrence]:
+    def find(self, state: GroundState, allowed: int = -1, *, once: bool = False) -> list[PatternOccurrence]:
         """Return every occurrence within the allowed slots; with `once` at most one."""
         self._plans.searches += 1
         pattern, run = self.pattern, PatternSearch(state, self.pattern, allowed, once=once)
@@ -67,7 +67,7 @@ class Matcher:
             any(plan(run, 0, slot) for slot in bits(candidates))
         return run.found
 
-    def find_at(self, state: State, touched: int) -> list[PatternOccurrence]:
+    def find_at(self, state: GroundState, touched: int) -> list[PatternOccurrence]:
         """Return every occurrence with a touched node."""
         run = PatternSearch(state, self.pattern, -1, once=False)
         controls = self.pattern.controls

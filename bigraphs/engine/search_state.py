@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Final, NamedTuple, TypeAlias
 
 from bigraphs.engine.patterns import CompiledPattern
-from bigraphs.engine.state_arrays import State
+from bigraphs.engine.state_arrays import GroundState
 
 OFTEN: Final = 0x3FF
 """The number of steps between two pauses of a search, minus one."""
@@ -28,7 +28,7 @@ class PatternSearch:
 
     __slots__ = ("allowed", "found", "links", "nodes", "once", "pattern", "state", "steps")
 
-    def __init__(self, state: State, pattern: CompiledPattern, allowed: int, *, once: bool) -> None:
+    def __init__(self, state: GroundState, pattern: CompiledPattern, allowed: int, *, once: bool) -> None:
         self.pattern = pattern
         self.state = state
         self.allowed = allowed

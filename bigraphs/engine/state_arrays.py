@@ -16,7 +16,7 @@ from bigraphs.engine.intern_tables import REFERENCE, InternTables
 Key: TypeAlias = bytes
 
 
-class State:
+class GroundState:
     """A ground bigraph, over one world.
 
     Attributes:
@@ -43,9 +43,9 @@ class State:
         self.codes: list[int] = []
         self.free = 0
 
-    def copy(self) -> State:
+    def copy(self) -> GroundState:
         """Return an independent copy."""
-        found = State.__new__(State)
+        found = GroundState.__new__(GroundState)
         found.world = self.world
         found.labels = self.labels.copy()
         found.parents = self.parents.copy()
@@ -62,9 +62,9 @@ class State:
         lists = self.labels, self.parents, self.kids, self.ports, self.points, self.by_control, self.codes
         return *lists, self.free
 
-    def remade(self, parts: tuple[Any, ...]) -> State:
+    def remade(self, parts: tuple[Any, ...]) -> GroundState:
         """Return the state with these parts, which must belong to the same world."""
-        found = State.__new__(State)
+        found = GroundState.__new__(GroundState)
         found.world = self.world
         found.labels, found.parents, found.kids, found.ports, found.points, *rest = parts
         found.by_control, found.codes, found.free = rest
@@ -157,9 +157,9 @@ def bits(mask: int) -> tuple[int, ...]:
     return tuple(found)
 
 
-def make_state(world: InternTables, bigraph: Bigraph) -> State:
+def make_state(world: InternTables, bigraph: Bigraph) -> GroundState:
     """Return a ground bigraph as a state; node `n` has slot `n`."""
-    state = State(world)
+    state = GroundState(world)
     number = {name: link for link, name in enumerate(world.names)}
     size, fixed = len(bigraph.nodes), len(world.names)
     state.kids = [0] * (size + world.regions)

@@ -44,7 +44,7 @@ from semantics.state.signature import NO_ENTITIES, Name
 
 
 @dataclass(slots=True)
-class Role:
+class AgentRole:
     """The role of one agent.
 
     Attributes:
@@ -68,19 +68,19 @@ class Roles:
     def __init__(self, bounds: Overapproximation) -> None:
         self.bounds = bounds
         self.program = bounds.setting.program
-        self.roles: dict[Name, Role] = {}
+        self.roles: dict[Name, AgentRole] = {}
         alpha = bounds.initial.alpha
         self.first: Names = frozenset(alpha.names())
         for agent in alpha.names():
             moving = (p.request.host for p in bounds.initial.eta.of(agent) if isinstance(p.request, MGR))
             held = {variable: _spelled(value) for variable, value in alpha.store(agent)}
-            self.roles[agent] = Role(
+            self.roles[agent] = AgentRole(
                 set(reachable(self.program, alpha.code(agent))), {alpha.host(agent), *moving}, held
             )
         while self._grow():
             pass
 
-    def __getitem__(self, agent: Name) -> Role:
+    def __getitem__(self, agent: Name) -> AgentRole:
         return self.roles[agent]
 
     @property
@@ -194,7 +194,7 @@ class Roles:
             case Migrate(host):
                 self.roles[agent].hosts.update(self.entities(agent, host))
             case Spawn(name, host, behaviour, arguments):
-                role = self.roles.setdefault(name, Role())
+                role = self.roles.setdefault(name, AgentRole())
                 role.hosts.update(self.entities(agent, host))
                 role.statements |= reachable(self.program, self.program.behaviours[behaviour].body)
                 self._pass(agent, name, behaviour, arguments)

@@ -8,7 +8,7 @@ from semantics.behaviours.values import Route, Text, Truth, Value
 from semantics.state.signature import NO_ENTITIES
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import shorten
+from specs.elaboration.mission_mistakes import shorten
 from specs.elaboration.names import Names
 
 

@@ -12,8 +12,8 @@ from semantics.environment import Drifts
 from semantics.state.physical_model import Carried, Placed
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import shorten
 from specs.elaboration.geometry import elaborate_placement, moved_to
+from specs.elaboration.mission_mistakes import shorten
 from specs.elaboration.mobility import Mobility, moves
 from specs.elaboration.names import Names
 from specs.elaboration.world import InitialWorld

@@ -30,7 +30,7 @@ from semantics.behaviours.values import Text, Truth
 from semantics.state.signature import NO_ENTITIES
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import Findings
+from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.names import Names
 from specs.elaboration.needs import (
     AGENT,

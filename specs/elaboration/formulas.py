@@ -40,7 +40,7 @@ from specs.elaboration.among import Among
 from specs.elaboration.bodies import Bodies
 from specs.elaboration.comparisons import check_comparable
 from specs.elaboration.constant_values import elaborate_constant
-from specs.elaboration.findings import a
+from specs.elaboration.mission_mistakes import a
 from specs.elaboration.names import Names
 from specs.elaboration.value_types import Types
 

@@ -24,9 +24,9 @@ from specs.elaboration.beliefs import check_forest, elaborate_beliefs, settled
 from specs.elaboration.bodies import declare_behaviours, elaborate_bodies
 from specs.elaboration.check_section import elaborate_checks, elaborate_control, elaborate_scheduler
 from specs.elaboration.environment import appearing_channels, elaborate_environment
-from specs.elaboration.findings import Findings
 from specs.elaboration.initial_actors import first_actors
 from specs.elaboration.live import elaborate_live
+from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.mobility import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
 from specs.elaboration.names import Names
 from specs.elaboration.needs import check_types

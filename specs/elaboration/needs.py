@@ -14,7 +14,7 @@ from semantics.state.signature import NO_ENTITIES
 from specs import syntax as s
 from specs.codes import Code
 from specs.construct_text import write
-from specs.elaboration.findings import Findings, shorten
+from specs.elaboration.mission_mistakes import Findings, shorten
 from specs.elaboration.value_types import (
     COLLECTIONS,
     EVERY,

@@ -14,7 +14,7 @@ from semantics.state.physical_model import Placed
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.bodies import Bodies, body_key, possible_hosts
-from specs.elaboration.findings import a
+from specs.elaboration.mission_mistakes import a
 from specs.elaboration.mobility import Mobility
 from specs.elaboration.names import Names
 from specs.elaboration.rule_schemas import Schema

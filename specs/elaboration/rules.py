@@ -18,7 +18,7 @@ from semantics.behaviours.reaction_rules import (
 )
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import a
+from specs.elaboration.mission_mistakes import a
 from specs.elaboration.names import Names
 from specs.elaboration.rule_regions import Side, WrittenRegion, region_places, regions_of
 from specs.elaboration.rule_schemas import Moved, Schema, SchemaParameter

@@ -25,7 +25,7 @@ from specs.elaboration.expressions import (
     elaborate_node,
     elaborate_query,
 )
-from specs.elaboration.findings import Findings
+from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.names import Names
 from specs.elaboration.needs import COLLECTION, CONDITION, CONDITIONAL, FILLED, CaseDistinction, Need
 from specs.elaboration.patterns import check_distinct, elaborate_pattern, note_hiding

@@ -29,7 +29,7 @@ from specs import syntax as s
 from specs.codes import Code
 from specs.construct_text import write
 from specs.elaboration.constant_values import elaborate_constant
-from specs.elaboration.findings import Findings, a
+from specs.elaboration.mission_mistakes import Findings, a
 from specs.elaboration.names import Names
 from specs.elaboration.world import InitialWorld
 from specs.mission_layout import pieces

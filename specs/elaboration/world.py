@@ -10,8 +10,8 @@ from physical import centroid, point
 from semantics.state.physical_model import Carried, Placed, Placement
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import a
 from specs.elaboration.geometry import elaborate_placement
+from specs.elaboration.mission_mistakes import a
 from specs.elaboration.names import Names
 from specs.elaboration.world_files import Library, read_source
 

@@ -16,8 +16,8 @@ from physical.mmsi import KINDS
 from physical.place_files import PLACES, read_place_file
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import shorten
 from specs.elaboration.geometry import elaborate_geometry
+from specs.elaboration.mission_mistakes import shorten
 from specs.elaboration.names import Names
 from specs.grammar import RESERVED
 

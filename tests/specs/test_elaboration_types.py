@@ -17,7 +17,7 @@ from specs import syntax as s
 from specs.codes import Code
 from specs.diagnostics import MissionError, Source
 from specs.elaboration import elaborate, load_mission
-from specs.elaboration.findings import Findings
+from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.needs import check_types, operands
 from specs.elaboration.value_types import Inference, ValueSort
 from specs.parser import parse_bytes

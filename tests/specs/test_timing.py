@@ -15,7 +15,7 @@ from semantics.timing.timing import ClauseTimes, Endurance, Every, Motion, Sayab
 from specs import syntax as s
 from specs.diagnostics import MissionError, Source
 from specs.elaboration import elaborate, load_mission
-from specs.elaboration.findings import Findings
+from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.timing import TickConversion
 from specs.elaboration.variation import Variation
 from specs.formatter import format_mission

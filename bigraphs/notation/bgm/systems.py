@@ -23,7 +23,7 @@ from bigraphs.notation.bgm.syntax import (
     Wide,
 )
 from bigraphs.notation.bgm.terms import Terms, holes, name_and_kind, names_in, walk
-from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.big.solidity import faults
 from bigraphs.notation.big.syntax import MAX_SIZE
 from bigraphs.notation.lalr import Span

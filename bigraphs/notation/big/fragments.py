@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from bigraphs.bigraph import Bigraph
 from bigraphs.notation.big.declarations import BigDeclaration, ControlDeclaration, Model
 from bigraphs.notation.big.expressions import Evaluation
-from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.big.name_check import SyntaxWalk, survey
 from bigraphs.notation.big.names import Names, index
 from bigraphs.notation.big.parser import parse_expression, parse_model

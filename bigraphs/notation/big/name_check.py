@@ -15,7 +15,7 @@ from bigraphs.notation.big.declarations import (
     ReactDeclaration,
     SystemTerm,
 )
-from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.big.names import Names
 from bigraphs.notation.big.syntax import (
     Absolute,

@@ -8,7 +8,7 @@ from typing import Any, Final, TypeVar
 
 from bigraphs.notation.big import values
 from bigraphs.notation.big.declarations import BigDeclaration, ControlDeclaration, ReactDeclaration
-from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.big.names import Names
 from bigraphs.notation.big.syntax import Ion, ValueExpression, Variable
 from bigraphs.notation.lalr import Span

@@ -14,7 +14,7 @@ from typing import TypeAlias
 from bigraphs.bigraph import Bigraph, relabelled
 from bigraphs.notation.big import values
 from bigraphs.notation.big.declarations import ControlDeclaration
-from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.big.scope import CallFrame, FileScope, control_of
 from bigraphs.notation.big.syntax import Expression, ValueExpression, Variable
 from bigraphs.signature import Control, Signature
