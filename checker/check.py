@@ -23,7 +23,7 @@ from checker.properties.inspections import (
 from checker.properties.ownership import owned
 from checker.properties.races import ControlRaces, StaleObservationRaces
 from checker.properties.visited import Visited
-from checker.reduction.original_run import told
+from checker.reduction.original_run import in_original_names
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.traces import Trace, trace_of, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation
@@ -443,4 +443,4 @@ def _shown(violations: tuple[Violation, ...], most: int) -> tuple[Violation, ...
 
 def _teller(found: Exploration, number: int) -> Callable[[str], str]:
     """Return a function that replaces the names of a representative by those of the unreduced run to it."""
-    return lambda text: told(found, number, text)
+    return lambda text: in_original_names(found, number, text)

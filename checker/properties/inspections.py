@@ -19,7 +19,7 @@ from semantics.behaviours.statements import Block, Call, Loop, React
 from semantics.behaviours.stepping import next_statement
 from semantics.control import Obstacle, obstacle
 from semantics.environment import Says
-from semantics.properties.propositions import Proposition, holds, told_by
+from semantics.properties.propositions import Proposition, counterexample_names, holds
 from semantics.state.cells import QUEUE
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.requests import CTR, FLY, MGR, OBS, SND
@@ -317,7 +317,7 @@ class Invariant(Inspection):
 
 
 def _names_told(formula: Proposition, c: Configuration) -> tuple[str, ...]:
-    names = ", ".join(f"{variable} = {name}" for variable, name in told_by(formula, c))
+    names = ", ".join(f"{variable} = {name}" for variable, name in counterexample_names(formula, c))
     return (f"where {names}",) if names else ()
 
 

@@ -212,7 +212,7 @@ class _Asked(dict[Any, Any]):
         return False
 
 
-def asked(look: Callable[[Renaming], object]) -> tuple[Any, ...]:
+def requested_keys(look: Callable[[Renaming], object]) -> tuple[Any, ...]:
     """Return the names, numbers, variables and cells that a function requests from a renaming, in order."""
     met: dict[Any, None] = {}
     look(Renaming(*(_Asked(met) for _ in range(4))))
@@ -221,7 +221,7 @@ def asked(look: Callable[[Renaming], object]) -> tuple[Any, ...]:
 
 def mentioned(value: Any, among: frozenset[str]) -> tuple[str, ...]:
     """Return the given names that occur in a value, in the order of occurrence."""
-    return tuple(name for name in asked(lambda renaming: renaming.value(value)) if name in among)
+    return tuple(name for name in requested_keys(lambda renaming: renaming.value(value)) if name in among)
 
 
 class Mentions(Generic[Where]):
@@ -230,7 +230,7 @@ class Mentions(Generic[Where]):
     def __init__(self, places: Iterable[tuple[Where, Callable[[Renaming], object]]]) -> None:
         self.places: dict[Any, dict[Where, None]] = {}
         for place, look in places:
-            for thing in asked(look):
+            for thing in requested_keys(look):
                 self.places.setdefault(thing, {})[place] = None
 
     def of(self, renaming: Renaming) -> list[Where]:

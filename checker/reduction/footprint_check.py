@@ -26,7 +26,7 @@ from semantics.extension import say, spawn
 from semantics.properties.propositions import Proposition, holds
 from semantics.races.monitor import marked, slots_used
 from semantics.races.provenance import ANY, Dependency, Key
-from semantics.races.relevance import questions_of, relevant, slots_of, told_ever
+from semantics.races.relevance import possible_receivers, questions_of, relevant, slots_of
 from semantics.rules import env, rcv_obs
 from semantics.state.agents import AgentProvenance, mailbox_cell, watch_cell
 from semantics.state.cells import MONITOR, Cell, Changes, Row, has, is_something
@@ -386,7 +386,7 @@ def unheeded(c: Configuration) -> Iterator[str]:
                 asked = _asked(step.target, agent) - known | questions_of(step.target, agent)
                 for key in sorted(asked - relevant(asked, may_ask)):
                     yield f"after {step.label} '{agent}' may ask for {key}, which the race monitor forgets"
-        told = told_ever(c.setting.program)
+        told = possible_receivers(c.setting.program)
         sends = (each.request for each in c.eta.of(agent) if isinstance(each.request, SND))
         for send in (send for send in sends if told.isdisjoint({send.to, ANY})):
             yield f"{send} lets '{send.to}' know of what is seen, which the race monitor forgets"

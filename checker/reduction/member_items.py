@@ -11,7 +11,7 @@ from functools import lru_cache
 from hashlib import blake2b
 from typing import Any
 
-from checker.engines.fast.value_templates import holes, put_together, taken_apart
+from checker.engines.fast.value_templates import holes, join_value, split_value
 from checker.reduction.configuration_renaming import Renaming, mentioned, spelled
 from semantics.behaviours.observations import NOTHING_SEEN, Observation
 from semantics.state.cells import AGENTS, NAMES, Cell, Row
@@ -106,7 +106,7 @@ class Items:
                 cell in self.initial.layout.index and self.initial.read(cell) == value
             ):
                 continue
-            skeleton, families = taken_apart(value, self.mobile)
+            skeleton, families = split_value(value, self.mobile)
             if not families or self.is_whole(cell, skeleton):
                 yield (cell,), value
                 continue
@@ -127,7 +127,7 @@ class Items:
             ((name, fact),) = renaming.value(Observation({place[2]: value})).facts
             return (cell, place[1], name), fact
         content = renaming.content(place[0], _of_the_still(value), unordered=self.unordered)
-        return (cell,), taken_apart(content, self.mobile)[0] if has_holes(value) else content
+        return (cell,), split_value(content, self.mobile)[0] if has_holes(value) else content
 
     def mentions(self, place: Place, value: Any) -> tuple[Member, ...]:
         """Return the members that an item mentions: the owner of its cell first, then by occurrence."""
@@ -169,7 +169,7 @@ def has_holes(skeleton: Any) -> bool:
 
 def _of_the_still(skeleton: Any) -> Any:
     """Return a value whose observations keep only their facts about immobile names."""
-    return put_together(skeleton, lambda hole: dict(hole.still))
+    return join_value(skeleton, lambda hole: dict(hole.still))
 
 
 def number_of(value: Any) -> int:

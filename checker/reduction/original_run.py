@@ -23,7 +23,7 @@ def run_to(found: Exploration, number: int, by: Transition | None = None) -> tup
     return tuple(steps)
 
 
-def told(found: Exploration, number: int, text: str) -> str:
+def in_original_names(found: Exploration, number: int, text: str) -> str:
     """Return a text about a visited configuration in the names of the unreduced run to it."""
     if found.reducer is None or found.reducer.symmetry is None:
         return text

@@ -32,11 +32,11 @@ class Overapproximation:
         self.passive = any(setting.signature[kind].passive for kind in setting.kinds.values())
         self.carriers = cache(self._carriers)
         self.holders = cache(self._holders)
-        self.around: Callable[[Name], Names] = cache(lambda name: reached([name], self.holders))
+        self.around: Callable[[Name], Names] = cache(lambda name: transitive_closure([name], self.holders))
         self.aboard: Callable[[Name], Names] = cache(self._aboard)
         self.believable = cache(self._believable)
         self.above: Callable[[Name], Names] = cache(
-            lambda name: reached(self.believable(name), self.believable)
+            lambda name: transitive_closure(self.believable(name), self.believable)
         )
         self.inside: Callable[[Name], Names] = cache(self._inside)
         self.believed_inside: Callable[[Name], Names] = cache(self._believed_inside)
@@ -65,7 +65,7 @@ class Overapproximation:
     def _aboard(self, name: Name) -> Names:
         """Return the possible cargo of an entity, at any depth."""
         return frozenset(
-            other for other in self.names if name in reached(self.carriers(other), self.carriers)
+            other for other in self.names if name in transitive_closure(self.carriers(other), self.carriers)
         )
 
     def _believable(self, name: Name) -> Names:
@@ -84,7 +84,7 @@ class Overapproximation:
         return frozenset(name for name in self.names if place in self.believable(name))
 
 
-def reached(start: Iterable[Name], lead: Callable[[Name], Names]) -> Names:
+def transitive_closure(start: Iterable[Name], lead: Callable[[Name], Names]) -> Names:
     """Return the reflexive transitive closure of some names under a relation."""
     seen: set[Name] = set()
     waiting = list(start)

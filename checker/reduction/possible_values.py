@@ -7,7 +7,7 @@ assign. A value may be any name, unless it is a constant, a host, or the observe
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from checker.reduction.overapproximation import Names, Overapproximation, reached
+from checker.reduction.overapproximation import Names, Overapproximation, transitive_closure
 from checker.reduction.static_messages import may_take, message_of
 from semantics.behaviours.expressions import (
     Apply,
@@ -94,7 +94,9 @@ class Roles:
 
     def descendants(self, reach: Iterable[int]) -> Names:
         """Return the agents that these statements may spawn, directly or through others."""
-        return reached(self._spawned(reach), lambda agent: self._spawned(self.roles[agent].statements))
+        return transitive_closure(
+            self._spawned(reach), lambda agent: self._spawned(self.roles[agent].statements)
+        )
 
     def _spawned(self, numbers: Iterable[int]) -> Names:
         statements = (self.program.statements[number] for number in numbers)

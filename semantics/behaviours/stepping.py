@@ -6,7 +6,7 @@ from semantics.behaviours.program import Program
 from semantics.behaviours.statements import React, Statement
 from semantics.behaviours.values import Value
 from semantics.races.provenance import NOTHING, Provenance, held
-from semantics.races.relevance import HOSTED, heirs, told_by, uses_host
+from semantics.races.relevance import HOSTED, communicated_variables, heirs, uses_host
 from semantics.state.agents import (
     AgentProvenance,
     Code,
@@ -63,7 +63,7 @@ def continuing(c: Configuration, process: Process) -> Changes:
 def _variables(process: Process) -> tuple[Store, tuple[Provenance, ...]]:
     """Return the variables with their provenance; without `computed` for variables that are never passed on."""
     store, rests_on = process.variables()
-    told = told_by(process.program, process.code)
+    told = communicated_variables(process.program, process.code)
     kept = zip(store, rests_on, strict=True)
     return store, tuple(each if name in told else _untold(each) for (name, _), each in kept)
 
@@ -86,7 +86,7 @@ def placed(process: Process, provenance: Provenance) -> Provenance:
     tested = frozenset(each for each in provenance if each.asked is not None)
     if not tested or not uses_host(process.program, process.code):
         return NOTHING
-    told = HOSTED in told_by(process.program, process.code)
+    told = HOSTED in communicated_variables(process.program, process.code)
     return _held(process, tested if told else _untold(tested))
 
 

@@ -30,13 +30,13 @@ from semantics.races.relevance import (
     Names,
     Questions,
     anybodys,
+    communicated_variables,
     heirs,
     meet,
+    possible_receivers,
     questions_of,
     relevant,
     slots_of,
-    told_by,
-    told_ever,
 )
 from semantics.state.agents import AgentProvenance, watch_cell
 from semantics.state.cells import MONITOR, QUEUE, Cell, Changes, merged
@@ -253,7 +253,7 @@ def _mark_memory(c: Configuration, holder: Name, author: Name, again: Asking) ->
 
 def _passes_on(c: Configuration, agent: Name, what: Name) -> bool:
     """Whether an agent may pass on the messages that it receives (`HEARD`), or its host (`HOSTED`)."""
-    return what in told_by(c.setting.program, c.alpha.code(agent))
+    return what in communicated_variables(c.setting.program, c.alpha.code(agent))
 
 
 def _request_cells(c: Configuration, holder: Name) -> list[Cell]:
@@ -291,7 +291,11 @@ def _heirs_of(c: Configuration, request: Request) -> Names:
     program = c.setting.program
     if isinstance(request, CTR | FLY):
         return frozenset()
-    return told_ever(program) if isinstance(request, SND) else heirs(program, c.alpha.code(request.agent))
+    return (
+        possible_receivers(program)
+        if isinstance(request, SND)
+        else heirs(program, c.alpha.code(request.agent))
+    )
 
 
 def monitored(c: Configuration) -> Configuration:

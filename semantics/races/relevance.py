@@ -96,7 +96,7 @@ HOSTED: Name = "HOST"
 """Stands, among variables, for the host of an agent."""
 
 
-def told_by(program: Program, code: Code) -> Names:
+def communicated_variables(program: Program, code: Code) -> Names:
     """Return the variables whose values may flow into messages or spawned agents of the code that is left to run."""
     return _told(program, reachable(program, code))
 
@@ -167,11 +167,11 @@ def tells(program: Program, reach: Iterable[int]) -> bool:
 
 def heirs(program: Program, code: Code) -> Names:
     """Return the heirs of an agent's provenance: possible receivers if its remaining code may send or spawn."""
-    return told_ever(program) if tells(program, reachable(program, code)) else frozenset()
+    return possible_receivers(program) if tells(program, reachable(program, code)) else frozenset()
 
 
 @lru_cache(maxsize=1 << 8)
-def told_ever(program: Program) -> Names:
+def possible_receivers(program: Program) -> Names:
     """Return the agents that may ever receive a message or be spawned; `ANY` if a run decides the receiver."""
     return frozenset[Name]().union(*map(_whom, program.statements))
 

@@ -16,7 +16,7 @@ from semantics.state.agents import code_cell, host_cell, mailbox_cell, store_cel
 from semantics.state.cells import Cell, Changes
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.logical_model import links_cell, parent_cell
-from semantics.state.parcels import Parcel, Running, asked, requested
+from semantics.state.parcels import Parcel, Running, parcel_request, requested
 from semantics.state.requests import FLY
 from semantics.state.signature import REGION, Name
 
@@ -137,7 +137,7 @@ def parcel_of(c: Configuration, a: Name) -> Parcel | None:
     """Return this station's contents of an agent, None if empty; raises ValueError while it flies a vehicle."""
     code, store, mail = c.alpha.code(a), c.alpha.store(a), c.alpha.mailbox(a)
     host, program = c.alpha.host(a), c.setting.program
-    requests = tuple(asked(program, pending.request, host) for pending in c.eta.of(a))
+    requests = tuple(parcel_request(program, pending.request, host) for pending in c.eta.of(a))
     says = tuple(c.read(counter) for counter in _counters(c, a))
     running = Running(host, code, store, requests, says) if code or store or requests else None
     return Parcel(a, mail, running) if mail or running else None

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.recording import ColumnQuestion
-from checker.engines.fast.value_templates import Family, ObservationHole, holes, put_together, taken_apart
+from checker.engines.fast.value_templates import Family, ObservationHole, holes, join_value, split_value
 from semantics.behaviours.observations import NOTHING_SEEN
 from semantics.state.cells import NAMES, Cell, Row
 from semantics.state.signature import Name
@@ -135,7 +135,7 @@ class Columns:
 
     def start(self, cell: Cell, value: Any) -> None:
         """Create the columns of a cell that every configuration has, with its initial value."""
-        skeleton, families = taken_apart(value, self.mobile)
+        skeleton, families = split_value(value, self.mobile)
         self._add((cell,), skeleton)
         self.dig(cell, len(families))
 
@@ -162,7 +162,7 @@ class Columns:
         """Return the code of each column for a row, creating missing columns and codes."""
         found: dict[int, int] = {}
         for cell, value in row.items():
-            skeleton, families = taken_apart(value, self.mobile)
+            skeleton, families = split_value(value, self.mobile)
             number = self.number((cell,))
             found[number] = self.all[number].code(skeleton)
             self.dig(cell, len(families))
@@ -190,7 +190,7 @@ class Columns:
             said = {name: fact for name, fact in told.items() if fact != NOTHING_SEEN}
             return dict(sorted({**dict(hole.still), **said}.items()))
 
-        return put_together(skeleton, family_at)
+        return join_value(skeleton, family_at)
 
     def holes_of(self, number: int, code: int) -> tuple[ObservationHole, ...]:
         """Return the holes of a skeleton, given its column and code."""

@@ -8,7 +8,7 @@ from checker.engines.fast.columns import Columns, Place, Writes
 from checker.engines.fast.leaves import Effect
 from checker.engines.fast.recording import Conclusion, Edited, ObservedFacts, Pointwise
 from checker.engines.fast.trees import LearningError
-from checker.engines.fast.value_templates import Family, taken_apart
+from checker.engines.fast.value_templates import Family, split_value
 from semantics.behaviours.observations import NOTHING_SEEN
 from semantics.state.cells import Cell, Changes, Row, merged
 from semantics.state.configuration import Transition
@@ -110,7 +110,7 @@ class EffectWriter:
         if isinstance(value, Edited):
             found.edits.append(value)
             return
-        skeleton, families = taken_apart(value, self.columns.mobile)
+        skeleton, families = split_value(value, self.columns.mobile)
         if cell not in self.varying:
             if cell in self.still.layout.index and self.still.read(cell) == value:
                 conclusion = found.step.target.state

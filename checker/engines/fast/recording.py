@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from checker.engines.fast.value_templates import ObservationHole, has_no_holes, put_together, taken_apart
+from checker.engines.fast.value_templates import ObservationHole, has_no_holes, join_value, split_value
 from semantics.behaviours.observations import Fact
 from semantics.state.cells import Cell, Changes, Edit, Part, Question, Row, WritableCells, merged
 from semantics.state.signature import Name
@@ -103,7 +103,7 @@ class CellRecorder:
             self.scopes[-1].take(cell)
             return self.still.read(cell)
         skeleton = self._note(ColumnQuestion(cell), lambda: self.source.skeleton(cell))
-        return put_together(skeleton, lambda hole: ObservedFacts(self, cell, hole))
+        return join_value(skeleton, lambda hole: ObservedFacts(self, cell, hole))
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Return the truth of a predicate of a cell, and record it."""
@@ -123,11 +123,11 @@ class CellRecorder:
             ColumnQuestion(cell, None, question, constants),
             lambda: question(self.source.skeleton(cell), *constants),
         )
-        return put_together(answer, lambda hole: ObservedFacts(self, cell, hole))
+        return join_value(answer, lambda hole: ObservedFacts(self, cell, hole))
 
     def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
         """Return the edited value of a cell: a placeholder, with the cell unread, if neither contains observations."""
-        is_plain = not taken_apart(constants, self.mobile)[1]
+        is_plain = not split_value(constants, self.mobile)[1]
         if is_plain and self.varies(cell) and self.test(cell, has_no_holes):
             return Edited(cell, edit, constants)
         return edit(self.read(cell), *constants)

@@ -98,13 +98,13 @@ class RowSurvey:
         numbers: dict[Hashable, int] = {False: 0, True: 1}
         for rows in self.blocks(size):
             leaves = self.classify(tree, rows)
-            met.update(known(leaves))
+            met.update(distinct_leaves(leaves))
             found.append(self.numbered(leaves, numbers) == 1)
         return np.concatenate(found), len(met) > 1
 
     def numbered(self, leaves: NDArray[np.int32], numbers: dict[Hashable, int]) -> NDArray[np.int64]:
         """Return the number of each leaf's answer; new answers get the next numbers."""
-        there = known(leaves)
+        there = distinct_leaves(leaves)
         found = np.zeros(there[-1] + 1 if there else 0, np.int64)
         found[there] = [numbers.setdefault(self.space.learner.answers[leaf], len(numbers)) for leaf in there]
         return found[leaves]
@@ -114,7 +114,7 @@ class RowSurvey:
         return self.space.learner.tree(actor)
 
 
-def known(leaves: NDArray[np.int32]) -> list[int]:
+def distinct_leaves(leaves: NDArray[np.int32]) -> list[int]:
     """Return each leaf once, in ascending order."""
     found: list[int] = np.flatnonzero(np.bincount(leaves)).tolist()
     return found

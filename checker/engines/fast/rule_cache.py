@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 
 from checker.engines.fast.columns import ABSENT, Place
 from checker.engines.fast.recording import ColumnQuestion, Edited
-from checker.engines.fast.value_templates import put_together, taken_apart
-from checker.reduction.configuration_renaming import WORD, Renaming, asked
+from checker.engines.fast.value_templates import join_value, split_value
+from checker.reduction.configuration_renaming import WORD, Renaming, requested_keys
 from semantics.behaviours.observations import AGENT
 from semantics.state.cells import Cell
 from semantics.state.configuration import Label
@@ -34,7 +34,7 @@ class NoImage(Exception):
 def names_in(value: Any) -> frozenset[Any]:
     """Return the names that a value mentions; raises NoImage if they can't be determined."""
     try:
-        found = asked(lambda renaming: renaming.value(value))
+        found = requested_keys(lambda renaming: renaming.value(value))
     except TypeError:
         raise NoImage from None
     return frozenset(each.removeprefix(AGENT) if isinstance(each, str) else each for each in found)
@@ -112,9 +112,9 @@ class Exchange:
         is_sorted = not {"sends", "mailbox", *(["line"] if self.unordered else ())}.isdisjoint(cell)
         if is_sorted and len(skeleton) > 1:
             raise NoImage  # the elements of the image, and their attachments, may be in another order
-        whole = put_together(skeleton, lambda hole: dict(hole.still))
+        whole = join_value(skeleton, lambda hole: dict(hole.still))
         image = self._renamed(lambda: self.renaming.content(cell, whole, unordered=self.unordered))
-        return taken_apart(image, self.mobile)[0]
+        return split_value(image, self.mobile)[0]
 
     def edited(self, edited: Edited) -> Edited:
         """Return the image of an edit."""

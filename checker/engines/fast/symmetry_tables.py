@@ -28,7 +28,7 @@ from checker.engines.fast.canonicalise import (
 from checker.engines.fast.columns import Packing, Writes
 from checker.engines.fast.kernel import AT, GATHERED, NODE, UNSORTED, State, SuccessorBatch
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.value_templates import holes, taken_apart
+from checker.engines.fast.value_templates import holes, split_value
 from checker.reduction.member_items import Items, Member, Place, Roles
 from checker.reduction.representatives import MOST_ORDERS
 from semantics.state.cells import AGENTS, NAMES
@@ -264,7 +264,7 @@ class Exchanging:
         if len(place) == 3:
             deep = place[1] + 1
         else:
-            value, families = taken_apart(value, columns.mobile)
+            value, families = split_value(value, columns.mobile)
             deep = sum(1 for _ in holes(value))
         if columns.dig(cell, deep):
             learner.forget_those(learner.writers, cell)

@@ -54,7 +54,7 @@ def agents_of(setting: Setting, first: Row) -> frozenset[Name]:
     return frozenset((*(cell[-1] for cell, _ in first.items() if cell[0] == "host"), *spawned))
 
 
-def taken_apart(value: Any, mobile: frozenset[Name]) -> tuple[Any, tuple[Family, ...]]:
+def split_value(value: Any, mobile: frozenset[Name]) -> tuple[Any, tuple[Family, ...]]:
     """Return the skeleton of a value, and the facts by name for each of its holes."""
     families: list[Family] = []
 
@@ -67,7 +67,7 @@ def taken_apart(value: Any, mobile: frozenset[Name]) -> tuple[Any, tuple[Family,
     return _mapped(_mapped(value, frozenset, settled), Observation, dig), tuple(families)
 
 
-def put_together(skeleton: Any, family_at: Callable[[ObservationHole], Family]) -> Any:
+def join_value(skeleton: Any, family_at: Callable[[ObservationHole], Family]) -> Any:
     """Return the value of a skeleton, with the facts that `family_at` gives for each hole."""
     return _mapped(skeleton, ObservationHole, lambda hole: Observation(family_at(hole), hole.swept))
 

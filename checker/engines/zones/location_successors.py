@@ -107,7 +107,7 @@ class AutomatonGrowth(NamedTuple):
 
 
 class LocationView(NamedTuple):
-    """The steps and clocks of one row, as `look` finds them.
+    """The steps and clocks of one row, as `find_steps` finds them.
 
     Attributes:
         leaves: For each actor its leaf: the agents' first, then the clauses'.
@@ -141,7 +141,7 @@ KNOWN, MISS, FULL = range(3)
 
 
 @inner(cache=True)
-def look(
+def find_steps(
     m: kernel.LearnedModel, t: LearnedClocks, words: Words, row: int, v: LocationView, state: State
 ) -> bool:
     """Find the steps and clocks of a row; False if a tree lacks an answer."""
@@ -462,7 +462,7 @@ def begin(
     s: State,
 ) -> int:
     """Add the location of the first row; return why that ended."""
-    if not look(m, t, words, 0, v, state):
+    if not find_steps(m, t, words, 0, v, state):
         return MISS
     return KNOWN if add_location(m, t, g, v, 0, windows, s) >= 0 else FULL
 
@@ -477,7 +477,7 @@ def leave(
     while s[DONE] < len(locations):
         here = locations[s[DONE]]
         row, began = np.int64(g.rows[here]), (s[LEAVING], s[TESTED], s[SOURCED])
-        if not look(m, t, words, row, a, state):
+        if not find_steps(m, t, words, row, a, state):
             return MISS
         why = KNOWN
         if not a.counts[IS_CROWDED]:
@@ -519,7 +519,7 @@ def leave_by_steps(
             if again:
                 continue
             taken[2 * number], taken[2 * number + 1] = target, alike
-            if not look(m, t, words, target, b, state):
+            if not find_steps(m, t, words, target, b, state):
                 return MISS
             times = TIMES * (t.answers[record + 2] + step - first)
             if add_edges(m, t, g, a, b, here, target, times, number, step, choices, s) == FULL:

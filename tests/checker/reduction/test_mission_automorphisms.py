@@ -5,7 +5,7 @@ from itertools import combinations
 import pytest
 from shipped import UNTIMED
 
-from checker.reduction.configuration_renaming import Renaming, asked
+from checker.reduction.configuration_renaming import Renaming, requested_keys
 from checker.reduction.mission_automorphisms import Automorphisms, restated
 from checker.reduction.pairing import Pairing, Unlike
 from specs.elaboration import load_mission
@@ -63,6 +63,8 @@ def test_the_whole_mission_renamed_gives_the_same_verdict(name):
 def test_a_look_is_asked_for_all_that_a_renaming_may_move():
     c = load_mission("spill_watch").initial
     cell, placement = next((cell, value) for cell, value in c.state.items() if cell[0] == "placement")
-    things = asked(lambda renaming: (renaming.cell(cell), renaming.content(cell, placement, unordered=False)))
+    things = requested_keys(
+        lambda renaming: (renaming.cell(cell), renaming.content(cell, placement, unordered=False))
+    )
     assert cell in things
     assert cell[1] in things
