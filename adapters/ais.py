@@ -20,12 +20,12 @@ from adapters.naming import NamingService
 from adapters.plugin import Aged, World
 from adapters.transport import Port, Remote, open_port
 from physical import Geometry, PhysicalError, PhysicalProperty, contains, open_file
-from physical.ais_receiver import TAKEN, Ear, hear
+from physical.ais_receiver import TAKEN, ReceiverState, hear
 from physical.ais_reports import AisError, PositionReport
 from physical.ais_world import COARSE, TIME_TO_LIVE, Finest, physical_property
+from physical.file_account import Counting
 from physical.mmsi import KINDS, digits
-from physical.nmea import Reason
-from physical.tally import Counting
+from physical.nmea import DecodingFailure
 
 MAX_REMOTES: Final = 64
 FUTURE: Final = 1.0
@@ -35,7 +35,7 @@ PACE: Final = 100.0
 """Lines a second from a recording whose lines have no times."""
 
 REPORT: Final = 1.0
-_REASONS: Final = frozenset(reason.value for reason in Reason)
+_REASONS: Final = frozenset(reason.value for reason in DecodingFailure)
 
 
 class AisFeed(Feed):
@@ -74,7 +74,7 @@ class AisFeed(Feed):
         self._area = area
         self._kinds = None if kinds is None else frozenset(kinds)
         self._time_to_live = time_to_live
-        self._streams: OrderedDict[Remote, tuple[Lines, Ear]] = OrderedDict()
+        self._streams: OrderedDict[Remote, tuple[Lines, ReceiverState]] = OrderedDict()
         self._troubles = Troubles(name)
         self._finest = Finest(time_to_live)
         self._counting = Counting()
@@ -91,7 +91,7 @@ class AisFeed(Feed):
     async def run(self, world: World) -> None:
         """Receive until cancelled."""
         self._world = world
-        hear(Ear(), b"")  # report a missing extra at once
+        hear(ReceiverState(), b"")  # report a missing extra at once
         try:
             if self._address.scheme == "file":
                 await asyncio.gather(self._play(world), self._reporting(world))
@@ -116,15 +116,15 @@ class AisFeed(Feed):
             ear = self._line(ear, line, self._world.now())
         self._streams[remote] = lines, ear
 
-    def _stream(self, remote: Remote) -> tuple[Lines, Ear]:
+    def _stream(self, remote: Remote) -> tuple[Lines, ReceiverState]:
         if remote not in self._streams:
-            self._streams[remote] = Lines(whole=self._address.scheme.startswith("udp")), Ear()
+            self._streams[remote] = Lines(whole=self._address.scheme.startswith("udp")), ReceiverState()
         self._streams.move_to_end(remote)
         if len(self._streams) > MAX_REMOTES:
             self._streams.popitem(last=False)
         return self._streams[remote]
 
-    def _line(self, ear: Ear, line: bytes, now: float, shift: float = 0.0) -> Ear:
+    def _line(self, ear: ReceiverState, line: bytes, now: float, shift: float = 0.0) -> ReceiverState:
         """Decode one line; `shift` moves the times of a recording to today."""
         heard = hear(ear, line, None if shift else now)
         for reason in heard.reasons:
@@ -187,7 +187,7 @@ class AisFeed(Feed):
 
     async def _play(self, world: World) -> None:
         """Replay a recording in real time."""
-        ear, shift = Ear(), 0.0
+        ear, shift = ReceiverState(), 0.0
         for line in self._recorded():
             clock = _clock(ear, line)
             if clock is None:
@@ -212,7 +212,7 @@ def _shifted(report: PositionReport, shift: float, now: float) -> PositionReport
     return report if time == report.time else replace(report, time=time)
 
 
-def _clock(ear: Ear, line: bytes) -> float | None:
+def _clock(ear: ReceiverState, line: bytes) -> float | None:
     """Return the time that a line implies: of its own reports, or of the next ones."""
     heard = hear(ear, line, None)
     times = [report.time for report in heard.reports if report.time is not None]

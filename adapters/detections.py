@@ -22,7 +22,7 @@ from adapters.plugin import Aged, Gone, World
 from adapters.slices import in_slices
 from adapters.web import MAX_BODY, Listen, serve
 from physical import PhysicalError, PhysicalProperty, legible, open_file, reading_geojson
-from physical.tally import Counting
+from physical.file_account import Counting
 
 EVERY: Final = 1.0
 MAX_FILES: Final = 1_000

@@ -15,7 +15,7 @@ from typing import Any, Final, Protocol
 
 from adapters.addresses import Address
 from physical import PhysicalError
-from physical.messages import install_extra
+from physical.wordings import install_extra
 
 CHUNK: Final = 65_536
 AGAIN: Final = 1.0

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from adapters.addresses import LOOPBACK
 from physical import PhysicalError, legible
-from physical.messages import install_extra
+from physical.wordings import install_extra
 
 MAX_BODY: Final = 1_000_000
 """Bytes of a request or answer."""

@@ -24,8 +24,8 @@ from checker.engines.choose import explore
 from checker.engines.contract import Engine, Exploration
 from checker.engines.timed.zone_answers import ZoneTimes
 from checker.engines.zones.interchange import model_of
-from checker.engines.zones.search import Search
 from checker.engines.zones.tchecker import tchecker_text
+from checker.engines.zones.zone_search import Search
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 from specs.elaboration import load_mission

@@ -21,7 +21,7 @@ from semantics.extension import say as say_rule
 from semantics.rules import RULES, TIMED_RULES, env
 from semantics.state.partition import PASSING
 from specs import code_table
-from specs.reference import language_reference
+from specs.language_reference import language_reference
 
 FOLDER = Path(__file__).parent.parent / "docs"
 WIDTH = 100

@@ -41,7 +41,7 @@ from bigactors.recordings import open_recording, trace_of
 from bigactors.terminal import flying_output, say, tell
 from bigactors.watchers import Terminal
 from physical import circle
-from physical.messages import counted
+from physical.wordings import counted
 from specs.missions import shipped_missions
 
 MISSION: Final = "spill_watch"

@@ -16,7 +16,7 @@ from bigactors.missions import locate
 from bigactors.mistakes import Mistake
 from bigactors.terminal import say_text
 from checker import Report
-from checker.reports.results import Issue, Level, Result
+from checker.reports.results import CheckResult, Issue, Level
 from specs import parse_bytes
 from specs.elaboration import ElaboratedMission
 from specs.syntax import Check
@@ -111,16 +111,16 @@ FORMATS: Final[dict[str, Callable[[Sequence[Checked | Failed], Exit], str]]] = {
 # --- results --------------------------------------------------------------------------------------------------
 
 
-def result_of(checked: Checked | Failed) -> Result:
+def result_of(checked: Checked | Failed) -> CheckResult:
     """Return a mission's result in the common shape of the formats."""
     if isinstance(checked, Checked):
         return result_on(checked.mission, checked.name, checked.report)
-    return Result(checked.name, file_of(checked.name), failures=tuple(_failures(checked)))
+    return CheckResult(checked.name, file_of(checked.name), failures=tuple(_failures(checked)))
 
 
-def result_on(mission: ElaboratedMission, name: str, report: Report) -> Result:
+def result_on(mission: ElaboratedMission, name: str, report: Report) -> CheckResult:
     """Return the report on a mission together with line numbers in its text."""
-    return Result(
+    return CheckResult(
         name,
         file_of(name),
         report,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TextIO
 
 from bigactors.terminal import broken, is_terminal, paint, write
 from checker.limits import Interruption
-from physical.messages import counted
+from physical.wordings import counted
 
 if TYPE_CHECKING:
     from checker import Progress
@@ -90,8 +90,8 @@ def describe_rest(progress: Progress) -> str:
     """Return the estimated rest of an exploration as a range, if there is an estimate.
 
     >>> from checker import Progress
-    >>> from checker.engines.estimate import Estimate
-    >>> describe_rest(Progress(12_000, 30_000, 7, 450, 10.0, Estimate(12_000, 13_150)))
+    >>> from checker.engines.estimate import SizeEstimate
+    >>> describe_rest(Progress(12_000, 30_000, 7, 450, 10.0, SizeEstimate(12_000, 13_150)))
     'up to 13,000 in all as layers fall now, 45 s to 3 min more'
     """
     if progress.estimate is None or progress.left is None:

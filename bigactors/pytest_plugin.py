@@ -21,7 +21,7 @@ import pytest
 
 if TYPE_CHECKING:
     from checker import Limits, Report, Verdict
-    from checker.reports.results import Issue, Result
+    from checker.reports.results import CheckResult, Issue
     from semantics import Property
     from specs.elaboration import ElaboratedMission, Variation
 
@@ -135,7 +135,7 @@ class MissionFile(pytest.File):
         return check(self.mission, selected, _limits(self.config), engine=engine and Engine(engine))
 
     @cached_property
-    def result(self) -> Result:
+    def result(self) -> CheckResult:
         """The report with line numbers in the mission's text."""
         from bigactors.outputs import result_on  # noqa: PLC0415 - the same
 

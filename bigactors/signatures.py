@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 from adapters.written_files import open_private, others_may_read
 from bigactors.files import read_bytes
 from bigactors.mistakes import Mistake, unreadable
-from physical.messages import install_extra
+from physical.wordings import install_extra
 
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric import ed25519

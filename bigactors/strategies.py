@@ -7,7 +7,7 @@
 `programs`, `queries` and `reactions` generate their parts. Failures shrink to few entities, statements and steps.
 """
 
-from physical.messages import install_extra
+from physical.wordings import install_extra
 
 try:
     from semantics.strategies import (

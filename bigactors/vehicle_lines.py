@@ -10,7 +10,7 @@ from adapters.live.state import LiveState, Plan
 from adapters.live.timing import flying
 from adapters.plugin import Follow, GoTo, Status
 from physical import distance
-from physical.messages import counted
+from physical.wordings import counted
 from semantics.environment import Says
 from semantics.state.requests import READY, Request
 from semantics.state.signature import REGION, Name

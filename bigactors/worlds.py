@@ -11,10 +11,10 @@ from physical import GeoJSONError, Geometry, PhysicalError, PhysicalProperty, bo
 from physical.ais_recording import has_sentences, read_recording
 from physical.ais_reports import AisError
 from physical.ais_world import check_time, seen_at
+from physical.file_account import FileAccount, Read
 from physical.geojson import MAX_BYTES
 from physical.long_edges import check_width
 from physical.place_files import PLACES, read_place_file
-from physical.tally import Read, Tally
 from semantics.behaviours.program import Program
 from semantics.state.configuration import Configuration
 from semantics.state.initial import initial
@@ -35,7 +35,7 @@ class World:
     """
 
     properties: tuple[PhysicalProperty, ...]
-    accounts: tuple[tuple[str, Tally], ...] = ()
+    accounts: tuple[tuple[str, FileAccount], ...] = ()
     left_out: int = 0
     doubts: tuple[str, ...] = ()
 
@@ -62,7 +62,7 @@ def read_world(
     """
     origins: dict[str, str] = {}
     found: dict[str, PhysicalProperty] = {}
-    accounts: list[tuple[str, Tally]] = []
+    accounts: list[tuple[str, FileAccount]] = []
     doubts: list[str] = []
     for path in paths:
         for each in _read(path, time, accounts, doubts):
@@ -77,7 +77,7 @@ def read_world(
 
 
 def _read(
-    path: str, time: float | None, accounts: list[tuple[str, Tally]], doubts: list[str]
+    path: str, time: float | None, accounts: list[tuple[str, FileAccount]], doubts: list[str]
 ) -> tuple[PhysicalProperty, ...]:
     try:
         found = _found(path, time, doubts)

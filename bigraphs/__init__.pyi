@@ -26,8 +26,8 @@ from .bigraph import find as find
 from .bigraph import links as links
 from .bigraph import points as points
 from .bigraph import sites_in as sites_in
-from .canonical import canonical as canonical
-from .canonical import equal as equal
+from .canonical_form import canonical as canonical
+from .canonical_form import equal as equal
 from .decomposition import Parts as Parts
 from .decomposition import recompose as recompose
 from .decomposition import take_apart as take_apart
@@ -44,7 +44,7 @@ from .layout import layout as layout
 from .matching import Match as Match
 from .matching import find_matches as find_matches
 from .networkx_graphs import to_networkx as to_networkx
-from .relations import from_relations as from_relations
+from .relational_bigraphs import from_relations as from_relations
 from .rewriting import rewrite as rewrite
 from .rewriting import successors as successors
 from .rules import ReactionRule as ReactionRule

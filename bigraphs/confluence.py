@@ -17,7 +17,7 @@ from bigraphs.bigraph import Bigraph
 from bigraphs.engine.decoding import to_bigraph
 from bigraphs.engine.machine import Machine
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.state import Key
+from bigraphs.engine.state_arrays import Key
 from bigraphs.errors import BigraphError
 from bigraphs.system import PriorityClass, System
 

@@ -9,17 +9,17 @@ from functools import partial
 from typing import Final, NamedTuple
 
 from bigraphs.engine.machine import Machine
-from bigraphs.slices import Copy, slices_of
-from bigraphs.state_store import Reached
+from bigraphs.state_store import StateStore
 from bigraphs.system import System
 from bigraphs.transitions import TransitionSystem
+from bigraphs.worker_results import Copy, slices_of
 from bigraphs.workers import Workers
 
 LOOK_EVERY: Final = 0.2
 """Seconds between two progress reports."""
 
 
-class Progress(NamedTuple):
+class ExplorationProgress(NamedTuple):
     """The progress of an exploration."""
 
     states: int
@@ -38,7 +38,7 @@ def explore(
     max_states: int | None = None,
     max_time: float | None = None,
     threads: int = 1,
-    watch: Callable[[Progress], None] = lambda _: None,
+    watch: Callable[[ExplorationProgress], None] = lambda _: None,
 ) -> TransitionSystem:
     """Return the transition system of a system; it is marked incomplete if the search stopped early.
 
@@ -61,7 +61,7 @@ class _Search:
         max_states: int | None,
         max_time: float | None,
         threads: int,
-        watch: Callable[[Progress], None],
+        watch: Callable[[ExplorationProgress], None],
     ) -> None:
         self.begun = time.monotonic()
         self.next_look = self.begun + LOOK_EVERY
@@ -69,7 +69,7 @@ class _Search:
         self.max_states, self.max_time, self.watch = max_states, max_time, watch
         self.process = os.getpid()
         self.machine = Machine(system, self.pause)
-        self.reached = Reached(self.machine, max_states)
+        self.reached = StateStore(self.machine, max_states)
         work = partial(slices_of, self.reached)
         self.workers = Workers(threads, work, partial(Copy, self.reached))
 
@@ -118,5 +118,9 @@ class _Search:
         now = time.monotonic()
         if now >= self.next_look:
             reached = self.reached
-            self.watch(Progress(len(reached), len(reached.targets), len(reached.waiting), now - self.begun))
+            self.watch(
+                ExplorationProgress(
+                    len(reached), len(reached.targets), len(reached.waiting), now - self.begun
+                )
+            )
             self.next_look = time.monotonic() + LOOK_EVERY

@@ -38,7 +38,7 @@ def unfolded(bigraph: Bigraph) -> Folded:
 def folded(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Folded:
     """Return the bigraph; above 30 nodes, fold similar ones, except the nodes named in `apart`.
 
-    >>> from bigraphs.relations import from_relations
+    >>> from bigraphs.relational_bigraphs import from_relations
     >>> world = from_relations({f"uav{n}": "UAV" for n in range(31)}, {}, {"wifi": ["uav7"]})
     >>> folded(world, {"uav8"}).lines
     (('UAV ×29', 'uav0, uav1, …'), ('uav7', 'UAV'), ('uav8', 'UAV'))

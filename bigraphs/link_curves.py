@@ -9,7 +9,7 @@ from typing import Final
 
 from bigraphs.bigraph import Bigraph, Link, points
 from bigraphs.layout import Box, Layout
-from bigraphs.obstacles import Curve, Obstacles, Point
+from bigraphs.link_detours import Curve, Obstacles, Point
 
 NORMALS: Final[Mapping[str, Point]] = {"top": (0, -1), "bottom": (0, 1), "left": (-1, 0), "right": (1, 0)}
 

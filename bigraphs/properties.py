@@ -8,7 +8,7 @@ from enum import Enum
 from typing import Final, TypeAlias
 
 from bigraphs.bigraph import Bigraph
-from bigraphs.canonical import equal
+from bigraphs.canonical_form import equal
 from bigraphs.matching import find_matches
 from bigraphs.records import Record
 
@@ -26,7 +26,7 @@ class Equal(Record):
     state: Bigraph
 
 
-class Terminal(Record):
+class TerminalState(Record):
     """No rule applies."""
 
 
@@ -58,7 +58,7 @@ class IfElse(Record):
     otherwise: Formula
 
 
-class Scope(Enum):
+class StateScope(Enum):
     """The states that a formula refers to."""
 
     THIS = "this"
@@ -73,14 +73,14 @@ class Scope(Enum):
 class Scoped(Record):
     """The operand holds in every state of the scope; predecessors and successors support only patterns and sizes."""
 
-    scope: Scope
+    scope: StateScope
     operand: Formula
 
 
 class Size(Record):
     """The number of nodes of each state in a scope."""
 
-    scope: Scope = Scope.THIS
+    scope: StateScope = StateScope.THIS
 
 
 class Compare(Record):
@@ -91,17 +91,17 @@ class Compare(Record):
     right: Size | int
 
 
-Formula: TypeAlias = Matches | Equal | Terminal | Not | Both | Either | IfElse | Scoped | Compare
+Formula: TypeAlias = Matches | Equal | TerminalState | Not | Both | Either | IfElse | Scoped | Compare
 
 
-class Property(Record):
+class SystemProperty(Record):
     """A formula that must hold in every reachable state."""
 
     name: str
     formula: Formula
 
 
-class Situation(Record):
+class StateContext(Record):
     """A state with its predecessors and successors."""
 
     state: Bigraph
@@ -119,14 +119,14 @@ _COMPARISONS: Final[Mapping[str, Callable[[int, int], bool]]] = {
 }
 
 
-def holds(formula: Formula, here: Situation) -> bool:
+def holds(formula: Formula, here: StateContext) -> bool:
     """Return whether a formula holds in a situation."""
     match formula:
         case Matches(pattern, constants):
             return any(True for _ in find_matches(pattern, here.state, link_constants=constants))
         case Equal(state):
             return equal(state, here.state)
-        case Terminal():
+        case TerminalState():
             return not here.successors
         case Not(operand):
             return not holds(operand, here)
@@ -136,25 +136,25 @@ def holds(formula: Formula, here: Situation) -> bool:
             return holds(left, here) or holds(right, here)
         case IfElse(condition, then, otherwise):
             return holds(then if holds(condition, here) else otherwise, here)
-        case Scoped(Scope.THIS | Scope.TERMINAL as scope, operand):
+        case Scoped(StateScope.THIS | StateScope.TERMINAL as scope, operand):
             return not _states(scope, here) or holds(operand, here)
         case Scoped(scope, operand):
-            return all(holds(operand, Situation(state)) for state in _states(scope, here))
+            return all(holds(operand, StateContext(state)) for state in _states(scope, here))
         case Compare(symbol, left, right):
             compare = _COMPARISONS[symbol]
             return all(compare(one, other) for one in _sizes(left, here) for other in _sizes(right, here))
 
 
-def _states(scope: Scope, here: Situation) -> tuple[Bigraph, ...]:
+def _states(scope: StateScope, here: StateContext) -> tuple[Bigraph, ...]:
     return {
-        Scope.THIS: (here.state,),
-        Scope.PREDECESSOR: here.predecessors,
-        Scope.SUCCESSOR: here.successors,
-        Scope.TERMINAL: () if here.successors else (here.state,),
+        StateScope.THIS: (here.state,),
+        StateScope.PREDECESSOR: here.predecessors,
+        StateScope.SUCCESSOR: here.successors,
+        StateScope.TERMINAL: () if here.successors else (here.state,),
     }[scope]
 
 
-def _sizes(size: Size | int, here: Situation) -> Iterable[int]:
+def _sizes(size: Size | int, here: StateContext) -> Iterable[int]:
     if isinstance(size, int):
         return (size,)
     return [len(state.nodes) for state in _states(size.scope, here)]

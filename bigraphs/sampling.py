@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 
 from bigraphs.engine.machine import Machine
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.state import Key
+from bigraphs.engine.state_arrays import Key
 from bigraphs.simulation import Bounds, Draw, chances, ordered_steps
 from bigraphs.system import System
 
@@ -119,7 +119,7 @@ class Sampler:
 
 
 @dataclass(frozen=True, slots=True)
-class Estimate:
+class SampleEstimate:
     """An estimated number, with its 95 % confidence interval."""
 
     value: float
@@ -143,8 +143,8 @@ class FirstTimes:
 
     label: str
     runs: int
-    share: Estimate
-    time: Estimate | None = None
+    share: SampleEstimate
+    time: SampleEstimate | None = None
     least: float = 0.0
     most: float = 0.0
     first_run: int | None = None
@@ -165,7 +165,7 @@ def first_times(system: System, samples: Sequence[Sample]) -> list[FirstTimes]:
     return found
 
 
-def share(times: int, runs: int) -> Estimate:
+def share(times: int, runs: int) -> SampleEstimate:
     """Return the estimate of a probability, with Wilson's interval, which also holds for rare events.
 
     >>> round(share(0, 100).high, 4)
@@ -174,10 +174,10 @@ def share(times: int, runs: int) -> Estimate:
     from scipy.stats import binomtest  # noqa: PLC0415 - slow to import
 
     interval = binomtest(times, runs).proportion_ci(CONFIDENCE, method="wilson")
-    return Estimate(times / runs, float(interval.low), float(interval.high))
+    return SampleEstimate(times / runs, float(interval.low), float(interval.high))
 
 
-def mean(values: Sequence[float]) -> Estimate:
+def mean(values: Sequence[float]) -> SampleEstimate:
     """Return the estimate of an expectation, with Student's interval; it is unbounded for one value.
 
     >>> round(mean([1.0, 2.0, 3.0]).high, 4)
@@ -187,10 +187,10 @@ def mean(values: Sequence[float]) -> Estimate:
 
     centre = fmean(values)
     if len(values) == 1:
-        return Estimate(centre, -inf, inf)
+        return SampleEstimate(centre, -inf, inf)
     quantile = float(t.ppf((1 + CONFIDENCE) / 2, len(values) - 1))
     half = quantile * stdev(values, centre) / sqrt(len(values))
-    return Estimate(centre, centre - half, centre + half)
+    return SampleEstimate(centre, centre - half, centre + half)
 
 
 def shares_until(samples: Sequence[Sample], predicate: int) -> Iterable[tuple[float, int]]:

@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 from bigraphs.bigraph import Bigraph
 from bigraphs.engine.decoding import to_bigraph
-from bigraphs.engine.machine import Machine, Step
+from bigraphs.engine.machine import Machine, RewritingStep
 from bigraphs.engine.node_identity import identities
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.state import State
+from bigraphs.engine.state_arrays import GroundState
 from bigraphs.system import Rule, System, SystemKind
 
 
@@ -80,7 +80,7 @@ def simulate(system: System, seed: int, bounds: Bounds, *, run: int | None = Non
         yield _stage(machine, spot, step, time, kept)
 
 
-def ordered_steps(machine: Machine, spot: Spot) -> list[Step]:
+def ordered_steps(machine: Machine, spot: Spot) -> list[RewritingStep]:
     """Return the possible steps, in an order that depends only on the state, not on the path to it."""
     return sorted(machine.steps(spot), key=lambda step: (step.reaction.number, step.target.state.key()))
 
@@ -111,7 +111,7 @@ class Draw:
 
 
 def _stage(
-    machine: Machine, spot: Spot, step: Step | None, time: float, kept: tuple[tuple[int, int], ...]
+    machine: Machine, spot: Spot, step: RewritingStep | None, time: float, kept: tuple[tuple[int, int], ...]
 ) -> Stage:
     rule = None if step is None else step.reaction.rule
     return Stage(
@@ -124,6 +124,6 @@ def _stage(
     )
 
 
-def _labels(machine: Machine, state: State) -> tuple[str, ...]:
+def _labels(machine: Machine, state: GroundState) -> tuple[str, ...]:
     holding, predicates = machine.holding(state), enumerate(machine.system.predicates)
     return tuple(predicate.label for number, predicate in predicates if number in holding)

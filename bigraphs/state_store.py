@@ -6,13 +6,13 @@ from array import array
 from dataclasses import dataclass, field
 from typing import Final
 
-from bigraphs.columns import Column, Numbering, Texts
-from bigraphs.engine.frontier import Waiting
+from bigraphs.compact_lists import DictionaryColumn, Numbering, Texts
+from bigraphs.engine.frontier import Frontier
 from bigraphs.engine.machine import Machine
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.state import Key
+from bigraphs.engine.state_arrays import Key
 from bigraphs.system import SystemKind
-from bigraphs.transitions import Kind, TransitionSystem
+from bigraphs.transitions import TransitionKind, TransitionSystem
 
 MOST_REMEMBERED: Final = 200_000
 """The largest number of cached state numbers; the cache saves the computation of canonical keys."""
@@ -27,7 +27,7 @@ class _Merged:
     rules: set[int] = field(default_factory=set)
 
 
-class Reached:
+class StateStore:
     """States and transitions found so far, up to an optional limit of states.
 
     Attributes:
@@ -46,9 +46,9 @@ class Reached:
         self.remembered: dict[Key, int] = {}
         self.keys = self.visited.texts if machine.world.plain else Texts()
         self.found_from = array("I")
-        self.holding: Column[tuple[int, ...]] = Column()
+        self.holding: DictionaryColumn[tuple[int, ...]] = DictionaryColumn()
         self.first, self.targets = array("Q", (0,)), array("I")
-        self.kinds: Column[Kind] = Column()
+        self.kinds: DictionaryColumn[TransitionKind] = DictionaryColumn()
         self.rule_sets: dict[frozenset[int], tuple[str, ...]] = {}
         self.occurrences = 0
 
@@ -63,7 +63,7 @@ class Reached:
     def begin(self) -> None:
         """Add the initial state."""
         self.start, self.occurrences = self.machine.start()
-        self.waiting = Waiting(self.start)
+        self.waiting = Frontier(self.start)
         self.number(self.start, 0)
 
     def number(self, spot: Spot, source: int) -> int:
@@ -139,7 +139,9 @@ class Reached:
             elif kind is not SystemKind.SBRS:
                 weight /= totals[action]
             self.targets.append(target)
-            self.kinds.append(Kind(weight, self._labels(frozenset(group.rules)), group.count, action))
+            self.kinds.append(
+                TransitionKind(weight, self._labels(frozenset(group.rules)), group.count, action)
+            )
         self.first.append(len(self.targets))
 
     def _labels(self, rules: frozenset[int]) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 from bigraphs.bigraph import Bigraph
 from bigraphs.errors import NotationError
-from bigraphs.properties import Property
+from bigraphs.properties import SystemProperty
 from bigraphs.rules import ReactionRule
 from bigraphs.signature import Signature
 from bigraphs.sorting import UNSORTED, Sorting
@@ -42,7 +42,7 @@ class Where(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Position:
+class SourcePosition:
     """A position in a source text: line and column, from 1."""
 
     line: int
@@ -81,7 +81,7 @@ class Rule:
     conditions: tuple[Condition, ...] = ()
     parameters: tuple[Value, ...] = ()
     link_constants: frozenset[str] = frozenset()
-    position: Position | None = field(default=None, compare=False)
+    position: SourcePosition | None = field(default=None, compare=False)
 
     @property
     def label(self) -> str:
@@ -108,7 +108,7 @@ class PriorityClass:
 
     rules: tuple[Rule, ...]
     instantaneous: bool = False
-    position: Position | None = field(default=None, compare=False)
+    position: SourcePosition | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +119,7 @@ class Predicate:
     pattern: Bigraph
     reward: int | float | None = None
     parameters: tuple[Value, ...] = ()
-    position: Position | None = field(default=None, compare=False)
+    position: SourcePosition | None = field(default=None, compare=False)
 
     @property
     def label(self) -> str:
@@ -148,7 +148,7 @@ class System:
     classes: tuple[PriorityClass, ...] = ()
     predicates: tuple[Predicate, ...] = ()
     actions: tuple[Action, ...] = ()
-    properties: tuple[Property, ...] = ()
+    properties: tuple[SystemProperty, ...] = ()
     sorting: Sorting = UNSORTED
     warnings: tuple[NotationError, ...] = field(default=(), compare=False, repr=False)
     """The harmless mistakes in the source text."""

@@ -13,7 +13,7 @@ def draw_text(bigraph: Bigraph) -> str:
 
     A node with several parents is drawn in full in the first; in the others an arrow and its label stand for it.
 
-    >>> from bigraphs.relations import from_relations
+    >>> from bigraphs.relational_bigraphs import from_relations
     >>> print(draw_text(from_relations({"u": "UAV", "a": "Area"}, {"u": "a"}, {"net": ["u"]})))
     region 0
     └─ a: Area

@@ -10,9 +10,9 @@ from itertools import repeat
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from bigraphs.bigraph import Bigraph
-from bigraphs.columns import Column, Texts
+from bigraphs.compact_lists import DictionaryColumn, Texts
 from bigraphs.engine.decoding import from_key, to_bigraph
-from bigraphs.engine.world import World
+from bigraphs.engine.intern_tables import InternTables
 from bigraphs.system import Rule, System, SystemKind
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class Transition(NamedTuple):
     action: str | None
 
 
-class Kind(NamedTuple):
+class TransitionKind(NamedTuple):
     """A transition without its source and target; a system has few distinct kinds."""
 
     weight: float
@@ -58,12 +58,12 @@ class TransitionSystem:
     """
 
     system: System
-    world: World
+    world: InternTables
     keys: Texts
-    holding: Column[tuple[int, ...]]
+    holding: DictionaryColumn[tuple[int, ...]]
     first: array[int]
     targets: array[int]
-    kinds: Column[Kind]
+    kinds: DictionaryColumn[TransitionKind]
     found_from: array[int]
     occurrences: int
     seconds: float
@@ -156,7 +156,7 @@ class TransitionSystem:
 
     def beginning(self, states: int) -> TransitionSystem:
         """Return the first `states` states and the transitions between them."""
-        first, targets, kinds = array("Q", (0,)), array("I"), Column[Kind]()
+        first, targets, kinds = array("Q", (0,)), array("I"), DictionaryColumn[TransitionKind]()
         for state in range(min(states, self.expanded)):
             for number in self.leaving(state):
                 if self.targets[number] < states:
@@ -166,7 +166,7 @@ class TransitionSystem:
         return replace(
             self,
             keys=Texts(self.keys[:states]),
-            holding=Column(self.holding[:states]),
+            holding=DictionaryColumn(self.holding[:states]),
             first=first,
             targets=targets,
             kinds=kinds,

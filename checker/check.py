@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol, assert_never
 
 from checker.engines.choose import explore_by
 from checker.engines.contract import Cluster, Engine, Exploration, Keeping, Options, Reporter
-from checker.limits import BoundMet, Limits, Part, Stop, bounded
+from checker.limits import BoundMet, CheckPart, Limits, Stop, bounded
 from checker.properties.coverage import coverage
 from checker.properties.findings import MOST_VIOLATIONS, Collected
 from checker.properties.inspections import (
@@ -23,7 +23,7 @@ from checker.properties.inspections import (
 from checker.properties.ownership import owned
 from checker.properties.races import ControlRaces, StaleObservationRaces
 from checker.properties.visited import Visited
-from checker.reduction.original_run import told
+from checker.reduction.original_run import in_original_names
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.traces import Trace, trace_of, trace_to
 from checker.verdicts import Outcome, Report, Verdict, Verdicts, Violation
@@ -35,7 +35,7 @@ from semantics.state.configuration import Configuration
 if TYPE_CHECKING:
     from checker.properties.deadlines import Deadlines
     from checker.properties.schedule import Schedule
-    from checker.properties.temporal.decide import Decider
+    from checker.properties.temporal.decide import TemporalDecider
     from checker.reduction.reducer import Reduced
     from semantics.properties.propositions import Proposition
 
@@ -203,7 +203,7 @@ class _Check:
         self.temporal = tuple(
             each for each in self.properties if each.is_of_runs and self.refused(each) is None
         )
-        self.decider: Decider | None = None
+        self.decider: TemporalDecider | None = None
         self.deadlines: Deadlines | None = None
         self.unscheduled: tuple[str, ...] = ()
 
@@ -270,7 +270,7 @@ class _Check:
         if options.reduce is not None and options.reduce.putting_off:  # symmetry loses the owner of a memory
             reduce = _reduced(start, [Reduction.POR])
         remembered = explore_by(start, (self.stale,), replace(options, limits=limits, reduce=reduce))
-        remembered.bounds = [bound.met_in(Part.SEARCHING) for bound in remembered.bounds]
+        remembered.bounds = [bound.met_in(CheckPart.SEARCHING) for bound in remembered.bounds]
         return remembered
 
     def refused(self, asked: Property) -> str | None:
@@ -324,11 +324,11 @@ class _Check:
         return self.inspections[kind].collected
 
     def decide_temporal(self, asked: Property) -> Verdict:
-        from checker.properties.temporal.decide import Decider  # noqa: PLC0415 - numpy and scipy take their time to load
+        from checker.properties.temporal.decide import TemporalDecider  # noqa: PLC0415 - numpy and scipy take their time to load
 
         try:
             if self.decider is None:
-                self.decider = Decider(self.found, self.temporal, self.most)
+                self.decider = TemporalDecider(self.found, self.temporal, self.most)
             return self.decider.decide(asked)
         except BoundMet as met:
             return Verdict(asked, Outcome.INCOMPLETE, note=f"not decided: {met.bound} was met")
@@ -443,4 +443,4 @@ def _shown(violations: tuple[Violation, ...], most: int) -> tuple[Violation, ...
 
 def _teller(found: Exploration, number: int) -> Callable[[str], str]:
     """Return a function that replaces the names of a representative by those of the unreduced run to it."""
-    return lambda text: told(found, number, text)
+    return lambda text: in_original_names(found, number, text)

@@ -32,7 +32,7 @@ class Stop(Enum):
     NO_CHECKPOINT = "a checkpoint that can't be written to {}: {}"
 
 
-class Part(Enum):
+class CheckPart(Enum):
     """The parts of a check in which bounds may be met, beside the exploration itself."""
 
     LOOKING = "looking at what was explored"
@@ -51,12 +51,12 @@ class Bound:
 
     stop: Stop
     figures: tuple[float | str | None, ...] = ()
-    within: tuple[Part, ...] = ()
+    within: tuple[CheckPart, ...] = ()
 
     def __str__(self) -> str:
         return ", in ".join((self.stop.value.format(*self.figures), *(part.value for part in self.within)))
 
-    def met_in(self, part: Part) -> "Bound":
+    def met_in(self, part: CheckPart) -> "Bound":
         """Return the bound as met in a part of the check."""
         return replace(self, within=(*self.within, part))
 

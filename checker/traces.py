@@ -15,7 +15,7 @@ from checker.properties.races import STALE
 from checker.properties.stale_steps import stale_steps
 from checker.reduction.original_run import run_to
 from checker.steps import Step, alike, candidates, step_between, step_of
-from physical.messages import counted
+from physical.wordings import counted
 from semantics.observed_steps import Sight
 from semantics.races.monitor import monitored
 from semantics.state.canonical import digest_of_step
@@ -28,7 +28,7 @@ from semantics.timing.dates import clock_text
 
 if TYPE_CHECKING:
     from checker.engines.timed.answers import Times
-    from checker.engines.timed.first_runs import Run
+    from checker.engines.timed.first_runs import TimedRun
 
 SCHEMA = "bigactors.trace/1"
 """The version of the step schema: schema, mission, digest, monitored, steps of label, choice and changes, and loop.
@@ -140,7 +140,7 @@ def trace_of(found: Exploration, finding: Finding) -> Trace:
     return replace(trace, race=stale_steps(trace.initial, trace.steps))
 
 
-def dated_trace(times: Times, run: Run) -> Trace:
+def dated_trace(times: Times, run: TimedRun) -> Trace:
     """Return a run as a trace with dates."""
     trace = Trace(times.initial)
     for transition, date in zip(times.transitions(run), run.dates, strict=True):

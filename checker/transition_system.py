@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from checker.engines.contract import Exploration
 from checker.engines.graph import Graph, graph_of
 from checker.steps import step_of
-from physical.messages import install_extra
+from physical.wordings import install_extra
 from semantics.state.requests import Received
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 
-class Row(NamedTuple):
+class TransitionRow(NamedTuple):
     """A transition, as a row of the table."""
 
     source: int
@@ -45,10 +45,10 @@ def to_pandas(found: Exploration) -> "DataFrame":
     except ImportError as error:
         raise ImportError(f"tables need pandas: {install_extra('notebook')}") from error
 
-    return DataFrame(list(rows(found)), columns=list(Row._fields))
+    return DataFrame(list(rows(found)), columns=list(TransitionRow._fields))
 
 
-def rows(found: Exploration) -> Iterator[Row]:
+def rows(found: Exploration) -> Iterator[TransitionRow]:
     """Yield the transitions; raises ValueError where they were not kept."""
     graph, configurations = _graph(found), found.configurations
     for source, target, action in zip(graph.sources, graph.targets, graph.actions, strict=True):
@@ -57,7 +57,7 @@ def rows(found: Exploration) -> Iterator[Row]:
             label.about, Received
         ):  # rows do not hold received observations
             label = step_of(configurations[source], label, configurations[target]).label
-        yield Row(int(source), int(target), label.rule, label.agent, str(label.about), str(label))
+        yield TransitionRow(int(source), int(target), label.rule, label.agent, str(label.about), str(label))
 
 
 def _graph(found: Exploration) -> Graph:

@@ -10,8 +10,6 @@ from .drift import drift_faces as drift_faces
 from .drift import face_at as face_at
 from .errors import GeometryError as GeometryError
 from .errors import PhysicalError as PhysicalError
-from .files import open_file as open_file
-from .files import opened_itself as opened_itself
 from .geojson import GeoJSONError as GeoJSONError
 from .geojson import read_geojson as read_geojson
 from .geojson import reading_geojson as reading_geojson
@@ -34,6 +32,8 @@ from .placement import nearest_placement as nearest_placement
 from .placement import translate_to as translate_to
 from .qgc_plan import read_plan as read_plan
 from .qgc_plan import write_plan as write_plan
+from .regular_files import open_file as open_file
+from .regular_files import opened_itself as opened_itself
 from .shape import Geometry as Geometry
 from .shape import box as box
 from .shape import circle as circle

@@ -9,8 +9,8 @@ from functools import cache
 from typing import Protocol, cast
 
 from physical.ais_reports import HIGHEST_ALTITUDE, AisError, PositionReport, Report, StaticReport
-from physical.messages import install_extra
-from physical.nmea import Part, Reason
+from physical.nmea import DecodingFailure, Fragment
+from physical.wordings import install_extra
 
 POSITIONS = frozenset({1, 2, 3, 4, 9, 11, 17, 18, 19, 21, 27})
 """The message types with the position of the sender."""
@@ -38,13 +38,15 @@ class _Message(Protocol):
     lon: float
 
 
-def type_of(parts: tuple[Part, ...]) -> int:
+def type_of(parts: tuple[Fragment, ...]) -> int:
     """Return the message type, 0 to 63, which is the first character of the payload."""
     code = parts[0].payload[0] - 48
     return code - 8 if code > 40 else code
 
 
-def decode(parts: tuple[Part, ...], time: float | None) -> tuple[tuple[Report, ...], Reason | None]:
+def decode(
+    parts: tuple[Fragment, ...], time: float | None
+) -> tuple[tuple[Report, ...], DecodingFailure | None]:
     """Decode one message from all its parts, in order: its reports, and the reason if some or all are missing.
 
     Raises:
@@ -52,17 +54,17 @@ def decode(parts: tuple[Part, ...], time: float | None) -> tuple[tuple[Report, .
     """
     msg_type = type_of(parts)
     if msg_type not in _TYPES:
-        return (), Reason.UNKNOWN
+        return (), DecodingFailure.UNKNOWN
     if msg_type not in _NEEDED_BITS:
         return (), None
     if sum(part.bits for part in parts) < _NEEDED_BITS[msg_type]:
-        return (), Reason.TRUNCATED
+        return (), DecodingFailure.TRUNCATED
     pyais_decode = _pyais_decode()
     try:
         message = pyais_decode(*(part.raw for part in parts))
     except Exception:  # pyais raises arbitrary errors for hostile payloads; none may end a feed
-        return (), Reason.UNDECODABLE
-    return _reports(message, time) if message.mmsi <= _HIGHEST_MMSI else ((), Reason.UNDECODABLE)
+        return (), DecodingFailure.UNDECODABLE
+    return _reports(message, time) if message.mmsi <= _HIGHEST_MMSI else ((), DecodingFailure.UNDECODABLE)
 
 
 @cache
@@ -75,12 +77,12 @@ def _pyais_decode() -> Callable[..., _Message]:
     return cast("Callable[..., _Message]", pyais_decode)
 
 
-def _reports(message: _Message, time: float | None) -> tuple[tuple[Report, ...], Reason | None]:
+def _reports(message: _Message, time: float | None) -> tuple[tuple[Report, ...], DecodingFailure | None]:
     if message.msg_type not in POSITIONS:
         return _static(message, time), None
     position = _position(message, time)
     static = _static(message, time) if message.msg_type in STATICS else ()
-    return (*position, *static), None if position else Reason.NOT_AVAILABLE
+    return (*position, *static), None if position else DecodingFailure.NOT_AVAILABLE
 
 
 def _position(message: _Message, time: float | None) -> tuple[PositionReport, ...]:

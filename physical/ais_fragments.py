@@ -6,7 +6,7 @@ close to each other. They may arrive in any order, and repeatedly.
 
 from dataclasses import dataclass, replace
 
-from physical.nmea import Part
+from physical.nmea import Fragment
 
 FRAGMENT_SECONDS = 5.0
 """Seconds after the first part of a message in which its other parts count, if lines have times."""
@@ -28,7 +28,7 @@ class Incomplete:
     """
 
     key: Key
-    parts: tuple[Part, ...]
+    parts: tuple[Fragment, ...]
     time: float | None
     heard: int
     sentences: int = 1
@@ -54,7 +54,7 @@ class Joined:
     lost: tuple[Incomplete, ...]
 
 
-def join(fragments: Fragments, part: Part, time: float | None, group: str | None = None) -> Joined:
+def join(fragments: Fragments, part: Fragment, time: float | None, group: str | None = None) -> Joined:
     """Add a part to its message, or start a new message."""
     key = (part.talker, part.sequence, part.channel, part.total, group)
     recent = tuple(entry for entry in fragments.waiting if fragments.heard - entry.heard < FRAGMENT_LINES)
@@ -69,14 +69,14 @@ def join(fragments: Fragments, part: Part, time: float | None, group: str | None
     return Joined(Fragments(waiting, fragments.heard + 1), grown if done else None, lost)
 
 
-def _together(entry: Incomplete, part: Part, time: float | None) -> bool:
+def _together(entry: Incomplete, part: Fragment, time: float | None) -> bool:
     """Whether a part may belong to a message: near in time, and without a conflicting part of the same number."""
     if entry.time is not None and time is not None and abs(time - entry.time) > FRAGMENT_SECONDS:
         return False
     return all(part.number != other.number or part.payload == other.payload for other in entry.parts)
 
 
-def _with(entry: Incomplete, part: Part) -> Incomplete:
+def _with(entry: Incomplete, part: Fragment) -> Incomplete:
     entry = replace(entry, sentences=entry.sentences + 1)
     if any(part.number == other.number for other in entry.parts):
         return entry

@@ -13,8 +13,8 @@ from physical.ais_fragments import EMPTY, Fragments, join
 from physical.ais_reports import PositionReport, Report
 from physical.nmea import (
     MAX_LINE,
-    Part,
-    Reason,
+    DecodingFailure,
+    Fragment,
     TagBlock,
     address,
     clock_of,
@@ -37,7 +37,7 @@ TAKEN: Final = frozenset({POSITION, STATIC, PART, TIME, COMMENT})
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class FragmentGroup:
     """The first line of a group of lines, and the number of its last line so far."""
 
     first: TagBlock
@@ -45,16 +45,16 @@ class Group:
 
 
 @dataclass(frozen=True, slots=True)
-class Ear:
+class ReceiverState:
     """The state after the lines so far; the oldest group comes first."""
 
     clock: float | None = None
     fragments: Fragments = EMPTY
-    groups: tuple[Group, ...] = ()
+    groups: tuple[FragmentGroup, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Heard:
+class ReceivedLine:
     """The result of one line: the new state, reports and mistakes.
 
     Attributes:
@@ -66,20 +66,20 @@ class Heard:
         given_up: The number of parts, this line's or earlier ones, that no longer belong to a message.
     """
 
-    ear: Ear
+    ear: ReceiverState
     reports: tuple[Report, ...] = ()
-    reasons: tuple[Reason, ...] = ()
+    reasons: tuple[DecodingFailure, ...] = ()
     pieces: tuple[str, ...] = ()
     given_up: int = 0
 
 
-def hear(ear: Ear, line: bytes, now: float | None = None) -> Heard:
+def hear(ear: ReceiverState, line: bytes, now: float | None = None) -> ReceivedLine:
     r"""Decode one line, received at `now` (seconds since 1970; None for a recording).
 
     The time of a message comes from its tag blocks, else from its logger's text, else it is `now`, else it comes from
     the latest `$PGHP`, `$..RMC` or `$..ZDA` line. Blank lines, comments (`#`) and other sentences have no reports.
 
-    >>> heard = hear(Ear(), rb"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61")
+    >>> heard = hear(ReceiverState(), rb"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61")
     >>> heard.reports[0].mmsi, heard.reports[0].lat
     (376427000, 37.346935)
 
@@ -87,26 +87,26 @@ def hear(ear: Ear, line: bytes, now: float | None = None) -> Heard:
         AisError: If pyais is missing.
     """
     if len(line) > MAX_LINE:
-        return _failed(ear, Reason.OVERLONG)
+        return _failed(ear, DecodingFailure.OVERLONG)
     text = line.strip()
     if not text:
-        return Heard(ear)
+        return ReceivedLine(ear)
     if text.startswith(b"#"):
-        return Heard(ear, pieces=(COMMENT,))
+        return ReceivedLine(ear, pieces=(COMMENT,))
     frames = framed_in(text)
     if not frames:
-        return _failed(ear, Reason.NO_SENTENCE)
-    heard = Heard(ear)
+        return _failed(ear, DecodingFailure.NO_SENTENCE)
+    heard = ReceivedLine(ear)
     for framed in frames:
         heard = _after(heard, _framed(heard.ear, framed, now))
     return heard
 
 
-def _after(before: Heard, here: Heard) -> Heard:
+def _after(before: ReceivedLine, here: ReceivedLine) -> ReceivedLine:
     """Return the combined result of two pieces of a line."""
     if not before.pieces:
         return here
-    return Heard(
+    return ReceivedLine(
         here.ear,
         before.reports + here.reports,
         before.reasons + here.reasons,
@@ -115,11 +115,11 @@ def _after(before: Heard, here: Heard) -> Heard:
     )
 
 
-def _failed(ear: Ear, reason: Reason) -> Heard:
-    return Heard(ear, reasons=(reason,), pieces=(reason.value,))
+def _failed(ear: ReceiverState, reason: DecodingFailure) -> ReceivedLine:
+    return ReceivedLine(ear, reasons=(reason,), pieces=(reason.value,))
 
 
-def _framed(ear: Ear, framed: Framed, now: float | None) -> Heard:
+def _framed(ear: ReceiverState, framed: Framed, now: float | None) -> ReceivedLine:
     tag = framed.tag
     if tag is not None:
         ear, tag = _grouped(ear, tag)
@@ -127,7 +127,7 @@ def _framed(ear: Ear, framed: Framed, now: float | None) -> Heard:
     return replace(heard, reasons=framed.reasons + heard.reasons) if framed.reasons else heard
 
 
-def _grouped(ear: Ear, tag: TagBlock) -> tuple[Ear, TagBlock]:
+def _grouped(ear: ReceiverState, tag: TagBlock) -> tuple[ReceiverState, TagBlock]:
     """Complete a tag block with the first line of its group, or store it as the first line.
 
     A number out of sequence starts a new group, since group numbers recur.
@@ -147,10 +147,10 @@ def _grouped(ear: Ear, tag: TagBlock) -> tuple[Ear, TagBlock]:
     first = tag if known is None else known.first
     if tag.number >= tag.total:  # the group is complete
         return replace(ear, groups=others), tag
-    return replace(ear, groups=(*others, Group(first, tag.number))[-GROUP_TABLE:]), tag
+    return replace(ear, groups=(*others, FragmentGroup(first, tag.number))[-GROUP_TABLE:]), tag
 
 
-def _follows(tag: TagBlock, group: Group) -> bool:
+def _follows(tag: TagBlock, group: FragmentGroup) -> bool:
     """Whether a line continues a group: it comes after the group's last line, and has the same total."""
     first = group.first
     return (
@@ -165,38 +165,41 @@ def _of_one_source(one: TagBlock, other: TagBlock) -> bool:
     return one.source is None or other.source is None or one.source == other.source
 
 
-def _sentence(ear: Ear, framed: Framed, now: float | None, tag: TagBlock | None) -> Heard:
+def _sentence(ear: ReceiverState, framed: Framed, now: float | None, tag: TagBlock | None) -> ReceivedLine:
     kind = address(framed.sentence)
     if kind[2:] in ("VDM", "VDO"):
         return _ais(ear, framed, now, tag)
     if is_clock(kind):
         return _clock(ear, framed.sentence)
-    return Heard(ear, pieces=(f"sentence {kind}" if kind else "tag block without a sentence",))
+    return ReceivedLine(ear, pieces=(f"sentence {kind}" if kind else "tag block without a sentence",))
 
 
-def _clock(ear: Ear, text: bytes) -> Heard:
+def _clock(ear: ReceiverState, text: bytes) -> ReceivedLine:
     sentence = parse_sentence(text)
-    clock = sentence if isinstance(sentence, Reason) else clock_of(sentence)
-    if isinstance(clock, Reason):
+    clock = sentence if isinstance(sentence, DecodingFailure) else clock_of(sentence)
+    if isinstance(clock, DecodingFailure):
         return _failed(ear, clock)
-    return Heard(Ear(clock, ear.fragments, ear.groups), pieces=(TIME,))
+    return ReceivedLine(ReceiverState(clock, ear.fragments, ear.groups), pieces=(TIME,))
 
 
-def _ais(ear: Ear, framed: Framed, now: float | None, tag: TagBlock | None) -> Heard:
+def _ais(ear: ReceiverState, framed: Framed, now: float | None, tag: TagBlock | None) -> ReceivedLine:
     sentence = parse_sentence(framed.sentence)
-    if isinstance(sentence, Reason):
+    if isinstance(sentence, DecodingFailure):
         return _failed(ear, sentence)
     part = part_of(sentence)
-    if isinstance(part, Reason):
+    if isinstance(part, DecodingFailure):
         return _failed(ear, part)
     time = _first(tag.time if tag else None, framed.time, now, ear.clock)
     if part.total == 1:
         return _message(ear, (part,), time)
     joined = join(ear.fragments, part, time, None if tag is None else tag.group)
     ear = replace(ear, fragments=joined.fragments)
-    lost, given_up = (Reason.INCOMPLETE,) * len(joined.lost), sum(each.sentences for each in joined.lost)
+    lost, given_up = (
+        (DecodingFailure.INCOMPLETE,) * len(joined.lost),
+        sum(each.sentences for each in joined.lost),
+    )
     if joined.complete is None:
-        return Heard(ear, reasons=lost, pieces=(PART,), given_up=given_up)
+        return ReceivedLine(ear, reasons=lost, pieces=(PART,), given_up=given_up)
     heard = _message(ear, joined.complete.parts, joined.complete.time)
     return replace(heard, reasons=lost + heard.reasons, given_up=given_up)
 
@@ -205,7 +208,7 @@ def _first(*times: float | None) -> float | None:
     return next((time for time in times if time is not None), None)
 
 
-def _message(ear: Ear, parts: tuple[Part, ...], time: float | None) -> Heard:
+def _message(ear: ReceiverState, parts: tuple[Fragment, ...], time: float | None) -> ReceivedLine:
     reports, reason = decode(parts, time)
     if any(isinstance(report, PositionReport) for report in reports):
         piece = POSITION
@@ -213,4 +216,4 @@ def _message(ear: Ear, parts: tuple[Part, ...], time: float | None) -> Heard:
         piece = reason.value
     else:
         piece = STATIC if reports else f"message of type {type_of(parts)}, without a position of its sender"
-    return Heard(ear, reports, () if reason is None else (reason,), (piece,))
+    return ReceivedLine(ear, reports, () if reason is None else (reason,), (piece,))

@@ -7,14 +7,14 @@ from io import BytesIO
 from os import PathLike
 from typing import IO, Final
 
-from physical.ais_receiver import PART, POSITION, STATIC, TAKEN, Ear, Heard, hear
+from physical.ais_receiver import PART, POSITION, STATIC, TAKEN, ReceivedLine, ReceiverState, hear
 from physical.ais_reports import AisError, PositionReport, Report, StaticReport
-from physical.files import open_file
-from physical.nmea import MAX_LINE, Reason
-from physical.tally import Counting, Tally
+from physical.file_account import Counting, FileAccount
+from physical.nmea import MAX_LINE, DecodingFailure
+from physical.regular_files import open_file
 
 CHUNK: Final = 65_536
-NOTHING: Final = Tally()
+NOTHING: Final = FileAccount()
 _END: Final = re.compile(rb"[\r\n]+")
 
 MAX_RECORDING = 256 * 2**20
@@ -22,11 +22,11 @@ MAX_RECORDING = 256 * 2**20
 
 
 @dataclass(frozen=True, slots=True)
-class Recording:
+class AISRecording:
     """The reports of a recording, in order of arrival, and the account of its sentences and other lines."""
 
     reports: tuple[Report, ...]
-    tally: Tally = NOTHING
+    tally: FileAccount = NOTHING
 
     @property
     def positions(self) -> tuple[PositionReport, ...]:
@@ -41,7 +41,7 @@ class Recording:
 
 def read_recording(
     source: str | PathLike[str] | bytes | Iterable[bytes], limit: int = MAX_RECORDING
-) -> Recording:
+) -> AISRecording:
     """Return the recording at a path, in bytes, or in an iterable of lines.
 
     Bad lines are counted, never fatal. Memory grows with the reports, about 300 bytes each.
@@ -61,9 +61,9 @@ def read_recording(
         raise AisError("ais-unreadable", message, hint, str(source)) from error
 
 
-def record(lines: Iterable[bytes]) -> Recording:
+def record(lines: Iterable[bytes]) -> AISRecording:
     """Return the recording of these lines, by a fold of `hear`."""
-    ear, reports, counting, total = Ear(), list[Report](), Counting(), 0
+    ear, reports, counting, total = ReceiverState(), list[Report](), Counting(), 0
     for line in lines:
         heard = hear(ear, line)
         ear = heard.ear
@@ -71,7 +71,7 @@ def record(lines: Iterable[bytes]) -> Recording:
         total += len(heard.pieces)
         count(counting, heard)
     _give_up(counting, sum(each.sentences for each in ear.fragments.waiting))
-    return Recording(tuple(reports), counting.tally(total, *PIECES))
+    return AISRecording(tuple(reports), counting.tally(total, *PIECES))
 
 
 PIECES: Final = ("sentence or other line", "sentences and other lines")
@@ -80,12 +80,12 @@ PIECES: Final = ("sentence or other line", "sentences and other lines")
 INCOMPLETE: Final = "part of an incomplete message"
 
 
-def count(counting: Counting, heard: Heard) -> None:
+def count(counting: Counting, heard: ReceivedLine) -> None:
     """Count the pieces of a line."""
     for piece in heard.pieces:
         (counting.take if piece in TAKEN else counting.leave)(piece)
-    if Reason.TAG_BLOCK in heard.reasons:
-        counting.note(Reason.TAG_BLOCK.value, heard.reasons.count(Reason.TAG_BLOCK))
+    if DecodingFailure.TAG_BLOCK in heard.reasons:
+        counting.note(DecodingFailure.TAG_BLOCK.value, heard.reasons.count(DecodingFailure.TAG_BLOCK))
     _give_up(counting, heard.given_up)
 
 
@@ -96,7 +96,7 @@ def _give_up(counting: Counting, parts: int) -> None:
         counting.leave(INCOMPLETE, parts)
 
 
-def has_sentences(tally: Tally) -> bool:
+def has_sentences(tally: FileAccount) -> bool:
     """Whether a recording contains a sentence of AIS."""
     return any(kind in (POSITION, STATIC, PART) for kind, _ in tally.taken) or any(
         kind == INCOMPLETE or kind.startswith("message") or kind in _IN_SENTENCES
@@ -105,7 +105,14 @@ def has_sentences(tally: Tally) -> bool:
 
 
 _IN_SENTENCES: Final = frozenset(
-    {Reason.NOT_AVAILABLE, Reason.UNKNOWN, Reason.TRUNCATED, Reason.UNDECODABLE, Reason.EMPTY, Reason.ARMOUR}
+    {
+        DecodingFailure.NOT_AVAILABLE,
+        DecodingFailure.UNKNOWN,
+        DecodingFailure.TRUNCATED,
+        DecodingFailure.UNDECODABLE,
+        DecodingFailure.EMPTY,
+        DecodingFailure.ARMOUR,
+    }
 )
 
 

@@ -5,14 +5,14 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
 from typing import Final
 
-from physical.ais_recording import Recording
+from physical.ais_recording import AISRecording
 from physical.ais_reports import HIGHEST_ALTITUDE, AisError, PositionReport
 from physical.altitude import Band
+from physical.file_account import Counting, Read
 from physical.geometry import contains, point
 from physical.mmsi import KINDS, entity_name, kind_of
 from physical.physical_property import PhysicalProperty, Velocity
 from physical.shape import Geometry
-from physical.tally import Counting, Read
 from physical.written_times import moment_text
 
 TIME_TO_LIVE = 600.0
@@ -31,7 +31,7 @@ MOST_STATIONS: Final = 100_000
 
 
 def world_at(
-    recording: Recording,
+    recording: AISRecording,
     time: float | None = None,
     area: Geometry | None = None,
     kinds: Collection[str] | None = None,
@@ -51,7 +51,7 @@ def world_at(
 
 
 def seen_at(
-    recording: Recording,
+    recording: AISRecording,
     time: float | None = None,
     area: Geometry | None = None,
     kinds: Collection[str] | None = None,
@@ -78,7 +78,7 @@ def seen_at(
 UNDATED: Final = "position without a time: it counts as heard when its neighbour in the recording was"
 
 
-def check_time(recording: Recording, time: float | None, time_to_live: float = TIME_TO_LIVE) -> None:
+def check_time(recording: AISRecording, time: float | None, time_to_live: float = TIME_TO_LIVE) -> None:
     """Raise AisError, with the recording's span, for a time at which no position of it counts."""
     times = [report.time for report in recording.positions if report.time is not None]
     if time is None or not times or min(times) <= time <= max(times) + time_to_live:

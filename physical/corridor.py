@@ -10,7 +10,7 @@ from typing import Final
 import shapely
 
 from physical.errors import GeometryError
-from physical.frame import E7, METRES_PER_DEGREE, Frame, PositionE7, local_frame, normal_longitude
+from physical.frame import E7, METRES_PER_DEGREE, LocalFrame, PositionE7, local_frame, normal_longitude
 from physical.shape import SMALLEST_RADIUS, Geometry, point, polygon
 
 MOST_VERTICES: Final = 1_000
@@ -72,7 +72,7 @@ def _unrolled(line: Sequence[Sequence[float]]) -> list[PositionE7]:
     return [(here[0], east) for here, east in zip(found, easts, strict=True)]
 
 
-def _framed(line: Sequence[PositionE7]) -> tuple[Frame, shapely.LineString]:
+def _framed(line: Sequence[PositionE7]) -> tuple[LocalFrame, shapely.LineString]:
     """Return the metric frame around the middle of a line, and the line in the plane there (1e-7 degree)."""
     norths, easts = zip(*line, strict=True)
     north, east = (min(norths) + max(norths)) // 2, (min(easts) + max(easts)) // 2

@@ -182,7 +182,7 @@ def _check(mover: Geometry, within: Geometry, aboard: Aboard) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Plane:
+class MetricPlane:
     """The plane of an arrangement, in metres.
 
     Attributes:
@@ -196,12 +196,12 @@ class Plane:
     spot: Callable[[Geometry], tuple[float, float]]
 
 
-def plane_of(mover: Geometry, within: Geometry, aboard: Aboard = NOTHING_ABOARD) -> Plane:
+def plane_of(mover: Geometry, within: Geometry, aboard: Aboard = NOTHING_ABOARD) -> MetricPlane:
     """Return the plane of a drift."""
     return _plane(within, _shapes(mover, {}, aboard))
 
 
-def _plane(within: Geometry, shapes: Shapes) -> Plane:
+def _plane(within: Geometry, shapes: Shapes) -> MetricPlane:
     """Return the plane for a mover and the shapes aboard.
 
     If one of them is a polygon, it is the metric frame in which the polygon moves rigidly. For points alone it is a
@@ -216,12 +216,12 @@ def _plane(within: Geometry, shapes: Shapes) -> Plane:
         space = frame.project(planar(place))
         return space if shape.is_point else room(space, shape)
 
-    return Plane(
+    return MetricPlane(
         room_of, lambda x, y: placed(mover, frame, x, y), lambda at: frame.metres(centroid(at).ring[0])
     )
 
 
-def _affine(centre: PositionE7, near: shapely.Geometry) -> Plane:
+def _affine(centre: PositionE7, near: shapely.Geometry) -> MetricPlane:
     north, east = centre
     up = METRES_PER_DEGREE / E7
     across = up * max(math.cos(math.radians(north / E7)), 0.01)
@@ -230,14 +230,14 @@ def _affine(centre: PositionE7, near: shapely.Geometry) -> Plane:
     def flat(place: Geometry) -> shapely.Geometry:
         return shapely.transform(beside(near, planar(place)), lambda at: (at - (east, north)) * (across, up))
 
-    return Plane(
+    return MetricPlane(
         lambda place, _: flat(place),
         lambda x, y: intern((rounded((north + y / up) / E7, (east + x / across) / E7),)),
         lambda at: flat(centroid(at)).coords[0],
     )
 
 
-def _pieces(plane: Plane, within: Geometry, shapes: Shapes) -> list[shapely.Polygon]:
+def _pieces(plane: MetricPlane, within: Geometry, shapes: Shapes) -> list[shapely.Polygon]:
     """Return the polygons into which all borders cut the plane, as far as they meet the surrounding place."""
     space = plane.room(within, shapes[0][0])
     rooms = [plane.room(place, shape) for shape, places in shapes for _, place in places]

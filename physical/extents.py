@@ -19,7 +19,7 @@ import numpy as np
 import shapely
 from shapely.affinity import translate
 
-from physical.frame import CHORD_TOLERANCE, E7, TURN, Frame, geod, local_frame, rounded
+from physical.frame import CHORD_TOLERANCE, E7, TURN, LocalFrame, geod, local_frame, rounded
 from physical.shape import MEMO, Geometry, planar
 
 POLAR_RADIUS: Final = 6_356_752.0
@@ -139,7 +139,7 @@ def _together(geometries: Iterable[Geometry]) -> shapely.GeometryCollection:
     return shapely.GeometryCollection([translate(*pair) for pair in zip(shapes, turns, strict=True)])
 
 
-def _framed(shape: shapely.Geometry) -> tuple[Frame, shapely.Geometry]:
+def _framed(shape: shapely.Geometry) -> tuple[LocalFrame, shapely.Geometry]:
     west, south, east, north = shape.bounds
     frame = local_frame(rounded((south + north) / 2 / E7, (west + east) / 2 / E7))
     return frame, frame.project(shape)

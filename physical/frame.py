@@ -59,7 +59,7 @@ def rounded(latitude: float, longitude: float) -> PositionE7:
     return (north, 0 if abs(north) == 90 * E7 else normal_longitude(round(longitude * E7)))
 
 
-class Frame(NamedTuple):
+class LocalFrame(NamedTuple):
     """A local metric frame: azimuthal equidistant, x to the east and y to the north of its centre.
 
     Distances and directions from the centre are exact. At d metres from it, lengths across are off by the share d²/6R²
@@ -105,10 +105,10 @@ def _part(shape: shapely.Geometry) -> float:
 
 
 @lru_cache(maxsize=4096)
-def local_frame(centre: PositionE7) -> Frame:
+def local_frame(centre: PositionE7) -> LocalFrame:
     """Return the metric frame around a position."""
     latitude, longitude = centre
-    return Frame(centre, _projection(proj="aeqd", lat_0=latitude / E7, lon_0=longitude / E7))
+    return LocalFrame(centre, _projection(proj="aeqd", lat_0=latitude / E7, lon_0=longitude / E7))
 
 
 def _projection(**settings: Any) -> Proj:

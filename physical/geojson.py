@@ -20,11 +20,11 @@ from shapely.affinity import translate
 from physical.altitude import Band
 from physical.corridor import corridor
 from physical.errors import PhysicalError
+from physical.file_account import Counting, Read
 from physical.frame import E7, TURN, PositionE7
 from physical.long_edges import check_edges, goes_around
 from physical.physical_property import PhysicalProperty
 from physical.shape import Geometry, canonical, circle, planar, point, polygon
-from physical.tally import Counting, Read
 from physical.untrusted_text import is_word, legible, read_json
 
 MAX_BYTES: Final = 10_000_000

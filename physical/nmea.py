@@ -1,7 +1,7 @@
 """NMEA 0183 sentences: checksums, tag blocks, fragments of AIS messages, and the times in some sentences.
 
 This module reads only the text; `ais_decode` decodes the payloads. Every function is pure and total over bytes:
-unreadable input yields a `Reason`, never an exception, because one bad line must not end a feed.
+unreadable input yields a `DecodingFailure`, never an exception, because one bad line must not end a feed.
 """
 
 import re
@@ -21,7 +21,7 @@ _ARMOUR = bytes(range(48, 88)) + bytes(range(96, 120))
 _OLD_GROUP = re.compile(r"(\d+)G(\d+):(.+)")  # `1G2:1234`, as some write `g:1-2-1234`
 
 
-class Reason(StrEnum):
+class DecodingFailure(StrEnum):
     """The reason for a missing or incomplete result of a line or message."""
 
     OVERLONG = "line too long"
@@ -65,7 +65,7 @@ class Sentence:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class Fragment:
     """One fragment of an AIS message, `number` of `total`; `bits` is the number of bits in its payload."""
 
     raw: bytes
@@ -87,7 +87,7 @@ def checksum(body: bytes) -> int:
     return reduce(xor, body, 0)
 
 
-def parse_tag_block(block: bytes) -> TagBlock | Reason:
+def parse_tag_block(block: bytes) -> TagBlock | DecodingFailure:
     r"""Return the time (`c:`), source (`s:`) and group (`g:`) of a tag block; other fields are ignored.
 
     >>> parse_tag_block(b"g:1-2-1234,s:r3669961,c:1120959341*0D")
@@ -95,14 +95,14 @@ def parse_tag_block(block: bytes) -> TagBlock | Reason:
     """
     body, found, stated = block.rpartition(b"*")
     if not found or not block.isascii() or _hexadecimal(stated) != checksum(body):
-        return Reason.TAG_BLOCK
+        return DecodingFailure.TAG_BLOCK
     fields = [_field(field) for field in body.decode("ascii").split(",") if ":" in field]
     try:
         coded = dict(fields)
         time = epoch_seconds(coded["c"]) if "c" in coded else None
         return TagBlock(time, coded.get("s"), *_group(coded.get("g")))
     except ValueError:
-        return Reason.TAG_BLOCK
+        return DecodingFailure.TAG_BLOCK
 
 
 def together(blocks: Iterable[TagBlock]) -> TagBlock | None:
@@ -131,33 +131,35 @@ def address(sentence: bytes) -> str:
     return head.decode("ascii") if head.removeprefix(b"--").isalnum() else ""
 
 
-def parse_sentence(text: bytes) -> Sentence | Reason:
+def parse_sentence(text: bytes) -> Sentence | DecodingFailure:
     """Return the fields of a sentence, after a check of the checksum at its end."""
     star = text.find(b"*")
     if star < 0 or len(text) < star + 3:
-        return Reason.NO_CHECKSUM
+        return DecodingFailure.NO_CHECKSUM
     if not text.isascii() or len(text) > star + 3:
-        return Reason.MALFORMED
+        return DecodingFailure.MALFORMED
     if _hexadecimal(text[star + 1 : star + 3]) != checksum(text[1:star]):
-        return Reason.CHECKSUM
+        return DecodingFailure.CHECKSUM
     head, *fields = text[1:star].split(b",")
     return Sentence(text, head.decode("ascii"), tuple(fields))
 
 
-def part_of(sentence: Sentence) -> Part | Reason:
+def part_of(sentence: Sentence) -> Fragment | DecodingFailure:
     """Return the fragment in a `VDM` or `VDO` sentence."""
     if len(sentence.fields) != 6:
-        return Reason.MALFORMED
+        return DecodingFailure.MALFORMED
     total, number, sequence, channel, payload, fill = sentence.fields
     counted = _digit(total), _digit(number), _digit(fill or b"0")
     if not 1 <= counted[1] <= counted[0] or not 0 <= counted[2] <= 5 or len(channel) > 1:
-        return Reason.MALFORMED
+        return DecodingFailure.MALFORMED
     if not payload:
-        return Reason.EMPTY
+        return DecodingFailure.EMPTY
     if payload.translate(None, _ARMOUR):
-        return Reason.ARMOUR
+        return DecodingFailure.ARMOUR
     bits = 6 * len(payload) - counted[2]
-    return Part(sentence.raw, sentence.address[:2], sequence, channel, counted[0], counted[1], payload, bits)
+    return Fragment(
+        sentence.raw, sentence.address[:2], sequence, channel, counted[0], counted[1], payload, bits
+    )
 
 
 def is_clock(address: str) -> bool:
@@ -165,7 +167,7 @@ def is_clock(address: str) -> bool:
     return address == "PGHP" or address[2:] in ("RMC", "ZDA")
 
 
-def clock_of(sentence: Sentence) -> float | Reason | None:
+def clock_of(sentence: Sentence) -> float | DecodingFailure | None:
     """Return the time, in seconds since 1970, that a `$PGHP`, `$..RMC` or `$..ZDA` gives to the following sentences.
 
     None if the sentence declares its time invalid (a receiver without a fix).
@@ -176,12 +178,12 @@ def clock_of(sentence: Sentence) -> float | Reason | None:
 
 def _read_time(
     reader: Callable[[tuple[bytes, ...]], float | None], fields: tuple[bytes, ...]
-) -> float | Reason | None:
+) -> float | DecodingFailure | None:
     try:
         time = reader(fields)
     except (ValueError, IndexError, OverflowError):
-        return Reason.TIME
-    return time if time is None or 0 <= time < LATEST else Reason.TIME
+        return DecodingFailure.TIME
+    return time if time is None or 0 <= time < LATEST else DecodingFailure.TIME
 
 
 def _pghp_time(fields: tuple[bytes, ...]) -> float:

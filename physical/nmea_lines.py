@@ -13,7 +13,7 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
-from physical.nmea import Reason, TagBlock, parse_tag_block, together
+from physical.nmea import DecodingFailure, TagBlock, parse_tag_block, together
 from physical.written_times import time_beside
 
 _BEGINNING: Final = rb"[!$](?=(?:--)?[A-Za-z0-9]{1,8}[,*])"
@@ -41,7 +41,7 @@ class Framed:
     sentence: bytes
     tag: TagBlock | None = None
     time: float | None = None
-    reasons: tuple[Reason, ...] = ()
+    reasons: tuple[DecodingFailure, ...] = ()
 
 
 def framed_in(line: bytes) -> tuple[Framed, ...]:
@@ -78,7 +78,9 @@ def _lone_blocks(line: bytes) -> tuple[Framed, ...]:
 
 def _framed(found: re.Match[bytes], time: float | None, *, torn: bool) -> Framed:
     tag, reasons = _tag(found["tags"])
-    return Framed(found["sentence"].rstrip(), tag, time, (*reasons, Reason.TAG_BLOCK) if torn else reasons)
+    return Framed(
+        found["sentence"].rstrip(), tag, time, (*reasons, DecodingFailure.TAG_BLOCK) if torn else reasons
+    )
 
 
 def _times(around: list[bytes]) -> list[float | None]:
@@ -113,7 +115,7 @@ def _untorn(text: bytes) -> str:
     return (text[: torn.start()] if torn else text).decode("ascii", errors="replace")
 
 
-def _tag(text: bytes) -> tuple[TagBlock | None, tuple[Reason, ...]]:
+def _tag(text: bytes) -> tuple[TagBlock | None, tuple[DecodingFailure, ...]]:
     parsed = [parse_tag_block(found[1]) for found in _BLOCK.finditer(text)]
     known = [block for block in parsed if isinstance(block, TagBlock)]
-    return together(known), tuple(block for block in parsed if isinstance(block, Reason))
+    return together(known), tuple(block for block in parsed if isinstance(block, DecodingFailure))

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
+from physical.file_account import Read
 from physical.geojson import read_features
 from physical.physical_property import PhysicalProperty
 from physical.qgc_plan import read_plan_places
-from physical.tally import Read
 from physical.waypoints import read_mission, read_waypoints
 
 GEOJSON: Final = (".geojson", ".json")

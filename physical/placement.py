@@ -16,7 +16,7 @@ import shapely
 from shapely.affinity import translate
 
 from physical.errors import GeometryError
-from physical.frame import Frame, local_frame
+from physical.frame import LocalFrame, local_frame
 from physical.measure import centroid
 from physical.shape import Geometry, canonical, contains, covers, intern, planar
 
@@ -45,7 +45,7 @@ def outline(polygon: Geometry) -> tuple[Offset, ...]:
     return tuple(frame.project(planar(polygon)).exterior.coords[:-1])
 
 
-def placed(mover: Geometry, frame: Frame, x: float, y: float) -> Geometry:
+def placed(mover: Geometry, frame: LocalFrame, x: float, y: float) -> Geometry:
     """Return the mover with its centroid (rounded to 1e-7 degree) at x and y metres of a frame."""
     anchor = frame.position(x, y)
     if mover.is_point:
@@ -103,7 +103,7 @@ def _nearest(mover: Geometry, target: Geometry, holes: tuple[Geometry, ...]) -> 
     return None
 
 
-def _tried(mover: Geometry, frame: Frame, spot: Offset) -> Geometry | None:
+def _tried(mover: Geometry, frame: LocalFrame, spot: Offset) -> Geometry | None:
     try:
         return placed(mover, frame, *spot)
     except GeometryError:  # over a pole
@@ -119,7 +119,9 @@ def swallows(hole: Geometry, mover: Geometry) -> bool:
     return contains(hole, mover) if hole.is_point or not mover.is_point else covers(hole, mover)
 
 
-def _free(mover: Geometry, frame: Frame, target: Geometry, holes: Iterable[Geometry]) -> shapely.Geometry:
+def _free(
+    mover: Geometry, frame: LocalFrame, target: Geometry, holes: Iterable[Geometry]
+) -> shapely.Geometry:
     space = frame.project(planar(target))
     shapes = [frame.project(planar(hole)) for hole in holes if not hole.is_point]
     taken = [shape for shape in shapes if shape.intersects(space)]

@@ -14,16 +14,16 @@ from typing import Any, Final, TypeGuard
 
 from physical.altitude import Band
 from physical.errors import PhysicalError
+from physical.file_account import Read
 from physical.shape import Geometry, point
-from physical.tally import Read
 from physical.untrusted_text import legible, read_json
 from physical.waypoints import (
     MAX_CHARACTERS,
     MAX_ITEMS,
     AltitudeFrame,
-    Command,
+    MAVCommand,
     MissionItem,
-    Stop,
+    MissionStop,
     goes_to,
     read_mission,
     stops_of,
@@ -102,11 +102,11 @@ def write_plan(
     return json.dumps(plan, indent=1) + "\n"
 
 
-def _written(index: int, stop: Stop) -> Mapping[str, object]:
+def _written(index: int, stop: MissionStop) -> Mapping[str, object]:
     return {
         "type": "SimpleItem",
         "doJumpId": index,
-        "command": int(Command.WAYPOINT),
+        "command": int(MAVCommand.WAYPOINT),
         "frame": int(stop.frame),
         "autoContinue": True,
         "params": [0, 0, 0, None, *stop.point.vertices[0], stop.altitude],
@@ -170,7 +170,7 @@ def _landing(item: Mapping[str, Any]) -> tuple[Mapping[str, Any], ...]:
         return ()
     relative = item.get("altitudesAreRelative", item.get("loiterAltitudeRelative", True))
     frame = AltitudeFrame.HOME if relative else AltitudeFrame.SEA_LEVEL
-    towards = Command.LOITER_TO_ALT if item.get("useLoiterToAlt", True) else Command.WAYPOINT
+    towards = MAVCommand.LOITER_TO_ALT if item.get("useLoiterToAlt", True) else MAVCommand.WAYPOINT
     begun = {"command": _LAND_START, "frame": _NO_FRAME, "params": [0] * 7}
     legs = ((towards, approach), (land, touchdown))
     return (
@@ -179,7 +179,7 @@ def _landing(item: Mapping[str, Any]) -> tuple[Mapping[str, Any], ...]:
     )
 
 
-_LANDINGS: Final = {"fwLandingPattern": Command.LAND, "vtolLandingPattern": Command.VTOL_LAND}
+_LANDINGS: Final = {"fwLandingPattern": MAVCommand.LAND, "vtolLandingPattern": MAVCommand.VTOL_LAND}
 _LAND_START: Final = 189
 _NO_FRAME: Final = 2
 
@@ -191,7 +191,7 @@ def _is_coordinate(value: object) -> TypeGuard[list[Any]]:
 def _home(home: object) -> MissionItem:
     if not _is_coordinate(home):
         raise _fail("the plan has no planned home position", 'write "plannedHomePosition": [lat, lon, alt]')
-    return _made(0, AltitudeFrame.SEA_LEVEL, Command.WAYPOINT, [0, 0, 0, 0, *home], "home")
+    return _made(0, AltitudeFrame.SEA_LEVEL, MAVCommand.WAYPOINT, [0, 0, 0, 0, *home], "home")
 
 
 def _item(raw: Mapping[str, Any], index: int) -> MissionItem:

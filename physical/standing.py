@@ -15,7 +15,7 @@ from typing import Final
 import shapely
 
 from physical.errors import GeometryError
-from physical.frame import Frame, local_frame
+from physical.frame import LocalFrame, local_frame
 from physical.measure import area, centroid
 from physical.placement import nearest_spot, placed, room, template
 from physical.shape import Geometry, contains, planar, point
@@ -96,7 +96,7 @@ def _standing(mover: Geometry, target: Geometry, around: Surroundings, radius: f
 
 
 def _kept(
-    mover: Geometry, frame: Frame, target: Geometry, around: Surroundings, radius: float
+    mover: Geometry, frame: LocalFrame, target: Geometry, around: Surroundings, radius: float
 ) -> shapely.Geometry:
     """Return the permitted positions of a mover, in a metric frame."""
     kept = radius * CLEARANCE
@@ -107,12 +107,12 @@ def _kept(
 
 
 def _borders(
-    mover: Geometry, frame: Frame, around: Surroundings
+    mover: Geometry, frame: LocalFrame, around: Surroundings
 ) -> tuple[list[shapely.Geometry], list[shapely.Geometry]]:
     """Return the positions of a mover inside each place that it stays in, and inside each that it stays out of."""
     return tuple([_room(frame, place, mover) for place in some] for some in (around.inside, around.outside))  # type: ignore[return-value]
 
 
-def _room(frame: Frame, place: Geometry, mover: Geometry) -> shapely.Geometry:
+def _room(frame: LocalFrame, place: Geometry, mover: Geometry) -> shapely.Geometry:
     space = frame.project(planar(place))
     return space if mover.is_point else room(space, mover)

@@ -15,10 +15,10 @@ from typing import Final, NamedTuple
 from physical.altitude import Band
 from physical.command_names import POSITIONS, command_name
 from physical.errors import PhysicalError
+from physical.file_account import Counting, Read
 from physical.mobility_commands import MobilityCommand, Waypoint
 from physical.physical_property import PhysicalProperty
 from physical.shape import Geometry, point
-from physical.tally import Counting, Read
 
 HEADER: Final = "QGC WPL 110"
 MAX_CHARACTERS: Final = 1_000_000
@@ -38,7 +38,7 @@ class AltitudeFrame(IntEnum):
     TERRAIN_INT = 11
 
 
-class Command(IntEnum):
+class MAVCommand(IntEnum):
     """The commands that go to a position (MAV_CMD)."""
 
     WAYPOINT = 16
@@ -61,11 +61,11 @@ class Command(IntEnum):
 _USERS: Final = range(31000, 31005)
 """User-defined waypoints (MAV_CMD_WAYPOINT_USER_1 to 5)."""
 
-_GOING: Final = frozenset({*map(int, Command), *_USERS})
+_GOING: Final = frozenset({*map(int, MAVCommand), *_USERS})
 _ABOVE_SEA: Final = frozenset({AltitudeFrame.SEA_LEVEL, AltitudeFrame.SEA_LEVEL_INT})
 _ABOVE_HOME: Final = frozenset({AltitudeFrame.HOME, AltitudeFrame.HOME_INT})
 _GLOBAL: Final = frozenset(map(int, AltitudeFrame))
-_HOMES: Final = (Command.WAYPOINT, 0)
+_HOMES: Final = (MAVCommand.WAYPOINT, 0)
 """The commands of a home item: a waypoint, or no command."""
 
 
@@ -200,7 +200,7 @@ def write_waypoints(
     return "".join(f"{line}\n" for line in (HEADER, *(_line(i, stop) for i, stop in enumerate(stops))))
 
 
-class Stop(NamedTuple):
+class MissionStop(NamedTuple):
     """A stop of a written mission: a point, the reference of its altitude, and the altitude in metres."""
 
     point: Geometry
@@ -214,7 +214,7 @@ def stops_of(
     home: Geometry | None,
     home_altitude: float,
     bands: Sequence[Band | None],
-) -> tuple[Stop, ...]:
+) -> tuple[MissionStop, ...]:
     """Return home and the visited points, each with its altitude; raises PhysicalError."""
     at = [home or points[0], *points] if points else []
     if not at or not all(each.is_point for each in at):
@@ -225,7 +225,7 @@ def stops_of(
     heights = [*bands, *[None] * (len(points) - len(bands))]
     start, *stops = map(_beside_zero, at)
     return (
-        Stop(start, AltitudeFrame.SEA_LEVEL, Band(home_altitude, home_altitude).low),
+        MissionStop(start, AltitudeFrame.SEA_LEVEL, Band(home_altitude, home_altitude).low),
         *(_stop(each, band, above_home) for each, band in zip(stops, heights, strict=True)),
     )
 
@@ -235,12 +235,12 @@ def _beside_zero(at: Geometry) -> Geometry:
     return point(1e-7, 0.0) if at is point(0.0, 0.0) else at
 
 
-def _stop(at: Geometry, band: Band | None, above_home: float) -> Stop:
+def _stop(at: Geometry, band: Band | None, above_home: float) -> MissionStop:
     if band is None:
-        return Stop(at, AltitudeFrame.HOME, above_home)
+        return MissionStop(at, AltitudeFrame.HOME, above_home)
     middle = (band.low + band.high) / 2
     rounded = round(middle, 2)
-    return Stop(at, AltitudeFrame.SEA_LEVEL, rounded if band.low <= rounded <= band.high else middle)
+    return MissionStop(at, AltitudeFrame.SEA_LEVEL, rounded if band.low <= rounded <= band.high else middle)
 
 
 def visited(commands: Iterable[MobilityCommand], entity: str) -> tuple[Geometry, ...]:
@@ -250,12 +250,12 @@ def visited(commands: Iterable[MobilityCommand], entity: str) -> tuple[Geometry,
     )
 
 
-def _line(index: int, stop: Stop) -> str:
+def _line(index: int, stop: MissionStop) -> str:
     ((latitude, longitude),) = stop.point.vertices
     numbers = [f"{value:.7f}" for value in (0.0, 0.0, 0.0, 0.0, latitude, longitude)]
     altitude = f"{stop.altitude:.7f}"
     exact = altitude if float(altitude) == stop.altitude else repr(stop.altitude)
-    columns = [index, int(index == 0), int(stop.frame), int(Command.WAYPOINT), *numbers, exact, 1]
+    columns = [index, int(index == 0), int(stop.frame), int(MAVCommand.WAYPOINT), *numbers, exact, 1]
     return "\t".join(map(str, columns))
 
 

@@ -10,7 +10,7 @@ from semantics.state.physical_model import Carried, PhysicalModel, Placed, chann
 from semantics.state.signature import REGION, Name
 
 
-class Stop(NamedTuple):
+class WaypointStop(NamedTuple):
     """A place that a vehicle flies to or passes, the waypoint there, and the vehicle's altitudes, if known."""
 
     place: Name
@@ -36,7 +36,7 @@ def mobility_commands(c: Configuration, found: Realisation) -> tuple[MobilityCom
     return tuple(told)
 
 
-def stops(c: Configuration, found: Realisation, node: Name, place: Name) -> Iterator[Stop]:
+def stops(c: Configuration, found: Realisation, node: Name, place: Name) -> Iterator[WaypointStop]:
     """Yield the stops of a vehicle in a realisation: the places of its VIA, then its destination.
 
     The waypoint of the destination is the centroid of its polygon, or the nearest point at which the reactum holds. A
@@ -48,8 +48,8 @@ def stops(c: Configuration, found: Realisation, node: Name, place: Name) -> Iter
     assert isinstance(target, Placed)
     gates = (via for via in found.via if physical.position(via) is not None)
     for via, at in zip(gates, passed(c, found), strict=True):
-        yield Stop(via, at, target.altitude)
-    yield Stop(place, waypoint(target.geometry), target.altitude)
+        yield WaypointStop(via, at, target.altitude)
+    yield WaypointStop(place, waypoint(target.geometry), target.altitude)
 
 
 def passed(c: Configuration, found: Realisation) -> tuple[Geometry, ...]:

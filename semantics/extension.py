@@ -27,8 +27,8 @@ from semantics.behaviours.stepping import (
 )
 from semantics.behaviours.values import Value, show
 from semantics.environment import Clause, Says
-from semantics.races.provenance import NOTHING, Provenance, deciding, held, told_because
-from semantics.races.relevance import told_ever
+from semantics.races.provenance import NOTHING, Provenance, causal_dependencies, deciding, held
+from semantics.races.relevance import possible_receivers
 from semantics.rules import Rule
 from semantics.state.cells import Changes
 from semantics.state.configuration import Configuration, Label, Transition
@@ -66,7 +66,9 @@ def req_snd(c: Configuration, a: Name) -> Iterator[Transition]:
     message, carried = evaluated(statement.message, process.scope)
     to, chosen = evaluated(statement.to, process.scope)
     send = SND(a, name_in(to), message)
-    rests_on = held(resting_on(process, carried, deciding(chosen)), send.to, told_ever(process.program))
+    rests_on = held(
+        resting_on(process, carried, deciding(chosen)), send.to, possible_receivers(process.program)
+    )
     process.leave()
     label = Label("req_snd", a, f"send({show(message)}, {send.to})")
     yield Transition(label, c.with_(continuing(c, process), c.eta.adding(send, rests_on)))
@@ -104,7 +106,7 @@ def rcv_msg(c: Configuration, a: Name) -> Iterator[Transition]:
     for position, message in enumerate(c.alpha.mailbox(a)):  # premise: m ∈ mailbox(a)
         rests_on = watch.mailbox[position] if watch else NOTHING
         process = process_of(c, a)
-        asked = deciding(rests_on if looked_into else told_because(rests_on))
+        asked = deciding(rests_on if looked_into else causal_dependencies(rests_on))
         otherwise = None if statement.after is None else statement.after.body
         if not enter_case(process, statement.cases, message, rests_on, asked, otherwise):
             continue  # premise: a case for it

@@ -6,7 +6,6 @@ from typing import TypeVar
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import (
     Apply,
-    Either,
     Expression,
     Host,
     Literal,
@@ -14,6 +13,7 @@ from semantics.behaviours.expressions import (
     RouteOf,
     Self,
     SetOf,
+    ShortCircuit,
     TupleOf,
     Variable,
 )
@@ -130,7 +130,7 @@ class _Writer:
             if name.startswith("o")
         ]
         same = Apply("==", (self.leaf(scope), self.leaf(scope)))
-        either = [Either(self.pick([False, True]), test, same) for test in seen]
+        either = [ShortCircuit(self.pick([False, True]), test, same) for test in seen]
         return self.one(*seen, same, Apply("not", (same,)), *either)
 
     def members(self, scope: Variables) -> Expression:

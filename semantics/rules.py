@@ -15,7 +15,7 @@ from semantics.behaviours.stepping import continuing, next_statement, process_of
 from semantics.control import Realisation, commits, realisations
 from semantics.drive import Reach
 from semantics.environment import Clause, Observed, Says
-from semantics.races.provenance import NOTHING, Dependency, computed, deciding, held, told_because
+from semantics.races.provenance import NOTHING, Dependency, causal_dependencies, computed, deciding, held
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.requests import CTR, FLY, OBS, READY, Received
 from semantics.state.setting import Control
@@ -90,10 +90,10 @@ def rcv_obs(c: Configuration, a: Name) -> Iterator[Transition]:
         assert isinstance(pending.request, READY)
         process = process_of(c, a)
         seen, rests_on = pending.request.observation, pending.rests_on
-        asked = deciding(told_because(rests_on))  # the tests that led to the request
+        asked = deciding(causal_dependencies(rests_on))  # the tests that led to the request
         otherwise = None if statement.after is None else statement.after.body
         if not enter_case(
-            process, statement.cases, seen, rests_on - told_because(rests_on), asked, otherwise
+            process, statement.cases, seen, rests_on - causal_dependencies(rests_on), asked, otherwise
         ):
             continue  # premise: a case for it
         target = c.with_(continuing(c, process), c.eta.removing(pending))

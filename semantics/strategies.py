@@ -30,7 +30,7 @@ from semantics.behaviours.reaction_rules import (
 )
 from semantics.behaviours.values import Text
 from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
-from semantics.properties.kinds import Asked, asked_by
+from semantics.properties.kinds import RequestMode, asked_by
 from semantics.properties.property import Property
 from semantics.random_programs import AGENT_NAMES, random_program
 from semantics.state.agents import Code
@@ -416,7 +416,7 @@ class GeneratedMission:
 
 def missions(start: st.SearchStrategy[Configuration] | None = None) -> st.SearchStrategy[GeneratedMission]:
     """Yield missions with every property that needs no formula; many never end, so check them within limits."""
-    kinds = asked_by(Asked.BY_DEFAULT, Asked.BY_NAME, Asked.ALWAYS)
+    kinds = asked_by(RequestMode.BY_DEFAULT, RequestMode.BY_NAME, RequestMode.ALWAYS)
     properties = tuple(Property(kind, kind.value) for kind in kinds)
     first = initial_configurations() if start is None else start
     return first.map(lambda c: GeneratedMission(c, properties))

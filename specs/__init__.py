@@ -7,7 +7,7 @@ It knows nothing of exploration, vehicles or the command line. A mission passes 
 - `recovery`, `syntax_errors`, `common_mistakes` and `codes` (the mistakes)
 - `diagnostics` (the printing of mistakes)
 
-`writing`, `layout` and `formatter` turn a tree into text.
+`construct_text`, `mission_layout` and `formatter` turn a tree into text.
 """
 
 import lazy_loader

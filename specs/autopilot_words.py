@@ -11,7 +11,7 @@ from semantics.behaviours.commands import COMMAND_WORDS
 from semantics.behaviours.durations import UNITS
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
-from specs.parse_error import Situation, Word, word_before
+from specs.parse_error import ParsePoint, Word, word_before
 
 _FLIGHT: Final = (
     "a vehicle takes off and lands as its flights need: write control(MOVE_HOST_TO place); "
@@ -38,7 +38,7 @@ _TO_A_POINT: Final = re.compile(r"\b(?:MOVE_HOST_TO|TO|VIA|IN)\s*(?:point\s*)?\(
 _SEEN: Final = 200
 
 
-def ordered(at: Situation) -> Diagnostic | None:
+def ordered(at: ParsePoint) -> Diagnostic | None:
     """`control(LAND)`, `control(TAKEOFF 50 m)`."""
     word = _requested(at)
     hint = "" if word is None else ORDERS.get(word.text.lower(), "")
@@ -47,7 +47,7 @@ def ordered(at: Situation) -> Diagnostic | None:
     return Diagnostic(Code.MISSPELT_KEYWORD, word.span, f"{word.shown} is no control action", hint)
 
 
-def _requested(at: Situation) -> Word | None:
+def _requested(at: ParsePoint) -> Word | None:
     """Return the word at the beginning of a control action; the parser may have read it as a rule's name."""
     if COMMAND_WORDS & at.accepted:
         return at.found
@@ -56,7 +56,7 @@ def _requested(at: Situation) -> Word | None:
     return at.before if at.accepted == {"("} and (control.text, opening.text) == ("control", "(") else None
 
 
-def called_with_a_unit(at: Situation, words: Mapping[str, str]) -> Diagnostic | None:
+def called_with_a_unit(at: ParsePoint, words: Mapping[str, str]) -> Diagnostic | None:
     """`wait(10 min)`, `takeoff(50 m)`; `words` are the words of other languages."""
     if at.found.text not in {*_LENGTHS, *UNITS} or not at.before.is_number or ")" not in at.accepted:
         return None

@@ -10,9 +10,9 @@ from semantics.behaviours.observations import QueryOperator
 from specs import syntax as s
 from specs.build_world import option
 from specs.building import (
+    BuildingMistake,
     Children,
-    Mistake,
-    Part,
+    RuleResult,
     cover,
     decimal,
     name,
@@ -45,8 +45,8 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
         body = (c[12],) if isinstance(c[12], s.Call) else c[12].value
         return s.Family(name(c[1]), name(c[3]), name(c[6]), c[8], name(c[10]), body, span=cover(c))
 
-    def block(self, c: Children) -> Part:
-        return Part(cover(c), nodes(c))
+    def block(self, c: Children) -> RuleResult:
+        return RuleResult(cover(c), nodes(c))
 
     # --- statements
 
@@ -81,7 +81,9 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
         if isinstance(c[1], s.TupleLiteral) and len(c[1].items) == 2:
             return s.Send(c[1].items[0], c[1].items[1], span=cover(c))
         hint = "write send e to a, or send(e, a)"
-        raise Mistake(Diagnostic(Code.MISSING_RECIPIENT, cover(c), "the message has no recipient", hint))
+        raise BuildingMistake(
+            Diagnostic(Code.MISSING_RECIPIENT, cover(c), "the message has no recipient", hint)
+        )
 
     def migrate(self, c: Children) -> s.Migrate:
         return s.Migrate(c[2], span=cover(c))
@@ -118,7 +120,7 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
 
     def choose(self, c: Children) -> s.Choose:
         alternatives = tuple(
-            s.Alternative(part.value, span=part.span) if isinstance(part, Part) else part
+            s.Alternative(part.value, span=part.span) if isinstance(part, RuleResult) else part
             for part in c
             if not isinstance(part, Token)
         )
@@ -185,11 +187,11 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
     # --- control actions
 
     def command(self, c: Children) -> s.Command:
-        via = c[-1].value if isinstance(c[-1], Part) else ()
+        via = c[-1].value if isinstance(c[-1], RuleResult) else ()
         return s.Command(str(c[0]), nodes(c), via, span=cover(c))
 
-    def via(self, c: Children) -> Part:
-        return Part(cover(c), nodes(c))
+    def via(self, c: Children) -> RuleResult:
+        return RuleResult(cover(c), nodes(c))
 
     def apply_rule(self, c: Children) -> s.ApplyRule:
         return s.ApplyRule(name(c[0]), nodes(c), span=cover(c))
@@ -249,7 +251,7 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
 
 
 def _refuse_after(branch: s.After, message: str, hint: str) -> None:
-    raise Mistake(Diagnostic(Code.MISPLACED_AFTER, branch.span, message, hint))
+    raise BuildingMistake(Diagnostic(Code.MISPLACED_AFTER, branch.span, message, hint))
 
 
 def _index(token: Token) -> s.Name | s.IntegerLiteral:

@@ -7,7 +7,7 @@ from __future__ import annotations
 from lark import Token, Transformer
 
 from specs import syntax as s
-from specs.building import Children, Part, agent, cover, decimal, name, names, nodes, once, optional
+from specs.building import Children, RuleResult, agent, cover, decimal, name, names, nodes, once, optional
 
 
 class BuildTiming(Transformer[Token, s.Mission]):
@@ -20,12 +20,12 @@ class BuildTiming(Transformer[Token, s.Mission]):
         return s.Tick(c[1], span=cover(c))
 
     def motion(self, c: Children) -> s.Motion:
-        said = once([each for each in c if isinstance(each, Part)], c[0])
+        said = once([each for each in c if isinstance(each, RuleResult)], c[0])
         climbs, circles = (said[word].value if word in said else None for word in ("climbs", "circles"))
         return s.Motion(name(c[0]), c[3], climbs, circles, span=cover(c))
 
-    def motion_clause(self, c: Children) -> Part:
-        return Part(cover(c), c[-1], str(c[0]))
+    def motion_clause(self, c: Children) -> RuleResult:
+        return RuleResult(cover(c), c[-1], str(c[0]))
 
     def speeds(self, c: Children) -> s.Speeds:
         return s.Speeds(c[0], c[2] or c[0], span=cover(c))
@@ -65,11 +65,11 @@ class BuildTiming(Transformer[Token, s.Mission]):
     def leave_time(self, c: Children) -> s.LeaveTime:
         return s.LeaveTime(name(c[0]), name(c[2]), *_every_and_returning(c), span=cover(c))
 
-    def every(self, c: Children) -> Part:
-        return Part(cover(c), c[-1], "every")
+    def every(self, c: Children) -> RuleResult:
+        return RuleResult(cover(c), c[-1], "every")
 
-    def returning(self, c: Children) -> Part:
-        return Part(cover(c), c[-1], "returning")
+    def returning(self, c: Children) -> RuleResult:
+        return RuleResult(cover(c), c[-1], "returning")
 
     def presence_time(self, c: Children) -> s.PresenceTime:
         return s.PresenceTime(name(c[0]), str(c[1]), *_between(c[2:]), span=cover(c))
@@ -79,7 +79,7 @@ class BuildTiming(Transformer[Token, s.Mission]):
 
 
 def _every_and_returning(c: Children) -> tuple[s.Duration | None, s.Duration | None]:
-    said = {part.word: part.value for part in c if isinstance(part, Part)}
+    said = {part.word: part.value for part in c if isinstance(part, RuleResult)}
     return said.get("every"), said.get("returning")
 
 

@@ -9,9 +9,9 @@ from lark import Token
 from specs import syntax as s
 from specs.build_timing import BuildTiming
 from specs.building import (
+    BuildingMistake,
     Children,
-    Mistake,
-    Part,
+    RuleResult,
     agent,
     check_hemispheres,
     cover,
@@ -41,8 +41,8 @@ class BuildWorld(BuildTiming):
     def mission(self, c: Children) -> s.Mission:
         return s.Mission(c[0].value if c[0] else None, nodes(c[1:]), span=cover(c))
 
-    def header(self, c: Children) -> Part:
-        return Part(cover(c), name(c[1]))
+    def header(self, c: Children) -> RuleResult:
+        return RuleResult(cover(c), name(c[1]))
 
     # --- signature
 
@@ -54,8 +54,8 @@ class BuildWorld(BuildTiming):
         contains, carries = (said[word].value if word in said else () for word in ("contains", "carries"))
         return s.Kind(name(c[1]), contains, carries, "driven" in said, "passive" in said, span=cover(c))
 
-    def kind_clause(self, c: Children) -> Part:
-        return Part(cover(c), names(c[1:]), str(c[0]))
+    def kind_clause(self, c: Children) -> RuleResult:
+        return RuleResult(cover(c), names(c[1:]), str(c[0]))
 
     # --- world
 
@@ -111,11 +111,11 @@ class BuildWorld(BuildTiming):
         written = (latitude.word, longitude.word)
         return s.Coordinate(latitude.value, longitude.value, written, span=cover(c))
 
-    def number(self, c: Children) -> Part:
-        return Part(cover(c), decimal(c[0], c[1]))
+    def number(self, c: Children) -> RuleResult:
+        return RuleResult(cover(c), decimal(c[0], c[1]))
 
-    def degrees(self, c: Children) -> Part:
-        return Part(cover(c), *degrees(c[0]))
+    def degrees(self, c: Children) -> RuleResult:
+        return RuleResult(cover(c), *degrees(c[0]))
 
     # --- beliefs
 
@@ -167,8 +167,8 @@ class BuildWorld(BuildTiming):
         times = 1 if c[7] is None else c[7].value
         return s.Says(c[2], optional(c[4], agent), times, span=cover(c))
 
-    def times(self, c: Children) -> Part:
-        return Part(cover(c), 1 if c[0].type == "ONCE" else whole(c[0]))
+    def times(self, c: Children) -> RuleResult:
+        return RuleResult(cover(c), 1 if c[0].type == "ONCE" else whole(c[0]))
 
     def arrives(self, c: Children) -> s.Arrives:
         return s.Arrives(name(c[0]), span=cover(c))
@@ -206,8 +206,8 @@ class BuildWorld(BuildTiming):
     def progress(self, c: Children) -> s.Progress:
         return s.Progress(() if c[2] is None else c[2].value, c[1], span=cover(c))
 
-    def under(self, c: Children) -> Part:
-        return Part(cover(c), nodes(c))
+    def under(self, c: Children) -> RuleResult:
+        return RuleResult(cover(c), nodes(c))
 
     def fairness(self, c: Children) -> s.Fairness:
         return s.Fairness(str(c[0]), nodes(c), span=cover(c))
@@ -319,12 +319,12 @@ class BuildWorld(BuildTiming):
 
 
 def option(owner: str, token: Token, options: tuple[str, ...]) -> str:
-    """Return the option that a word names; raises Mistake for another word."""
+    """Return the option that a word names; raises BuildingMistake for another word."""
     if str(token) in options:
         return str(token)
     message = f"'{token}' is no {owner}"
     hint = f"write {', '.join(options[:-1])} or {options[-1]}"
-    raise Mistake(Diagnostic(Code.UNKNOWN_OPTION, span_of(token), message, hint))
+    raise BuildingMistake(Diagnostic(Code.UNKNOWN_OPTION, span_of(token), message, hint))
 
 
 def _equal(operator: Token, claim: s.SameName | s.Stored) -> s.Formula:

@@ -33,12 +33,12 @@ _MARKS: Final = {"º": "°", "′": "'", "’": "'", "″": '"', "”": '"'}
 _ANGLE_PART: Final = re.compile(r"([0-9.]+)([°'\"])")
 _DECIMAL: Final = re.compile(r"[0-9]{1,6}(?:\.[0-9]{1,20})?")
 
-Child: TypeAlias = Any  # a token, a node, a Part or None, by the grammar rule
+Child: TypeAlias = Any  # a token, a node, a RuleResult or None, by the grammar rule
 Children: TypeAlias = Sequence[Child]
 N = TypeVar("N", bound=Node)
 
 
-class Mistake(Exception):
+class BuildingMistake(Exception):
     """A mistake found while building; the parser adds the source."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
@@ -47,7 +47,7 @@ class Mistake(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class RuleResult:
     """The result of a grammar rule that is no node: a block's statements, a number."""
 
     span: Span
@@ -75,10 +75,10 @@ def nodes(children: Children) -> tuple[Any, ...]:
 
 
 def name(token: Token) -> Name:
-    """Return a name; raises Mistake for one over ten kilobytes."""
+    """Return a name; raises BuildingMistake for one over ten kilobytes."""
     span = span_of(token)
     if len(token) > MAX_WORD:
-        raise Mistake(
+        raise BuildingMistake(
             Diagnostic(Code.WORD_TOO_LONG, span, f"a name of {len(token):,} characters", "shorten it")
         )
     return Name(str(token), span=span)
@@ -100,7 +100,7 @@ def optional(token: Token | None, make: Callable[[Token], N]) -> N | None:
 
 
 def text(token: Token) -> TextLiteral:
-    """Return a string with its escapes resolved; raises Mistake for an unknown escape."""
+    """Return a string with its escapes resolved; raises BuildingMistake for an unknown escape."""
     span, pieces = span_of(token), []
     inner = str(token)[1:-1]
     at = 0
@@ -109,7 +109,7 @@ def text(token: Token) -> TextLiteral:
         if escaped not in _ESCAPES:
             place = Span(span.start + 1 + backslash, span.start + 3 + backslash)
             hint = r"write \\ for a backslash; \n and \t are a line end and a tab"
-            raise Mistake(
+            raise BuildingMistake(
                 Diagnostic(Code.BAD_ESCAPE, place, f"'\\{escaped}' means nothing in a string", hint)
             )
         pieces += [inner[at:backslash], _ESCAPES[escaped]]
@@ -118,11 +118,11 @@ def text(token: Token) -> TextLiteral:
 
 
 def whole(token: Token) -> int:
-    """Return a whole number; raises Mistake for any other number."""
+    """Return a whole number; raises BuildingMistake for any other number."""
     if token.isdecimal() and len(token) <= 10 and int(token) < MOST:
         return int(token)
     message = f"{_short(token)} is not a whole number below {MOST:,}"
-    raise Mistake(
+    raise BuildingMistake(
         Diagnostic(
             Code.BAD_NUMBER, span_of(token), message, "decimal numbers stand in coordinates and lengths only"
         )
@@ -130,10 +130,10 @@ def whole(token: Token) -> int:
 
 
 def decimal(sign: Token | None, token: Token) -> float:
-    """Return a finite number; raises Mistake for one that is too large."""
+    """Return a finite number; raises BuildingMistake for one that is too large."""
     value = float(token)
     if not math.isfinite(value):
-        raise Mistake(
+        raise BuildingMistake(
             Diagnostic(
                 Code.BAD_NUMBER,
                 span_of(token),
@@ -145,20 +145,20 @@ def decimal(sign: Token | None, token: Token) -> float:
 
 
 def degrees(token: Token) -> tuple[float, str]:
-    """Return an angle in degrees from degrees, minutes and seconds, and its text; raises Mistake."""
+    """Return an angle in degrees from degrees, minutes and seconds, and its text; raises BuildingMistake."""
     text = "".join(_MARKS.get(mark, mark) for mark in str(token) if not mark.isspace()).replace("''", '"')
     parts = {mark: number for number, mark in _ANGLE_PART.findall(text)}
     if not all(map(_DECIMAL.fullmatch, parts.values())) or any(
         float(parts.get(mark, 0)) >= SIXTY for mark in "'\""
     ):
         message = f"'{_short(token)}' is no angle: minutes and seconds are numbers below {SIXTY}"
-        raise Mistake(Diagnostic(Code.BAD_COORDINATE, span_of(token), message, ANGLES))
+        raise BuildingMistake(Diagnostic(Code.BAD_COORDINATE, span_of(token), message, ANGLES))
     value = sum(float(parts.get(mark, 0)) / SIXTY**power for power, mark in enumerate("°'\""))
     return -value if text[-1] in "SW" else value, text
 
 
-def check_hemispheres(latitude: Part, longitude: Part) -> None:
-    """Raise Mistake if a letter makes the first angle a longitude or the second a latitude."""
+def check_hemispheres(latitude: RuleResult, longitude: RuleResult) -> None:
+    """Raise BuildingMistake if a letter makes the first angle a longitude or the second a latitude."""
     if latitude.word[-1:] not in ("E", "W") and longitude.word[-1:] not in ("N", "S"):
         return
     found = latitude if latitude.word[-1:] in ("E", "W") else longitude
@@ -166,27 +166,27 @@ def check_hemispheres(latitude: Part, longitude: Part) -> None:
     other = "latitude" if found is latitude else "longitude"
     message = f"{found.word} is a {which}, and the {other} stands {place}"
     hint = "write (latitude, longitude): exchange the two"
-    raise Mistake(Diagnostic(Code.BAD_COORDINATE, found.span, message, hint))
+    raise BuildingMistake(Diagnostic(Code.BAD_COORDINATE, found.span, message, hint))
 
 
-def once(clauses: Children, owner: Token) -> dict[str, Part]:
-    """Return the clauses by their first word; raises Mistake for a repeated one."""
-    found: dict[str, Part] = {}
+def once(clauses: Children, owner: Token) -> dict[str, RuleResult]:
+    """Return the clauses by their first word; raises BuildingMistake for a repeated one."""
+    found: dict[str, RuleResult] = {}
     for clause in clauses:
         if clause.word in found:
             message = f"'{clause.word}' is said twice of '{_short(owner)}'"
             hint = "write it once, behind what it is said of; lists are separated by commas"
-            raise Mistake(Diagnostic(Code.REPEATED_CLAUSE, clause.span, message, hint))
+            raise BuildingMistake(Diagnostic(Code.REPEATED_CLAUSE, clause.span, message, hint))
         found[clause.word] = clause
     return found
 
 
 def rule_body(token: Token) -> RuleBody:
-    """Return a rule's body, still unparsed; raises Mistake for one over ten kilobytes."""
+    """Return a rule's body, still unparsed; raises BuildingMistake for one over ten kilobytes."""
     span = span_of(token)
     raw = str(token)[1:-1]
     if len(token) > MAX_WORD:
-        raise Mistake(
+        raise BuildingMistake(
             Diagnostic(Code.WORD_TOO_LONG, span, f"a rule of {len(token):,} characters", "split it")
         )
     return RuleBody(" ".join(raw.split()), raw, span.start + 1, span=span)

@@ -31,7 +31,7 @@ from specs.grammar import (
 )
 from specs.parse_error import (
     LINE_NUMBERS,
-    Situation,
+    ParsePoint,
     Word,
     is_keyword,
     line_of,
@@ -72,12 +72,12 @@ _SYMBOL: Final = re.compile(r"[\w\s\"()\[\]{},;:.=<>!&|+\-]")
 FAMILY: Final = "a family is written BigActor patrol[i] for u in UAV hosted_at u with_behavior { ... }"
 
 
-def flown(at: Situation) -> Diagnostic | None:
+def flown(at: ParsePoint) -> Diagnostic | None:
     """`control(LAND)`, `wait(10 min)`, `takeoff(50 m)`."""
     return ordered(at) or called_with_a_unit(at, DONE)
 
 
-def misplaced_header(at: Situation) -> Diagnostic | None:
+def misplaced_header(at: ParsePoint) -> Diagnostic | None:
     """`mission` anywhere but at the beginning."""
     if at.found.text == "mission" and "mission" not in at.accepted and "NAME" not in at.sorts:
         again = len(_HEADER.findall(at.prepared.text)) > 1
@@ -86,7 +86,7 @@ def misplaced_header(at: Situation) -> Diagnostic | None:
     return None
 
 
-def unknown_character(at: Situation) -> Diagnostic | None:
+def unknown_character(at: ParsePoint) -> Diagnostic | None:
     """A character without a meaning."""
     if at.found.text and not _SYMBOL.match(at.found.text):
         quote = at.found.text in _QUOTES
@@ -95,7 +95,7 @@ def unknown_character(at: Situation) -> Diagnostic | None:
     return None
 
 
-def bad_angle(at: Situation) -> Diagnostic | None:
+def bad_angle(at: ParsePoint) -> Diagnostic | None:
     """`(37°08'49", 8°35')`, `(37 08 49, 8 35 0)`, `(37,147, -8,58)`."""
     behind = at.before.is_number and at.accepted in ({","}, {")"})
     if behind and at.found.text == "," and at.accepted == {")"}:
@@ -119,7 +119,7 @@ def bad_angle(at: Situation) -> Diagnostic | None:
     return None
 
 
-def single_equals(at: Situation) -> Diagnostic | None:
+def single_equals(at: ParsePoint) -> Diagnostic | None:
     """`if x = y`."""
     if at.found.text == "=" and "=>" in at.accepted and at.following.text in STATEMENTS:
         return missing_arrow(at)
@@ -129,7 +129,7 @@ def single_equals(at: Situation) -> Diagnostic | None:
     return None
 
 
-def unclosed_section(at: Situation) -> Diagnostic | None:
+def unclosed_section(at: ParsePoint) -> Diagnostic | None:
     """A section that begins within another, or within a behaviour."""
     if at.found.text not in SECTIONS or at.at_declaration or not at.is_first:
         return None
@@ -148,16 +148,16 @@ def begins_property(word: str, *, first: bool) -> bool:
     return meant or (word in ASKED and (first or word not in _IN_FORMULAS))
 
 
-def misspelt_word(at: Situation) -> Diagnostic | None:
+def misspelt_word(at: ParsePoint) -> Diagnostic | None:
     """`enviroment { ... }`: a misspelling of a word expected here."""
     return _misspelt(at.found, at.accepted | (_LINKS if _in_environment(at) else frozenset()))
 
 
-def _in_environment(at: Situation) -> bool:
+def _in_environment(at: ParsePoint) -> bool:
     return {"appears", "arrives"} <= at.accepted
 
 
-def misspelt_word_before(at: Situation) -> Diagnostic | None:
+def misspelt_word_before(at: ParsePoint) -> Diagnostic | None:
     """`raect { ... }`: a name is possible there, but the next word fits no name."""
     if at.accepted == {"=", "("}:
         return _misspelt(at.before, STATEMENTS | {"case", "after"})
@@ -174,7 +174,7 @@ def misspelt_word_before(at: Situation) -> Diagnostic | None:
     return None
 
 
-def _unknown_query(at: Situation) -> Diagnostic | None:
+def _unknown_query(at: ParsePoint) -> Diagnostic | None:
     """`observe(NEIGHBOURS(base))`."""
     opening = word_before(at.prepared.text, at.before.span.start)
     asked = word_before(at.prepared.text, opening.span.start).text
@@ -185,7 +185,7 @@ def _unknown_query(at: Situation) -> Diagnostic | None:
     return Diagnostic(Code.MISSPELT_KEYWORD, at.before.span, message, hint)
 
 
-def _unknown_command(at: Situation) -> Diagnostic | None:
+def _unknown_command(at: ParsePoint) -> Diagnostic | None:
     """`control(FLY_TO west0)`."""
     opening = word_before(at.prepared.text, at.before.span.start)
     if word_before(at.prepared.text, opening.span.start).text != "control":
@@ -197,7 +197,7 @@ def _unknown_command(at: Situation) -> Diagnostic | None:
     return Diagnostic(Code.MISSPELT_KEYWORD, at.before.span, message, hint)
 
 
-def _channel(at: Situation) -> Diagnostic | None:
+def _channel(at: ParsePoint) -> Diagnostic | None:
     """`wifi:land drop`: the parser reads the name of a channel only together with `drops`."""
     found = _DROP.match(at.prepared.text, at.before.span.start)
     if found is None:
@@ -206,7 +206,7 @@ def _channel(at: Situation) -> Diagnostic | None:
     return Diagnostic(Code.MISSPELT_KEYWORD, Span(*found.span(2)), message, "did you mean 'drops'?")
 
 
-def _claim(at: Situation) -> Diagnostic | None:
+def _claim(at: ParsePoint) -> Diagnostic | None:
     """`a ended`."""
     if at.found.text not in first_words("_claim"):
         return None
@@ -214,7 +214,7 @@ def _claim(at: Situation) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, message, f"write {at.found.text} {at.before.text}")
 
 
-def misplaced_command(at: Situation) -> Diagnostic | None:
+def misplaced_command(at: ParsePoint) -> Diagnostic | None:
     """`contol(MOVE_HOST_TO r0)`, or `MOVE_HOST_TO r0` as a statement."""
     if (
         at.found.text not in COMMANDS
@@ -230,7 +230,7 @@ def misplaced_command(at: Situation) -> Diagnostic | None:
     return Diagnostic(Code.MISSPELT_KEYWORD, called.span, message, f"write control({form})")
 
 
-def misplaced_query(at: Situation) -> Diagnostic | None:
+def misplaced_query(at: ParsePoint) -> Diagnostic | None:
     """`if r0 in CHILDREN(HOST) { ... }`."""
     if at.found.text not in QUERY_WORDS or not at.at_expression:
         return None
@@ -246,7 +246,7 @@ def misplaced_query(at: Situation) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, "a query is observed, it has no value of its own", hint)
 
 
-def missing_parenthesis(at: Situation) -> Diagnostic | None:
+def missing_parenthesis(at: ParsePoint) -> Diagnostic | None:
     """`observe HOST`, `CHILDREN HOST`, `PARENT()`, `box (37.0, -8.5 (36.9, -8.6)`."""
     if at.accepted == {"("} and at.before.text in _CALLED:
         message = f"expected '(' behind {at.before.shown}, found {at.found.shown}"
@@ -271,7 +271,7 @@ def missing_parenthesis(at: Situation) -> Diagnostic | None:
     return None
 
 
-def spare_separator(at: Situation) -> Diagnostic | None:
+def spare_separator(at: ParsePoint) -> Diagnostic | None:
     """`(a, b,)`, `(a,, b)`, `(a; b)`, `display(a,)`, `scheduler: fcfs`, `react {; ... }`."""
     if "," in (at.found.text, at.before.text) and (at.found.text in (",", ")", "}") or at.found.text == ";"):
         comma = at.before if at.before.text == "," else at.found
@@ -288,7 +288,7 @@ def spare_separator(at: Situation) -> Diagnostic | None:
     return None
 
 
-def missing_quotes(at: Situation) -> Diagnostic | None:
+def missing_quotes(at: ParsePoint) -> Diagnostic | None:
     """`invariant never: ...`."""
     if at.sorts == {"STRING"} and (at.found.is_name or at.found.is_number):
         hint = f'write it in double quotes: "{at.found.text}"'
@@ -296,7 +296,7 @@ def missing_quotes(at: Situation) -> Diagnostic | None:
     return None
 
 
-def missing_word(at: Situation) -> Diagnostic | None:
+def missing_word(at: ParsePoint) -> Diagnostic | None:
     """`carried vessel0`, `circle (37.0, -8.5) 400 m`, `invariant "x" true`: only one word is possible here."""
     if len(at.accepted) == 1 == len(at.sorts) and "for" not in at.accepted and at.found.text != ";":
         (word,) = at.accepted
@@ -312,13 +312,13 @@ def missing_word(at: Situation) -> Diagnostic | None:
     return None
 
 
-def _instead(at: Situation, word: str) -> str:
+def _instead(at: ParsePoint, word: str) -> str:
     """`vhf drops and comes back`, `boat appears in sea`."""
     more = at.following.text if at.following.is_name and word == "returns" else ""
     return f"write {word} instead of {at.found.text} {more}".rstrip()
 
 
-def misplaced_statement(at: Situation) -> Diagnostic | None:
+def misplaced_statement(at: ParsePoint) -> Diagnostic | None:
     """A statement outside all behaviours, or in a section of another sort."""
     control = at.found.text == "(" and at.before.text == "control" and at.accepted == frozenset()
     section = at.at_declaration or bool(at.accepted & {"channel", "says", "invariant", "kind"})
@@ -330,7 +330,7 @@ def misplaced_statement(at: Situation) -> Diagnostic | None:
     return Diagnostic(Code.MISPLACED_STATEMENT, word.span, f"{word.shown} stands outside a behaviour", hint)
 
 
-def missing_destination(at: Situation) -> Diagnostic | None:
+def missing_destination(at: ParsePoint) -> Diagnostic | None:
     """`control(MOVE uav0)`."""
     for word in sorted(COMMAND_WORDS & at.accepted - COMMANDS.keys() - {VIA}):
         forms = [command.form for command in COMMANDS.values() if word in command.words]
@@ -341,7 +341,7 @@ def missing_destination(at: Situation) -> Diagnostic | None:
     return None
 
 
-def misplaced_via(at: Situation) -> Diagnostic | None:
+def misplaced_via(at: ParsePoint) -> Diagnostic | None:
     """`control(CONNECT_HOST_TO gcs0 VIA gate0)`, or VIA twice."""
     if at.found.text != VIA:
         return None
@@ -350,7 +350,7 @@ def misplaced_via(at: Situation) -> Diagnostic | None:
     return at.mistake(Code.MISPLACED_VIA, "'VIA' stands where nothing travels, or has its way already", hint)
 
 
-def missing_arrow(at: Situation) -> Diagnostic | None:
+def missing_arrow(at: ParsePoint) -> Diagnostic | None:
     """`case obs: Observation display(obs)`."""
     typed = at.before.text == ":" and at.found.text in STATEMENTS and at.sorts == {"NAME"}
     if "=>" not in at.accepted and not typed:
@@ -366,7 +366,7 @@ def missing_arrow(at: Situation) -> Diagnostic | None:
     return Diagnostic(Code.MISSING_ARROW, word.span, f"expected {where}", shown)
 
 
-def chained_comparison(at: Situation) -> Diagnostic | None:
+def chained_comparison(at: ParsePoint) -> Diagnostic | None:
     """`a < b < c`."""
     if at.found.text in _COMPARISONS and at.in_expression:
         return at.mistake(
@@ -375,7 +375,7 @@ def chained_comparison(at: Situation) -> Diagnostic | None:
     return None
 
 
-def missing_unit(at: Situation) -> Diagnostic | None:
+def missing_unit(at: ParsePoint) -> Diagnostic | None:
     """`radius 400`, or `after 10`."""
     for units, hint in _UNITS:
         if set(units) <= at.accepted:
@@ -385,7 +385,7 @@ def missing_unit(at: Situation) -> Diagnostic | None:
     return None
 
 
-def reserved_word(at: Situation) -> Diagnostic | None:
+def reserved_word(at: ParsePoint) -> Diagnostic | None:
     """`let if = 3`."""
     if at.found.text == "for" and "forall" in at.accepted:
         hint = "write forall u: Kind . formula"
@@ -401,7 +401,7 @@ def reserved_word(at: Situation) -> Diagnostic | None:
     return None
 
 
-def missing_host(at: Situation) -> Diagnostic | None:
+def missing_host(at: ParsePoint) -> Diagnostic | None:
     """`BigActor a { ... }`."""
     if at.accepted in ({"hosted_at"}, {"hosted_at", "["}):
         message = f"expected 'hosted_at' and a host, found {at.found.shown}"
@@ -413,7 +413,7 @@ def missing_host(at: Situation) -> Diagnostic | None:
     return None
 
 
-def missing_comma(at: Situation) -> Diagnostic | None:
+def missing_comma(at: ParsePoint) -> Diagnostic | None:
     """`visit(a b)` or `(37.0 -8.5)`."""
     starts = at.found.is_name or at.found.is_number or at.found.text[:1] in {'"', "(", "-"}
     if (
@@ -430,7 +430,7 @@ def missing_comma(at: Situation) -> Diagnostic | None:
     return None
 
 
-def unbracketed_route(at: Situation) -> Diagnostic | None:
+def unbracketed_route(at: ParsePoint) -> Diagnostic | None:
     """`for c in a, b { ... }`."""
     line = at.prepared.text[at.prepared.text.rfind("\n", 0, at.found.span.start) + 1 :].splitlines()[0]
     found = _THROUGH.search(line) if at.found.text == "," and "{" in at.accepted else None
@@ -440,7 +440,7 @@ def unbracketed_route(at: Situation) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, "what is gone through stands in brackets", hint)
 
 
-def missing_brace(at: Situation) -> Diagnostic | None:
+def missing_brace(at: ParsePoint) -> Diagnostic | None:
     """`loop observe(HOST)`."""
     opens = "{" in at.accepted and not at.at_expression
     if at.found.text == "=" and at.before.text == "=":
@@ -452,7 +452,7 @@ def missing_brace(at: Situation) -> Diagnostic | None:
     return None
 
 
-def missing_equals(at: Situation) -> Diagnostic | None:
+def missing_equals(at: ParsePoint) -> Diagnostic | None:
     """`def visit(place) { ... }`, or `uav0: UAV point (37.0, -8.5)`."""
     if {"=", "absent"} <= at.accepted and at.found.text == "(":
         hint = "write name: Kind = point (37.08, -8.55)"
@@ -462,7 +462,7 @@ def missing_equals(at: Situation) -> Diagnostic | None:
     return None
 
 
-def missing_kind_word(at: Situation) -> Diagnostic | None:
+def missing_kind_word(at: ParsePoint) -> Diagnostic | None:
     """`signature { UAV driven }`, `kind Location contains UAV; Station`."""
     if "kind" not in at.accepted or not at.found.is_name or is_keyword(at.found):
         return None
@@ -474,7 +474,7 @@ def missing_kind_word(at: Situation) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, f"expected 'kind' before {at.found.shown}", hint)
 
 
-def missing_geometry(at: Situation) -> Diagnostic | None:
+def missing_geometry(at: ParsePoint) -> Diagnostic | None:
     """`uav0: UAV = (37.0, -8.5)`, `box (37.0, -8.5), (36.9, -8.6)`."""
     if at.accepted >= _GEOMETRIES and (at.found.text in ("(", "-") or at.found.is_number):
         hint = "write point (latitude, longitude), or a box, a polygon or a circle"
@@ -484,7 +484,7 @@ def missing_geometry(at: Situation) -> Diagnostic | None:
     return None
 
 
-def missing_recipient(at: Situation) -> Diagnostic | None:
+def missing_recipient(at: ParsePoint) -> Diagnostic | None:
     """`send b "yours"`, `emit ("found", place) to b`."""
     if at.found.text == "to" and at.at_statement:
         return at.mistake(
@@ -496,7 +496,7 @@ def missing_recipient(at: Situation) -> Diagnostic | None:
     return None
 
 
-def several_sent(at: Situation) -> Diagnostic | None:
+def several_sent(at: ParsePoint) -> Diagnostic | None:
     """`send "found", spill to desk`."""
     if at.found.text != "," or "to" not in at.accepted:
         return None
@@ -512,7 +512,7 @@ def several_sent(at: Situation) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, message, f"write send ({first}, {more}) to {to}, in brackets")
 
 
-def someone_says(at: Situation) -> Diagnostic | None:
+def someone_says(at: ParsePoint) -> Diagnostic | None:
     """`operator says "go"`."""
     if at.found.text != "says" or not _in_environment(at) or not at.before.is_name:
         return None
@@ -521,7 +521,7 @@ def someone_says(at: Situation) -> Diagnostic | None:
     return Diagnostic(Code.UNEXPECTED, at.before.span, message, hint)
 
 
-def hyphenated(at: Situation) -> Diagnostic | None:
+def hyphenated(at: ParsePoint) -> Diagnostic | None:
     """`uav-1: UAV`, `BigActor desk-1 hosted_at ...`."""
     joined = at.before.is_name and at.before.span.end == at.found.span.start == at.following.span.start - 1
     ends = at.following.is_number or at.following.is_name
@@ -535,7 +535,7 @@ def hyphenated(at: Situation) -> Diagnostic | None:
     )
 
 
-def missing_value(at: Situation) -> Diagnostic | None:
+def missing_value(at: ParsePoint) -> Diagnostic | None:
     """`match { case ... }`."""
     if at.found.text == "case" and at.before.text == "{" and at.at_expression:
         before = word_before(at.prepared.text, at.before.span.start)
@@ -544,7 +544,7 @@ def missing_value(at: Situation) -> Diagnostic | None:
     return None
 
 
-def missing_at_most(at: Situation) -> Diagnostic | None:
+def missing_at_most(at: ParsePoint) -> Diagnostic | None:
     """`says "handover" once`."""
     if _in_environment(at) and at.before.text in ("once", "times", "twice"):
         message = f"expected 'at most' before {at.before.shown}"
@@ -552,7 +552,7 @@ def missing_at_most(at: Situation) -> Diagnostic | None:
     return None
 
 
-def missing_dot(at: Situation) -> Diagnostic | None:
+def missing_dot(at: ParsePoint) -> Diagnostic | None:
     """`forall u: UAV u in base`, `exists u: UAV: u in base`, `forall u in UAV . u in base`."""
     quantifier, variables = _quantified(at.prepared.text, at.before.span.end)
     if at.accepted == {":", ","} and quantifier in _QUANTIFIERS:
@@ -578,7 +578,7 @@ def _quantified(text: str, end: int) -> tuple[str, str]:
     return (found[1], " ".join(found[2].split())) if found else ("", "")
 
 
-def equals_of_places(at: Situation) -> Diagnostic | None:
+def equals_of_places(at: ParsePoint) -> Diagnostic | None:
     """`actually uav = boat`."""
     if at.found.text not in ("=", "==", "!=") or at.accepted != {"directly", "in", "linked"}:
         return None
@@ -587,7 +587,7 @@ def equals_of_places(at: Situation) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, message, hint)
 
 
-def drift_without_spot(at: Situation) -> Diagnostic | None:
+def drift_without_spot(at: ParsePoint) -> Diagnostic | None:
     """`uav drifts to sea`, `spill drifts 3 km in sea`."""
     if at.accepted != {"among", "within"}:
         return None
@@ -604,7 +604,7 @@ def drift_without_spot(at: Situation) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, f"expected 'among' or 'within', found {at.found.shown}", hint)
 
 
-def missing_kind(at: Situation) -> Diagnostic | None:
+def missing_kind(at: ParsePoint) -> Diagnostic | None:
     """`uav0 = point (37.0, -8.5)`."""
     if at.accepted == {":"} and at.before.text in _GEOMETRIES:
         message = f"expected '=' before {at.before.shown}"
@@ -615,7 +615,7 @@ def missing_kind(at: Situation) -> Diagnostic | None:
     return None
 
 
-def bad_number(at: Situation) -> Diagnostic | None:
+def bad_number(at: ParsePoint) -> Diagnostic | None:
     """`point (NaN, 3)`, `37.`, `.5`."""
     if at.found.text == "." and (at.before.is_number or "NUMBER" in at.sorts):
         return at.mistake(
@@ -628,7 +628,7 @@ def bad_number(at: Situation) -> Diagnostic | None:
     return None
 
 
-def bad_coordinate(at: Situation) -> Diagnostic | None:
+def bad_coordinate(at: ParsePoint) -> Diagnostic | None:
     """`point 37.0, -8.5`, or `point (37.0)`."""
     opening = at.accepted == {"("} and (at.before.text in _GEOMETRIES or at.before.text == ")")
     if opening or (at.accepted == {","} and at.found.text == ")"):
@@ -639,7 +639,7 @@ def bad_coordinate(at: Situation) -> Diagnostic | None:
     return None
 
 
-def loose_number(at: Situation) -> Diagnostic | None:
+def loose_number(at: ParsePoint) -> Diagnostic | None:
     """A line number that does not continue those before, or that precedes a misspelt `BigActor`."""
     if at.at_declaration and at.found.is_number:
         hint = f"write BigActor for {at.following.shown}: from there on, the numbers of printed lines are left out"
@@ -649,7 +649,7 @@ def loose_number(at: Situation) -> Diagnostic | None:
     return None
 
 
-def misspelt_word_after_all(at: Situation) -> Diagnostic | None:
+def misspelt_word_after_all(at: ParsePoint) -> Diagnostic | None:
     """`weak fairness of env nad ...`: the word before is a misspelling of one expected here."""
     return _misspelt(at.before, at.accepted)
 
@@ -669,7 +669,7 @@ def _misspelt(word: Word, candidates: Iterable[str]) -> Diagnostic | None:
     return Diagnostic(Code.MISSPELT_KEYWORD, word.span, message, meant)
 
 
-MISTAKES: Final[tuple[Callable[[Situation], Diagnostic | None], ...]] = (
+MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] = (
     bad_angle,
     foreign_operator,
     unknown_character,

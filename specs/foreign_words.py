@@ -7,7 +7,7 @@ from typing import Final
 
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
-from specs.parse_error import Situation, Word, word_before
+from specs.parse_error import ParsePoint, Word, word_before
 
 _BEHAVIOUR: Final = "a behaviour is defined by def name(parameters) = { ... }"
 _ACTOR: Final = "write BigActor name hosted_at host with_behavior { ... }"
@@ -151,7 +151,7 @@ OPERATORS: Final[Mapping[str, str]] = {
 }
 
 
-def foreign_word(at: Situation) -> Diagnostic | None:
+def foreign_word(at: ParsePoint) -> Diagnostic | None:
     """`function visit() { ... }`, `var n = 3`, `receive { ... }`, `elif x { ... }`."""
     for applies, words in _CONTEXTS:
         if applies(at) and at.found.text in words:
@@ -164,14 +164,14 @@ def foreign_word(at: Situation) -> Diagnostic | None:
 
 _BEFORE: Final[Mapping[str, str]] = {**OPERATORS, **DONE}
 
-_NAMED: Final[tuple[tuple[Callable[[Situation], bool], Mapping[str, str]], ...]] = (
+_NAMED: Final[tuple[tuple[Callable[[ParsePoint], bool], Mapping[str, str]], ...]] = (
     (lambda at: at.accepted >= {"directly", "linked"}, BEGINNING),
     (lambda at: at.accepted == {":"}, ENTRIES),
     (lambda at: at.accepted == {"=", "("}, _BEFORE),
 )
 """Contexts in which the parser read a foreign word as a name and stopped after it."""
 
-_CONTEXTS: Final[tuple[tuple[Callable[[Situation], bool], Mapping[str, str]], ...]] = (
+_CONTEXTS: Final[tuple[tuple[Callable[[ParsePoint], bool], Mapping[str, str]], ...]] = (
     (lambda at: at.at_declaration and not at.at_statement, DECLARED),
     (lambda at: {"case", "}"} <= at.accepted and not at.at_statement, CHOSEN),
     (lambda at: "invariant" in at.accepted, ASKED),
@@ -190,7 +190,7 @@ def _instead(word: Word, words: Mapping[str, str]) -> Diagnostic:
     return Diagnostic(Code.MISSPELT_KEYWORD, word.span, message, words[word.text])
 
 
-def foreign_operator(at: Situation) -> Diagnostic | None:
+def foreign_operator(at: ParsePoint) -> Diagnostic | None:
     """`2 * 3`, `a & b`, `obs contains uav0`, `a => b`, `n += 1`, `x := 3`, `b.send(m)`, `b ! m`."""
     found, behind = at.found.text, at.prepared.text[at.found.span.end : at.found.span.end + 1]
     hint = OPERATORS.get(found, "")
@@ -218,7 +218,7 @@ def foreign_operator(at: Situation) -> Diagnostic | None:
     return at.mistake(Code.UNKNOWN_CHARACTER if symbol else Code.MISSPELT_KEYWORD, _no_operator(at), hint)
 
 
-def _arrow(at: Situation) -> Diagnostic:
+def _arrow(at: ParsePoint) -> Diagnostic:
     """`default => skip`, where the parser read a word as a variable in an assignment."""
     word = word_before(at.prepared.text, at.before.span.start)
     both = at.before.span.to(at.found.span)
@@ -229,7 +229,7 @@ def _arrow(at: Situation) -> Diagnostic:
     return Diagnostic(Code.UNEXPECTED, both, f"'=>' stands behind a case, and {word.shown} is none", hint)
 
 
-def foreign_form(at: Situation) -> Diagnostic | None:
+def foreign_form(at: ParsePoint) -> Diagnostic | None:
     """`let o = observe(HOST)`, `send "x" -> b`, `for (p in route)`, `uav0: UAV = base0`, `point (0, 0) at 90 m`."""
     hint = ""
     if at.at_expression and at.found.text in ("observe", "react"):
@@ -247,11 +247,11 @@ def foreign_form(at: Situation) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, f"{at.found.shown} is not written here", hint) if hint else None
 
 
-def _no_operator(at: Situation) -> str:
+def _no_operator(at: ParsePoint) -> str:
     return f"{at.found.shown} has no meaning here"
 
 
-def operator_first(at: Situation) -> Diagnostic | None:
+def operator_first(at: ParsePoint) -> Diagnostic | None:
     """`in(a, obs)`: an operator called like a function; `&& found { ... }` as a statement."""
     if at.at_statement and at.found.text in ("&&", "||", "and", "or"):
         hint = "write if condition { ... }, or case pattern if condition => ..."

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from specs.diagnostics import Source
-from specs.layout import Line, lay_out
+from specs.mission_layout import WrappedLine, lay_out
 from specs.parser import build
 from specs.preprocessing import Comment, Prepared, prepare
 from specs.syntax import Mission
@@ -35,12 +35,12 @@ def write_mission(mission: Mission) -> str:
 class _Commented:
     """A line with the comments before it and behind it; comments at the end of the file have no `line`."""
 
-    line: Line | None
+    line: WrappedLine | None
     before: list[Comment] = field(default_factory=list)
     behind: list[Comment] = field(default_factory=list)
 
 
-def _attach(lines: Sequence[Line], prepared: Prepared) -> list[_Commented]:
+def _attach(lines: Sequence[WrappedLine], prepared: Prepared) -> list[_Commented]:
     anchors = [line.anchor for line in lines]
     found = [*(_Commented(line) for line in lines), _Commented(None)]
     for comment in prepared.comments:

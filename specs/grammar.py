@@ -14,12 +14,12 @@ from lark.lexer import PatternRE, PatternStr, TerminalDef
 from bigraphs.notation.parse_tables import parser_with_tables
 from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS, Command
 from semantics.behaviours.observations import QueryOperator
-from semantics.properties.kinds import Asked, asked_by
+from semantics.properties.kinds import RequestMode, asked_by
 from specs.build_behaviour import BuildBehaviour
 from specs.build_world import BuildWorld
 from specs.syntax import Mission
 
-NAMED_PROPERTIES: Final = asked_by(Asked.BY_DEFAULT, Asked.BY_NAME, Asked.OF_TIMED_MISSIONS)
+NAMED_PROPERTIES: Final = asked_by(RequestMode.BY_DEFAULT, RequestMode.BY_NAME, RequestMode.OF_TIMED_MISSIONS)
 """The properties that a mission requests by their names."""
 
 
@@ -100,7 +100,7 @@ def _no_reserved(word: Token) -> Token:
     return word.update(type="RESERVED") if word in RESERVED else word
 
 
-class Run(Protocol):
+class ParserRun(Protocol):
     """A parse under way: the used part of lark's interactive parser, typed.
 
     Attributes:
@@ -117,13 +117,13 @@ class Run(Protocol):
     def accepts(self) -> set[str]:
         """Return the grammar's names of the words that may come next."""
 
-    def copy(self, deepcopy_values: bool = True) -> Run:
+    def copy(self, deepcopy_values: bool = True) -> ParserRun:
         """Return an independent copy of the parse."""
 
 
-def start(text: str) -> Run:
+def start(text: str) -> ParserRun:
     """Begin to parse a prepared text."""
-    run: Run = grammar().parse_interactive(text)
+    run: ParserRun = grammar().parse_interactive(text)
     return run
 
 
@@ -149,7 +149,7 @@ def terminal(word: str) -> str:
     return terminals()[word]
 
 
-def may_follow(run: Run, *sorts: str) -> bool:
+def may_follow(run: ParserRun, *sorts: str) -> bool:
     """Return whether words of these sorts may come next, in this order; nothing is built of them."""
     trial = run.copy(deepcopy_values=False)
     trial.parser_state.parse_conf = copy(trial.parser_state.parse_conf)

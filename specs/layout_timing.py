@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Final
 
 from specs import syntax as s
-from specs.writing import constant, separated, write
+from specs.construct_text import constant, separated, write
 
 
 def _motion(node: s.Motion) -> list[str]:

@@ -11,7 +11,7 @@ from lark import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
-from specs.grammar import Run, keywords, may_follow, spellings, terminal, terminals
+from specs.grammar import ParserRun, keywords, may_follow, spellings, terminal, terminals
 from specs.preprocessing import Prepared
 from specs.syntax.nodes import Span
 
@@ -53,7 +53,7 @@ class Word:
 
 
 @dataclass(frozen=True, slots=True)
-class Situation:
+class ParsePoint:
     """The point at which a parse stopped.
 
     Attributes:
@@ -117,12 +117,12 @@ def offset_of(found: UnexpectedInput, prepared: Prepared) -> int:
     return len(prepared.text)
 
 
-def situation(prepared: Prepared, offset: int, run: Run) -> Situation:
+def situation(prepared: Prepared, offset: int, run: ParserRun) -> ParsePoint:
     """Return the situation of a parse that stopped at `offset`, or at the end."""
     sorts = frozenset(run.accepts())
     spelt = frozenset(word for sort in sorts if (word := spellings().get(sort)))
     found = word_at(prepared.text, offset)
-    return Situation(
+    return ParsePoint(
         found,
         word_before(prepared.text, offset),
         spelt,
@@ -132,7 +132,7 @@ def situation(prepared: Prepared, offset: int, run: Run) -> Situation:
     )
 
 
-def _fits_behind(run: Run, sort: str, found: Word) -> bool:
+def _fits_behind(run: ParserRun, sort: str, found: Word) -> bool:
     """Return whether a word fits behind a missing one; false if a list's item may end between them."""
     follows = may_follow(run, sort, terminals().get(found.text, "NAME"))
     return follows and not may_follow(run, sort, terminal(";"))

@@ -18,9 +18,9 @@ from typing import Final
 from lark import Token, Tree, UnexpectedInput
 from lark.parsers.lalr_analysis import Shift
 
-from specs.building import Child, Mistake, span_of
+from specs.building import BuildingMistake, Child, span_of
 from specs.diagnostics import Diagnostic
-from specs.grammar import SECTIONS, Run, may_follow, spellings, start, terminal, terminals
+from specs.grammar import SECTIONS, ParserRun, may_follow, spellings, start, terminal, terminals
 from specs.parse_error import LINE_NUMBERS, Word, offset_of, word_at, words_from
 from specs.preprocessing import Prepared
 from specs.syntax import Mission
@@ -123,7 +123,7 @@ class _Reading:
             for word in words:
                 at = len(self.text) if word.start_pos is None else word.start_pos
                 self.run.feed_token(word)
-        except Mistake as mistake:
+        except BuildingMistake as mistake:
             from specs.autopilot_words import sent_to_a_point  # noqa: PLC0415 - most texts have no mistake
 
             self.go_on(sent_to_a_point(mistake.diagnostic, self.text), at)
@@ -242,7 +242,7 @@ class _Stacks:
     A state that can shift `;` or `case` is a list of the language: every list has items of one or the other sort.
     """
 
-    def __init__(self, run: Run) -> None:
+    def __init__(self, run: ParserRun) -> None:
         self.run = run
         self.states = run.parser_state.state_stack
         self.values = run.parser_state.value_stack
@@ -299,7 +299,7 @@ class _Stacks:
         token = Token(terminal(sign), sign, start_pos=place, end_pos=place)
         try:
             self.run.feed_token(token)
-        except Mistake:
+        except BuildingMistake:
             self.back_to_list()
 
 

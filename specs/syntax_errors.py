@@ -11,8 +11,8 @@ from semantics.behaviours.commands import COMMAND_WORDS, COMMANDS
 from specs.codes import Code
 from specs.common_mistakes import FAMILY, MISTAKES
 from specs.diagnostics import Diagnostic
-from specs.grammar import NAMED_PROPERTIES, QUERY_WORDS, SECTIONS, STATEMENTS, Run, first_words
-from specs.parse_error import Situation, line_of, offset_of, situation
+from specs.grammar import NAMED_PROPERTIES, QUERY_WORDS, SECTIONS, STATEMENTS, ParserRun, first_words
+from specs.parse_error import ParsePoint, line_of, offset_of, situation
 from specs.preprocessing import Prepared
 
 # Groups of words with a common name: a word that only the group has, the name, the words and the sorts.
@@ -107,7 +107,7 @@ _SPELT: Final = re.compile(r'"[^\W\d]\w*"')
 """A text that is spelled like a name."""
 
 
-def explain_syntax_error(found: UnexpectedInput, run: Run, prepared: Prepared) -> Diagnostic:
+def explain_syntax_error(found: UnexpectedInput, run: ParserRun, prepared: Prepared) -> Diagnostic:
     """Return the diagnostic of a stopped parse: a bracket, the end, a common mistake, or the words expected."""
     at = situation(prepared, offset_of(found, prepared), run)
     if prepared.unmatched and at.found.span.start >= prepared.unmatched[0]:
@@ -117,7 +117,7 @@ def explain_syntax_error(found: UnexpectedInput, run: Run, prepared: Prepared) -
     return next((named for rule in MISTAKES if (named := rule(at))), None) or _unexpected(at)
 
 
-def expected(at: Situation) -> str:
+def expected(at: ParsePoint) -> str:
     """Return the expected words in the user's terms: `a statement or '}'`."""
     words, sorts, groups = set(at.accepted) - {";"}, set(at.sorts), []
     words -= {"["} if len(words) > 1 else set()  # a `[` would make a family: hardly meant
@@ -133,7 +133,7 @@ def expected(at: Situation) -> str:
     return groups[0] if len(groups) == 1 else f"{', '.join(groups[:-1])} or {groups[-1]}"
 
 
-def _early_end(at: Situation) -> Diagnostic:
+def _early_end(at: ParsePoint) -> Diagnostic:
     message = f"the file ends here, expected {expected(at)}"
     if not at.prepared.open_at_end:
         return at.mistake(Code.UNEXPECTED_END, message, "write the rest of it")
@@ -144,11 +144,11 @@ def _early_end(at: Situation) -> Diagnostic:
     return at.mistake(Code.UNEXPECTED_END, message, hint)
 
 
-def _unexpected(at: Situation) -> Diagnostic:
+def _unexpected(at: ParsePoint) -> Diagnostic:
     return at.mistake(Code.UNEXPECTED, f"expected {expected(at)}, found {at.found.shown}", _hint(at))
 
 
-def _hint(at: Situation) -> str:
+def _hint(at: ParsePoint) -> str:
     if at.accepted == {"for"} or (at.before.text == "[" and at.sorts == {"NAME"}):
         return FAMILY
     if "with_behavior" in at.accepted and "." not in at.accepted:
@@ -159,6 +159,6 @@ def _hint(at: Situation) -> str:
     return form or _unquoted(at)
 
 
-def _unquoted(at: Situation) -> str:
+def _unquoted(at: ParsePoint) -> str:
     is_spelt = "NAME" in at.sorts and _SPELT.fullmatch(at.found.text)
     return f"write the name without quotes: {at.found.text[1:-1]}" if is_spelt else ""

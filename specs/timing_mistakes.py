@@ -8,7 +8,7 @@ from typing import Final
 from semantics.behaviours.durations import UNITS, duration_text
 from specs.codes import Code
 from specs.diagnostics import Diagnostic
-from specs.parse_error import Situation, Word, word_at, word_before
+from specs.parse_error import ParsePoint, Word, word_at, word_before
 
 _REACTING: Final = "of all bigActors together: agents react within 1 s"
 _FLYING: Final = "how long a flight takes follows from speeds: write flies at 18 m/s to 25 m/s"
@@ -35,7 +35,7 @@ _BEFORE_DURATIONS: Final = frozenset(
 )
 
 
-def foreign_bound(at: Situation) -> Diagnostic | None:
+def foreign_bound(at: ParsePoint) -> Diagnostic | None:
     """`observe takes 2 s`, `uav0 moves at 8 m/s`, `pilot reacts within 1 s`, `agents take at most 1 s`."""
     hint = ""
     if "tick" in at.accepted:
@@ -47,7 +47,7 @@ def foreign_bound(at: Situation) -> Diagnostic | None:
     return _upper_bound_alone(at) or _restored(at)
 
 
-def _upper_bound_alone(at: Situation) -> Diagnostic | None:
+def _upper_bound_alone(at: ParsePoint) -> Diagnostic | None:
     """`sense takes at most 5 s`."""
     if at.accepted != {"least"} or at.found.text not in ("most", "maximum", "max"):
         return None
@@ -58,7 +58,7 @@ def _upper_bound_alone(at: Situation) -> Diagnostic | None:
     )
 
 
-def _restored(at: Situation) -> Diagnostic | None:
+def _restored(at: ParsePoint) -> Diagnostic | None:
     """`lasts 25 min restored in yard`, `restored in yard within 10 min`."""
     if "flies" not in at.accepted:
         return None
@@ -78,7 +78,7 @@ def _restored(at: Situation) -> Diagnostic | None:
     return None
 
 
-def bad_duration(at: Situation) -> Diagnostic | None:
+def bad_duration(at: ParsePoint) -> Diagnostic | None:
     """`lasts for 25 min`, `takes between 2 s and 5 s`, `after (10 min) =>`, `1 h 25 min`, `circles at 20 m`."""
     if at.before.text in UNITS and _back(at, 2).is_number:
         return _two_durations(at)
@@ -98,7 +98,7 @@ def bad_duration(at: Situation) -> Diagnostic | None:
     return at.mistake(Code.BAD_NUMBER, f"expected a duration, found {at.found.shown}", hint)
 
 
-def _two_durations(at: Situation) -> Diagnostic | None:
+def _two_durations(at: ParsePoint) -> Diagnostic | None:
     first = _back(at, 2)
     unit = word_at(at.prepared.text, at.found.span.end).text
     if at.found.is_number and unit in UNITS:
@@ -111,7 +111,7 @@ def _two_durations(at: Situation) -> Diagnostic | None:
     return None
 
 
-def unnamed_property(at: Situation) -> Diagnostic | None:
+def unnamed_property(at: ParsePoint) -> Diagnostic | None:
     """`within 25 min: ended a`, `invariant: uav0 in base0`."""
     if at.sorts != {"STRING"} or at.found.text != ":" or at.following.text.startswith('"'):
         return None
@@ -119,7 +119,7 @@ def unnamed_property(at: Situation) -> Diagnostic | None:
     return at.mistake(Code.UNEXPECTED, "expected the property's name before ':'", hint)
 
 
-def timeout_as_case(at: Situation) -> Diagnostic | None:
+def timeout_as_case(at: ParsePoint) -> Diagnostic | None:
     """`case after 10 min => ...`."""
     if at.found.text == "after" and at.before.text == "case":
         message = "'after' stands without 'case'"
@@ -127,7 +127,7 @@ def timeout_as_case(at: Situation) -> Diagnostic | None:
     return None
 
 
-def timed_change(at: Situation) -> Diagnostic | None:
+def timed_change(at: ParsePoint) -> Diagnostic | None:
     """`environment { wifi drops and returns within 5 min }`."""
     if "tick" in at.accepted or not at.accepted & {"arrives", "someone"}:
         return None
@@ -138,7 +138,7 @@ def timed_change(at: Situation) -> Diagnostic | None:
     return None
 
 
-def _back(at: Situation, words: int) -> Word:
+def _back(at: ParsePoint, words: int) -> Word:
     """Return the word a number of words before the one found."""
     word = at.found
     for _ in range(words):
@@ -146,12 +146,12 @@ def _back(at: Situation, words: int) -> Word:
     return word
 
 
-def _duration_at(at: Situation, number: Word) -> str:
+def _duration_at(at: ParsePoint, number: Word) -> str:
     unit = word_at(at.prepared.text, number.span.end).text
     return f"{number.text} {unit if unit in UNITS else 's'}"
 
 
-TIMING_MISTAKES: Final[tuple[Callable[[Situation], Diagnostic | None], ...]] = (
+TIMING_MISTAKES: Final[tuple[Callable[[ParsePoint], Diagnostic | None], ...]] = (
     foreign_bound,
     bad_duration,
     unnamed_property,

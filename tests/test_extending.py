@@ -93,7 +93,7 @@ from checker import Engine, Reduction, check, report_json
 from semantics import Control
 from specs import MissionError, Source, format_mission, parse
 from specs.elaboration import Variation, elaborate
-from specs.reference import language_reference
+from specs.language_reference import language_reference
 
 text = sys.stdin.read()
 

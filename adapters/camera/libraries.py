@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any, Final
 
 from physical import PhysicalError
-from physical.messages import install_extra
+from physical.wordings import install_extra
 
 MOST_PIXELS: Final = 100_000_000
 

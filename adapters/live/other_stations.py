@@ -10,8 +10,8 @@ from semantics.observed_steps import Sight, happening
 from semantics.state.parcel_serialization import parcel_of
 from semantics.state.partition import (
     Belief,
+    HostReport,
     Passage,
-    Whereabouts,
     believe,
     enter,
     learn,
@@ -32,7 +32,7 @@ def hear_of(turning: Turning, report: Elsewhere) -> None:
             _fly(turning, entity, to)
         case Hosts(agent, _, host):
             for found in learn(turning.c, agent, host):
-                turning.take(found, (found,), Whereabouts(agent, host))
+                turning.take(found, (found,), HostReport(agent, host))
         case Believes(node, _, slot, names):
             belief = Belief(node, slot, names)
             for found in believe(turning.c, belief):

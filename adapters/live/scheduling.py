@@ -8,7 +8,7 @@ from adapters.live.state import Pace
 from semantics.extension import migrate, rcv_msg, req_mgr, req_snd, snd, spawn
 from semantics.rules import Rule, actuate, command, fun, rcv_obs, req_ctr, req_obs, sense
 from semantics.state.configuration import Configuration, Transition
-from semantics.state.eta import Pending
+from semantics.state.eta import PendingRequest
 from semantics.state.requests import CTR, FLY, MGR, OBS, READY, SND
 from semantics.state.signature import Name
 from semantics.successors import remembered
@@ -40,7 +40,7 @@ def own_steps(c: Configuration, a: Name) -> tuple[Transition, ...]:
     return tuple(dict.fromkeys(found))
 
 
-def in_turn(c: Configuration) -> Iterator[Pending]:
+def in_turn(c: Configuration) -> Iterator[PendingRequest]:
     """Yield the requests that may be served, oldest first: the head of each agent's line, and all messages."""
     headed: set[Name] = set()
     for pending in c.eta.all():
@@ -52,7 +52,7 @@ def in_turn(c: Configuration) -> Iterator[Pending]:
             yield pending
 
 
-def to_serve(c: Configuration) -> Iterator[Pending]:
+def to_serve(c: Configuration) -> Iterator[PendingRequest]:
     """Yield the requests in turn that rules serve, from the queue alone: flights end by themselves, and can be many."""
     headed: set[Name] = set()
     for pending in c.eta.queued():
@@ -65,7 +65,7 @@ def to_serve(c: Configuration) -> Iterator[Pending]:
                 yield pending
 
 
-def served(c: Configuration, pending: Pending) -> tuple[Transition, ...]:
+def served(c: Configuration, pending: PendingRequest) -> tuple[Transition, ...]:
     """Return the transitions that serve a request."""
     rules = SERVING.get(type(pending.request), ())
     found = (transition for rule in rules for transition in rule(c, pending.request.agent))

@@ -15,9 +15,9 @@ from semantics.state.configuration import Configuration, Transition
 from semantics.state.physical_model import Placed
 from semantics.state.requests import FLY
 from semantics.state.signature import Name
-from semantics.timing.actor_clocks import BOUND, FREE, Clock, Sort, is_restored
-from semantics.timing.bounds import Bound, bound_of, clause_beginnings, going_on, running_in, timed_by
-from semantics.timing.clocks import Situation, TimedStep
+from semantics.timing.actor_clocks import BOUND, FREE, ActorClock, Sort, is_restored
+from semantics.timing.bounds import WrittenBound, bound_of, clause_beginnings, going_on, running_in, timed_by
+from semantics.timing.clocks import TimedStep, TimedView
 from semantics.timing.dates import lapse_text
 from semantics.timing.flight_history import travelling
 from semantics.timing.timing import Every, Sayable, Window
@@ -61,8 +61,8 @@ class Timers:
         rested: The seconds for which the run itself stood still since then: it was killed and resumed.
     """
 
-    situation: Situation
-    since: Mapping[Clock, tuple[float, ...]]
+    situation: TimedView
+    since: Mapping[ActorClock, tuple[float, ...]]
     windows: Mapping[int, int] = field(default_factory=dict)
     began: float = 0.0
     rested: float = 0.0
@@ -74,7 +74,7 @@ class Timers:
 
     def elapsed(self, now: float) -> float:
         """Return the seconds since the mission's start, if a clause is timed from it."""
-        return now - self.since[Clock(Sort.MISSION)][0]
+        return now - self.since[ActorClock(Sort.MISSION)][0]
 
     def later(self, seconds: float) -> Timers:
         """Return the timers shifted by a time without listening."""
@@ -88,7 +88,7 @@ class Timers:
         """Return the timers for another start, and another standstill of the run until now."""
         shift, still = began - self.began, rested - self.rested
 
-        def start(clock: Clock, at: float) -> float:
+        def start(clock: ActorClock, at: float) -> float:
             if clock.sort is Sort.AFTER and still:
                 return now
             return at + shift + (still if clock.sort in OWN else 0.0)
@@ -99,7 +99,7 @@ class Timers:
 
 def begun(c: Configuration, now: float) -> Timers:
     """Return the timers at the start of a run."""
-    situation = Situation(c)
+    situation = TimedView(c)
     since = {
         clock: (-math.inf if clock.sort in FULL else now,) * count
         for clock, count in running_in(situation).items()
@@ -110,13 +110,13 @@ def begun(c: Configuration, now: float) -> Timers:
 def stepped(timers: Timers, transition: Transition, now: float) -> Timers:
     """Return the timers after a step of the run."""
     source = timers.situation
-    after = Situation(transition.target)
+    after = TimedView(transition.target)
     step = _step_of(source, transition)
     taken = _taken(source, step, after)
-    done = (*(step.done if step is not None else ()), *(Clock(Sort.EVERY, number) for number in taken))
+    done = (*(step.done if step is not None else ()), *(ActorClock(Sort.EVERY, number) for number in taken))
     since = going_on(timers.since, source, done, after, now)
     for vehicle, endurance in after.timing.endurances:
-        restored, aloft = Clock(Sort.RESTORED, vehicle), Clock(Sort.ALOFT, vehicle)
+        restored, aloft = ActorClock(Sort.RESTORED, vehicle), ActorClock(Sort.ALOFT, vehicle)
         left = restored in source.first and restored not in after.first
         if left and now - timers.since[restored][0] >= endurance.after * timers.seconds:
             since[aloft] = (now,)
@@ -134,13 +134,15 @@ def _entered(timers: Timers, taken: Iterable[int], now: float) -> Timers:
     return replace(timers, windows=windows)
 
 
-def _step_of(situation: Situation, transition: Transition) -> TimedStep | None:
+def _step_of(situation: TimedView, transition: Transition) -> TimedStep | None:
     return next((each for each in situation.steps if each.transition.label == transition.label), None)
 
 
-def _taken(source: Situation, step: TimedStep | None, after: Situation) -> tuple[int, ...]:
+def _taken(source: TimedView, step: TimedStep | None, after: TimedView) -> tuple[int, ...]:
     """Return the clauses whose own step was taken, by any observation."""
-    said = step.done[0] if step is not None and step.transition.label.agent is None else Clock(Sort.MISSION)
+    said = (
+        step.done[0] if step is not None and step.transition.label.agent is None else ActorClock(Sort.MISSION)
+    )
     return tuple(
         number
         for number, clause in enumerate(source.c.setting.environment)
@@ -182,7 +184,7 @@ def too_soon(timers: Timers, transition: Transition, after: Timers, now: float) 
     step = _step_of(source, transition)
     request = None if step is None or step.transition.served is None else step.transition.served.request
     if step is not None and isinstance(request, FLY):
-        flight = Clock(Sort.FLIGHT, request)
+        flight = ActorClock(Sort.FLIGHT, request)
         least = timed_by(source, step).interval.lo * timers.seconds
         if flight in timers.since and now - timers.since[flight][0] < least:
             lasted = _text(now - timers.since[flight][0])
@@ -195,7 +197,7 @@ def _untimely(timers: Timers, number: int, now: float) -> Iterator[Broken]:
     """Yield a violation if a clause has taken its step too soon, or if a message came too late."""
     match timers.situation.timing.clause(number).step:
         case Every(least):
-            elapsed = now - timers.since[Clock(Sort.EVERY, number)][0]
+            elapsed = now - timers.since[ActorClock(Sort.EVERY, number)][0]
             if elapsed < least * timers.seconds:
                 yield _of_clause(timers, number, f"again after {_text(elapsed)}")
         case Window(after):
@@ -255,7 +257,7 @@ def _batteries(timers: Timers) -> Iterator[tuple[Name, float, float]]:
     for vehicle, endurance in situation.timing.endurances:
         if vehicle in situation.c.structure.physical and not is_restored(situation.c, vehicle):
             lasts = endurance.lasts * timers.seconds
-            yield vehicle, timers.since[Clock(Sort.ALOFT, vehicle)][0] + lasts, lasts
+            yield vehicle, timers.since[ActorClock(Sort.ALOFT, vehicle)][0] + lasts, lasts
 
 
 def _windows(timers: Timers) -> Iterator[tuple[int, float, float]]:
@@ -264,10 +266,10 @@ def _windows(timers: Timers) -> Iterator[tuple[int, float, float]]:
         said, may = timers.situation.timing.clause(number).step, timers.situation.by_clauses[number]
         if state == BOUND and may and isinstance(said, Window) and said.within is not None:
             within = said.within * timers.seconds
-            yield number, timers.since[Clock(Sort.MISSION)][0] + within, within
+            yield number, timers.since[ActorClock(Sort.MISSION)][0] + within, within
 
 
-def _said(situation: Situation, step: TimedStep, what: str) -> Iterator[Broken]:
+def _said(situation: TimedView, step: TimedStep, what: str) -> Iterator[Broken]:
     request = None if step.transition.served is None else step.transition.served.request
     words = _because(bound_of(situation, step))
     flying = travelling(situation.c, request) if isinstance(request, FLY) else ()
@@ -277,12 +279,17 @@ def _said(situation: Situation, step: TimedStep, what: str) -> Iterator[Broken]:
         yield Broken(step.transition.label.agent or "", f"{step.transition.label} {what}{words}")
 
 
-def _line_of(situation: Situation, *begins: str) -> Bound:
-    found = (Bound(*said) for begin in begins for said in situation.timing.lines if said[0].startswith(begin))
-    return next(found, Bound())
+def _line_of(situation: TimedView, *begins: str) -> WrittenBound:
+    found = (
+        WrittenBound(*said)
+        for begin in begins
+        for said in situation.timing.lines
+        if said[0].startswith(begin)
+    )
+    return next(found, WrittenBound())
 
 
-def _because(bound: Bound) -> str:
+def _because(bound: WrittenBound) -> str:
     return f"; the mission says: {bound}" if bound.words else ""
 
 
@@ -298,7 +305,7 @@ def flying(timers: Timers) -> Iterator[Flying]:
     situation = timers.situation
     for clock, began in timers.since.items():
         if clock.sort is Sort.FLIGHT and isinstance(clock.of, FLY):
-            most = situation.bounds.get(Clock(Sort.AIM, clock.of))
+            most = situation.bounds.get(ActorClock(Sort.AIM, clock.of))
             hi = None if most is None or most.hi is None else most.hi * timers.seconds
             least = situation.bounds[clock].lo * timers.seconds if clock in situation.bounds else 0.0
             for vehicle, place in travelling(situation.c, clock.of):

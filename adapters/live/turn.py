@@ -32,7 +32,7 @@ from semantics.extension import timeout
 from semantics.live_policy import Fallback
 from semantics.observed_steps import Sight
 from semantics.state.configuration import Transition
-from semantics.state.eta import Pending
+from semantics.state.eta import PendingRequest
 from semantics.state.partition import (
     HERE,
     Elsewhere,
@@ -302,7 +302,7 @@ class Turning:
         self.quiet = self.c
         return False
 
-    def allowed(self, pending: Pending) -> tuple[tuple[Transition, ...], bool]:
+    def allowed(self, pending: PendingRequest) -> tuple[tuple[Transition, ...], bool]:
         """Return the transitions that serve a request now, and whether it only waits for a vehicle's confirmation."""
         request = pending.request
         found = served(self.c, pending)

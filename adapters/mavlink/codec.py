@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from adapters.mavlink.message import Message
 from physical import PhysicalError
-from physical.messages import install_extra
+from physical.wordings import install_extra
 
 MAX_CHUNK: Final = 65_536
 """Bytes parsed at once; a socket never delivers more."""

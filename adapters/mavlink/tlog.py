@@ -14,7 +14,7 @@ from adapters.mavlink.fleet import Craft
 from adapters.mavlink.message import Message
 from adapters.mavlink.telemetry import Telemetry, absorb, property_of
 from physical import PhysicalError, PhysicalProperty, open_file
-from physical.tally import Counting
+from physical.file_account import Counting
 
 _V1, _V2 = 0xFE, 0xFD
 _SIGNED: Final = 1

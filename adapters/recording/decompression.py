@@ -6,7 +6,7 @@ from collections.abc import Callable
 from io import BytesIO
 from typing import Final
 
-from physical.messages import install_extra
+from physical.wordings import install_extra
 
 MOST_WINDOW: Final = 1 << 24
 """The most bytes of a decompressor's window, which it keeps in memory."""

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO, Final, NamedTuple
 from adapters.recording.decompression import opened
 from adapters.written_files import open_private, writing
 from physical import PhysicalError, open_file, read_json
-from physical.messages import install_extra
+from physical.wordings import install_extra
 
 MAGIC: Final = b"\x89MCAP0\r\n"
 FOOTER, CHANNEL, MESSAGE, CHUNK = 0x02, 0x04, 0x05, 0x06

@@ -16,7 +16,7 @@ from adapters.plugin import World
 from adapters.ros.messages import MOST_BYTES, Position, hash_of, read_position
 from adapters.ros.wire import UNHASHED, Topic, node_token, topic_of
 from physical import PhysicalError
-from physical.messages import install_extra
+from physical.wordings import install_extra
 
 FUTURE: Final = 1.0
 """Seconds by which a sender's clock may be ahead of ours."""

@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from physical import Geometry, PhysicalError, point
-from physical.messages import install_extra
+from physical.wordings import install_extra
 
 MOST_BYTES: Final = 4_096
 """The longest message: a position has some hundred bytes, and the name of a frame."""

@@ -15,7 +15,7 @@ from typing import Any, Final
 from adapters.stations.messages import MOST_BYTES
 from adapters.stations.peers import Peers
 from physical import PhysicalError
-from physical.messages import install_extra
+from physical.wordings import install_extra
 
 MOST_WAITING: Final = 1_000
 """The most waiting messages; more are dropped, and requested again."""

@@ -122,7 +122,7 @@ def run(options: Namespace) -> Exit:
     from adapters.naming import NamingService
     from bigactors.installed_plugins import find_detector
     from physical import PhysicalError
-    from physical.messages import counted
+    from physical.wordings import counted
 
     left_out: Counter[str] = Counter()
     try:
@@ -157,7 +157,7 @@ def _write(named: Sequence[PhysicalProperty], path: str) -> None:
     """Write regions as GeoJSON."""
     from bigactors.files import write_text
     from physical import write_geojson
-    from physical.messages import counted
+    from physical.wordings import counted
 
     write_text(path, write_geojson(named))
     tell(f"{counted(len(named), 'feature')} written to {path}")

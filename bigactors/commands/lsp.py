@@ -26,7 +26,7 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> Exit:
     """Serve an editor until it ends the session."""
-    from physical.messages import install_extra
+    from physical.wordings import install_extra
 
     del options
     try:

@@ -63,8 +63,8 @@ def run(options: Namespace) -> Exit:
     from bigactors.worlds import census, configuration_of, read_world
     from bigraphs import draw_text
     from physical import write_geojson
-    from physical.messages import counted
     from physical.place_files import PLACES
+    from physical.wordings import counted
 
     kinds = [kind.strip() for kind in (options.kinds or "").split(",") if kind.strip()]
     world = read_world(options.files, options.at, options.within, kinds)

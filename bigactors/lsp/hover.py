@@ -16,10 +16,10 @@ from semantics.behaviours.commands import COMMANDS
 from semantics.properties.kinds import ABOUT, PropertyKind
 from specs import explain
 from specs import syntax as s
-from specs.elaboration.findings import Findings
+from specs.construct_text import write
 from specs.elaboration.geometry import elaborate_geometry
+from specs.elaboration.mission_mistakes import Findings
 from specs.standard_signature import STANDARD
-from specs.writing import write
 
 N = TypeVar("N", bound=s.Node)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from bigactors.lsp.reading import Reading
 from specs import syntax as s
-from specs.writing import write
+from specs.construct_text import write
 
 
 @dataclass(frozen=True, slots=True)

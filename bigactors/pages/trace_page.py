@@ -15,7 +15,7 @@ from bigraphs.drawing import HIGHLIGHT
 from checker.properties.race_steps import RaceSteps
 from checker.reports.lanes import Lanes, LaneStep, Repetition, Row, lapses, steps_of
 from physical.map_style import MARK
-from physical.messages import counted
+from physical.wordings import counted
 from semantics.state.printing import print_agent
 from semantics.timing.dates import lapse_text
 

@@ -12,7 +12,7 @@ from typing import Final
 
 from bigactors.pictures.page import Page
 from checker.properties.critical_path import interval_text
-from checker.properties.schedule import Flight, Milestone, Moments, Schedule
+from checker.properties.schedule import EventDates, Milestone, PossibleFlight, Schedule
 from physical.map_style import QUIET
 from physical.svg import Paint, Picture, text_width
 
@@ -91,7 +91,7 @@ def groups_of(schedule: Schedule) -> Iterator[tuple[str, tuple[Bar, ...]]]:
         yield "first true", tuple(_milestone_bar(schedule, each) for each in schedule.milestones)
 
 
-def _flight_bar(schedule: Schedule, flight: Flight) -> Bar:
+def _flight_bar(schedule: Schedule, flight: PossibleFlight) -> Bar:
     name = f"{flight.origin} → {flight.destination}"
     begins, ends = (_seconds(schedule, each) for each in (flight.begins, flight.ends))
     words = f"{interval_text(flight.takes, schedule.tick)}, by {flight.agent}"
@@ -111,7 +111,7 @@ def _milestone_bar(schedule: Schedule, milestone: Milestone) -> Bar:
     return Bar(milestone.name, f"{said}{never}", TRUE, (earliest, earliest), (earliest, latest))
 
 
-def _seconds(schedule: Schedule, moments: Moments) -> tuple[float, float]:
+def _seconds(schedule: Schedule, moments: EventDates) -> tuple[float, float]:
     latest = moments.latest if schedule.complete else math.inf
     return moments.earliest * schedule.tick / 1000, latest * schedule.tick / 1000
 

@@ -10,24 +10,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from bigraphs.bigraph import Bigraph, Link, Node, Place, assemble, moved
-from bigraphs.canonical import equal
-from bigraphs.engine.patterns import Pattern, compile_pattern
+from bigraphs.canonical_form import equal
+from bigraphs.engine.intern_tables import InternTables, has_sharing
+from bigraphs.engine.patterns import CompiledPattern, compile_pattern
 from bigraphs.engine.search import Matcher
-from bigraphs.engine.search_state import Occurrence
-from bigraphs.engine.state import make_state
-from bigraphs.engine.world import World, has_sharing
+from bigraphs.engine.search_state import PatternOccurrence
+from bigraphs.engine.state_arrays import make_state
 from bigraphs.signature import Control, Signature
 from bigraphs.system import Rule
 
 
 @dataclass(frozen=True, slots=True)
-class Symmetry:
+class Automorphism:
     """The image of each node and each link under a symmetry."""
 
     nodes: tuple[int, ...]
     links: tuple[int, ...]
 
-    def of(self, occurrence: Occurrence) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    def of(self, occurrence: PatternOccurrence) -> tuple[tuple[int, ...], tuple[int, ...]]:
         """Return the nodes and links of an occurrence, permuted by the symmetry."""
         nodes, links = occurrence.nodes, occurrence.links
         return tuple([nodes[node] for node in self.nodes]), tuple([links[link] for link in self.links])
@@ -36,18 +36,18 @@ class Symmetry:
 class Representatives:
     """Selects one representative of each set of symmetric occurrences.
 
-    The search already orders twins (`Pattern.twins`); this class handles all other symmetries.
+    The search already orders twins (`CompiledPattern.twins`); this class handles all other symmetries.
     """
 
-    def __init__(self, pattern: Pattern, symmetries: Sequence[Symmetry]) -> None:
+    def __init__(self, pattern: CompiledPattern, symmetries: Sequence[Automorphism]) -> None:
         self.twins = pattern.twins
         self.symmetries = symmetries
 
-    def choose(self, occurrences: list[Occurrence]) -> list[Occurrence]:
+    def choose(self, occurrences: list[PatternOccurrence]) -> list[PatternOccurrence]:
         """Return the representatives among the occurrences, in the given order."""
         return list(filter(self.chosen, occurrences)) if self.symmetries else occurrences
 
-    def chosen(self, occurrence: Occurrence) -> bool:
+    def chosen(self, occurrence: PatternOccurrence) -> bool:
         """Return whether an occurrence is the least of its symmetric images."""
         mine = (occurrence.nodes, occurrence.links)
         return all(self.ordered(*symmetry.of(occurrence)) >= mine for symmetry in self.symmetries)
@@ -65,7 +65,7 @@ class Representatives:
         return tuple(found), links
 
 
-def symmetries(rule: Rule, pattern: Pattern) -> tuple[Symmetry, ...]:
+def symmetries(rule: Rule, pattern: CompiledPattern) -> tuple[Automorphism, ...]:
     """Return the symmetries of a rule up to exchanges of twins, without the identity."""
     width = len(rule.redex.sites)
     closed = _with_markers(rule.redex, range(width), width)
@@ -73,8 +73,8 @@ def symmetries(rule: Rule, pattern: Pattern) -> tuple[Symmetry, ...]:
     found = []
     for occurrence in _self_matches(closed):
         nodes = occurrence.nodes[: pattern.size]
-        symmetry = Symmetry(nodes, occurrence.links)
-        if symmetry == Symmetry(tuple(range(pattern.size)), tuple(range(len(occurrence.links)))):
+        symmetry = Automorphism(nodes, occurrence.links)
+        if symmetry == Automorphism(tuple(range(pattern.size)), tuple(range(len(occurrence.links)))):
             continue
         if equal(result, _seen_through(result, closed, occurrence, pattern.size)):
             found.append(symmetry)
@@ -95,7 +95,7 @@ def _with_markers(bigraph: Bigraph, sites: Sequence[int], width: int) -> Bigraph
     )
 
 
-def _self_matches(marked: Bigraph) -> list[Occurrence]:
+def _self_matches(marked: Bigraph) -> list[PatternOccurrence]:
     """Return every map of a redex to itself that preserves nodes, nesting and links; twins are in order."""
     site = Control("$", 0)
     kinds = [control for control in marked.signature.controls if not control.name.startswith("$")]
@@ -104,7 +104,7 @@ def _self_matches(marked: Bigraph) -> list[Occurrence]:
         signature=Signature((*kinds, site)),
         nodes=tuple(replace(node, control=_plain(node.control)) for node in marked.nodes),
     )
-    world = World(alike.signature, alike.outer_names, alike.regions, sharing=has_sharing(alike))
+    world = InternTables(alike.signature, alike.outer_names, alike.regions, sharing=has_sharing(alike))
     pattern = compile_pattern(world, alike)
     names = set(range(pattern.names))
     return [
@@ -120,7 +120,7 @@ def _plain(control: str) -> str:
     return "$" if control.startswith("$") else control
 
 
-def _region_map(marked: Bigraph, symmetry: Occurrence) -> dict[Place, Place] | None:
+def _region_map(marked: Bigraph, symmetry: PatternOccurrence) -> dict[Place, Place] | None:
     """Return the images of the regions, or None if the nodes of one region are not mapped to one region."""
     tops = [
         {number for number, node in enumerate(marked.nodes) if ~region in node.parents}
@@ -136,7 +136,7 @@ def _region_map(marked: Bigraph, symmetry: Occurrence) -> dict[Place, Place] | N
     return found
 
 
-def _seen_through(result: Bigraph, marked: Bigraph, symmetry: Occurrence, size: int) -> Bigraph:
+def _seen_through(result: Bigraph, marked: Bigraph, symmetry: PatternOccurrence, size: int) -> Bigraph:
     """Return the reactum with its regions, names and sites renamed by a symmetry of the redex."""
     regions = _region_map(marked, symmetry) or {}
     names = marked.outer_names

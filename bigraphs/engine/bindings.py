@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator
 
-from bigraphs.engine.patterns import Pattern
-from bigraphs.engine.search_state import OFTEN, Placing, Run, Step
-from bigraphs.engine.state import State
-from bigraphs.engine.world import World
+from bigraphs.engine.intern_tables import InternTables
+from bigraphs.engine.patterns import CompiledPattern
+from bigraphs.engine.search_state import OFTEN, PatternSearch, Placing, Step
+from bigraphs.engine.state_arrays import GroundState
 
 
-def binding(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
+def binding(world: InternTables, pattern: CompiledPattern, node: int, then: Step) -> Placing:
     """Return the step that binds the links of a node in each possible way."""
     ports = pattern.ports[node]
     if not ports:
@@ -21,10 +21,10 @@ def binding(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
     return _in_any_order(world, pattern, ports, then)
 
 
-def _in_order(world: World, pattern: Pattern, ports: tuple[int, ...], then: Step) -> Placing:
+def _in_order(world: InternTables, pattern: CompiledPattern, ports: tuple[int, ...], then: Step) -> Placing:
     fits = _fitting(world, pattern)
 
-    def bind(run: Run, used: int, slot: int) -> bool:
+    def bind(run: PatternSearch, used: int, slot: int) -> bool:
         targets, links, fresh = run.state.ports[slot], run.links, []
         over = False
         if len(targets) == len(ports):
@@ -44,18 +44,20 @@ def _in_order(world: World, pattern: Pattern, ports: tuple[int, ...], then: Step
     return bind
 
 
-def _in_any_order(world: World, pattern: Pattern, ports: tuple[int, ...], then: Step) -> Placing:
+def _in_any_order(
+    world: InternTables, pattern: CompiledPattern, ports: tuple[int, ...], then: Step
+) -> Placing:
     """Return the step for unordered ports: each link of a node takes a link with enough ports on the slot."""
     fits = _fitting(world, pattern)
     wanted = sorted(Counter(ports).items())
 
-    def bind(run: Run, used: int, slot: int) -> bool:
+    def bind(run: PatternSearch, used: int, slot: int) -> bool:
         targets = run.state.ports[slot]
         if len(targets) != len(ports):
             return False
         return any(then(run, used) for _ in ways(run, Counter(targets), 0))
 
-    def ways(run: Run, left: Counter[int], place: int) -> Iterator[None]:
+    def ways(run: PatternSearch, left: Counter[int], place: int) -> Iterator[None]:
         if place == len(wanted):
             yield
             return
@@ -76,12 +78,12 @@ def _in_any_order(world: World, pattern: Pattern, ports: tuple[int, ...], then: 
     return bind
 
 
-def _fitting(world: World, pattern: Pattern) -> Callable[[State, int, int], bool]:
+def _fitting(world: InternTables, pattern: CompiledPattern) -> Callable[[GroundState, int, int], bool]:
     """Return the test whether a pattern link may bind a state link; an edge needs an edge of the same size."""
     names, fixed = pattern.names, len(world.names)
     sizes = [len(nodes) for nodes in pattern.on]
 
-    def fits(state: State, link: int, target: int) -> bool:
+    def fits(state: GroundState, link: int, target: int) -> bool:
         return link < names or (target >= fixed and state.points[target].bit_count() == sizes[link])
 
     return fits

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph, Place, assemble, moved
-from bigraphs.engine.patterns import Pattern, compile_pattern
+from bigraphs.engine.intern_tables import InternTables
+from bigraphs.engine.patterns import CompiledPattern, compile_pattern
 from bigraphs.engine.search import Matcher
-from bigraphs.engine.search_state import Occurrence
-from bigraphs.engine.state import State, bits
-from bigraphs.engine.world import World
+from bigraphs.engine.search_state import PatternOccurrence
+from bigraphs.engine.state_arrays import GroundState, bits
 from bigraphs.system import Condition, Where
 
 
-class Surroundings:
+class PlaceContexts:
     """The ancestors of places in one state, cached; `passive` is whether passive controls have to be considered."""
 
-    def __init__(self, state: State, *, passive: bool) -> None:
+    def __init__(self, state: GroundState, *, passive: bool) -> None:
         self.state = state
         self.passive = passive
         self._above: dict[int, int] = {}
@@ -36,7 +36,7 @@ class Surroundings:
             self._above[place] = found
         return found
 
-    def admits(self, pattern: Pattern, occurrence: Occurrence) -> bool:
+    def admits(self, pattern: CompiledPattern, occurrence: PatternOccurrence) -> bool:
         """Return whether all regions are in active places outside the matched nodes."""
         parents, nodes, used = self.state.parents, occurrence.nodes, occurrence.mask
         for node in pattern.roots:
@@ -68,12 +68,12 @@ class ConditionCheck:
     that part. A node that contains the occurrence of the redex has a site in its place.
     """
 
-    def __init__(self, world: World, condition: Condition) -> None:
+    def __init__(self, world: InternTables, condition: Condition) -> None:
         self.positive = condition.positive
         self.where = condition.where
         self.matcher = Matcher(world, compile_pattern(world, without_idle(condition.pattern)))
 
-    def holds(self, state: State, occurrence: Occurrence) -> bool:
+    def holds(self, state: GroundState, occurrence: PatternOccurrence) -> bool:
         """Return whether the condition holds at an occurrence; it skips the search if a needed control is missing."""
         if not all(state.by_control[control] & ~occurrence.mask for control in self.matcher.pattern.controls):
             return not self.positive
@@ -83,15 +83,15 @@ class ConditionCheck:
         return occurs(self.matcher, state, state.occupied() & ~inside & ~occurrence.mask) is self.positive
 
 
-def occurs(matcher: Matcher, state: State, allowed: int = -1) -> bool:
+def occurs(matcher: Matcher, state: GroundState, allowed: int = -1) -> bool:
     """Return whether a pattern occurs among the allowed slots, in active places or not."""
     if not matcher.wide:
         return bool(matcher.find(state, allowed, once=True))
-    around = Surroundings(state, passive=False)
+    around = PlaceContexts(state, passive=False)
     return any(around.admits(matcher.pattern, found) for found in matcher.find(state, allowed))
 
 
-def below(state: State, slots: int) -> int:
+def below(state: GroundState, slots: int) -> int:
     """Return the mask of all descendants of these nodes."""
     found, waiting = 0, slots
     while waiting:

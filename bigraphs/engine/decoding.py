@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from bigraphs.bigraph import Bigraph, Link, Node, assemble
-from bigraphs.canonical import canonical
-from bigraphs.engine.state import Key, State, bits, codes_in
-from bigraphs.engine.world import REFERENCE, World
+from bigraphs.canonical_form import canonical
+from bigraphs.engine.intern_tables import REFERENCE, InternTables
+from bigraphs.engine.state_arrays import GroundState, Key, bits, codes_in
 
 
-def to_bigraph(state: State) -> Bigraph:
+def to_bigraph(state: GroundState) -> Bigraph:
     """Return the bigraph: named nodes first, by name, then anonymous nodes in slot order."""
     world, slots = state.world, list(bits(state.occupied()))
     rank = {slot: place for place, slot in enumerate(slots)}
@@ -26,12 +26,12 @@ def to_bigraph(state: State) -> Bigraph:
     return assemble(world.signature, nodes, regions=world.regions, edges=len(edges), outer_names=world.names)
 
 
-def _live_edges(state: State) -> list[int]:
+def _live_edges(state: GroundState) -> list[int]:
     return [edge for edge in range(len(state.world.names), len(state.points)) if state.points[edge]]
 
 
-def from_key(world: World, key: Key) -> State:
-    """Return a state with this key of `State.key`; the key alone determines the order of its nodes."""
+def from_key(world: InternTables, key: Key) -> GroundState:
+    """Return a state with this key of `GroundState.key`; the key alone determines the order of its nodes."""
     builder = _Builder(world)
     *regions, shared = codes_in(world, key)
     for region, codes in enumerate(regions):
@@ -43,7 +43,7 @@ def from_key(world: World, key: Key) -> State:
 class _Builder:
     """A state under construction, from the regions inwards."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: InternTables) -> None:
         self.world = world
         self.labels: list[int] = []
         self.parents: list[list[int]] = []
@@ -72,9 +72,9 @@ class _Builder:
         for code in codes:
             self.put(code, 0)
 
-    def finish(self) -> State:
+    def finish(self) -> GroundState:
         world = self.world
-        state = State(world)
+        state = GroundState(world)
         state.labels, state.ports = self.labels, self.ports
         state.parents = [tuple(sorted(places)) for places in self.parents]
         state.kids = [0] * (len(self.labels) + world.regions)
@@ -91,7 +91,7 @@ class _Builder:
         return state
 
 
-def history_free(state: State) -> str:
+def history_free(state: GroundState) -> str:
     """Return a canonical text of a state that does not depend on earlier states."""
     found = canonical(to_bigraph(state))
     return repr((found.nodes, found.regions, found.edges))

@@ -12,9 +12,9 @@ from typing import TypeAlias
 
 from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph, Node, relabelled
-from bigraphs.canonical import canonical
-from bigraphs.engine.automorphisms import Symmetry, symmetries
-from bigraphs.engine.patterns import Pattern
+from bigraphs.canonical_form import canonical
+from bigraphs.engine.automorphisms import Automorphism, symmetries
+from bigraphs.engine.patterns import CompiledPattern
 from bigraphs.system import Rule
 
 _Rank: TypeAlias = Callable[[str], Hashable]
@@ -25,7 +25,7 @@ class Forms:
 
     def __init__(self) -> None:
         self._tidy: dict[Hashable, tuple[Bigraph, list[str]]] = {}
-        self._symmetries: dict[Hashable, tuple[Symmetry, ...]] = {}
+        self._symmetries: dict[Hashable, tuple[Automorphism, ...]] = {}
 
     def tidy(self, rule: Rule) -> Rule:
         """Return a rule with both sides in canonical form, without idle edges."""
@@ -40,7 +40,7 @@ class Forms:
         first, others = found
         return relabelled(first, dict(zip(others, controls, strict=True)), side.signature)
 
-    def symmetries(self, rule: Rule, pattern: Pattern) -> tuple[Symmetry, ...]:
+    def symmetries(self, rule: Rule, pattern: CompiledPattern) -> tuple[Automorphism, ...]:
         """Return the symmetries of a rule with the redex `pattern`."""
         ranks: dict[str, int] = {}
 

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, TypeAlias
 
+from bigraphs.engine.intern_tables import Codes
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.world import Codes
 
 BLOCK: Final = 512
 """The number of states in a block."""
@@ -39,7 +39,7 @@ class Block:
 _Piece: TypeAlias = Block | list[Spot]
 
 
-class Waiting:
+class Frontier:
     """A queue of the spots of one system: unpacked at its head and tail, packed blocks between."""
 
     def __init__(self, one: Spot) -> None:

@@ -17,8 +17,8 @@ from array import array
 from collections.abc import Iterator
 from typing import NamedTuple, TypeAlias
 
-from bigraphs.engine.state import Key, State, codes_in
-from bigraphs.engine.world import REFERENCE, Row, World
+from bigraphs.engine.intern_tables import REFERENCE, InternTables, Row
+from bigraphs.engine.state_arrays import GroundState, Key, codes_in
 
 Incidence: TypeAlias = tuple[int, int]
 """A label and an edge; the negative number of a shared node serves as an edge."""
@@ -27,7 +27,7 @@ Around: TypeAlias = list[tuple[int, int]]
 """The neighbours of a vertex: pairs of a label, shifted above the colours, and a vertex."""
 
 
-class Profile(NamedTuple):
+class SubtreeProfile(NamedTuple):
     """The top of a subtree: the label of its node, its edges, and the codes of its children with edges."""
 
     label: int
@@ -42,12 +42,12 @@ _IN, _HOLDS, _EDGE = 0 << _SHIFT, 1 << _SHIFT, 2
 class Labelling:
     """The canonical keys of the states of one world."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: InternTables) -> None:
         self.world = world
         self._labels: dict[object, int] = {}
-        self._profiles: dict[int, Profile] = {}
+        self._profiles: dict[int, SubtreeProfile] = {}
 
-    def canonical(self, state: State) -> Key:
+    def canonical(self, state: GroundState) -> Key:
         """Return a key that two states of this world share if and only if they are the same bigraph."""
         return self.canonical_of(state.key())
 
@@ -71,21 +71,21 @@ class Labelling:
         """Return the end of the range of label numbers."""
         return len(self._labels) + 3
 
-    def profile(self, code: int) -> Profile:
+    def profile(self, code: int) -> SubtreeProfile:
         """Return the profile of a code."""
         found = self._profiles.get(code)
         if found is None:
             found = self._profiles[code] = self._make_profile(self.world.rows[code])
         return found
 
-    def _make_profile(self, row: Row) -> Profile:
+    def _make_profile(self, row: Row) -> SubtreeProfile:
         label, ports, kids, itself = row
         bare, incidences, inside = self.sort_kids(kids)
         own = [(self.number(("port", place)), link) for place, link in self._edge_ports(label, ports)]
         if itself:
             own.append((self.number("itself"), itself))
         number = self.number((label, self._named(ports), bare))
-        return Profile(number, (*own, *incidences), inside)
+        return SubtreeProfile(number, (*own, *incidences), inside)
 
     def sort_kids(
         self, kids: tuple[int, ...]
@@ -142,12 +142,12 @@ class _Graph:
     def add_region(self, region: int, codes: list[int]) -> None:
         bare, incidences, inside = self.labelling.sort_kids(tuple(codes))
         label = self.labelling.number(("region", region, tuple(sorted(bare))))
-        self._add(Profile(label, incidences, tuple(sorted(inside))), -1)
+        self._add(SubtreeProfile(label, incidences, tuple(sorted(inside))), -1)
 
     def add(self, code: int, parent: int) -> None:
         self._add(self.labelling.profile(code), parent)
 
-    def _add(self, profile: Profile, parent: int) -> None:
+    def _add(self, profile: SubtreeProfile, parent: int) -> None:
         """Add a node and all its descendants with edges."""
         waiting = [(profile, parent, 0)]
         while waiting:

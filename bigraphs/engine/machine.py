@@ -9,19 +9,19 @@ from typing import Final, NamedTuple
 
 from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph
-from bigraphs.canonical import canonical
+from bigraphs.canonical_form import canonical
 from bigraphs.engine.contexts import occurs, without_idle
 from bigraphs.engine.forms import Forms
+from bigraphs.engine.intern_tables import InternTables, has_edges, has_sharing
 from bigraphs.engine.labelling import Labelling
 from bigraphs.engine.occurrences import Spot
 from bigraphs.engine.patterns import check_size, compile_pattern
-from bigraphs.engine.reactions import Reaction
+from bigraphs.engine.reactions import CompiledReaction
 from bigraphs.engine.rule_index import ReactionIndex, RuleIndex, numbers_in
 from bigraphs.engine.search import Matcher
-from bigraphs.engine.search_state import Occurrence
-from bigraphs.engine.state import Key, State, make_state
+from bigraphs.engine.search_state import PatternOccurrence
+from bigraphs.engine.state_arrays import GroundState, Key, make_state
 from bigraphs.engine.state_order import Outlines
-from bigraphs.engine.world import World, has_edges, has_sharing
 from bigraphs.errors import BigraphError
 from bigraphs.system import System
 
@@ -31,15 +31,15 @@ MANY_INSTANTANEOUS: Final = 100
 """The number of reactions after which states are compared: a sequence that revisits a state never ends."""
 
 
-class Step(NamedTuple):
+class RewritingStep(NamedTuple):
     """A possible step: the rule, its occurrence, and the target state.
 
     `reactions` counts the step and the instantaneous reactions after it. If several occurrences have equal results,
     only the first one counts these reactions.
     """
 
-    reaction: Reaction
-    occurrence: Occurrence
+    reaction: CompiledReaction
+    occurrence: PatternOccurrence
     target: Spot
     reactions: int
 
@@ -60,7 +60,7 @@ class Machine:
         sides = [side for rule in rules for side in (rule.redex, rule.reactum)]
         self.system = system
         self.pause = pause
-        self.world = World(
+        self.world = InternTables(
             system.signature,
             initial.outer_names,
             initial.regions,
@@ -71,7 +71,9 @@ class Machine:
         self.labelling = Labelling(self.world)
         self.outlines = Outlines(self.labelling)
         forms = Forms()
-        self.reactions = [Reaction(self.world, rule, number, forms) for number, rule in enumerate(rules)]
+        self.reactions = [
+            CompiledReaction(self.world, rule, number, forms) for number, rule in enumerate(rules)
+        ]
         self.index = ReactionIndex(self.reactions)
         self.classes = self._classes()
         self.instantaneous = any(instant for _, instant in self.classes)
@@ -95,7 +97,7 @@ class Machine:
         """Return the initial state before the instantaneous rules."""
         return Spot(make_state(self.world, self.initial), self.index)
 
-    def holding(self, state: State) -> set[int]:
+    def holding(self, state: GroundState) -> set[int]:
         """Return the numbers of the predicates that hold in a state."""
         possible = numbers_in(self.predicate_index.possible(state))
         return {number for number in possible if occurs(self._predicate(number), state)}
@@ -112,7 +114,7 @@ class Machine:
             self.predicates[number] = Matcher(self.world, compile_pattern(self.world, pattern))
         return self.predicates[number]
 
-    def steps(self, spot: Spot) -> Iterator[Step]:
+    def steps(self, spot: Spot) -> Iterator[RewritingStep]:
         """Yield all possible steps: every occurrence in the highest ordinary priority class that has any."""
         enabled = self.enabled(spot)
         settled: set[Key] = set()
@@ -121,9 +123,9 @@ class Machine:
             target, count = self.settle(result)
             if count and len(enabled) > 1:
                 count = self._counted(result, count, settled)
-            yield Step(reaction, found, target, 1 + count)
+            yield RewritingStep(reaction, found, target, 1 + count)
 
-    def enabled(self, spot: Spot) -> list[tuple[Reaction, Occurrence]]:
+    def enabled(self, spot: Spot) -> list[tuple[CompiledReaction, PatternOccurrence]]:
         """Return every occurrence in the highest ordinary priority class that has any."""
         askable = spot.askable()
         for rules, instant in self.classes:
@@ -175,7 +177,7 @@ class Machine:
             return targets[self.outlines.least([target.state for target in targets])]
         return None
 
-    def results(self, spot: Spot, reaction: Reaction, live: list[Occurrence]) -> list[Spot]:
+    def results(self, spot: Spot, reaction: CompiledReaction, live: list[PatternOccurrence]) -> list[Spot]:
         """Return the result of a rule at each of these occurrences."""
         targets = [spot.after(reaction.apply(spot.state, found)[0]) for found in live]
         for target in targets:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from bigraphs.engine.machine import Step
+from bigraphs.engine.machine import RewritingStep
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.state import State, bits
+from bigraphs.engine.state_arrays import GroundState, bits
 
 
-def identities(spot: Spot, step: Step) -> Iterator[tuple[int, int]]:
+def identities(spot: Spot, step: RewritingStep) -> Iterator[tuple[int, int]]:
     """Yield the number of each surviving node before a step with its number after it.
 
     A node outside the redex survives. A node of the redex survives if it is in the reactum
@@ -21,7 +21,7 @@ def identities(spot: Spot, step: Step) -> Iterator[tuple[int, int]]:
             yield number, after[slot]
 
 
-def _numbers(state: State) -> dict[int, int]:
+def _numbers(state: GroundState) -> dict[int, int]:
     """Return the number of each slot in the bigraph of a state: named nodes first, by name."""
     names = state.world.name_of
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from bigraphs.engine.contexts import Surroundings
-from bigraphs.engine.draft import Draft
-from bigraphs.engine.reactions import Reaction
+from bigraphs.engine.contexts import PlaceContexts
+from bigraphs.engine.mutable_state import MutableState
+from bigraphs.engine.reactions import CompiledReaction
 from bigraphs.engine.rule_index import ReactionIndex, numbers_in
-from bigraphs.engine.search_state import Occurrence
-from bigraphs.engine.state import State
+from bigraphs.engine.search_state import PatternOccurrence
+from bigraphs.engine.state_arrays import GroundState
 
 
 class Spot:
@@ -49,21 +49,21 @@ class Spot:
         "state",
     )
 
-    def __init__(self, state: State, index: ReactionIndex) -> None:
+    def __init__(self, state: GroundState, index: ReactionIndex) -> None:
         self.state = state
         self.known = self._known_before = 0
-        self.found: dict[int, list[Occurrence]] = {}
-        self._before: dict[int, list[Occurrence]] = {}
-        self._from: tuple[Spot, Draft] | None = None
+        self.found: dict[int, list[PatternOccurrence]] = {}
+        self._before: dict[int, list[PatternOccurrence]] = {}
+        self._from: tuple[Spot, MutableState] | None = None
         self.having = 0
         self._index = index
         self.lacking: list[int] | None = None
         self._possible = -1
         self._changed = self._emptied = self._linked = 0
-        self._around: Surroundings | None = None
+        self._around: PlaceContexts | None = None
         self.lost = 0
 
-    def after(self, draft: Draft) -> Spot:
+    def after(self, draft: MutableState) -> Spot:
         """Return the spot that a rewrite of this one leads to."""
         spot = Spot(draft.finish(), self._index)
         spot._from = self, draft
@@ -120,14 +120,14 @@ class Spot:
             self.known |= self._index.all & ~self._possible
         return self._possible & (~self.known | self.having)
 
-    def enabled(self, rules: int) -> Iterator[tuple[Reaction, list[Occurrence]]]:
+    def enabled(self, rules: int) -> Iterator[tuple[CompiledReaction, list[PatternOccurrence]]]:
         """Yield the rules in a mask that can act, in order, each with its live occurrences."""
         for number in numbers_in(rules & self.askable()):
             reaction = self._index.reactions[number]
             if live := self.live(reaction):
                 yield reaction, live
 
-    def occurrences(self, reaction: Reaction) -> list[Occurrence]:
+    def occurrences(self, reaction: CompiledReaction) -> list[PatternOccurrence]:
         """Return every occurrence of a rule, one representative of each set of symmetric ones."""
         number = reaction.number
         if not self.known >> number & 1:
@@ -139,11 +139,11 @@ class Spot:
                 self.having |= 1 << number
         return self.found.get(number, [])
 
-    def _fresh(self, reaction: Reaction) -> list[Occurrence]:
+    def _fresh(self, reaction: CompiledReaction) -> list[PatternOccurrence]:
         found = reaction.matcher.find(self.state)
         return reaction.representatives.choose(found) if found else found
 
-    def _carried(self, reaction: Reaction) -> list[Occurrence]:
+    def _carried(self, reaction: CompiledReaction) -> list[PatternOccurrence]:
         if reaction.matcher.unplanned():
             return self._fresh(reaction)
         touched = self._touched(reaction)
@@ -151,17 +151,19 @@ class Spot:
         found = [each for each in self._before.get(reaction.number, ()) if not each.mask & touched]
         return found + reaction.representatives.choose(fresh) if fresh else found
 
-    def live(self, reaction: Reaction) -> list[Occurrence]:
+    def live(self, reaction: CompiledReaction) -> list[PatternOccurrence]:
         """Return the occurrences in active places whose conditions hold."""
         found = self.occurrences(reaction)
         if reaction.wide and found:
-            around = self._around = self._around or Surroundings(self.state, passive=self.state.world.passive)
+            around = self._around = self._around or PlaceContexts(
+                self.state, passive=self.state.world.passive
+            )
             found = [each for each in found if around.admits(reaction.pattern, each)]
         for condition in reaction.conditions:
             found = [each for each in found if condition.holds(self.state, each)]
         return found
 
-    def _touched(self, reaction: Reaction) -> int:
+    def _touched(self, reaction: CompiledReaction) -> int:
         if self.state.world.sharing:
             return self._changed | self._emptied | self._linked
         exact = 0

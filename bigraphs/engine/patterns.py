@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from bigraphs.bigraph import Bigraph, children
-from bigraphs.engine.world import World
+from bigraphs.engine.intern_tables import InternTables
 from bigraphs.errors import BigraphError
 
 MOST_NODES: Final = 150
@@ -15,7 +15,7 @@ MOST_NODES: Final = 150
 
 
 @dataclass(frozen=True, slots=True)
-class Pattern:
+class CompiledPattern:
     """A pattern over one world; nodes and links are numbered as in its bigraph, edges after names.
 
     Attributes:
@@ -58,7 +58,7 @@ class Pattern:
         """Return the links that are edges."""
         return range(self.names, len(self.on))
 
-    def form(self, world: World) -> Hashable:
+    def form(self, world: InternTables) -> Hashable:
         """Return the part that determines the search plan: all but the particular controls and names of the nodes."""
         ordered = tuple([world.ordered[control] for control in self.controls])
         named = tuple([label >= 0 for label in self.labels])
@@ -85,7 +85,7 @@ class Pattern:
         return found
 
 
-def compile_pattern(world: World, bigraph: Bigraph) -> Pattern:
+def compile_pattern(world: InternTables, bigraph: Bigraph) -> CompiledPattern:
     """Return the compiled pattern; raises BigraphError if it is too large."""
     check_size(bigraph)
     number: dict[int | str, int] = {name: link for link, name in enumerate(bigraph.outer_names)}
@@ -100,7 +100,7 @@ def compile_pattern(world: World, bigraph: Bigraph) -> Pattern:
     for node, links in enumerate(ports):
         for link in set(links):
             on[link].append(node)
-    return Pattern(
+    return CompiledPattern(
         tuple(world.control_of[label] for label in labels),
         tuple(
             label if node.name is not None else -1 for label, node in zip(labels, bigraph.nodes, strict=True)
@@ -167,4 +167,4 @@ def check_solid(redex: Bigraph, what: str) -> None:
         )
 
 
-__all__ = ["Pattern", "check_size", "check_solid", "compile_pattern"]
+__all__ = ["CompiledPattern", "check_size", "check_solid", "compile_pattern"]

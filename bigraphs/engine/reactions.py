@@ -10,15 +10,15 @@ from typing import TypeAlias
 
 from bigraphs.engine.automorphisms import Representatives
 from bigraphs.engine.contexts import ConditionCheck
-from bigraphs.engine.draft import Draft
 from bigraphs.engine.forms import Forms
-from bigraphs.engine.patterns import Pattern, check_size, check_solid, compile_pattern
+from bigraphs.engine.intern_tables import InternTables, has_edges
+from bigraphs.engine.multiple_parents import region_places, site_contents
+from bigraphs.engine.mutable_state import MutableState
+from bigraphs.engine.patterns import CompiledPattern, check_size, check_solid, compile_pattern
 from bigraphs.engine.search import Matcher
-from bigraphs.engine.search_state import Occurrence
-from bigraphs.engine.sharing import region_places, site_contents
-from bigraphs.engine.state import State, bits
+from bigraphs.engine.search_state import PatternOccurrence
+from bigraphs.engine.state_arrays import GroundState, bits
 from bigraphs.engine.tracking import top_down, traced, track, track_edges
-from bigraphs.engine.world import World, has_edges
 from bigraphs.errors import BigraphError
 from bigraphs.system import Rule
 
@@ -49,7 +49,7 @@ class SiteChange:
     stays: bool
 
 
-class Reaction:
+class CompiledReaction:
     """A rule of one world: its matcher and its changes, both compiled on first use.
 
     Attributes:
@@ -60,7 +60,7 @@ class Reaction:
         closed: Whether the redex has edges.
     """
 
-    def __init__(self, world: World, rule: Rule, number: int, forms: Forms | None = None) -> None:
+    def __init__(self, world: InternTables, rule: Rule, number: int, forms: Forms | None = None) -> None:
         self.world, self.number, self.label = world, number, rule.label
         self._given, self._forms = rule, forms or Forms()
         check_solid(rule.redex, f"the redex of rule '{rule.label}'")
@@ -80,7 +80,7 @@ class Reaction:
         return self._forms.tidy(self._given)
 
     @cached_property
-    def pattern(self) -> Pattern:
+    def pattern(self) -> CompiledPattern:
         """The redex, compiled."""
         return compile_pattern(self.world, self.rule.redex)
 
@@ -187,12 +187,12 @@ class Reaction:
             uses.remove(use)
         return SiteChange(site, (*staying, *uses), bool(staying))
 
-    def apply(self, state: State, occurrence: Occurrence) -> tuple[Draft, dict[int, int]]:
+    def apply(self, state: GroundState, occurrence: PatternOccurrence) -> tuple[MutableState, dict[int, int]]:
         """Return the state after the rule acts at an occurrence, and the slots of the reactum's nodes in it."""
         nodes = occurrence.nodes
         regions = self._region_places(state, occurrence) if self.placed else []
         contents = self._contents(state, occurrence) if self.sites else []
-        draft = Draft(state)
+        draft = MutableState(state)
         slots = {number: nodes[old] for number, old in enumerate(self.tracked) if old >= 0}
         for change in self.created:
             slots[change.node] = draft.new_slot(change.label)
@@ -216,7 +216,7 @@ class Reaction:
             draft.remove(nodes[old])
         return draft, slots
 
-    def _name(self, draft: Draft, state: State, slots: dict[int, int]) -> None:
+    def _name(self, draft: MutableState, state: GroundState, slots: dict[int, int]) -> None:
         """Name the nodes of the reactum; a node that an anonymous redex node matched loses its name."""
         for number, label in enumerate(self.labels):
             name = self.world.name_of[label]
@@ -226,7 +226,7 @@ class Reaction:
             if draft.state.labels[slots[number]] != label:
                 draft.relabel(slots[number], label)
 
-    def _region_places(self, state: State, occurrence: Occurrence) -> list[list[int]]:
+    def _region_places(self, state: GroundState, occurrence: PatternOccurrence) -> list[list[int]]:
         if self.world.sharing:
             return region_places(self.pattern, state, occurrence.nodes, occurrence.mask)
         found: list[list[int]] = [[] for _ in range(self.pattern.regions)]
@@ -235,13 +235,13 @@ class Reaction:
                 found[region] = [state.parents[occurrence.nodes[node]][0]]
         return found
 
-    def _contents(self, state: State, occurrence: Occurrence) -> list[int]:
+    def _contents(self, state: GroundState, occurrence: PatternOccurrence) -> list[int]:
         """Return the mask of the content of each site."""
         if self.world.sharing:
             return site_contents(self.pattern, state, occurrence.nodes, occurrence.mask)
         return [state.kids[occurrence.nodes[home]] & ~occurrence.mask for (home,) in self.pattern.sites]
 
-    def _relink(self, draft: Draft, occurrence: Occurrence, slots: dict[int, int]) -> None:
+    def _relink(self, draft: MutableState, occurrence: PatternOccurrence, slots: dict[int, int]) -> None:
         names = self.pattern.names
         edges = [occurrence.links[names + edge] if edge >= 0 else draft.new_edge() for edge in self.edges]
         for change in (*self.created, *self.kept):
@@ -253,7 +253,12 @@ class Reaction:
                 draft.relink(slots[change.node], tuple(links) if ordered else tuple(sorted(links)))
 
     def _change_contents(
-        self, draft: Draft, state: State, occurrence: Occurrence, contents: list[int], places: _Places
+        self,
+        draft: MutableState,
+        state: GroundState,
+        occurrence: PatternOccurrence,
+        contents: list[int],
+        places: _Places,
     ) -> None:
         """Move, copy and drop the content of the sites."""
         changes = {change.site: change for change in self.sites}
@@ -279,7 +284,7 @@ class Reaction:
                 draft.move(slot, tuple(sorted(around)))
 
     def _copy(
-        self, draft: Draft, slot: int, uses: list[tuple[int, ...]], places: _Places, *, shared: bool
+        self, draft: MutableState, slot: int, uses: list[tuple[int, ...]], places: _Places, *, shared: bool
     ) -> None:
         if uses and shared:
             raise BigraphError("copy", f"rule '{self.rule.label}' would copy a node that other places share")

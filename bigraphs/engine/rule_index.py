@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
-from bigraphs.engine.reactions import Reaction
-from bigraphs.engine.state import State, bits
+from bigraphs.engine.reactions import CompiledReaction
+from bigraphs.engine.state_arrays import GroundState, bits
 
 _GROUP: Final = 16
 
@@ -33,7 +33,7 @@ class RuleIndex:
         self._groups = [ordered[start : start + _GROUP] for start in range(0, len(ordered), _GROUP)]
         self._group_of = {control: place // _GROUP for place, (control, _) in enumerate(ordered)}
 
-    def possible(self, state: State) -> int:
+    def possible(self, state: GroundState) -> int:
         """Return the patterns for which a state has enough nodes of every control."""
         return self.spared(self.lacking(state))
 
@@ -44,11 +44,11 @@ class RuleIndex:
             found |= excluded
         return self.all & ~found
 
-    def lacking(self, state: State) -> list[int]:
+    def lacking(self, state: GroundState) -> list[int]:
         """Return for each group of controls the patterns that need more nodes of one of them than the state has."""
         return [_lacking(group, state) for group in self._groups]
 
-    def lacking_after(self, before: Sequence[int], state: State, controls: Iterable[int]) -> list[int]:
+    def lacking_after(self, before: Sequence[int], state: GroundState, controls: Iterable[int]) -> list[int]:
         """Return the same after a step that changed the node counts of these controls."""
         found = list(before)
         for group in {self._group_of.get(control, -1) for control in controls} - {-1}:
@@ -56,7 +56,7 @@ class RuleIndex:
         return found
 
 
-def _lacking(group: Sequence[tuple[int, list[int]]], state: State) -> int:
+def _lacking(group: Sequence[tuple[int, list[int]]], state: GroundState) -> int:
     nodes, found = state.by_control, 0
     for control, few in group:
         there = nodes[control].bit_count()
@@ -68,14 +68,16 @@ def _lacking(group: Sequence[tuple[int, list[int]]], state: State) -> int:
 class ReactionIndex(RuleIndex):
     """The reactions of a system, by the changes that may create or destroy an occurrence of each."""
 
-    def __init__(self, reactions: Sequence[Reaction]) -> None:
+    def __init__(self, reactions: Sequence[CompiledReaction]) -> None:
         super().__init__([reaction.controls for reaction in reactions])
         self.reactions = tuple(reactions)
         self._holding = _by_control((reaction.number, reaction.controls) for reaction in reactions)
         self._exact = _by_control((reaction.number, reaction.exact) for reaction in reactions)
         self._closed = sum(1 << reaction.number for reaction in reactions if reaction.closed)
 
-    def concerned(self, before: State, after: State, changed: int, emptied: int, linked: int) -> int:
+    def concerned(
+        self, before: GroundState, after: GroundState, changed: int, emptied: int, linked: int
+    ) -> int:
         """Return the reactions whose occurrences may change when these slots are touched (see `Spot`)."""
         holding = self._holding
         if after.world.sharing:
@@ -95,7 +97,7 @@ def _by_control(mentions: Iterable[tuple[int, Iterable[int]]]) -> dict[int, int]
     return found
 
 
-def _controls(before: State, after: State, slots: int) -> set[int]:
+def _controls(before: GroundState, after: GroundState, slots: int) -> set[int]:
     """Return the controls of the nodes in these slots, before and after."""
     labels = {
         each.labels[slot] for slot in bits(slots) for each in (before, after) if slot < len(each.labels)

@@ -13,11 +13,11 @@ from __future__ import annotations
 from typing import Final
 
 from bigraphs.engine.bindings import binding
-from bigraphs.engine.patterns import Pattern
-from bigraphs.engine.search_state import OFTEN, Occurrence, Placing, Run, Step
-from bigraphs.engine.sharing import shared_places_fit
-from bigraphs.engine.state import State, bits
-from bigraphs.engine.world import World
+from bigraphs.engine.intern_tables import InternTables
+from bigraphs.engine.multiple_parents import shared_places_fit
+from bigraphs.engine.patterns import CompiledPattern
+from bigraphs.engine.search_state import OFTEN, PatternOccurrence, PatternSearch, Placing, Step
+from bigraphs.engine.state_arrays import GroundState, bits
 
 _SELDOM: Final = 8
 """Up to this number of searches, a pattern is searched everywhere instead of only at touched nodes."""
@@ -36,7 +36,7 @@ class _Plans:
 class Matcher:
     """Finds a pattern in the states of one world."""
 
-    def __init__(self, world: World, pattern: Pattern) -> None:
+    def __init__(self, world: InternTables, pattern: CompiledPattern) -> None:
         self.world = world
         self.pattern = pattern
         self.wide = pattern.wide()
@@ -53,12 +53,12 @@ class Matcher:
         """Return whether searches were so rare that a full search costs less than a plan for each start node."""
         return self._plans.searches < _SELDOM
 
-    def find(self, state: State, allowed: int = -1, *, once: bool = False) -> list[Occurrence]:
+    def find(self, state: GroundState, allowed: int = -1, *, once: bool = False) -> list[PatternOccurrence]:
         """Return every occurrence within the allowed slots; with `once` at most one."""
         self._plans.searches += 1
-        pattern, run = self.pattern, Run(state, self.pattern, allowed, once=once)
+        pattern, run = self.pattern, PatternSearch(state, self.pattern, allowed, once=once)
         if not pattern.size:
-            return [Occurrence((), tuple(run.links), 0)]
+            return [PatternOccurrence((), tuple(run.links), 0)]
         counts = [state.by_control[control].bit_count() for control in pattern.controls]
         first = counts.index(min(counts))
         candidates = state.by_control[pattern.controls[first]] & allowed
@@ -67,9 +67,9 @@ class Matcher:
             any(plan(run, 0, slot) for slot in bits(candidates))
         return run.found
 
-    def find_at(self, state: State, touched: int) -> list[Occurrence]:
+    def find_at(self, state: GroundState, touched: int) -> list[PatternOccurrence]:
         """Return every occurrence with a touched node."""
-        run = Run(state, self.pattern, -1, once=False)
+        run = PatternSearch(state, self.pattern, -1, once=False)
         controls = self.pattern.controls
         for slot in bits(touched & ~state.free):
             control = self.world.control_of[state.labels[slot]]
@@ -80,7 +80,7 @@ class Matcher:
         return run.found
 
 
-def _plan(world: World, pattern: Pattern, first: int) -> Placing:
+def _plan(world: InternTables, pattern: CompiledPattern, first: int) -> Placing:
     """Return the plan that places the whole pattern from a start node on."""
     order = _order(pattern, first)
     step = _end(world, pattern)
@@ -91,7 +91,7 @@ def _plan(world: World, pattern: Pattern, first: int) -> Placing:
     return _placing(world, pattern, first, step)
 
 
-def _order(pattern: Pattern, first: int) -> list[int]:
+def _order(pattern: CompiledPattern, first: int) -> list[int]:
     """Return the nodes in an order in which each is as close as possible to the previous ones."""
     order, left = [first], set(range(pattern.size)) - {first}
     near = dict.fromkeys(left, 0)
@@ -103,7 +103,7 @@ def _order(pattern: Pattern, first: int) -> list[int]:
     return order
 
 
-def _nearness(pattern: Pattern, node: int, placed: int) -> int:
+def _nearness(pattern: CompiledPattern, node: int, placed: int) -> int:
     """Return how much a placed node constrains another one, as bits; the strongest constraint is the highest bit."""
     return (
         8 * (placed in pattern.kids[node])
@@ -113,7 +113,7 @@ def _nearness(pattern: Pattern, node: int, placed: int) -> int:
     )
 
 
-def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing) -> Step:
+def _choice(pattern: CompiledPattern, node: int, bound: frozenset[int], placing: Placing) -> Step:
     """Return the step that tries every slot for a node that the placed nodes permit."""
     above = tuple(parent for parent in pattern.parents[node] if parent in bound)
     below = tuple(kid for kid in pattern.kids[node] if kid in bound)
@@ -125,7 +125,7 @@ def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing
     between = [twin for twin in group if node < twin < min(after, default=pattern.size)]
     reserve = len(between)  # slots to leave for the twins that come between
 
-    def step(run: Run, used: int) -> bool:
+    def step(run: PatternSearch, used: int) -> bool:
         run.steps += 1
         if run.steps & OFTEN == 0:
             run.state.world.pause()
@@ -155,7 +155,7 @@ def _choice(pattern: Pattern, node: int, bound: frozenset[int], placing: Placing
     return step
 
 
-def _beside(pattern: Pattern, node: int, other: int) -> bool:
+def _beside(pattern: CompiledPattern, node: int, other: int) -> bool:
     """Return whether two nodes are in one region only, and in the same one, so that their places are equal."""
     alone = not pattern.parents[node] and not pattern.parents[other]
     return alone and len(pattern.homes[node]) == 1 and pattern.homes[node] == pattern.homes[other]
@@ -169,7 +169,7 @@ def _mask(places: tuple[int, ...]) -> int:
     return found
 
 
-def _placing(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
+def _placing(world: InternTables, pattern: CompiledPattern, node: int, then: Step) -> Placing:
     """Return the step that checks a slot for a node, binds its links, and continues."""
     inside, sited = len(pattern.kids[node]), pattern.sited[node]
     above, rooted = len(pattern.parents[node]), bool(pattern.homes[node])
@@ -177,7 +177,7 @@ def _placing(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
     named = pattern.labels[node] >= 0
     bind = binding(world, pattern, node, then)
 
-    def place(run: Run, used: int, slot: int) -> bool:
+    def place(run: PatternSearch, used: int, slot: int) -> bool:
         state = run.state
         there = state.kids[slot].bit_count()
         if there < inside or (there > inside and not sited):
@@ -196,14 +196,14 @@ def _placing(world: World, pattern: Pattern, node: int, then: Step) -> Placing:
     return place
 
 
-def _end(world: World, pattern: Pattern) -> Step:
+def _end(world: InternTables, pattern: CompiledPattern) -> Step:
     """Return the last step: it checks conditions on whole occurrences, and stores them."""
     roots = pattern.roots
     closed = [(link, pattern.on[link]) for link in pattern.closed if pattern.on[link]]
     above = [len(pattern.parents[node]) for node in range(pattern.size)]
     sharing = world.sharing
 
-    def end(run: Run, used: int) -> bool:
+    def end(run: PatternSearch, used: int) -> bool:
         state, nodes, links = run.state, run.nodes, run.links
         for node in roots:
             if (_mask(state.parents[nodes[node]]) & used).bit_count() != above[node]:
@@ -216,7 +216,7 @@ def _end(world: World, pattern: Pattern) -> Step:
                 return False
         if sharing and not shared_places_fit(pattern, state, nodes, used):
             return False
-        run.found.append(Occurrence(tuple(nodes), tuple(links), used))
+        run.found.append(PatternOccurrence(tuple(nodes), tuple(links), used))
         return run.once
 
     return end

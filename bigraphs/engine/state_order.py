@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TypeAlias
 
 from bigraphs.engine.decoding import history_free
+from bigraphs.engine.intern_tables import REFERENCE
 from bigraphs.engine.labelling import Labelling
-from bigraphs.engine.state import State, bits
-from bigraphs.engine.world import REFERENCE
+from bigraphs.engine.state_arrays import GroundState, bits
 
 Outline: TypeAlias = list[list[bytes]]
 
@@ -20,7 +20,7 @@ class Outlines:
         self.world = labelling.world
         self._digests: dict[int, bytes] = {}
 
-    def least(self, states: list[State]) -> int:
+    def least(self, states: list[GroundState]) -> int:
         """Return the position of the least state, in an order that isomorphic states share.
 
         Usually the outlines decide. Otherwise the states with the least outline are often isomorphic, and any of them
@@ -38,7 +38,7 @@ class Outlines:
             return tied[0]
         return min(sorted(distinct.values()), key=lambda number: history_free(states[number]))
 
-    def outline(self, state: State) -> Outline:
+    def outline(self, state: GroundState) -> Outline:
         """Return the sorted digests of the subtrees in each region."""
         regions = range(self.world.regions)
         return [

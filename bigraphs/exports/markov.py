@@ -34,7 +34,7 @@ KINDS = {
 }
 
 
-class Move(NamedTuple):
+class MatrixEntry(NamedTuple):
     """One entry of the matrix; `choice` counts from 0 in each state, `action` may be empty."""
 
     source: int
@@ -51,7 +51,7 @@ class Markov:
 
     kind: MarkovKind
     states: int
-    moves: tuple[Move, ...]
+    moves: tuple[MatrixEntry, ...]
     labels: tuple[tuple[str, tuple[int, ...]], ...]
     rewards: tuple[tuple[int, float], ...]
 
@@ -65,7 +65,7 @@ def to_markov(system: TransitionSystem) -> Markov:
     """Return the Markov model of a transition system."""
     moves = tuple(_moves(system))
     stuck = _stuck(system)
-    loops = tuple(Move(state, 0, state, 1.0, "", 0.0) for state in stuck)
+    loops = tuple(MatrixEntry(state, 0, state, 1.0, "", 0.0) for state in stuck)
     return Markov(
         KINDS[system.kind],
         len(system),
@@ -79,16 +79,18 @@ def _stuck(system: TransitionSystem) -> list[int]:
     return [state for state in range(len(system)) if not system.leaving(state)]
 
 
-def _moves(system: TransitionSystem) -> Iterator[Move]:
+def _moves(system: TransitionSystem) -> Iterator[MatrixEntry]:
     rewards = {action.name: float(action.reward) for action in system.system.actions}
     for source, group in groupby(system.transitions(), key=lambda each: each.source):
         outgoing = list(group)
         for choice, each in zip(choices_of(system.kind, outgoing), outgoing, strict=True):
             if system.kind is SystemKind.BRS:
-                yield Move(source, choice, each.target, 1.0, label_name("_".join(each.rules)), 0.0)
+                yield MatrixEntry(source, choice, each.target, 1.0, label_name("_".join(each.rules)), 0.0)
                 continue
             action = each.action or ""
-            yield Move(source, choice, each.target, each.weight, label_name(action), rewards.get(action, 0.0))
+            yield MatrixEntry(
+                source, choice, each.target, each.weight, label_name(action), rewards.get(action, 0.0)
+            )
 
 
 def choices_of(kind: SystemKind, outgoing: Sequence[Transition]) -> list[int]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from bigraphs.exports.markov import Markov, MarkovKind, Move, number, to_markov
+from bigraphs.exports.markov import Markov, MarkovKind, MatrixEntry, number, to_markov
 from bigraphs.transitions import TransitionSystem
 
 
@@ -39,7 +39,7 @@ def _transitions(model: Markov) -> Iterator[str]:
         yield f"{_row(model, move)} {move.target} {number(move.weight)}{action}"
 
 
-def _row(model: Markov, move: Move) -> str:
+def _row(model: Markov, move: MatrixEntry) -> str:
     return f"{move.source} {move.choice}" if model.kind is MarkovKind.MDP else str(move.source)
 
 

@@ -9,7 +9,6 @@ from .big.printer import format_expression as format_expression
 from .big.printer import format_model as format_model
 from .big.systems import read_system as read_system
 from .big.writer import write_system as write_system
-from .files import load_system as load_system
 from .paper import NodeTerm as NodeTerm
 from .paper import RegionTerm as RegionTerm
 from .paper import RuleTerm as RuleTerm
@@ -23,3 +22,4 @@ from .paper_bigraphs import read_bigraph as read_bigraph
 from .paper_bigraphs import read_rule as read_rule
 from .paper_bigraphs import write_bigraph as write_bigraph
 from .paper_bigraphs import write_rule as write_rule
+from .system_files import load_system as load_system

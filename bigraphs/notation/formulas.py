@@ -14,7 +14,7 @@ from lark.tree import Meta
 from lark.visitors import Transformer_NonRecursive
 
 from bigraphs.errors import NotationError
-from bigraphs.notation.reading import read
+from bigraphs.notation.bounded_parsing import read
 
 MOST_WORDS: Final = 200
 """The largest number of words and signs in a formula."""
@@ -89,7 +89,7 @@ _WORDS: Final = {
 
 
 @dataclass(frozen=True, slots=True)
-class Word:
+class FormulaWord:
     """A word or sign of a formula, with its offset in the text."""
 
     text: str
@@ -106,7 +106,7 @@ class Term:
     """A formula as written: `kind` is its rule of the grammar; `start` and `end` are its offsets in the text."""
 
     kind: str
-    parts: "tuple[Term | Word, ...]"
+    parts: "tuple[Term | FormulaWord, ...]"
     start: int
     end: int
 
@@ -130,6 +130,7 @@ class _Build(Transformer_NonRecursive[Token, Term]):
 
     def __default__(self, data: str, children: list[Term | Token], meta: Meta) -> Term:
         parts = (
-            Word(str(each), each.start_pos or 0) if isinstance(each, Token) else each for each in children
+            FormulaWord(str(each), each.start_pos or 0) if isinstance(each, Token) else each
+            for each in children
         )
         return Term(str(data), tuple(parts), meta.start_pos, meta.end_pos)

@@ -46,7 +46,7 @@ class Token(str):
         return Span(self.start, self.start + len(self))
 
 
-class Unread(Exception):
+class ParsingStopped(Exception):
     """Ends the parsing of a text at its first syntax error."""
 
 
@@ -73,7 +73,7 @@ class Tables:
         self._tried: dict[tuple[int, str], list[tuple[str, int, Any]]] = {}
 
     def next_token(self, text: str, place: int, lexer: int) -> tuple[str, int, int]:
-        """Return the next terminal with its start and end; raises Unread if none fits."""
+        """Return the next terminal with its start and end; raises ParsingStopped if none fits."""
         while place < len(text):
             name, end = self._scan(text, place, lexer)
             if name not in self.ignored:
@@ -94,7 +94,7 @@ class Tables:
                 end = found.end()
                 words = self.lexers[lexer][1].get(name)
                 return (words.get(text[place:end], name) if words else name), end
-        raise Unread
+        raise ParsingStopped
 
     def _candidates(self, lexer: int, first: str) -> list[tuple[str, int, Any]]:
         """Return the terminals that may begin with a character: literals with their lengths, and patterns."""
@@ -110,7 +110,7 @@ class Tables:
         return found
 
     def read(self, text: str, start: str, builder: object) -> Any:
-        """Return the builder's value of a text; raises Unread at the first syntax error."""
+        """Return the builder's value of a text; raises ParsingStopped at the first syntax error."""
         first, last = self.starts[start]
         path, values, spans = [first], list[Any](), list[Span | None]()
         place, name = 0, ""
@@ -121,13 +121,13 @@ class Tables:
                 if name == END and path[-1] == last:
                     return values[-1]
             if action is None:
-                raise Unread
+                raise ParsingStopped
             token = Token(text[begin:place])
             token.start = begin
             path.append(action)
             values.append(token)
             spans.append(Span(begin, place))
-        raise Unread
+        raise ParsingStopped
 
     def _reduce(
         self,

@@ -16,7 +16,7 @@ from typing import Any, Final, TypeAlias
 from lark import Lark, Token, Transformer, v_args
 
 from bigraphs.errors import BigraphError, NotationError
-from bigraphs.notation.reading import read
+from bigraphs.notation.bounded_parsing import read
 
 GRAMMAR: Final = r"""
 rule: regions "->" regions

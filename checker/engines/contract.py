@@ -10,7 +10,7 @@ from random import Random
 from typing import TYPE_CHECKING, Protocol
 
 from checker.engines.edges import Edges
-from checker.engines.estimate import Estimate
+from checker.engines.estimate import SizeEstimate
 from checker.limits import Bound, Limits
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration
@@ -85,7 +85,7 @@ class Progress:
     depth: int
     frontier: int
     rate: float
-    estimate: Estimate | None = None
+    estimate: SizeEstimate | None = None
     compiling: int = 0
 
     @property

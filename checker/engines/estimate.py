@@ -19,19 +19,19 @@ MOST = 20
 """The largest useful ratio of the upper bound to the configurations found."""
 
 
-class Estimate(NamedTuple):
+class SizeEstimate(NamedTuple):
     """A range for the total number of configurations, if layers keep falling."""
 
     least: int
     most: int
 
 
-def estimate(layers: Sequence[int]) -> Estimate | None:
+def estimate(layers: Sequence[int]) -> SizeEstimate | None:
     """Return the estimated total, given the sizes of all complete layers; None while they grow.
 
     >>> estimate([1, 4, 16, 64])
     >>> estimate([1, 4, 16, 20, 15, 9, 4])
-    Estimate(least=69, most=81)
+    SizeEstimate(least=69, most=81)
     """
     blocks = _blocks(layers)
     recent = blocks[-FALLS - 1 :]
@@ -41,7 +41,7 @@ def estimate(layers: Sequence[int]) -> Estimate | None:
     met, last = sum(layers), blocks[-1]
     slowest = max(after / before for before, after in pairwise(recent))
     most = met + max(last * slowest / (1 - slowest), _rise_up_to(last, blocks))
-    return Estimate(met, int(most)) if most <= MOST * met else None
+    return SizeEstimate(met, int(most)) if most <= MOST * met else None
 
 
 def _blocks(layers: Sequence[int]) -> list[int]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from checker.engines.contract import Exploration, Inspect, Options, Progress, sample
 from checker.engines.edges import Edges
 from checker.engines.estimate import estimate
-from checker.limits import Bound, BoundMet, Part, Stop, bounded, is_full, look
+from checker.limits import Bound, BoundMet, CheckPart, Stop, bounded, is_full, look
 from checker.reduction.cycle_proviso import Paths
 from semantics.state.configuration import Configuration, Transition
 from semantics.successors import Expansion, expand
@@ -35,7 +35,7 @@ def explore_one_by_one(initial: Configuration, inspect: tuple[Inspect, ...], opt
                 look()
                 options.reduce.hold(found.configurations[number])
     except BoundMet as met:
-        explorer.bound(met.bound.met_in(Part.LOOKING))
+        explorer.bound(met.bound.met_in(CheckPart.LOOKING))
     return found
 
 

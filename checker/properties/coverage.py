@@ -32,7 +32,7 @@ from semantics.state.configuration import Configuration
 
 
 @dataclass(frozen=True, slots=True)
-class Tally:
+class CoverageCount:
     """The number of reached items, and of all items."""
 
     reached: int
@@ -70,10 +70,10 @@ class Coverage:
     """
 
     complete: bool
-    statements: Tally
-    branches: Tally
-    rules: Tally
-    clauses: Tally
+    statements: CoverageCount
+    branches: CoverageCount
+    rules: CoverageCount
+    clauses: CoverageCount
     lines: tuple[int, ...]
     unreached: tuple[int, ...]
     gaps: tuple[Gap, ...]
@@ -92,17 +92,17 @@ def coverage(initial: Configuration, visited: Visited, *, complete: bool) -> Cov
     gaps = {*found.gaps(starts), *found.idle(), *missing}
     return Coverage(
         complete,
-        Tally(len(found.written & found.numbers), len(found.written)),
-        Tally(len(found.taken), len(found.branches)),
-        Tally(len(found.rules & found.used), len(found.rules)),
-        Tally(sum(happened), len(happened)),
+        CoverageCount(len(found.written & found.numbers), len(found.written)),
+        CoverageCount(len(found.taken), len(found.branches)),
+        CoverageCount(len(found.rules & found.used), len(found.rules)),
+        CoverageCount(sum(happened), len(happened)),
         tuple(sorted(met - {0})),
         tuple(sorted({line for line, _ in lines} - met - {0})),
         tuple(sorted(gaps, key=lambda gap: (gap.line, gap.sort, gap.message))),
     )
 
 
-def reached(initial: Configuration, visited: Visited) -> "Reached":
+def reached(initial: Configuration, visited: Visited) -> "ProgramCoverage":
     """Return the reached parts of the program, from the agents' positions and their executed statements."""
     setting = initial.setting
     computed = {passage for moment in visited.moments for passage in passages(setting, moment)}
@@ -111,7 +111,7 @@ def reached(initial: Configuration, visited: Visited) -> "Reached":
     stepped = {number for number, branch in passed if branch == STEPPED}
     numbers, first = _with_loops(setting.program, stood | stepped), setting.program.copies
     taken = frozenset((first.get(number, number), rank) for number, rank in passed if rank != STEPPED)
-    return Reached(setting.program, frozenset(first.get(number, number) for number in numbers), taken)
+    return ProgramCoverage(setting.program, frozenset(first.get(number, number) for number in numbers), taken)
 
 
 def _with_loops(program: Program, reached: Set[int]) -> frozenset[int]:
@@ -143,7 +143,7 @@ def _inside(program: Program, block: Block) -> Iterator[int]:
         waiting += [each for branch in branches(statement) for each in branch]
 
 
-class Reached:
+class ProgramCoverage:
     """A program with its reached statements and taken branches; the text of a family counts once."""
 
     def __init__(self, program: Program, numbers: frozenset[int], taken: frozenset[Passage]) -> None:

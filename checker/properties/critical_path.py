@@ -7,11 +7,11 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, TypeVar
 
-from checker.engines.timed.first_runs import Run
+from checker.engines.timed.first_runs import TimedRun
 from semantics.state.configuration import Configuration, Label, Transition
-from semantics.timing.actor_clocks import Clock
-from semantics.timing.bounds import Bound, bound_of, going_on, running_in, timed_by
-from semantics.timing.clocks import Situation, TimedStep
+from semantics.timing.actor_clocks import ActorClock
+from semantics.timing.bounds import WrittenBound, bound_of, going_on, running_in, timed_by
+from semantics.timing.clocks import TimedStep, TimedView
 from semantics.timing.dates import clock_text, lapse_text
 from semantics.timing.intervals import Interval
 
@@ -40,7 +40,7 @@ class Leg:
     end: int
     label: Label
     interval: Interval
-    bound: Bound
+    bound: WrittenBound
     tick: int
     going_on: bool = False
 
@@ -78,7 +78,7 @@ def interval_text(interval: Interval, tick: int) -> str:
 def critical_path(
     initial: Configuration,
     done: Sequence[Transition],
-    run: Run,
+    run: TimedRun,
     onward: Sequence[Transition] = (),
     since: int = 0,
 ) -> tuple[Leg, ...]:
@@ -135,7 +135,7 @@ class _Taken:
         since: The steps that may have begun the wait for it, the likeliest first.
     """
 
-    situation: Situation
+    situation: TimedView
     step: TimedStep
     date: int
     since: tuple[int, ...]
@@ -153,7 +153,7 @@ class _Taken:
 
 def _taken(initial: Configuration, done: Sequence[Transition], dates: Sequence[int]) -> Iterator[_Taken]:
     """Yield the steps of a run, each with the possible starts of its wait."""
-    situation = Situation(initial)
+    situation = TimedView(initial)
     running = {each: (BEGINNING,) * count for each, count in running_in(situation).items()}
     in_turn = dict.fromkeys(_in_turn(situation), BEGINNING)
     for number, (transition, date) in enumerate(zip(done, dates, strict=True)):
@@ -162,12 +162,12 @@ def _taken(initial: Configuration, done: Sequence[Transition], dates: Sequence[i
         begins = (running[each][0] for each in clocks)
         turns = [in_turn[each] for each in clocks if each in in_turn]
         yield _Taken(situation, step, date, (*dict.fromkeys([*begins, *turns]),) or (BEGINNING,))
-        after = Situation(transition.target)
+        after = TimedView(transition.target)
         running = going_on(running, situation, step.done, after, number)
         turned = {each: at for each, at in in_turn.items() if each not in step.done}
         in_turn = {each: turned.get(each, number) for each in _in_turn(after)}
         situation = after
 
 
-def _in_turn(situation: Situation) -> set[Clock]:
+def _in_turn(situation: TimedView) -> set[ActorClock]:
     return {clock for step in situation.steps if step.in_turn for clock in step.done}

@@ -9,11 +9,11 @@ from functools import cached_property
 
 from checker.engines.contract import Exploration
 from checker.engines.timed.answers import Times
-from checker.engines.timed.first_runs import Run
+from checker.engines.timed.first_runs import TimedRun
 from checker.limits import BoundMet
 from checker.properties.critical_path import Leg, critical_path
 from checker.properties.longest_paths import NEVER
-from checker.properties.schedule import Milestone, Moments, Schedule, flights_of
+from checker.properties.schedule import EventDates, Milestone, Schedule, flights_of
 from checker.traces import Trace, dated_trace
 from checker.verdicts import Outcome, Verdict, Violation
 from semantics.properties.kinds import PropertyKind
@@ -22,7 +22,7 @@ from semantics.properties.propositions import And, Not, holds
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
 from semantics.timing.actor_clocks import is_restored
-from semantics.timing.clocks import Situation
+from semantics.timing.clocks import TimedView
 from semantics.timing.dates import clock_text, lapse_text
 from semantics.timing.timing import Timing
 
@@ -119,7 +119,7 @@ class Deadlines:
         remarks = (f"vacuous: never true: {asked.formula}",) if vacuous else ()
         return Verdict(asked, self.outcome, examined=examined, note=note, remarks=remarks)
 
-    def _late(self, asked: Property, run: Run, *, ever: bool) -> Violation:
+    def _late(self, asked: Property, run: TimedRun, *, ever: bool) -> Violation:
         trace, begun = dated_trace(self.times, run), run.end - asked.bound - 1
         since = "" if asked.then is None else f", {self.text(asked.bound + 1)} after {self.clock(begun)}"
         awaited = asked.shown if asked.then is None else str(asked.then)
@@ -128,14 +128,16 @@ class Deadlines:
         path = self._path(run, lambda c: holds(asked.then or asked.formula, c), begun if asked.then else 0)
         return Violation("late", message, trace, details, path=path)
 
-    def _path(self, run: Run, is_awaited: Callable[[Configuration], bool], since: int = 0) -> tuple[Leg, ...]:
+    def _path(
+        self, run: TimedRun, is_awaited: Callable[[Configuration], bool], since: int = 0
+    ) -> tuple[Leg, ...]:
         """Return the critical path of a run, extended to the awaited event."""
         onward = self.times.way_to(run, is_awaited)
         return critical_path(self.times.initial, self.times.transitions(run), run, onward, since)
 
     def _unsaid(self, c: Configuration) -> Iterator[str]:
         """Yield in words the possible steps of a configuration without an upper time bound."""
-        for words in dict.fromkeys(map(str, Situation(c).unbounded())):
+        for words in dict.fromkeys(map(str, TimedView(c).unbounded())):
             yield f"nothing says how long {words} takes"
 
     # --- first moments
@@ -167,7 +169,7 @@ class Deadlines:
         violations = tuple(self._exhausted(vehicle, run) for vehicle, run in found)
         return Verdict(asked, Outcome.VIOLATED, violations, count, examined, different=len(found))
 
-    def _exhausted(self, vehicle: str, run: Run) -> Violation:
+    def _exhausted(self, vehicle: str, run: TimedRun) -> Violation:
         lasts, trace = dict(self.timing.endurances)[vehicle].lasts, dated_trace(self.times, run)
         message = (
             f"{vehicle} lasts {self.text(lasts)}, and goes unrestored for longer at {self.clock(run.end)}"
@@ -183,11 +185,11 @@ class Deadlines:
         found = tuple(Milestone(each.name, self._first(each)) for each in times)
         return Schedule(self.timing.tick, flights_of(self.times), found, self.found.complete)
 
-    def _first(self, asked: Property) -> Moments:
+    def _first(self, asked: Property) -> EventDates:
         found = self.times.moments(asked.formula)
         if found.first is None:
-            return Moments(math.inf, NEVER, may_never=True)
-        return Moments(found.first.end, found.latest, found.may_wait)
+            return EventDates(math.inf, NEVER, may_never=True)
+        return EventDates(found.first.end, found.latest, found.may_wait)
 
     # --- timelocks
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
-from checker.reduction.messages import may_take, message_of
+from checker.reduction.static_messages import may_take, message_of
 from semantics.behaviours.expressions import Literal
 from semantics.behaviours.patterns import Anything, Elements, Exactly, Pattern, bind
 from semantics.behaviours.program import reachable
@@ -14,7 +14,7 @@ from semantics.environment import Drops, Leaves
 from semantics.extension import linked
 from semantics.state.agents import written
 from semantics.state.configuration import Configuration
-from semantics.state.eta import Pending
+from semantics.state.eta import PendingRequest
 from semantics.state.requests import CTR, FLY, MGR, OBS, READY, SND
 from semantics.state.signature import Name
 
@@ -32,7 +32,7 @@ def causes(c: Configuration, waiting: Iterable[Name]) -> Iterator[str]:
         yield f"{a} waits for {_awaited(c, a, react)}"
 
 
-def _why(c: Configuration, pending: Pending) -> str:
+def _why(c: Configuration, pending: PendingRequest) -> str:
     request = pending.request
     match request:
         case READY():

@@ -10,7 +10,7 @@ Key = tuple[str, str]
 """The kind and the subject of a violation; findings with the same key are the same violation."""
 
 
-class Seen(NamedTuple):
+class Inspected(NamedTuple):
     """One subject of a property in a configuration.
 
     Attributes:
@@ -116,7 +116,7 @@ class Collected:
         if sum(kind == finding.kind for kind, _ in self.first) < self.most:
             self.first[finding.key] = finding
 
-    def note(self, number: int, seen: Seen) -> None:
+    def note(self, number: int, seen: Inspected) -> None:
         """Count a subject seen in a configuration."""
         if seen.wrong is None:
             self.looked(number, seen.by)

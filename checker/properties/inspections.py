@@ -9,9 +9,9 @@ from typing import ClassVar, NamedTuple
 
 from checker.properties.control_sites import common_sites
 from checker.properties.deadlock_causes import causes
-from checker.properties.findings import MOST_VIOLATIONS, Collected, Key, Seen
+from checker.properties.findings import MOST_VIOLATIONS, Collected, Inspected, Key
+from checker.properties.invariant_vacuity import Valuations
 from checker.properties.obstacles import lacking
-from checker.properties.vacuity import Valuations
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.patterns import bind
 from semantics.behaviours.reaction_rules import moved
@@ -19,7 +19,7 @@ from semantics.behaviours.statements import Block, Call, Loop, React
 from semantics.behaviours.stepping import next_statement
 from semantics.control import Obstacle, obstacle
 from semantics.environment import Says
-from semantics.properties.propositions import Proposition, holds, told_by
+from semantics.properties.propositions import Proposition, counterexample_names, holds
 from semantics.state.cells import QUEUE
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.requests import CTR, FLY, MGR, OBS, SND
@@ -92,7 +92,7 @@ class Inspection:
         """Return whether a mission may have any subject of the inspection."""
         return True
 
-    def seen(self, _: Excerpt) -> Iterator[Seen]:
+    def seen(self, _: Excerpt) -> Iterator[Inspected]:
         """Yield the subjects of some agents."""
         yield from ()
 
@@ -100,7 +100,7 @@ class Inspection:
         """Return the awaited events of some agents, None if one of them must move."""
         return None
 
-    def judged(self, _: Iterable[Wait], __: Configuration | None = None, /) -> Iterator[Seen]:
+    def judged(self, _: Iterable[Wait], __: Configuration | None = None, /) -> Iterator[Inspected]:
         """Yield the subjects of a configuration where no agent must move, from all awaited events."""
         yield from ()
 
@@ -110,18 +110,22 @@ class LocalConsistency(Inspection):
 
     alone = (served,)
 
-    def seen(self, of: Excerpt) -> Iterator[Seen]:
+    def seen(self, of: Excerpt) -> Iterator[Inspected]:
         """Yield every control that is next in line."""
         done = {t.served.request: t for t in of.steps.enabled if t.served is not None}
         for request in (each.request for a in of.agents for each in of.c.eta.in_line(a)):
             if isinstance(request, CTR | FLY):
                 hindered = None if request in done else obstacle(of.c, request)
-                yield Seen(by=done.get(request)) if hindered is None else _hindered(of.c, request, hindered)
+                yield (
+                    Inspected(by=done.get(request))
+                    if hindered is None
+                    else _hindered(of.c, request, hindered)
+                )
 
 
-def _hindered(c: Configuration, request: CTR | FLY, by: Obstacle) -> Seen:
+def _hindered(c: Configuration, request: CTR | FLY, by: Obstacle) -> Inspected:
     message = f"{request} is {by.value}: {WORDS[by]}"
-    return Seen(
+    return Inspected(
         (by.value, str(request)),
         None,
         message,
@@ -163,12 +167,16 @@ class DeadlockFreedom(Inspection):
         failed = ((2 * LAST, f"{fault.agent} failed") for fault in of.steps.faults)
         return (*stuck_requests(of), *waiting_agents(of), *failed)
 
-    def judged(self, still: Iterable[Wait], c: Configuration | None = None, /) -> Iterator[Seen]:
+    def judged(self, still: Iterable[Wait], c: Configuration | None = None, /) -> Iterator[Inspected]:
         """Yield a deadlock if anything is left to be done."""
         who = "; ".join(words for _, words in sorted(still, key=itemgetter(0)))
         message = f"nothing but the environment can move, and {who}"
         left = tuple(sorted(who.split("; ")))
-        yield Seen(("deadlock", who), None, message, partial(_causes, c), lambda: left) if who else Seen()
+        yield (
+            Inspected(("deadlock", who), None, message, partial(_causes, c), lambda: left)
+            if who
+            else Inspected()
+        )
 
 
 class Arrival(Inspection):
@@ -181,20 +189,20 @@ class Arrival(Inspection):
         """Return whether there are flights."""
         return setting.control is Control.TIMED
 
-    def seen(self, of: Excerpt) -> Iterator[Seen]:
+    def seen(self, of: Excerpt) -> Iterator[Inspected]:
         """Yield every end of a flight."""
-        yield from (Seen(by=step) for step in of.steps.by_agents if step.label.rule == "commit")
+        yield from (Inspected(by=step) for step in of.steps.by_agents if step.label.rule == "commit")
 
     def still(self, of: Excerpt) -> tuple[Wait, ...] | None:
         """Return the awaited ends of flights."""
         fair = any(not is_unfair(of.c, step) for step in of.steps.by_agents)
         return None if fair else tuple((0, str(step.label)) for step in of.steps.by_agents)
 
-    def judged(self, still: Iterable[Wait], _: Configuration | None = None, /) -> Iterator[Seen]:
+    def judged(self, still: Iterable[Wait], _: Configuration | None = None, /) -> Iterator[Inspected]:
         """Yield a violation if flights are awaited that may never end."""
         waits = ", ".join(sorted({words for _, words in still}))
         if waits:
-            yield Seen(("not arrived", waits), None, f"a run may wait here for ever for {waits}")
+            yield Inspected(("not arrived", waits), None, f"a run may wait here for ever for {waits}")
 
 
 def is_unfair(c: Configuration, transition: Transition) -> bool:
@@ -282,12 +290,12 @@ class Computation(Inspection):
 
     alone = (moves,)
 
-    def seen(self, of: Excerpt) -> Iterator[Seen]:
+    def seen(self, of: Excerpt) -> Iterator[Inspected]:
         """Yield every step of internal computation, and every failure."""
-        yield from (Seen(by=step) for step in of.steps.by_agents if step.label.rule == "fun")
+        yield from (Inspected(by=step) for step in of.steps.by_agents if step.label.rule == "fun")
         for fault in of.steps.faults:
             message = f"{fault.agent}: {fault}"
-            yield Seen(("diverges" if fault.diverges else "fails", message), None, message)
+            yield Inspected(("diverges" if fault.diverges else "fails", message), None, message)
 
 
 class Invariant(Inspection):
@@ -301,15 +309,15 @@ class Invariant(Inspection):
         self.shown = shown or str(formula)
         self.valuations = Valuations(formula)
 
-    def seen(self, of: Excerpt) -> Iterator[Seen]:
+    def seen(self, of: Excerpt) -> Iterator[Inspected]:
         """Yield the configuration as the single subject."""
         good = self.valuations.holds(of.c)
         details = partial(_names_told, self.formula, of.c)
-        yield Seen() if good else Seen(self.WRONG, None, f"not true here: {self.shown}", details)
+        yield Inspected() if good else Inspected(self.WRONG, None, f"not true here: {self.shown}", details)
 
 
 def _names_told(formula: Proposition, c: Configuration) -> tuple[str, ...]:
-    names = ", ".join(f"{variable} = {name}" for variable, name in told_by(formula, c))
+    names = ", ".join(f"{variable} = {name}" for variable, name in counterexample_names(formula, c))
     return (f"where {names}",) if names else ()
 
 
@@ -320,7 +328,7 @@ class Reachability(Inspection):
         super().__init__(most)
         self.formula = formula
 
-    def seen(self, of: Excerpt) -> Iterator[Seen]:
+    def seen(self, of: Excerpt) -> Iterator[Inspected]:
         """Yield the configuration if the proposition is true there."""
         if holds(self.formula, of.c):
-            yield Seen()
+            yield Inspected()

@@ -5,7 +5,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
-from checker.engines.timed.first_runs import DELAY, Edge
+from checker.engines.timed.first_runs import DELAY, RunEdge
 from checker.limits import look
 
 NEVER: Final = -math.inf
@@ -14,7 +14,7 @@ NEVER: Final = -math.inf
 LOOKING: Final = 1 << 14
 """The number of states between two checks of the bounds."""
 
-Graph = Sequence[Sequence[Edge]]
+Graph = Sequence[Sequence[RunEdge]]
 
 
 def longest(graph: Graph, inside: Sequence[bool], ends: Callable[[int], bool]) -> list[float]:

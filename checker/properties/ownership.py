@@ -11,13 +11,13 @@ from typing import assert_never
 
 from semantics.behaviours.expressions import (
     Apply,
-    Either,
     Expression,
     Host,
     Literal,
     QueryOf,
     RouteOf,
     SetOf,
+    ShortCircuit,
     TupleOf,
     Variable,
 )
@@ -201,7 +201,7 @@ class _Text:
             case Apply(_, parts) | TupleOf(parts) | SetOf(parts) | RouteOf(parts):
                 for part in parts:
                     yield from self._asks(part)
-            case Either(_, first, second):
+            case ShortCircuit(_, first, second):
                 yield from (*self._asks(first), *self._asks(second))
             case Variable(_):
                 yield ANY

@@ -5,7 +5,7 @@ from itertools import combinations
 from typing import Final
 
 from checker.properties.control_sites import common_sites
-from checker.properties.findings import Seen
+from checker.properties.findings import Inspected
 from checker.properties.inspections import Excerpt, Inspection, InTime
 from semantics.control import applicable
 from semantics.races.monitor import CONTROLS, slots_used, stale_tests
@@ -13,7 +13,7 @@ from semantics.races.provenance import EVERYTHING, Dependency
 from semantics.rules import TIMED_RULES, actuate
 from semantics.state.cells import MONITOR, VOYAGE
 from semantics.state.configuration import Configuration, Transition
-from semantics.state.eta import Pending
+from semantics.state.eta import PendingRequest
 from semantics.state.requests import CTR, FLY, Request
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
@@ -28,19 +28,19 @@ class ControlRaces(Inspection):
 
     in_time = InTime.TOGETHER
 
-    def seen(self, of: Excerpt) -> Iterator[Seen]:
+    def seen(self, of: Excerpt) -> Iterator[Inspected]:
         """Yield every pair of controls that are enabled, regardless of turns."""
         return self.between(of)
 
-    def between(self, of: Excerpt, pair: Set[Name] | None = None) -> Iterator[Seen]:
+    def between(self, of: Excerpt, pair: Set[Name] | None = None) -> Iterator[Inspected]:
         """Yield every pair of controls, or those of one or two agents."""
         for one, other, problem in compared(of.c, enabled_controls(of.steps.enabled), pair):
-            yield Seen(by=one[0]) if problem is None else _race(of.c, problem, one[0], other[0])
+            yield Inspected(by=one[0]) if problem is None else _race(of.c, problem, one[0], other[0])
 
 
-def _race(c: Configuration, problem: tuple[str, str], one: Transition, other: Transition) -> Seen:
+def _race(c: Configuration, problem: tuple[str, str], one: Transition, other: Transition) -> Inspected:
     message, about = problem
-    return Seen(
+    return Inspected(
         ("control race", about),
         None,
         message,
@@ -131,19 +131,19 @@ class StaleObservationRaces(Inspection):
     in_turn = True
     in_time = InTime.TAKEN
 
-    def seen(self, of: Excerpt) -> Iterator[Seen]:
+    def seen(self, of: Excerpt) -> Iterator[Inspected]:
         """Yield every control that is served; the configuration must be monitored."""
         for step in of.steps.by_agents:
             if step.label.rule in CONTROLS and step.served is not None:
                 stale = is_stale(of.c, step.served)
-                yield _resting_on(of.c, stale[0], step) if stale else Seen(by=step)
+                yield _resting_on(of.c, stale[0], step) if stale else Inspected(by=step)
 
 
-def _resting_on(c: Configuration, stale: Dependency, by: Transition) -> Seen:
+def _resting_on(c: Configuration, stale: Dependency, by: Transition) -> Inspected:
     request = _request(by)
     changed = "that answer" if stale.stale else "a relation that it uses"
     message = f"{request} rests on {asked_in_words(stale)}, and another agent has changed {changed} since it was sensed"
-    return Seen((STALE, str(request)), by, message, alike=lambda: common_sites(c, request))
+    return Inspected((STALE, str(request)), by, message, alike=lambda: common_sites(c, request))
 
 
 _QUESTIONS: Final[Mapping[str, str]] = {
@@ -169,12 +169,12 @@ def asked_in_words(stale: Dependency) -> str:
     return _QUESTIONS[question].format(seen=f"observe({stale.query})", name=" ".join(names))
 
 
-def is_stale(c: Configuration, pending: Pending) -> tuple[Dependency, ...]:
+def is_stale(c: Configuration, pending: PendingRequest) -> tuple[Dependency, ...]:
     """Return the dependencies of a control that other agents have changed since they were observed."""
     return stale_tests(pending.request, pending.rests_on, used_slots(c, pending))
 
 
-def used_slots(c: Configuration, pending: Pending) -> frozenset[tuple[str, ...]]:
+def used_slots(c: Configuration, pending: PendingRequest) -> frozenset[tuple[str, ...]]:
     """Return the slots that the redex of a pending control uses, in any match."""
     request = pending.request
     assert isinstance(request, CTR | FLY)

@@ -11,14 +11,14 @@ from semantics.behaviours.reaction_rules import moved
 from semantics.state.configuration import Configuration
 from semantics.state.requests import FLY
 from semantics.state.signature import REGION, Name
-from semantics.timing.bounds import Bound, bound_of, timed_by
-from semantics.timing.clocks import Situation, TimedStep
+from semantics.timing.bounds import WrittenBound, bound_of, timed_by
+from semantics.timing.clocks import TimedStep, TimedView
 from semantics.timing.dates import clock_text
 from semantics.timing.intervals import ANY_TIME, Interval
 
 
 @dataclass(frozen=True, slots=True)
-class Moments:
+class EventDates:
     """The dates of an event, in ticks from the start.
 
     Attributes:
@@ -38,7 +38,7 @@ class Moments:
 
 
 @dataclass(frozen=True, slots=True)
-class Flight:
+class PossibleFlight:
     """A possible flight of a mission: of one vehicle, by one request, from one place to another.
 
     Attributes:
@@ -57,9 +57,9 @@ class Flight:
     origin: Name
     destination: Name
     takes: Interval
-    begins: Moments
-    ends: Moments
-    bound: Bound
+    begins: EventDates
+    ends: EventDates
+    bound: WrittenBound
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,7 @@ class Milestone:
     """The first moments of a `time` property's proposition."""
 
     name: str
-    moments: Moments
+    moments: EventDates
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +82,7 @@ class Schedule:
     """
 
     tick: int
-    flights: tuple[Flight, ...] = ()
+    flights: tuple[PossibleFlight, ...] = ()
     milestones: tuple[Milestone, ...] = ()
     complete: bool = True
 
@@ -99,12 +99,12 @@ _Key = tuple[Name, Name, Name, Name]
 """Vehicle, agent, origin, destination."""
 
 
-def flights_of(times: Times) -> tuple[Flight, ...]:
+def flights_of(times: Times) -> tuple[PossibleFlight, ...]:
     """Return the flights that are made in time, in the order of their first starts."""
     begun: dict[_Key, set[TakenStep]] = {}
     ended: dict[_Key, set[TakenStep]] = {}
     set_out: dict[tuple[FLY, Name], dict[_Key, None]] = {}
-    said: dict[_Key, tuple[Interval, Bound]] = {}
+    said: dict[_Key, tuple[Interval, WrittenBound]] = {}
     for at, situation, fly in _steps_of_flights(times, "command"):
         for key in _keys(situation.c, fly):
             begun.setdefault(key, set()).add(at)
@@ -120,23 +120,23 @@ def flights_of(times: Times) -> tuple[Flight, ...]:
     begins = dict(zip(begun, spans, strict=False))
     ends = dict(zip(ended, spans[len(begun) :], strict=True))
     found = [
-        Flight(
+        PossibleFlight(
             *key,
             said.get(key, (ANY_TIME,))[0],
-            Moments(*begins.get(key, NO_SPAN)),
-            Moments(*ends.get(key, NO_SPAN)),
-            said.get(key, (ANY_TIME, Bound()))[1],
+            EventDates(*begins.get(key, NO_SPAN)),
+            EventDates(*ends.get(key, NO_SPAN)),
+            said.get(key, (ANY_TIME, WrittenBound()))[1],
         )
         for key in dict.fromkeys((*begun, *ended))
     ]
     return tuple(sorted(found, key=lambda each: (each.begins.earliest, each.ends.earliest, *_key(each))))
 
 
-def _key(flight: Flight) -> _Key:
+def _key(flight: PossibleFlight) -> _Key:
     return flight.vehicle, flight.agent, flight.origin, flight.destination
 
 
-def _steps_of_flights(times: Times, rule: str) -> Iterator[tuple[TakenStep, Situation, FLY]]:
+def _steps_of_flights(times: Times, rule: str) -> Iterator[tuple[TakenStep, TimedView, FLY]]:
     """Yield the steps by a rule that are taken at some time, with the flights that they begin or end."""
     for place, situation in enumerate(times.situations):
         for at in sorted(times.taken(place)):

@@ -14,7 +14,7 @@ from checker.properties.race_steps import RaceSteps
 from checker.properties.races import is_stale, used_slots
 from checker.steps import Step, alike
 from semantics.races.provenance import OTHERS, Dependency, Key, Mark
-from semantics.state.agents import Watch
+from semantics.state.agents import AgentProvenance
 from semantics.state.cells import MONITOR
 from semantics.state.configuration import Configuration
 from semantics.state.requests import CTR, FLY
@@ -125,7 +125,7 @@ def _mapped(remembered: Any, change: Callable[[Dependency], Dependency]) -> Any:
     """Return a monitor cell's value with each dependency in it changed."""
     if isinstance(remembered, Dependency):
         return change(remembered)
-    if isinstance(remembered, Watch):
+    if isinstance(remembered, AgentProvenance):
         parts = ("code", "store", "mailbox", "host")
         return replace(remembered, **{part: _mapped(getattr(remembered, part), change) for part in parts})
     if isinstance(remembered, tuple | frozenset):

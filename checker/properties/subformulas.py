@@ -27,7 +27,7 @@ STILL: Final = "vacuous: nothing that it speaks of ever changes"
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class Subformula:
     """A part of a formula as it was written; in the body of a quantifier it has several occurrences.
 
     Attributes:
@@ -40,16 +40,16 @@ class Part:
     paths: tuple[Path, ...] = ((),)
     positive: bool = True
 
-    def parts(self, ranges: Ranges) -> Iterator["Part"]:
+    def parts(self, ranges: Ranges) -> Iterator["Subformula"]:
         """Yield its immediate parts."""
         operands = tuple(map(_said, operands_of(self.formula, ranges)))
         positive = self.positive is not isinstance(_bare(self.formula), Not | Denied)
         if _are_instances(operands, ranges):
             everywhere = tuple((*path, *at) for path in self.paths for at, _ in operands)
-            yield Part(operands[0][1], everywhere, positive)
+            yield Subformula(operands[0][1], everywhere, positive)
             return
         for at, operand in operands:
-            yield Part(operand, tuple((*path, *at) for path in self.paths), positive)
+            yield Subformula(operand, tuple((*path, *at) for path in self.paths), positive)
 
 
 def operands_of(formula: Formula, ranges: Ranges) -> tuple[Operand, ...]:
@@ -149,7 +149,7 @@ def replaced(formula: Formula, path: Path, by: Always) -> Formula:
     return changed
 
 
-def strengthened(formula: Formula, part: Part) -> Formula:
+def strengthened(formula: Formula, part: Subformula) -> Formula:
     """Return a formula with all occurrences of a part replaced by the strongest constant."""
     for path in part.paths:
         formula = replaced(formula, path, Always(not part.positive))
@@ -163,7 +163,7 @@ def few(remarks: Sequence[str]) -> tuple[str, ...]:
     return (*remarks[:MOST_REMARKS], *more)
 
 
-def never_needed(around: Part, part: Part) -> str:
+def never_needed(around: Subformula, part: Subformula) -> str:
     """Return the remark that a part is never needed."""
     shown = part.formula
     if isinstance(shown, Not | Denied) and isinstance(_bare(around.formula), Or | Either):
@@ -174,7 +174,7 @@ def never_needed(around: Part, part: Part) -> str:
 
 def unneeded(
     formula: Formula, ranges: Ranges, holds: Callable[[Formula], bool]
-) -> Iterator[tuple[Part, Part]]:
+) -> Iterator[tuple[Subformula, Subformula]]:
     """Yield the outermost unneeded parts of a true formula, each with the part around it.
 
     Args:
@@ -182,12 +182,12 @@ def unneeded(
         ranges: The ranges of its quantifiers, to recognise the instances of a body.
         holds: Returns whether a formula with a replaced part holds.
     """
-    yield from _unneeded(formula, Part(formula), ranges, holds)
+    yield from _unneeded(formula, Subformula(formula), ranges, holds)
 
 
 def _unneeded(
-    formula: Formula, around: Part, ranges: Ranges, holds: Callable[[Formula], bool]
-) -> Iterator[tuple[Part, Part]]:
+    formula: Formula, around: Subformula, ranges: Ranges, holds: Callable[[Formula], bool]
+) -> Iterator[tuple[Subformula, Subformula]]:
     found = tuple(around.parts(ranges))
     alone = len(found) == 1 and len(found[0].paths) == len(around.paths)
     for part in found:

@@ -30,7 +30,7 @@ COMPUTING = frozenset({"fun", "rcv_obs", "rcv_msg", "timeout"})
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class ProgramPoint:
     """One agent before a computation, or at a react.
 
     Attributes:
@@ -64,7 +64,7 @@ class Visited:
     in_time: ClassVar[InTime] = InTime.TAKEN
 
     codes: dict[Name, set[Code]] = field(default_factory=dict)
-    moments: set[Moment] = field(default_factory=set)
+    moments: set[ProgramPoint] = field(default_factory=set)
     passed: set[Passage] = field(default_factory=set)
     happened: set[str] = field(default_factory=set)
     known: set[tuple[Any, ...]] = field(default_factory=set)
@@ -106,20 +106,20 @@ def where_it_stands(a: Name, c: Configuration) -> tuple[Code, frozenset[Passage]
     return c.read(code_cell(a)), frozenset(passages(c.setting, moment_of(c, a)))
 
 
-def moment_of(c: Configuration, a: Name) -> Moment:
+def moment_of(c: Configuration, a: Name) -> ProgramPoint:
     """Return the inputs of an agent's computation; they are in that agent's cells and requests only."""
     code, heard = c.alpha.code(a), tuple[Value, ...]()
     if code and isinstance(c.setting.program.statements[code[0]], React):
         ready = (each.request for each in c.eta.ready(a))
         seen = tuple(request.observation for request in ready if isinstance(request, READY))
         heard = (*seen, *c.alpha.mailbox(a))
-    return Moment(a, c.alpha.host(a), code, c.alpha.store(a), heard)
+    return ProgramPoint(a, c.alpha.host(a), code, c.alpha.store(a), heard)
 
 
 # --- executed statements and branches -------------------------------------------------------------------------
 
 
-def passages(setting: Setting, moment: Moment) -> Iterator[Passage]:
+def passages(setting: Setting, moment: ProgramPoint) -> Iterator[Passage]:
     """Yield the statements that a computation executes from a moment, and the branches that it takes."""
     if not moment.code:
         return
@@ -134,7 +134,7 @@ def passages(setting: Setting, moment: Moment) -> Iterator[Passage]:
         yield from process.passed
 
 
-def _ranks(setting: Setting, moment: Moment, react: React) -> Iterator[int]:
+def _ranks(setting: Setting, moment: ProgramPoint, react: React) -> Iterator[int]:
     """Yield the ranks of the cases that take a value; that of the `after` branch if none does."""
     waits = react.after is not None
     for value in moment.heard:
@@ -150,7 +150,7 @@ def _ranks(setting: Setting, moment: Moment, react: React) -> Iterator[int]:
         yield len(react.cases)
 
 
-def _process(setting: Setting, moment: Moment) -> Process:
+def _process(setting: Setting, moment: ProgramPoint) -> Process:
     store = dict(moment.store)
     scope = scope_of(setting, moment.agent, moment.host, store, dict.fromkeys(store, NOTHING))
     return Process(setting.program, moment.code, (NOTHING,) * len(moment.code), scope)

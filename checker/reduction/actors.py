@@ -14,12 +14,12 @@ from itertools import product
 from math import prod
 from typing import NamedTuple
 
-from checker.reduction.bounds import Bounds
 from checker.reduction.footprints import Footprints
-from checker.reduction.messages import Known, message_of
+from checker.reduction.overapproximation import Overapproximation
 from checker.reduction.possible_values import Roles
 from checker.reduction.race_footprints import Marks
-from checker.reduction.variables import NOTHING, Footprint, joined
+from checker.reduction.static_messages import ConstantMessage, message_of
+from checker.reduction.variables import NOTHING, SlotFootprint, joined
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.program import reachable
 from semantics.behaviours.reaction_rules import Reaction
@@ -41,7 +41,7 @@ MOST_INSTANCES = 5_000
 InLine = Observe | ControlBy | Migrate
 """Statements whose requests wait in the line, if there is one."""
 
-EVERYTHING = Footprint(-1, -1, -1)
+EVERYTHING = SlotFootprint(-1, -1, -1)
 """All slots, including those not numbered yet."""
 
 
@@ -62,9 +62,9 @@ class Actor(NamedTuple):
 class Acting(NamedTuple):
     """The footprints of an actor: of its next step, of all its steps, and of those among them that bypass its line."""
 
-    now: Footprint
-    ever: Footprint
-    aside: Footprint
+    now: SlotFootprint
+    ever: SlotFootprint
+    aside: SlotFootprint
 
 
 class Actors:
@@ -78,7 +78,7 @@ class Actors:
         self.setting = c.setting
         self.program = c.setting.program
         self.ordered = c.setting.scheduler is not Scheduler.UNORDERED
-        bounds = Bounds(c)
+        bounds = Overapproximation(c)
         self.roles = Roles(bounds)
         self.footprints = Footprints(bounds, self.roles)
         self._forget()
@@ -96,7 +96,7 @@ class Actors:
         self._of_reaction = lru_cache(maxsize=1 << 14)(self._reaction)
         self.clause = cache(self.footprints.clause)
 
-    def _lives(self, c: Configuration) -> Iterator[Footprint]:
+    def _lives(self, c: Configuration) -> Iterator[SlotFootprint]:
         for agent in self.roles.agents:
             pending = (
                 [self._of_request(agent, each.request) for each in c.eta.of(agent)]
@@ -182,7 +182,7 @@ class Actors:
             found[Actor("program", agent)] = Acting(now | passed, ever, aside)
         return found
 
-    def _next(self, agent: Name, number: int, told: bool) -> Footprint:
+    def _next(self, agent: Name, number: int, told: bool) -> SlotFootprint:
         """Bound the rules that take an agent's next step; a ready first observation decides it alone."""
         statement = self.program.statements[number]
         here = self.footprints.slots.footprint([("host", agent)])
@@ -190,7 +190,7 @@ class Actors:
             return here | self.footprints.waiting(agent, number, told)
         return here | self.footprints.spawn() if isinstance(statement, Spawn) else here
 
-    def _telling(self, agent: Name, number: int) -> Footprint:
+    def _telling(self, agent: Name, number: int) -> SlotFootprint:
         """Bound the marks in a statement's message."""
         match self.program.statements[number]:
             case Send(_, to):
@@ -200,7 +200,7 @@ class Actors:
             case _:
                 return NOTHING
 
-    def _reached(self, agent: Name, reach: frozenset[int]) -> tuple[Footprint, Footprint]:
+    def _reached(self, agent: Name, reach: frozenset[int]) -> tuple[SlotFootprint, SlotFootprint]:
         """Return the footprint of all statements reachable from code, and of those before the agent's line moves."""
         born = self.roles.descendants(reach)
         theirs = joined(map(self._life, born))
@@ -209,16 +209,16 @@ class Actors:
         aside = joined([here, theirs, *(self._of_statement(agent, each) for each in free)])
         return aside | joined(self._of_statement(agent, each) for each in reach), aside
 
-    def _life(self, agent: Name) -> Footprint:
+    def _life(self, agent: Name) -> SlotFootprint:
         """Return the footprint of all of an agent's later steps, without its pending requests."""
         statements = self.roles[agent].statements
         rested_on = self.marks.rested_on(agent, tuple(sorted(statements)))
         return rested_on | joined(self._of_statement(agent, each) for each in statements)
 
-    def _request(self, agent: Name, request: Request) -> Footprint:
+    def _request(self, agent: Name, request: Request) -> SlotFootprint:
         return self._serve(agent, request, self.roles[agent].hosts)
 
-    def _serve(self, agent: Name, request: Request, hosts: Iterable[Name]) -> Footprint:
+    def _serve(self, agent: Name, request: Request, hosts: Iterable[Name]) -> SlotFootprint:
         match request:
             case OBS(_, query):
                 return self.footprints.sense(query) | self.footprints.telling(agent)
@@ -226,17 +226,17 @@ class Actors:
                 return self._of_reaction(agent, reaction)
             case SND(_, to, message):
                 there = to in self.roles.agents
-                return self.footprints.post(agent, hosts, to, Known(message)) if there else NOTHING
+                return self.footprints.post(agent, hosts, to, ConstantMessage(message)) if there else NOTHING
             case MGR(_, to):
                 return self.footprints.migrate(agent, hosts, to)
             case _:
                 return NOTHING
 
-    def _statement(self, agent: Name, number: int) -> Footprint:
+    def _statement(self, agent: Name, number: int) -> SlotFootprint:
         """Return the footprint of a statement without its nested statements."""
         return self._asked_by(agent, number) | self._telling(agent, number)
 
-    def _asked_by(self, agent: Name, number: int) -> Footprint:
+    def _asked_by(self, agent: Name, number: int) -> SlotFootprint:
         statement: Statement = self.program.statements[number]
         hosts = self.roles[agent].hosts
         match statement:
@@ -259,11 +259,11 @@ class Actors:
             case _:
                 return NOTHING
 
-    def _reaction(self, agent: Name, reaction: Reaction) -> Footprint:
+    def _reaction(self, agent: Name, reaction: Reaction) -> SlotFootprint:
         does = self.footprints.control(agent, reaction)
         return does | self.marks.made(agent, does)
 
-    def _control(self, agent: Name, statement: ControlBy) -> Footprint:
+    def _control(self, agent: Name, statement: ControlBy) -> SlotFootprint:
         arguments = (self.roles.entities(agent, each) for each in statement.arguments)
         several: list[Sequence[Name]] = [sorted(self.roles[agent].hosts), *arguments]
         if prod(map(len, several)) > MOST_INSTANCES:

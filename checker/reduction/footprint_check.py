@@ -10,15 +10,15 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from checker.engines.fast.recording import Ask, Asked, Conclusion, Recorder, Source
+from checker.engines.fast.recording import Asked, CellRecorder, CellSource, ColumnQuestion, Conclusion
 from checker.engines.fast.value_templates import settled
 from checker.reduction.actors import Acting, Actor, Actors
 from checker.reduction.ample import Ample, disturbed
-from checker.reduction.messages import Known
+from checker.reduction.configuration_renaming import Renaming
 from checker.reduction.race_footprints import ANSWERS, MARKS, slot_of_mark
-from checker.reduction.renaming import Renaming
-from checker.reduction.symmetry import Symmetry
-from checker.reduction.variables import NOTHING, Footprint, Slot
+from checker.reduction.static_messages import ConstantMessage
+from checker.reduction.symmetry import MissionSymmetry
+from checker.reduction.variables import NOTHING, Slot, SlotFootprint
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Fact
 from semantics.control import applicable, obstacle
@@ -26,9 +26,9 @@ from semantics.extension import say, spawn
 from semantics.properties.propositions import Proposition, holds
 from semantics.races.monitor import marked, slots_used
 from semantics.races.provenance import ANY, Dependency, Key
-from semantics.races.relevance import questions_of, relevant, slots_of, told_ever
+from semantics.races.relevance import possible_receivers, questions_of, relevant, slots_of
 from semantics.rules import env, rcv_obs
-from semantics.state.agents import Watch, mailbox_cell, watch_cell
+from semantics.state.agents import AgentProvenance, mailbox_cell, watch_cell
 from semantics.state.cells import MONITOR, Cell, Changes, Row, has, is_something
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.physical_model import is_aboard
@@ -122,7 +122,9 @@ def slots_over(actors: Actors, cell: Cell) -> Iterator[tuple[Slot, Told | None]]
 
 def _waking(actors: Actors, react: int) -> Told:
     """Return a function that selects the messages of a mailbox that may wake a `react`."""
-    return lambda mailbox: [each for each in mailbox or () if react in actors.footprints.wakes(Known(each))]
+    return lambda mailbox: [
+        each for each in mailbox or () if react in actors.footprints.wakes(ConstantMessage(each))
+    ]
 
 
 def _observations(line: tuple[Any, ...] | None) -> Any:
@@ -139,11 +141,11 @@ def varies(actors: Actors, cell: Cell) -> bool:
 def recorded(actors: Actors, c: Configuration) -> tuple[Asked, Configuration]:
     """Return a record of questions, and a configuration that fills it; questions about constant cells don't count."""
     assert isinstance(c.state, Row)
-    recorder = Recorder(_Whole(c.state), c.state, lambda cell: varies(actors, cell), frozenset())
+    recorder = CellRecorder(_Whole(c.state), c.state, lambda cell: varies(actors, cell), frozenset())
     return recorder.scopes[0].asked, Configuration(c.setting, recorder)
 
 
-class _Whole(Source):
+class _Whole(CellSource):
     """Cells with undivided values."""
 
     def __init__(self, row: Row) -> None:
@@ -191,7 +193,7 @@ def hindered(c: Configuration, agent: Name) -> Iterator[Transition]:
 class _Held:
     """The check of one actor's steps in a configuration against its current footprint."""
 
-    def __init__(self, actors: Actors, c: Configuration, actor: Actor, now: Footprint) -> None:
+    def __init__(self, actors: Actors, c: Configuration, actor: Actor, now: SlotFootprint) -> None:
         self.actors = actors
         self.slots = actors.footprints.slots
         self.actor = actor
@@ -260,7 +262,7 @@ class _Held:
     def is_above(self, node: Name, place: Name) -> bool:
         return node == place or node in self.c.structure.logical.ancestors(place)
 
-    def may_read(self, rule: Rule, ask: Ask) -> bool:
+    def may_read(self, rule: Rule, ask: ColumnQuestion) -> bool:
         """Return whether a question is within the footprint; a cell that only the actor itself writes needs no slot."""
         cell, value = ask.cell, self.c.read(ask.cell)
         if ask.question is has and not self.actors.roles.may_come(ask.constants[0]):
@@ -310,7 +312,7 @@ class _Held:
             for each, _, _, rests_on in after.eta.all()
         ]
         for agent in after.alpha.names():
-            watch = after.alpha.watch(agent) or Watch()
+            watch = after.alpha.watch(agent) or AgentProvenance()
             kept += [
                 (agent, rests_on) for rests_on in (*watch.code, *watch.store, *watch.mailbox, watch.host)
             ]
@@ -347,7 +349,7 @@ def _alone(actors: Actors, c: Configuration, actor: Actor) -> Configuration:
 # --- symmetry -------------------------------------------------------------------------------------------------------
 
 
-def exchange(symmetry: Symmetry, c: Configuration) -> None:
+def exchange(symmetry: MissionSymmetry, c: Configuration) -> None:
     """Check that the exchanges of symmetric members commute with the transitions of a configuration.
 
     Raises:
@@ -384,7 +386,7 @@ def unheeded(c: Configuration) -> Iterator[str]:
                 asked = _asked(step.target, agent) - known | questions_of(step.target, agent)
                 for key in sorted(asked - relevant(asked, may_ask)):
                     yield f"after {step.label} '{agent}' may ask for {key}, which the race monitor forgets"
-        told = told_ever(c.setting.program)
+        told = possible_receivers(c.setting.program)
         sends = (each.request for each in c.eta.of(agent) if isinstance(each.request, SND))
         for send in (send for send in sends if told.isdisjoint({send.to, ANY})):
             yield f"{send} lets '{send.to}' know of what is seen, which the race monitor forgets"
@@ -398,7 +400,7 @@ def unheeded(c: Configuration) -> Iterator[str]:
 
 def _asked(c: Configuration, agent: Name) -> frozenset[Key]:
     """Return the questions behind an agent's provenance, and the slots that its controls may use."""
-    requests, watch = c.eta.of(agent), c.alpha.watch(agent) or Watch()
+    requests, watch = c.eta.of(agent), c.alpha.watch(agent) or AgentProvenance()
     kept = (*watch.code, *watch.store, *watch.mailbox, watch.host, *(each.rests_on for each in requests))
     asked = {one.asked for rests_on in kept for one in rests_on if one.asked is not None}
     used = (slots_of(each.request.reaction.redex) for each in requests if isinstance(each.request, CTR | FLY))

@@ -8,10 +8,10 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from typing import assert_never
 
-from checker.reduction.bounds import Bounds, Names
-from checker.reduction.messages import Known, Message, wakes
+from checker.reduction.overapproximation import Names, Overapproximation
 from checker.reduction.possible_values import Roles
-from checker.reduction.variables import NOTHING, Footprint, Slot, Slots
+from checker.reduction.static_messages import ConstantMessage, Message, wakes
+from checker.reduction.variables import NOTHING, Slot, SlotFootprint, Slots
 from semantics.behaviours.observations import All, Nodes, Query, QueryOperator
 from semantics.behaviours.reaction_rules import (
     LinkTerm,
@@ -33,7 +33,7 @@ AGENTS: Slot = ("agents",)
 class Footprints:
     """The possible reads and writes of rules, within the bounds of one mission."""
 
-    def __init__(self, bounds: Bounds, roles: Roles) -> None:
+    def __init__(self, bounds: Overapproximation, roles: Roles) -> None:
         self.bounds = bounds
         self.roles = roles
         self.slots = Slots()
@@ -63,29 +63,29 @@ class Footprints:
     def _decides_where(self, names: Names) -> int:
         return self.slots.of("placement", frozenset[Name]().union(*map(self.bounds.around, names)))
 
-    def linked(self, hosts: Iterable[Name], others: Iterable[Name]) -> Footprint:
+    def linked(self, hosts: Iterable[Name], others: Iterable[Name]) -> SlotFootprint:
         """Bound `extension.linked`: whether one of some hosts shares a link with one of others, in L and in P."""
         ours, theirs = frozenset(hosts), frozenset(others)
         if len(ours) == 1 and ours == theirs:
             return NOTHING
         both = ours | theirs
-        return Footprint(self.connected(both) | self.slots.of("links", both))
+        return SlotFootprint(self.connected(both) | self.slots.of("links", both))
 
     # --- rules ------------------------------------------------------------------------------------------------
 
-    def sense(self, query: Query) -> Footprint:
+    def sense(self, query: Query) -> SlotFootprint:
         """Bound `sense`: the reads of a query, and its changes to L ⊕ L_q."""
         looking = _Looking(self, query)
         merges = looking.merges & ~self.settled
         cyclic = self.slots.of("parent", self.bounds.cyclic)
         breaking = cyclic if merges & cyclic else 0
-        return Footprint(looking.reads | breaking, breaking, merges & ~breaking)
+        return SlotFootprint(looking.reads | breaking, breaking, merges & ~breaking)
 
-    def control(self, agent: Name, reaction: Reaction) -> Footprint:
+    def control(self, agent: Name, reaction: Reaction) -> SlotFootprint:
         """Bound `actuate`, `command` and `commit` of a reaction, and `control.obstacle`."""
         return _Reacting(self, reaction).footprint() | self.slots.footprint([("host", agent)])
 
-    def post(self, agent: Name, hosts: Iterable[Name], to: Name, message: Message) -> Footprint:
+    def post(self, agent: Name, hosts: Iterable[Name], to: Name, message: Message) -> SlotFootprint:
         """Bound `snd`: it delivers the message to one mailbox if hosts are linked."""
         reads = [("host", agent), ("host", to), *([AGENTS] if self.roles.may_come(to) else [])]
         delivered = self.slots.footprint(reads, merges=self.mail(to, message))
@@ -96,11 +96,11 @@ class Footprints:
         for number in self.wakes(message):
             yield from (("mail", to, number), ("fault", to, number))
 
-    def migrate(self, agent: Name, hosts: Iterable[Name], to: Name) -> Footprint:
+    def migrate(self, agent: Name, hosts: Iterable[Name], to: Name) -> SlotFootprint:
         """Bound `migrate`."""
         return self.linked(hosts, {to}) | self.slots.footprint(writes=[("host", agent)])
 
-    def waiting(self, agent: Name, react: int, told: bool) -> Footprint:
+    def waiting(self, agent: Name, react: int, told: bool) -> SlotFootprint:
         """Bound `rcv_msg` and `rcv_obs` without the agent's own cells: its other possible messages and observations.
 
         Args:
@@ -110,13 +110,13 @@ class Footprints:
         """
         return self.slots.footprint([("mail", agent, react), *([] if told else [("ready", agent)])])
 
-    def telling(self, agent: Name) -> Footprint:
+    def telling(self, agent: Name) -> SlotFootprint:
         """Bound the effect of `sense` on its agent: one more observation to receive."""
         faults = (("fault", agent, number) for number in self.reacts)
         unordered = self.bounds.setting.scheduler is Scheduler.UNORDERED
         return self.slots.footprint(merges=[("ready", agent), *(faults if unordered else ())])
 
-    def wary(self, agent: Name, react: int) -> Footprint:
+    def wary(self, agent: Name, react: int) -> SlotFootprint:
         """Bound the slots that may obstruct a `react` later.
 
         A guard that fails on one message hides the messages after it. Any arrival may end the wait for a timeout.
@@ -128,13 +128,13 @@ class Footprints:
         comes: list[Slot] = [("mail", agent, react), ("ready", agent)] if statement.after else []
         return self.slots.footprint([*faults, *comes])
 
-    def spawn(self) -> Footprint:
+    def spawn(self) -> SlotFootprint:
         """Bound `spawn`, without the new agent's steps."""
         return self.slots.footprint([AGENTS], [AGENTS])
 
     # --- the environment --------------------------------------------------------------------------------------
 
-    def clause(self, clause: Clause) -> Footprint:
+    def clause(self, clause: Clause) -> SlotFootprint:
         """Bound `env` and `say` of one clause."""
         match clause:
             case Drifts(entity):
@@ -146,12 +146,12 @@ class Footprints:
                 return self.slots.footprint([("present", entity), *own], own)
             case Appears(entity, placements):
                 by = (placement.by for placement in placements if isinstance(placement, Carried))
-                return Footprint(self.there([entity, *by]), self._all_of([entity]))
+                return SlotFootprint(self.there([entity, *by]), self._all_of([entity]))
             case Vanishes(entity):
-                return Footprint(writes=self._all_of({entity, *self.bounds.aboard(entity)}))
+                return SlotFootprint(writes=self._all_of({entity, *self.bounds.aboard(entity)}))
             case Says(message, agent):
                 reads = [AGENTS] if self.roles.may_come(agent) else []
-                return self.slots.footprint(reads, merges=self.mail(agent, Known(message)))
+                return self.slots.footprint(reads, merges=self.mail(agent, ConstantMessage(message)))
             case _:
                 assert_never(clause)
 
@@ -161,7 +161,7 @@ class Footprints:
 
     # --- constant slots ---------------------------------------------------------------------------------------
 
-    def settle(self, everything: Footprint) -> None:
+    def settle(self, everything: SlotFootprint) -> None:
         """Record the slots of L that no observation can change: L agrees with A(P), and neither is ever written.
 
         Args:
@@ -267,12 +267,12 @@ class _Reacting:
         self.slots = of.slots
         self.reads = self.writes = 0
 
-    def footprint(self) -> Footprint:
+    def footprint(self) -> SlotFootprint:
         """Return the footprint."""
         self.matching()
         self.placing()
         self.relinking()
-        return Footprint(self.reads, self.writes)
+        return SlotFootprint(self.reads, self.writes)
 
     def nodes_of(self, term: NodeTerm) -> Names:
         """Return the nodes that a term may stand for."""

@@ -7,7 +7,7 @@ sender had: agents first agree, then observe and move.
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from checker.reduction.bounds import Names
+from checker.reduction.overapproximation import Names
 from checker.reduction.possible_values import Roles
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import (

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from checker.reduction.messages import Unknown, may_take
+from checker.reduction.static_messages import Unknown, may_take
 from semantics.behaviours.expressions import Apply, Expression, Literal, RouteOf, Variable
 from semantics.behaviours.patterns import Exactly, variables
 from semantics.behaviours.program import Program

@@ -10,8 +10,8 @@ from semantics.state.configuration import Configuration, Transition
 from semantics.successors import expand
 
 if TYPE_CHECKING:
+    from checker.reduction.configuration_renaming import Renaming
     from checker.reduction.reducer import Reduced
-    from checker.reduction.renaming import Renaming
 
 
 def run_to(found: Exploration, number: int, by: Transition | None = None) -> tuple[Transition, ...]:
@@ -23,7 +23,7 @@ def run_to(found: Exploration, number: int, by: Transition | None = None) -> tup
     return tuple(steps)
 
 
-def told(found: Exploration, number: int, text: str) -> str:
+def in_original_names(found: Exploration, number: int, text: str) -> str:
     """Return a text about a visited configuration in the names of the unreduced run to it."""
     if found.reducer is None or found.reducer.symmetry is None:
         return text
@@ -48,7 +48,7 @@ def _unfold(
 
 
 def _sorting(reducer: Reduced, c: Configuration) -> Renaming:
-    from checker.reduction.renaming import Renaming  # noqa: PLC0415 - only reduced explorations are unfolded
+    from checker.reduction.configuration_renaming import Renaming  # noqa: PLC0415 - only reduced explorations are unfolded
 
     return Renaming() if reducer.symmetry is None else reducer.symmetry.sorting(c)[0]
 

@@ -7,8 +7,8 @@ assign. A value may be any name, unless it is a constant, a host, or the observe
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from checker.reduction.bounds import Bounds, Names, reached
-from checker.reduction.messages import may_take, message_of
+from checker.reduction.overapproximation import Names, Overapproximation, transitive_closure
+from checker.reduction.static_messages import may_take, message_of
 from semantics.behaviours.expressions import (
     Apply,
     Expression,
@@ -44,7 +44,7 @@ from semantics.state.signature import NO_ENTITIES, Name
 
 
 @dataclass(slots=True)
-class Role:
+class AgentRole:
     """The role of one agent.
 
     Attributes:
@@ -65,22 +65,22 @@ class Roles:
         first: The first agents; no agent ever leaves.
     """
 
-    def __init__(self, bounds: Bounds) -> None:
+    def __init__(self, bounds: Overapproximation) -> None:
         self.bounds = bounds
         self.program = bounds.setting.program
-        self.roles: dict[Name, Role] = {}
+        self.roles: dict[Name, AgentRole] = {}
         alpha = bounds.initial.alpha
         self.first: Names = frozenset(alpha.names())
         for agent in alpha.names():
             moving = (p.request.host for p in bounds.initial.eta.of(agent) if isinstance(p.request, MGR))
             held = {variable: _spelled(value) for variable, value in alpha.store(agent)}
-            self.roles[agent] = Role(
+            self.roles[agent] = AgentRole(
                 set(reachable(self.program, alpha.code(agent))), {alpha.host(agent), *moving}, held
             )
         while self._grow():
             pass
 
-    def __getitem__(self, agent: Name) -> Role:
+    def __getitem__(self, agent: Name) -> AgentRole:
         return self.roles[agent]
 
     @property
@@ -94,7 +94,9 @@ class Roles:
 
     def descendants(self, reach: Iterable[int]) -> Names:
         """Return the agents that these statements may spawn, directly or through others."""
-        return reached(self._spawned(reach), lambda agent: self._spawned(self.roles[agent].statements))
+        return transitive_closure(
+            self._spawned(reach), lambda agent: self._spawned(self.roles[agent].statements)
+        )
 
     def _spawned(self, numbers: Iterable[int]) -> Names:
         statements = (self.program.statements[number] for number in numbers)
@@ -194,7 +196,7 @@ class Roles:
             case Migrate(host):
                 self.roles[agent].hosts.update(self.entities(agent, host))
             case Spawn(name, host, behaviour, arguments):
-                role = self.roles.setdefault(name, Role())
+                role = self.roles.setdefault(name, AgentRole())
                 role.hosts.update(self.entities(agent, host))
                 role.statements |= reachable(self.program, self.program.behaviours[behaviour].body)
                 self._pass(agent, name, behaviour, arguments)

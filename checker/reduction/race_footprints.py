@@ -9,16 +9,16 @@ neither control changes the inputs of the other's marks.
 from collections.abc import Iterable, Iterator
 from functools import cache
 
-from checker.reduction.bounds import Names
 from checker.reduction.footprints import Footprints
 from checker.reduction.observation_flow import tellers
-from checker.reduction.variables import NOTHING, Footprint, Slot, joined
+from checker.reduction.overapproximation import Names
+from checker.reduction.variables import NOTHING, Slot, SlotFootprint, joined
 from semantics.behaviours.observations import Nodes, Of, Query, QueryOperator
 from semantics.behaviours.program import reachable
 from semantics.behaviours.statements import Observe
 from semantics.races.provenance import ANY, SLOT, Key, Provenance
 from semantics.races.relevance import Questions, anybodys, hosts_of, questions_in, slots_of, tells
-from semantics.state.agents import Code, Watch, watch_cell
+from semantics.state.agents import AgentProvenance, Code, watch_cell
 from semantics.state.cells import MONITOR
 from semantics.state.configuration import Configuration
 from semantics.state.eta import line_cell, sends_cell
@@ -56,18 +56,18 @@ class Marks:
 
     # --- making marks ---------------------------------------------------------------------------------------------
 
-    def made(self, author: Name, does: Footprint) -> Footprint:
+    def made(self, author: Name, does: SlotFootprint) -> SlotFootprint:
         """Bound the marks of a control in other agents' memory, and their inputs, given the control's writes to P."""
         return self._making(author, does.writes) if self.monitored else NOTHING
 
-    def _make(self, author: Name, writes: int) -> Footprint:
+    def _make(self, author: Name, writes: int) -> SlotFootprint:
         moved, linked = self._changed("placement", writes), self._changed("channels", writes)
         if any(self.bounds.setting.signature[self.bounds.setting.kind(name)].holds for name in moved):
             moved = self.bounds.names
         touched = moved | linked
         slots = self.footprints.slots
-        found = Footprint(self.footprints.where(touched) | self.footprints.there(touched))
-        found |= Footprint(self.footprints.connected(linked))
+        found = SlotFootprint(self.footprints.where(touched) | self.footprints.there(touched))
+        found |= SlotFootprint(self.footprints.connected(linked))
         for holder in self.roles.agents:
             if holder != author and self.held(holder):
                 found |= slots.footprint(merges=self._of_slots(holder, moved, linked))
@@ -87,15 +87,15 @@ class Marks:
         if moved:
             yield (CHILDREN, holder)
 
-    def _of_answers(self, holder: Name, writes: int, touched: Names) -> Footprint:
+    def _of_answers(self, holder: Name, writes: int, touched: Names) -> SlotFootprint:
         """Bound the marks on the answers to an agent's queries, for queries that read a change."""
         looks = [each for each in self.held(holder) if writes & self.looking(each).reads]
         reads = 0
         for query in looks:
             reads |= self._deciding(query, touched).reads
-        return Footprint(reads, 0, self.footprints.slots.bits([(ANSWERS, holder)]) if looks else 0)
+        return SlotFootprint(reads, 0, self.footprints.slots.bits([(ANSWERS, holder)]) if looks else 0)
 
-    def _deciding(self, query: Query, touched: Names) -> Footprint:
+    def _deciding(self, query: Query, touched: Names) -> SlotFootprint:
         """Bound the other inputs that decide how a change of some entities affects the answer to a query.
 
         Each child of a place is there or not, independently of the others.
@@ -129,24 +129,24 @@ class Marks:
             c.state.test(cell, _rests) for cell in requests
         )
 
-    def rested_on(self, agent: Name, code: Code) -> Footprint:
+    def rested_on(self, agent: Name, code: Code) -> SlotFootprint:
         """Bound the marks in an agent's memory while this code is left to it."""
         return self.resting(agent, reachable(self.program, code)) if self.monitored else NOTHING
 
-    def _resting(self, agent: Name, reach: frozenset[int]) -> Footprint:
+    def _resting(self, agent: Name, reach: frozenset[int]) -> SlotFootprint:
         if agent in self.tellers and tells(self.program, reach):
             return self._reading(agent, anybodys(self.bounds.initial))
         initial = self.bounds.initial
         return self._reading(agent, questions_in(initial.setting, reach, hosts_of(initial, agent)))
 
-    def told(self, agent: Name, listeners: Iterable[Name]) -> Footprint:
+    def told(self, agent: Name, listeners: Iterable[Name]) -> SlotFootprint:
         """Bound the marks in an agent's messages; receivers that can never exist don't count."""
         if agent not in self.tellers:
             return NOTHING
         there = (each for each in listeners if each in self.roles.agents)
         return joined(self._reading(each, anybodys(self.bounds.initial)) for each in there)
 
-    def carried(self, agent: Name, request: Request, rested_on: Footprint) -> Footprint:
+    def carried(self, agent: Name, request: Request, rested_on: SlotFootprint) -> SlotFootprint:
         """Bound the marks in the provenance of an agent's request, given those in its memory."""
         match request:
             case SND(_, to):
@@ -156,7 +156,7 @@ class Marks:
             case _:
                 return rested_on
 
-    def _of(self, holder: Name, questions: Questions) -> Footprint:
+    def _of(self, holder: Name, questions: Questions) -> SlotFootprint:
         return self.footprints.slots.footprint([(ANSWERS, holder), *self._asked_for(holder, questions)])
 
     def _asked_for(self, holder: Name, questions: Questions) -> Iterator[Slot]:
@@ -167,7 +167,7 @@ class Marks:
                 yield from ((kind, holder, name) for name in (self.bounds.names if ANY in names else names))
 
 
-def _is_blank(watch: Watch | None) -> bool:
+def _is_blank(watch: AgentProvenance | None) -> bool:
     return watch is None or not any((*watch.code, *watch.store, *watch.mailbox, watch.host))
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from checker.reduction.ample import Ample, Followed, Reached
 from checker.reduction.cycle_proviso import Paths
 from checker.reduction.refusals import Reduction, refusal, refuse_partial_order, refuse_symmetry
-from checker.reduction.symmetry import Symmetry
+from checker.reduction.symmetry import MissionSymmetry
 from semantics.properties.property import Property
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration
@@ -30,10 +30,10 @@ class Reduced:
         if Reduction.POR in asked:
             refuse_partial_order(initial)
         self.ample = Ample(initial, formulas) if Reduction.POR in asked else None
-        self.symmetry: Symmetry | None = None
+        self.symmetry: MissionSymmetry | None = None
         if Reduction.SYMMETRY in asked:
             refuse_symmetry(initial)
-            self.symmetry = Symmetry(initial, formulas)
+            self.symmetry = MissionSymmetry(initial, formulas)
 
     @property
     def putting_off(self) -> bool:

@@ -12,8 +12,8 @@ from itertools import groupby, pairwise, permutations, product
 from math import factorial, prod
 from typing import Any
 
-from checker.reduction.items import BITS, Items, Member, Place, Roles, mix
-from checker.reduction.renaming import Renaming
+from checker.reduction.configuration_renaming import Renaming
+from checker.reduction.member_items import BITS, Items, Member, Place, Roles, mix
 from semantics.state.configuration import Configuration
 
 MOST_ORDERS = 120

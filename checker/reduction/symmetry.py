@@ -9,12 +9,12 @@ from itertools import combinations
 from typing import Any
 
 from checker.engines.fast.value_templates import mobile_names
-from checker.reduction.automorphisms import Automorphisms
-from checker.reduction.items import Class, Items
+from checker.reduction.configuration_renaming import Renaming
+from checker.reduction.member_items import Class, Items
+from checker.reduction.mission_automorphisms import Automorphisms
 from checker.reduction.order import ordered
 from checker.reduction.pairing import UNLIKE_TEXTS, Pairing, Unlike
 from checker.reduction.refusals import Reduction, RefusedError
-from checker.reduction.renaming import Renaming
 from checker.reduction.representatives import to_representative
 from semantics.properties.propositions import Proposition
 from semantics.state.cells import Row
@@ -26,7 +26,7 @@ MOST_PAIRS = 2_000
 """The most pairs of entities without agents that are tried."""
 
 
-class Symmetry:
+class MissionSymmetry:
     """The interchangeable parts of a mission, and representatives.
 
     Raises:

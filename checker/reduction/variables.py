@@ -14,7 +14,7 @@ Slot = tuple[str | int, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Footprint:
+class SlotFootprint:
     """The slots that an actor may read, write and merge, a bit for each.
 
     Attributes:
@@ -32,10 +32,10 @@ class Footprint:
         """The slots that may change."""
         return self.writes | self.merges
 
-    def __or__(self, other: "Footprint") -> "Footprint":
-        return Footprint(self.reads | other.reads, self.writes | other.writes, self.merges | other.merges)
+    def __or__(self, other: "SlotFootprint") -> "SlotFootprint":
+        return SlotFootprint(self.reads | other.reads, self.writes | other.writes, self.merges | other.merges)
 
-    def disturbs(self, other: "Footprint") -> bool:
+    def disturbs(self, other: "SlotFootprint") -> bool:
         """Return whether one actor may disable the other, change its effect, or not commute with it."""
         return bool(
             self.writes & (other.reads | other.changes)
@@ -44,21 +44,21 @@ class Footprint:
             or other.merges & self.reads
         )
 
-    def beyond(self, bound: "Footprint") -> int:
+    def beyond(self, bound: "SlotFootprint") -> int:
         """Return this footprint without another's slots; an actor may also read the slots that it writes or merges."""
         reads = self.reads & ~(bound.reads | bound.changes)
         return reads | self.merges & ~bound.changes | self.writes & ~bound.writes
 
 
-NOTHING = Footprint()
+NOTHING = SlotFootprint()
 
 
-def joined(footprints: Iterable[Footprint]) -> Footprint:
+def joined(footprints: Iterable[SlotFootprint]) -> SlotFootprint:
     """Return the union of footprints."""
     reads = writes = merges = 0
     for each in footprints:
         reads, writes, merges = reads | each.reads, writes | each.writes, merges | each.merges
-    return Footprint(reads, writes, merges)
+    return SlotFootprint(reads, writes, merges)
 
 
 class Slots:
@@ -84,9 +84,9 @@ class Slots:
 
     def footprint(
         self, reads: Iterable[Slot] = (), writes: Iterable[Slot] = (), merges: Iterable[Slot] = ()
-    ) -> Footprint:
+    ) -> SlotFootprint:
         """Return the footprint over these slots."""
-        return Footprint(self.bits(reads), self.bits(writes), self.bits(merges))
+        return SlotFootprint(self.bits(reads), self.bits(writes), self.bits(merges))
 
     def has(self, bits: int, slot: Slot) -> bool:
         """Return whether a slot is among some bits; an unnumbered slot only belongs to `EVERYTHING`."""

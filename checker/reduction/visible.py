@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from checker.reduction.bounds import Bounds
+from checker.reduction.overapproximation import Overapproximation
 from semantics.behaviours.stepping import waits
 from semantics.properties.propositions import (
     Atom,
@@ -33,7 +33,7 @@ from semantics.state.signature import REGION, Name
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class VisiblePart:
     """The visible part of one cell: its value, or the answer to a question with some constants.
 
     No question is about the content of an observation.
@@ -56,7 +56,7 @@ class Eyes:
     """The visible parts of some propositions."""
 
     def __init__(self, c: Configuration, formulas: Iterable[Proposition]) -> None:
-        self.bounds = Bounds(c)
+        self.bounds = Overapproximation(c)
         self.program = c.setting.program
         self.formulas = tuple(formulas)
         atoms = dict.fromkeys(_anywhere(atom) for formula in self.formulas for atom in atoms_of(formula))
@@ -66,49 +66,49 @@ class Eyes:
         """Return whether two configurations differ visibly."""
         return any(each.of(before) != each.of(after) for each in self.seen)
 
-    def _sees(self, atom: Atom) -> Iterator[Seen]:
+    def _sees(self, atom: Atom) -> Iterator[VisiblePart]:
         match atom:
             case Inside(node, _, actually):
                 yield from self._places(node, actually)
             case LinkedWith(node, other, actually):
                 yield from self._links({node, other}, actually)
             case Present(node):
-                yield Seen(placement_cell(node), is_something)
+                yield VisiblePart(placement_cell(node), is_something)
             case Known(node):
-                yield Seen(parent_cell(node), is_something)
+                yield VisiblePart(parent_cell(node), is_something)
             case Exists() | Ended() | Waiting() | HostedAt() | HasPending():
-                yield Seen(AGENTS, has, (atom.agent,))
+                yield VisiblePart(AGENTS, has, (atom.agent,))
                 yield from self._of_agent(atom)
             case VariableIs(variable) | IsBound(variable):
-                yield Seen(store_cell(variable.agent), is_true_of, (atom,))
+                yield VisiblePart(store_cell(variable.agent), is_true_of, (atom,))
 
-    def _of_agent(self, atom: Exists | Ended | Waiting | HostedAt | HasPending) -> Iterator[Seen]:
+    def _of_agent(self, atom: Exists | Ended | Waiting | HostedAt | HasPending) -> Iterator[VisiblePart]:
         match atom:
             case Ended(agent):
-                yield Seen(code_cell(agent), is_over)
+                yield VisiblePart(code_cell(agent), is_over)
             case Waiting(agent):
-                yield Seen(code_cell(agent), waits, (self.program,))
+                yield VisiblePart(code_cell(agent), waits, (self.program,))
             case HostedAt(agent):
-                yield Seen(host_cell(agent))
+                yield VisiblePart(host_cell(agent))
             case HasPending(agent):
-                yield from (Seen(line_cell(agent)), Seen(sends_cell(agent)))
+                yield from (VisiblePart(line_cell(agent)), VisiblePart(sends_cell(agent)))
 
-    def _places(self, node: Name, actually: bool) -> Iterator[Seen]:
+    def _places(self, node: Name, actually: bool) -> Iterator[VisiblePart]:
         if node not in self.bounds.names or node == REGION:
             return
         if actually:
-            yield from (Seen(placement_cell(each)) for each in sorted(self.bounds.around(node)))
+            yield from (VisiblePart(placement_cell(each)) for each in sorted(self.bounds.around(node)))
         else:
-            yield from (Seen(parent_cell(each)) for each in sorted({node, *self.bounds.above(node)}))
+            yield from (VisiblePart(parent_cell(each)) for each in sorted({node, *self.bounds.above(node)}))
 
-    def _links(self, names: Iterable[Name], actually: bool) -> Iterator[Seen]:
+    def _links(self, names: Iterable[Name], actually: bool) -> Iterator[VisiblePart]:
         for name in sorted(self.bounds.names.intersection(names)):
             if actually:
-                yield from (Seen(channels_cell(name)), Seen(placement_cell(name), is_something))
+                yield from (VisiblePart(channels_cell(name)), VisiblePart(placement_cell(name), is_something))
             else:
-                yield from (Seen(links_cell(name)), Seen(parent_cell(name), is_something))
+                yield from (VisiblePart(links_cell(name)), VisiblePart(parent_cell(name), is_something))
         if actually:
-            yield from (Seen(down_cell(channel)) for channel in sorted(self.bounds.channels))
+            yield from (VisiblePart(down_cell(channel)) for channel in sorted(self.bounds.channels))
 
 
 def _anywhere(atom: Atom) -> Atom:

@@ -5,18 +5,18 @@ Source: https://docs.github.com/actions/reference/workflow-commands-for-github-a
 
 from collections.abc import Iterable, Iterator
 
-from checker.reports.results import Issue, Level, Result, clean
+from checker.reports.results import CheckResult, Issue, Level, clean
 
 COMMANDS = {Level.WRONG: "error", Level.WARNING: "warning", Level.INCOMPLETE: "warning", Level.BUG: "error"}
 
 
-def annotations(results: Iterable[Result]) -> Iterator[str]:
+def annotations(results: Iterable[CheckResult]) -> Iterator[str]:
     """Yield a command for each issue; no error exactly where every property holds."""
     for result in results:
         yield from (_command(result, issue) for issue in result.issues())
 
 
-def _command(result: Result, issue: Issue) -> str:
+def _command(result: CheckResult, issue: Issue) -> str:
     said = {"file": result.file, **_place(issue), "title": f"{result.name}: {issue.title}"}
     where = ",".join(f"{key}={escape_property(value)}" for key, value in said.items())
     message = "\n".join((issue.message, *issue.details))

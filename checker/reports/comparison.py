@@ -7,7 +7,7 @@ from typing import Final
 
 from checker.steps import Step
 from checker.traces import Trace, print_step
-from physical.messages import counted
+from physical.wordings import counted
 from semantics.state.differences import Difference, differences
 
 MOST_ALIGNED: Final = 1_000
@@ -15,7 +15,7 @@ MOST_ALIGNED: Final = 1_000
 
 
 @dataclass(frozen=True, slots=True)
-class Pair:
+class AlignedSteps:
     """Aligned steps, by their numbers from 1; None where only the other trace has one."""
 
     one: int | None
@@ -34,7 +34,7 @@ class Comparison:
     """
 
     shared: int
-    pairs: tuple[Pair, ...]
+    pairs: tuple[AlignedSteps, ...]
     beyond: tuple[int, int]
     ends: tuple[Difference, ...] | None
 
@@ -56,17 +56,17 @@ def _ways(steps: Sequence[Step]) -> list[tuple[str, int]]:
     return [(str(step.label), step.choice) for step in steps]
 
 
-def _aligned(one: list[tuple[str, int]], other: list[tuple[str, int]], after: int) -> Iterator[Pair]:
+def _aligned(one: list[tuple[str, int]], other: list[tuple[str, int]], after: int) -> Iterator[AlignedSteps]:
     matcher = SequenceMatcher(
         None, [label for label, _ in one], [label for label, _ in other], autojunk=False
     )
     for what, start, end, first, last in matcher.get_opcodes():
         if what == "equal":
             ranks = zip(range(start, end), range(first, last), strict=True)
-            yield from (Pair(after + a + 1, after + b + 1) for a, b in ranks)
+            yield from (AlignedSteps(after + a + 1, after + b + 1) for a, b in ranks)
             continue
-        yield from (Pair(after + a + 1, None) for a in range(start, end))
-        yield from (Pair(None, after + b + 1) for b in range(first, last))
+        yield from (AlignedSteps(after + a + 1, None) for a in range(start, end))
+        yield from (AlignedSteps(None, after + b + 1) for b in range(first, last))
 
 
 def comparison_text(one: Trace, other: Trace, names: tuple[str, str]) -> Iterator[str]:
@@ -86,7 +86,7 @@ def comparison_text(one: Trace, other: Trace, names: tuple[str, str]) -> Iterato
     yield from _ends(found)
 
 
-def _pair(pair: Pair, one: Trace, other: Trace) -> str:
+def _pair(pair: AlignedSteps, one: Trace, other: Trace) -> str:
     sign = "=" if pair.one and pair.other else "<" if pair.one else ">"
     number, trace = (pair.one, one) if pair.one else (pair.other, other)
     assert number is not None

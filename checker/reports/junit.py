@@ -7,11 +7,11 @@ properties of a mission, so only suites have times.
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Sequence
 
-from checker.reports.results import Issue, Level, Result, clean, placed_text, result_text
+from checker.reports.results import CheckResult, Issue, Level, clean, placed_text, result_text
 from checker.verdicts import Verdict
 
 
-def junit_text(results: Iterable[Result]) -> str:
+def junit_text(results: Iterable[CheckResult]) -> str:
     """Return results as an XML document; only cases of properties that hold pass."""
     suites = [_suite(result) for result in results]
     root = ET.Element("testsuites", {"name": "bigactors"})
@@ -23,7 +23,7 @@ def junit_text(results: Iterable[Result]) -> str:
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
 
 
-def _suite(result: Result) -> ET.Element:
+def _suite(result: CheckResult) -> ET.Element:
     cases = _cases(result)
     suite = _element("testsuite", name=result.name, tests=str(len(cases)))
     suite.set("failures", str(sum(case.find("failure") is not None for case in cases)))
@@ -36,7 +36,7 @@ def _suite(result: Result) -> ET.Element:
     return suite
 
 
-def _cases(result: Result) -> list[ET.Element]:
+def _cases(result: CheckResult) -> list[ET.Element]:
     decided = [
         _property_case(result, verdict) for verdict in (result.report.verdicts if result.report else ())
     ]
@@ -44,11 +44,11 @@ def _cases(result: Result) -> list[ET.Element]:
     return [*decided, *(_case(result, _name(issue), issue.line, [issue]) for issue in others)]
 
 
-def _property_case(result: Result, verdict: Verdict) -> ET.Element:
+def _property_case(result: CheckResult, verdict: Verdict) -> ET.Element:
     return _case(result, verdict.property.name, result.line_of(verdict), list(result.issues_of(verdict)))
 
 
-def _case(result: Result, name: str, line: int, issues: Sequence[Issue]) -> ET.Element:
+def _case(result: CheckResult, name: str, line: int, issues: Sequence[Issue]) -> ET.Element:
     """Return a case with all its issues in one element, since some readers take the first only."""
     case = _element("testcase", name=name, classname=result.name, file=result.file)
     if line:

@@ -9,7 +9,7 @@ from checker.properties.coverage import Coverage, Gap
 from checker.reports.times import times_json, times_text
 from checker.traces import Trace, print_length, print_trace, to_json
 from checker.verdicts import Outcome, Report, Verdict, Violation
-from physical.messages import counted
+from physical.wordings import counted
 from semantics.properties.kinds import PropertyKind
 from semantics.state.setting import Control
 from semantics.successors import rules_of

@@ -52,7 +52,7 @@ class Issue:
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
+class CheckResult:
     """The result of one mission.
 
     Attributes:
@@ -176,7 +176,7 @@ def issue_text(issue: Issue) -> str:
     return "\n".join(lines)
 
 
-def placed_text(result: Result, issue: Issue) -> str:
+def placed_text(result: CheckResult, issue: Issue) -> str:
     """Return an issue as text, after its place in the mission."""
     place = ":".join(str(part) for part in (result.file, issue.line, issue.column) if part)
     return f"{place}: {issue.title}\n{issue_text(issue)}"
@@ -188,7 +188,7 @@ def caution_text(name: str, caution: Issue) -> Iterator[str]:
     yield from (f"  {detail}" for detail in caution.details)
 
 
-def result_text(result: Result) -> str:
+def result_text(result: CheckResult) -> str:
     """Return the report of a result without its traces; empty where there is none."""
     if result.report is None:
         return ""

@@ -11,7 +11,7 @@ from pathlib import PurePath
 from typing import Any
 from urllib.parse import quote
 
-from checker.reports.results import Issue, Level, Result, clean
+from checker.reports.results import CheckResult, Issue, Level, clean
 from checker.reports.source_lines import step_lines
 from checker.traces import Trace, print_step
 from semantics.properties.kinds import PropertyKind
@@ -32,7 +32,7 @@ LEVELS = {Level.WRONG: "error", Level.WARNING: "warning"}
 MISTAKE = "A mistake in the mission, or in how it is called."
 
 
-def sarif_json(results: Iterable[Result], version: str) -> dict[str, Any]:
+def sarif_json(results: Iterable[CheckResult], version: str) -> dict[str, Any]:
     """Return results as plain data; errors and warnings are results, undecided properties notifications.
 
     The execution counts as successful (§3.20.14) exactly if everything was decided, so an incomplete one never reads
@@ -68,7 +68,7 @@ def _rule(rule: str) -> dict[str, Any]:
     return {"id": clean(rule), "shortDescription": {"text": RULES.get(rule, MISTAKE)}}
 
 
-def _result(result: Result, issue: Issue, rules: list[str], seen: Counter[str]) -> dict[str, Any]:
+def _result(result: CheckResult, issue: Issue, rules: list[str], seen: Counter[str]) -> dict[str, Any]:
     said: dict[str, Any] = {
         "ruleId": clean(issue.rule),
         "ruleIndex": rules.index(issue.rule),
@@ -85,7 +85,7 @@ def _result(result: Result, issue: Issue, rules: list[str], seen: Counter[str]) 
     return said
 
 
-def _notification(result: Result, issue: Issue, rules: list[str]) -> dict[str, Any]:
+def _notification(result: CheckResult, issue: Issue, rules: list[str]) -> dict[str, Any]:
     return {
         "level": "error" if issue.level is Level.BUG else "note",
         "message": _message(f"{result.name}: {issue.title}: {issue.message}"),
@@ -104,7 +104,7 @@ def _flow(file: str, trace: Trace) -> list[dict[str, Any]]:
     ]
 
 
-def fingerprint(result: Result, issue: Issue, seen: Counter[str]) -> str:
+def fingerprint(result: CheckResult, issue: Issue, seen: Counter[str]) -> str:
     """Return a digest of an issue and its file, but not of its line (§3.27.17); `seen` distinguishes equal ones."""
     said = repr((PurePath(result.file).as_posix(), issue.rule, issue.identity))
     seen[said] += 1

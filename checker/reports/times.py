@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from checker.properties.critical_path import interval_text
-from checker.properties.schedule import Flight, Milestone, Moments, Schedule
+from checker.properties.schedule import EventDates, Milestone, PossibleFlight, Schedule
 
 HEAD: Final = ("times", "takes", "begins", "ends, is true")
 
@@ -34,12 +34,12 @@ def times_rows(schedule: Schedule) -> Iterator[tuple[str, str, str, str]]:
         yield milestone.name, "", "", _between(schedule, milestone.moments)
 
 
-def name_of(flight: Flight) -> str:
+def name_of(flight: PossibleFlight) -> str:
     """Return the words for a flight."""
     return f"{flight.vehicle} from {flight.origin} to {flight.destination}, by {flight.agent}"
 
 
-def _between(schedule: Schedule, moments: Moments) -> str:
+def _between(schedule: Schedule, moments: EventDates) -> str:
     if moments.is_never:
         return "never" if schedule.complete else "never so far"
     earliest = schedule.clock(moments.earliest)
@@ -60,7 +60,7 @@ def times_json(schedule: Schedule) -> dict[str, Any]:
     }
 
 
-def _flight_json(schedule: Schedule, flight: Flight) -> dict[str, Any]:
+def _flight_json(schedule: Schedule, flight: PossibleFlight) -> dict[str, Any]:
     return {
         "vehicle": flight.vehicle,
         "agent": flight.agent,
@@ -82,6 +82,6 @@ def _milestone_json(schedule: Schedule, milestone: Milestone) -> dict[str, Any]:
     return {"name": milestone.name, "may_never": milestone.moments.may_never, **moments}
 
 
-def _moments_json(schedule: Schedule, moments: Moments) -> dict[str, Any]:
+def _moments_json(schedule: Schedule, moments: EventDates) -> dict[str, Any]:
     latest = schedule.seconds(moments.latest) if schedule.complete else None
     return {"earliest": schedule.seconds(moments.earliest), "latest": latest}

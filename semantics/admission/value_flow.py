@@ -29,13 +29,13 @@ from semantics.admission.abstract_values import (
 from semantics.admission.control_points import once
 from semantics.behaviours.expressions import (
     Apply,
-    Either,
     Expression,
     Host,
     Literal,
     RouteOf,
     Self,
     SetOf,
+    ShortCircuit,
     TupleOf,
     Variable,
 )
@@ -63,7 +63,7 @@ from semantics.state.signature import NO_ENTITIES, REGION, Name
 
 
 @dataclass(slots=True)
-class Role:
+class PossibleBehaviour:
     """The possible behaviour of one bigActor.
 
     Attributes:
@@ -85,13 +85,13 @@ class ValueFlow:
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
         self.program: Program = setting.program
-        self.roles: dict[Name, Role] = {}
+        self.roles: dict[Name, PossibleBehaviour] = {}
         self.entities = Abstract(kinds=frozenset({*setting.signature.kinds, *setting.kinds.values()}))
         self._grown = True
         for agent, block in self.program.bodies.items():
             self._begin(agent, block, word(self.program.homes[agent]))
         for each in _says(setting):
-            self.roles.setdefault(each.agent, Role())
+            self.roles.setdefault(each.agent, PossibleBehaviour())
         while self._grown:
             self._grown = False
             self._grow()
@@ -145,7 +145,7 @@ class ValueFlow:
                 return word(agent)
             case Variable(name):
                 return self.variable(agent, name)
-            case Either():
+            case ShortCircuit():
                 return TRUTH
             case TupleOf(items):
                 return tuple_of(tuple(self.value(agent, each) for each in items))
@@ -198,7 +198,7 @@ class ValueFlow:
                 self._pass(agent, name, behaviour, arguments)
 
     def _begin(self, agent: Name, block: Block, hosts: Abstract) -> None:
-        role = self.roles.setdefault(agent, Role())
+        role = self.roles.setdefault(agent, PossibleBehaviour())
         if block not in role.starts:
             role.starts.add(block)
             role.statements |= reachable(self.program, block)

@@ -11,9 +11,9 @@ from typing import Final
 
 from semantics.behaviours.endings import assigned, ends, migrates
 from semantics.behaviours.expressions import (
+    EvaluationScope,
     Expression,
     Fault,
-    Scope,
     evaluated,
     in_turn,
     members_asked,
@@ -73,7 +73,7 @@ class Process:
     program: Program
     code: Code
     rests_on: tuple[Provenance, ...]
-    scope: Scope
+    scope: EvaluationScope
     shown: list[str] = field(default_factory=list)
     passed: list[Passage] = field(default_factory=list)
     left: int = -1

@@ -69,7 +69,7 @@ class Apply:
 
 
 @dataclass(frozen=True, slots=True)
-class Either:
+class ShortCircuit:
     """`a or b` (`stop_at` true) and `a and b` (`stop_at` false), with short-circuit evaluation."""
 
     stop_at: bool
@@ -106,11 +106,11 @@ class QueryOf:
     argument: "Expression | QueryOf | None"
 
 
-Expression = Literal | Variable | Host | Self | Apply | Either | TupleOf | SetOf | RouteOf
+Expression = Literal | Variable | Host | Self | Apply | ShortCircuit | TupleOf | SetOf | RouteOf
 
 
 @dataclass(slots=True)
-class Scope:
+class EvaluationScope:
     """The environment of an expression, and the provenance of its evaluation so far.
 
     Attributes:
@@ -139,7 +139,7 @@ class Scope:
             self.store.update(dict.fromkeys(self.kept.get(name, ()), value))
 
 
-def evaluate(expression: Expression, scope: Scope) -> Value:
+def evaluate(expression: Expression, scope: EvaluationScope) -> Value:
     """Return the value of an expression.
 
     Raises:
@@ -162,14 +162,14 @@ def evaluate(expression: Expression, scope: Scope) -> Value:
             return _small(frozenset(evaluate(item, scope) for item in items))
         case RouteOf(items):
             return _small(Route(tuple(evaluate(item, scope) for item in items)))
-        case Either(stop_at, first, second):
+        case ShortCircuit(stop_at, first, second):
             value = truth(evaluate(first, scope))
             return Truth.of(value) if value is stop_at else Truth.of(truth(evaluate(second, scope)))
         case Apply(operator, arguments):
             return _apply(OPERATORS[operator], operator, arguments, scope)
 
 
-def evaluated(expression: Expression, scope: Scope) -> tuple[Value, Provenance]:
+def evaluated(expression: Expression, scope: EvaluationScope) -> tuple[Value, Provenance]:
     """Return the value of an expression with its provenance."""
     before, scope.used = scope.used, NOTHING
     value = evaluate(expression, scope)
@@ -177,7 +177,9 @@ def evaluated(expression: Expression, scope: Scope) -> tuple[Value, Provenance]:
     return value, provenance
 
 
-def _apply(operator: "Operator", name: str, arguments: tuple[Expression, ...], scope: Scope) -> Value:
+def _apply(
+    operator: "Operator", name: str, arguments: tuple[Expression, ...], scope: EvaluationScope
+) -> Value:
     before, scope.used = scope.used, NOTHING
     values = [evaluate(argument, scope) for argument in arguments]
     keys = tuple(operator.asks(*values)) if scope.used else ()
@@ -206,7 +208,7 @@ def truth(value: Value) -> bool:
     raise Fault(f"a test needs true or false, not {show(value)}")
 
 
-def query_of(template: QueryOf, scope: Scope) -> Query:
+def query_of(template: QueryOf, scope: EvaluationScope) -> Query:
     """Return the query with `HOST`, variables and other expressions resolved.
 
     Raises:
@@ -310,31 +312,31 @@ def _seen(value: Value) -> Observation:
     raise TypeError("an observation was expected")
 
 
-def _add(_: Scope, a: Value, b: Value) -> Value:
+def _add(_: EvaluationScope, a: Value, b: Value) -> Value:
     if isinstance(a, Route) and isinstance(b, Route):
         return _small(Route(a.stops + b.stops))
     return a | _members(b) if isinstance(a, frozenset) else _bounded(_number(a) + _number(b))
 
 
-def _subtract(_: Scope, a: Value, b: Value) -> Value:
+def _subtract(_: EvaluationScope, a: Value, b: Value) -> Value:
     return _bounded(_number(a) - _number(b)) if isinstance(a, int) else _minus(_, a, b)
 
 
-def _minus(_: Scope, a: Value, b: Value) -> Value:
+def _minus(_: EvaluationScope, a: Value, b: Value) -> Value:
     without = _members(b)
     return _only(a, lambda member: member not in without)
 
 
-def _intersect(_: Scope, a: Value, b: Value) -> Value:
+def _intersect(_: EvaluationScope, a: Value, b: Value) -> Value:
     both = _members(b)
     return _only(a, lambda member: member in both)
 
 
-def _of_kind(scope: Scope, value: Value, kind: Value) -> Value:
+def _of_kind(scope: EvaluationScope, value: Value, kind: Value) -> Value:
     return _only(value, lambda item: isinstance(item, str) and scope.kinds.get(item) == kind)
 
 
-def _first(_: Scope, value: Value) -> Value:
+def _first(_: EvaluationScope, value: Value) -> Value:
     members = in_turn(value)
     if not members:
         raise ValueError(f"the {'route' if isinstance(value, Route) else 'set'} is empty")
@@ -346,14 +348,14 @@ def in_turn(value: Value) -> tuple[Value, ...]:
     return value.stops if isinstance(value, Route) else in_order(_members(value))
 
 
-def _element(_: Scope, value: Value, index: Value) -> Value:
+def _element(_: EvaluationScope, value: Value, index: Value) -> Value:
     items = within(value)
     if not isinstance(items, tuple) or not 0 <= _number(index) < len(items):
         raise IndexError("no such element")
     return items[_number(index)]
 
 
-def _member(_: Scope, family: Value, entity: Value) -> Value:
+def _member(_: EvaluationScope, family: Value, entity: Value) -> Value:
     for each in within(family):
         if isinstance(each, tuple) and each[0] == entity:
             return each[1]
@@ -365,7 +367,7 @@ def _compare(holds: Callable[[int, int], bool]) -> Callable[..., Value]:
     return lambda _, a, b: Truth.of(holds(_number(a), _number(b)))
 
 
-def _linked(_: Scope, a: Value, b: Value, seen: Value) -> Value:
+def _linked(_: EvaluationScope, a: Value, b: Value, seen: Value) -> Value:
     observation = _seen(seen)
     return Truth.of(bool(observation.links(_name(a)) & observation.links(_name(b))))
 
@@ -495,7 +497,7 @@ def leaves(expression: Any) -> Iterator[Expression]:
         case Apply(_, parts) | TupleOf(parts) | SetOf(parts) | RouteOf(parts):
             for part in parts:
                 yield from leaves(part)
-        case Either(_, first, second):
+        case ShortCircuit(_, first, second):
             yield from (*leaves(first), *leaves(second))
         case QueryOf(_, argument):
             yield from leaves(argument)

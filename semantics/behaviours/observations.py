@@ -224,7 +224,7 @@ def agent_key(agent: Name) -> Name:
 Applied = QueryOperator | Literal["", "ALL"]
 
 
-class Step(NamedTuple):
+class QueryStep(NamedTuple):
     """One operator of a query, with its argument.
 
     Attributes:
@@ -236,5 +236,5 @@ class Step(NamedTuple):
     names: tuple[Name, ...]
 
 
-Steps = tuple[Step, ...]
+Steps = tuple[QueryStep, ...]
 """A query as resolved at its evaluation: its operators, innermost first, and hence the slots that it looked at."""

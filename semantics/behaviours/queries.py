@@ -18,7 +18,7 @@ from semantics.behaviours.observations import (
     Of,
     Query,
     QueryOperator,
-    Step,
+    QueryStep,
     Steps,
     Swept,
     agent_key,
@@ -45,11 +45,11 @@ def resolve(query: Query, physical: PhysicalModel, alpha: Agents) -> Steps:
     match query:
         case Of(operator, inner):
             steps = resolve(inner, physical, alpha)
-            return (*steps, Step(operator, denoted(steps, physical, alpha)))
+            return (*steps, QueryStep(operator, denoted(steps, physical, alpha)))
         case All():
-            return (Step("ALL", tuple(sorted((REGION, *physical.entities())))),)
+            return (QueryStep("ALL", tuple(sorted((REGION, *physical.entities())))),)
         case Nodes(names):
-            return (Step("", tuple(sorted({name for name in names if name in physical}))),)
+            return (QueryStep("", tuple(sorted({name for name in names if name in physical}))),)
 
 
 def denoted(steps: Steps, physical: PhysicalModel, alpha: Agents) -> tuple[Name, ...]:

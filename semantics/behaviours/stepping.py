@@ -1,16 +1,16 @@
 """Conversion between the agents of configurations and processes: starting a computation, and writing its result."""
 
 from semantics.behaviours.computation import Process
-from semantics.behaviours.expressions import Scope
+from semantics.behaviours.expressions import EvaluationScope
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import React, Statement
 from semantics.behaviours.values import Value
 from semantics.races.provenance import NOTHING, Provenance, held
-from semantics.races.relevance import HOSTED, heirs, told_by, uses_host
+from semantics.races.relevance import HOSTED, communicated_variables, heirs, uses_host
 from semantics.state.agents import (
+    AgentProvenance,
     Code,
     Store,
-    Watch,
     code_cell,
     host_cell,
     mailbox_cell,
@@ -63,15 +63,17 @@ def continuing(c: Configuration, process: Process) -> Changes:
 def _variables(process: Process) -> tuple[Store, tuple[Provenance, ...]]:
     """Return the variables with their provenance; without `computed` for variables that are never passed on."""
     store, rests_on = process.variables()
-    told = told_by(process.program, process.code)
+    told = communicated_variables(process.program, process.code)
     kept = zip(store, rests_on, strict=True)
     return store, tuple(each if name in told else _untold(each) for (name, _), each in kept)
 
 
-def _watch(process: Process, store: tuple[Provenance, ...], mailbox: tuple[Provenance, ...] = ()) -> Watch:
+def _watch(
+    process: Process, store: tuple[Provenance, ...], mailbox: tuple[Provenance, ...] = ()
+) -> AgentProvenance:
     code, variables = (tuple(_held(process, each) for each in part) for part in (process.rests_on, store))
     begun = tuple(sorted(process.begun))
-    return Watch(code, variables, mailbox, placed(process, process.scope.placed), begun)
+    return AgentProvenance(code, variables, mailbox, placed(process, process.scope.placed), begun)
 
 
 def _held(process: Process, provenance: Provenance) -> Provenance:
@@ -84,7 +86,7 @@ def placed(process: Process, provenance: Provenance) -> Provenance:
     tested = frozenset(each for each in provenance if each.asked is not None)
     if not tested or not uses_host(process.program, process.code):
         return NOTHING
-    told = HOSTED in told_by(process.program, process.code)
+    told = HOSTED in communicated_variables(process.program, process.code)
     return _held(process, tested if told else _untold(tested))
 
 
@@ -117,9 +119,9 @@ def new_process(setting: Setting, a: Name, host: Name, code: tuple[int, ...]) ->
 
 def scope_of(
     setting: Setting, a: Name, host: Name, store: dict[str, Value], rests_on: dict[str, Provenance]
-) -> Scope:
+) -> EvaluationScope:
     """Return the scope of an agent in a mission."""
-    return Scope(a, host, store, rests_on, setting.kinds, setting.program.kept.get(a, {}))
+    return EvaluationScope(a, host, store, rests_on, setting.kinds, setting.program.kept.get(a, {}))
 
 
 def joining(c: Configuration, a: Name) -> Changes:

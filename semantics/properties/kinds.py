@@ -5,7 +5,7 @@ from enum import Enum, StrEnum, auto
 from typing import Final
 
 
-class Asked(Enum):
+class RequestMode(Enum):
     """The way in which a mission asks for a property."""
 
     BY_DEFAULT = auto()
@@ -38,7 +38,7 @@ class About:
     """
 
     says: str
-    asked: Asked
+    asked: RequestMode
     examined: tuple[str, str]
     reducible: bool
     nothing: str = ""
@@ -74,100 +74,103 @@ class PropertyKind(StrEnum):
     @property
     def is_of_runs(self) -> bool:
         """Whether it is about runs, and not about single configurations."""
-        return self.about.asked is Asked.OF_RUNS
+        return self.about.asked is RequestMode.OF_RUNS
 
     @property
     def is_of_time(self) -> bool:
         """Whether it is about time: a mission then needs a `timing` section."""
-        return self.about.asked in (Asked.OF_TIMES, Asked.OF_TIMED_MISSIONS)
+        return self.about.asked in (RequestMode.OF_TIMES, RequestMode.OF_TIMED_MISSIONS)
 
     @property
     def has_proposition(self) -> bool:
         """Whether a mission asks for it with a proposition about configurations."""
-        return self.about.asked is Asked.OF_CONFIGURATIONS
+        return self.about.asked is RequestMode.OF_CONFIGURATIONS
 
 
 ABOUT: Final = {
     PropertyKind.LOCAL_CONSISTENCY: About(
         "Every control next in line can be served on what the world shows.",
-        Asked.BY_DEFAULT,
+        RequestMode.BY_DEFAULT,
         ("control next in line", "controls next in line"),
         reducible=True,
         vacuous="no control was ever next in line",
     ),
     PropertyKind.RACE_FREEDOM: About(
         "No bigActor changes what another's control rests on.",
-        Asked.BY_DEFAULT,
+        RequestMode.BY_DEFAULT,
         ("control or pair of controls", "controls and pairs of controls"),
         reducible=True,
         vacuous="no control was ever served",
     ),
     PropertyKind.DEADLOCK_FREEDOM: About(
         "Some bigActor can move wherever one has anything left to do.",
-        Asked.BY_DEFAULT,
+        RequestMode.BY_DEFAULT,
         ("configuration at rest", "configurations at rest"),
         reducible=True,
         nothing="some bigActor can always move",
     ),
     PropertyKind.ARRIVAL: About(
         "No run waits for ever for the end of a flight.",
-        Asked.BY_NAME,
+        RequestMode.BY_NAME,
         ("end of a flight", "ends of flights"),
         reducible=True,
         vacuous="no flight ever ends",
     ),
     PropertyKind.COMPUTATION: About(
         "No bigActor's computation fails or diverges.",
-        Asked.ALWAYS,
+        RequestMode.ALWAYS,
         ("internal step", "internal steps"),
         reducible=True,
         nothing="no bigActor computes anything that could fail",
     ),
     PropertyKind.INVARIANT: About(
         "A proposition is true of every configuration.",
-        Asked.OF_CONFIGURATIONS,
+        RequestMode.OF_CONFIGURATIONS,
         CONFIGURATIONS,
         reducible=True,
     ),
     PropertyKind.REACHABLE: About(
-        "A proposition is true of some configuration.", Asked.OF_CONFIGURATIONS, ("", ""), reducible=True
+        "A proposition is true of some configuration.",
+        RequestMode.OF_CONFIGURATIONS,
+        ("", ""),
+        reducible=True,
     ),
     PropertyKind.LTL: About(
         "A formula of linear time is true of every fair run.",
-        Asked.OF_RUNS,
+        RequestMode.OF_RUNS,
         CONFIGURATIONS,
         reducible=False,
         counted=False,
     ),
     PropertyKind.CTL: About(
         "A formula of branching time is true of the tree of fair runs.",
-        Asked.OF_RUNS,
+        RequestMode.OF_RUNS,
         CONFIGURATIONS,
         reducible=False,
         counted=False,
     ),
     PropertyKind.PROGRESS: About(
         "Every pending request is eventually served on every fair run.",
-        Asked.OF_RUNS,
+        RequestMode.OF_RUNS,
         ("request", "requests"),
         reducible=False,
     ),
     PropertyKind.WITHIN: About(
         "A proposition becomes true in time on every run.",
-        Asked.OF_TIMES,
+        RequestMode.OF_TIMES,
         CONFIGURATIONS,
         reducible=False,
         counted=False,
     ),
     PropertyKind.ENDURANCE: About(
         "No vehicle is ever away from where it is restored for longer than it lasts.",
-        Asked.OF_TIMED_MISSIONS,
+        RequestMode.OF_TIMED_MISSIONS,
         CONFIGURATIONS,
         reducible=False,
     ),
     PropertyKind.TIME: About(
         "When a proposition first becomes true: the earliest and the latest moment.",
-        Asked.OF_TIMES,
+        RequestMode.OF_TIMES,
         CONFIGURATIONS,
         reducible=False,
         counted=False,
@@ -175,6 +178,6 @@ ABOUT: Final = {
 }
 
 
-def asked_by(*ways: Asked) -> tuple[PropertyKind, ...]:
+def asked_by(*ways: RequestMode) -> tuple[PropertyKind, ...]:
     """Return the kinds that a mission asks for in one of these ways, in order."""
     return tuple(kind for kind in PropertyKind if kind.about.asked in ways)

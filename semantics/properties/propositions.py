@@ -453,7 +453,7 @@ def holds(formula: Proposition, c: Configuration) -> bool:
             return _TRUTH[type(formula)](formula, c)
 
 
-def told_by(formula: Proposition, c: Configuration) -> tuple[tuple[str, Name], ...]:
+def counterexample_names(formula: Proposition, c: Configuration) -> tuple[tuple[str, Name], ...]:
     """Return a counterexample to a false proposition: the names at which its `forall` quantifiers over entities fail.
 
     Returns:
@@ -462,11 +462,11 @@ def told_by(formula: Proposition, c: Configuration) -> tuple[tuple[str, Name], .
     match formula:
         case And(Instances(range=among) as parts):
             name = next(name for name in among.names if not holds(parts.of_name(name), c))
-            return ((among.variable, name), *told_by(parts.of_name(name), c))
+            return ((among.variable, name), *counterexample_names(parts.of_name(name), c))
         case And(parts):
-            return told_by(next(part for part in parts if not holds(part, c)), c)
+            return counterexample_names(next(part for part in parts if not holds(part, c)), c)
         case Or(parts) if not isinstance(parts, Instances):
-            return next(filter(None, (told_by(part, c) for part in parts)), ())
+            return next(filter(None, (counterexample_names(part, c) for part in parts)), ())
     return ()
 
 

@@ -9,7 +9,7 @@ from functools import cache, partial
 from typing import NamedTuple
 
 from semantics.behaviours.endings import begun_loops
-from semantics.behaviours.observations import QueryOperator, Step, Steps
+from semantics.behaviours.observations import QueryOperator, QueryStep, Steps
 from semantics.behaviours.queries import answers, denoted
 from semantics.races.provenance import (
     ANY,
@@ -30,15 +30,15 @@ from semantics.races.relevance import (
     Names,
     Questions,
     anybodys,
+    communicated_variables,
     heirs,
     meet,
+    possible_receivers,
     questions_of,
     relevant,
     slots_of,
-    told_by,
-    told_ever,
 )
-from semantics.state.agents import Watch, watch_cell
+from semantics.state.agents import AgentProvenance, watch_cell
 from semantics.state.cells import MONITOR, QUEUE, Cell, Changes, merged
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.eta import line_cell, sends_cell
@@ -114,7 +114,7 @@ def resolved_anew(
         if anew == passed and _denotes_the_same(before, after, passed, names):
             anew += (step,)
         else:
-            anew += (Step(step.operator, denoted(anew, after.structure.physical, after.alpha)),)
+            anew += (QueryStep(step.operator, denoted(anew, after.structure.physical, after.alpha)),)
     return anew
 
 
@@ -253,7 +253,7 @@ def _mark_memory(c: Configuration, holder: Name, author: Name, again: Asking) ->
 
 def _passes_on(c: Configuration, agent: Name, what: Name) -> bool:
     """Whether an agent may pass on the messages that it receives (`HEARD`), or its host (`HOSTED`)."""
-    return what in told_by(c.setting.program, c.alpha.code(agent))
+    return what in communicated_variables(c.setting.program, c.alpha.code(agent))
 
 
 def _request_cells(c: Configuration, holder: Name) -> list[Cell]:
@@ -291,7 +291,11 @@ def _heirs_of(c: Configuration, request: Request) -> Names:
     program = c.setting.program
     if isinstance(request, CTR | FLY):
         return frozenset()
-    return told_ever(program) if isinstance(request, SND) else heirs(program, c.alpha.code(request.agent))
+    return (
+        possible_receivers(program)
+        if isinstance(request, SND)
+        else heirs(program, c.alpha.code(request.agent))
+    )
 
 
 def monitored(c: Configuration) -> Configuration:
@@ -303,7 +307,7 @@ def monitored(c: Configuration) -> Configuration:
         lengths = (len(agents.code(agent)), len(agents.store(agent)), len(agents.mailbox(agent)))
         code, store, mailbox = ((NOTHING,) * length for length in lengths)
         begun = begun_loops(setting.program, agents.code(agent))
-        cells[watch_cell(agent)] = Watch(code, store, mailbox, begun=begun)
+        cells[watch_cell(agent)] = AgentProvenance(code, store, mailbox, begun=begun)
         lines = (line_cell(agent), sends_cell(agent), QUEUE)
         cells |= {
             (MONITOR, *cell): (NOTHING,) * len(c.read(cell)) for cell in lines if c.read(cell) is not None

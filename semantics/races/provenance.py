@@ -114,7 +114,7 @@ def computed(provenance: Provenance) -> Provenance:
     return frozenset(replace(each, computed=True) for each in provenance)
 
 
-def told_because(provenance: Provenance) -> Provenance:
+def causal_dependencies(provenance: Provenance) -> Provenance:
     """Return the dependencies that only caused a message or an observation, regardless of its content."""
     return frozenset(each for each in provenance if not each.computed)
 

@@ -13,7 +13,6 @@ from math import prod
 from semantics.behaviours.expressions import (
     OPERATORS,
     Apply,
-    Either,
     Expression,
     Fault,
     Host,
@@ -21,6 +20,7 @@ from semantics.behaviours.expressions import (
     QueryOf,
     RouteOf,
     SetOf,
+    ShortCircuit,
     TupleOf,
     free,
     members_asked,
@@ -96,7 +96,7 @@ HOSTED: Name = "HOST"
 """Stands, among variables, for the host of an agent."""
 
 
-def told_by(program: Program, code: Code) -> Names:
+def communicated_variables(program: Program, code: Code) -> Names:
     """Return the variables whose values may flow into messages or spawned agents of the code that is left to run."""
     return _told(program, reachable(program, code))
 
@@ -167,11 +167,11 @@ def tells(program: Program, reach: Iterable[int]) -> bool:
 
 def heirs(program: Program, code: Code) -> Names:
     """Return the heirs of an agent's provenance: possible receivers if its remaining code may send or spawn."""
-    return told_ever(program) if tells(program, reachable(program, code)) else frozenset()
+    return possible_receivers(program) if tells(program, reachable(program, code)) else frozenset()
 
 
 @lru_cache(maxsize=1 << 8)
-def told_ever(program: Program) -> Names:
+def possible_receivers(program: Program) -> Names:
     """Return the agents that may ever receive a message or be spawned; `ANY` if a run decides the receiver."""
     return frozenset[Name]().union(*map(_whom, program.statements))
 
@@ -238,7 +238,7 @@ def _asked(expression: Expression | QueryOf | None) -> Iterator[Key]:
         case TupleOf(items) | SetOf(items) | RouteOf(items):
             for each in items:
                 yield from _asked(each)
-        case Either(_, first, second):
+        case ShortCircuit(_, first, second):
             yield from (*_asked(first), *_asked(second))
         case QueryOf(_, argument):
             yield from _asked(argument)

@@ -6,7 +6,7 @@ from semantics.behaviours.values import Value, order_key
 from semantics.races.provenance import NOTHING, Provenance
 from semantics.state.cells import AGENTS, MONITOR, Cell, Cells, Changes, has
 from semantics.state.signature import Name
-from semantics.state.views import View
+from semantics.state.views import CellView
 
 Code = tuple[int, ...]
 """The code left to run: statements by number in the program, the next one first."""
@@ -25,7 +25,7 @@ def written(variable: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Watch:
+class AgentProvenance:
     """The provenance of an agent's code, variables, mail and host; each part is parallel to its cell.
 
     Attributes:
@@ -70,11 +70,11 @@ def mailbox_cell(agent: Name) -> Cell:
 
 
 def watch_cell(agent: Name) -> Cell:
-    """Address an agent's `Watch`; a monitor cell."""
+    """Address an agent's `AgentProvenance`; a monitor cell."""
     return (MONITOR, "agent", agent)
 
 
-class Agents(View):
+class Agents(CellView):
     """α over the cells of a configuration."""
 
     __slots__ = ("cells",)
@@ -111,9 +111,9 @@ class Agents(View):
         mailbox: tuple[Value, ...] = self.cells.read(mailbox_cell(agent))
         return mailbox
 
-    def watch(self, agent: Name) -> Watch | None:
+    def watch(self, agent: Name) -> AgentProvenance | None:
         """Return the monitor's memory of an agent, None if the monitor is off."""
-        watch: Watch | None = self.cells.read(watch_cell(agent))
+        watch: AgentProvenance | None = self.cells.read(watch_cell(agent))
         return watch
 
     def hosted(self, node: Name) -> tuple[Name, ...]:

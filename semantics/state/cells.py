@@ -74,16 +74,16 @@ class Cells(Protocol):
         """Return the part of each name in a pointwise definition: no part depends on another."""
 
 
-class State(Cells, Protocol):
+class WritableCells(Cells, Protocol):
     """Cells that a rule's conclusion can write."""
 
-    def with_(self, changes: Mapping[Cell, Any]) -> "State":
+    def with_(self, changes: Mapping[Cell, Any]) -> "WritableCells":
         """Return the cells with these values."""
 
-    def with_each(self, parts: Mapping[str, Changes]) -> "State":
+    def with_each(self, parts: Mapping[str, Changes]) -> "WritableCells":
         """Return the cells with the writes of each part of a pointwise definition."""
 
-    def changed(self, since: "State") -> Set[Cell]:
+    def changed(self, since: "WritableCells") -> Set[Cell]:
         """Return the cells written since an earlier state, from which these cells must derive."""
 
 
@@ -130,12 +130,12 @@ class Written:
         """Return the cells with the writes of each part."""
         return self.with_(merged(parts.values()))
 
-    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # all that was written is known
+    def changed(self, since: WritableCells) -> Set[Cell]:  # noqa: ARG002  # all that was written is known
         """Return the cells that were written."""
         return self.changes.keys()
 
 
-class Layout:
+class RowLayout:
     """A tuple of cells with its index; rows that share one compare by position."""
 
     __slots__ = ("__weakref__", "cells", "index")
@@ -144,22 +144,24 @@ class Layout:
         self.cells = cells
         self.index = {cell: position for position, cell in enumerate(cells)} if index is None else index
 
-    def growing(self, cells: Iterable[Cell]) -> "Layout":
+    def growing(self, cells: Iterable[Cell]) -> "RowLayout":
         """Return a layout with more cells at its end; no other row shares it."""
         more = tuple(cells)
-        return Layout(self.cells + more, self.index | dict(zip(more, count(len(self.cells)), strict=False)))
+        return RowLayout(
+            self.cells + more, self.index | dict(zip(more, count(len(self.cells)), strict=False))
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (layout_of, (self.cells,))
 
 
-_LAYOUTS: WeakValueDictionary[tuple[Cell, ...], Layout] = WeakValueDictionary()
+_LAYOUTS: WeakValueDictionary[tuple[Cell, ...], RowLayout] = WeakValueDictionary()
 
 
-def layout_of(cells: tuple[Cell, ...]) -> Layout:
+def layout_of(cells: tuple[Cell, ...]) -> RowLayout:
     """Return the shared layout of these cells in this order; it lives as long as a row uses it."""
     layout = _LAYOUTS.get(cells)
-    return _LAYOUTS.setdefault(cells, Layout(cells)) if layout is None else layout
+    return _LAYOUTS.setdefault(cells, RowLayout(cells)) if layout is None else layout
 
 
 class Row:
@@ -171,7 +173,7 @@ class Row:
 
     __slots__ = ("_hash", "layout", "values")
 
-    def __init__(self, layout: Layout, values: tuple[Any, ...], digest: int | None = None) -> None:
+    def __init__(self, layout: RowLayout, values: tuple[Any, ...], digest: int | None = None) -> None:
         self.layout = layout
         self.values = values
         self._hash = _digest(zip(layout.cells, values, strict=True)) if digest is None else digest
@@ -237,7 +239,7 @@ class Row:
         """Return the row with the writes of each part."""
         return self.with_(merged(parts.values()))
 
-    def changed(self, since: State) -> Set[Cell]:
+    def changed(self, since: WritableCells) -> Set[Cell]:
         """Return the cells whose value differs."""
         return {cell for cell, value in self.items() if since.read(cell) != value}
 

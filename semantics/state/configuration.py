@@ -6,8 +6,8 @@ from typing import Any
 
 from semantics.state.agents import Agents
 from semantics.state.brief import cut
-from semantics.state.cells import MONITOR, Cell, Changes, Edit, Part, Question, Row, State, merged
-from semantics.state.eta import Eta, Pending
+from semantics.state.cells import MONITOR, Cell, Changes, Edit, Part, Question, Row, WritableCells, merged
+from semantics.state.eta import Eta, PendingRequest
 from semantics.state.requests import REQUESTS, Received, Request
 from semantics.state.setting import Setting
 from semantics.state.signature import Name
@@ -27,7 +27,7 @@ class Configuration:
 
     __slots__ = ("alpha", "eta", "setting", "state", "structure")
 
-    def __init__(self, setting: Setting, state: State) -> None:
+    def __init__(self, setting: Setting, state: WritableCells) -> None:
         self.setting = setting
         self.state = state
         self.alpha = Agents(state)
@@ -131,7 +131,7 @@ class Transition:
     label: Label
     target: Configuration
     shown: tuple[str, ...] = ()
-    served: Pending | None = field(default=None, compare=False)
+    served: PendingRequest | None = field(default=None, compare=False)
 
     def __repr__(self) -> str:
         return f"<Transition {cut(self.label)}>"

@@ -8,7 +8,7 @@ from semantics.state.cells import AGENTS, MONITOR, QUEUE, Cell, Cells, Changes, 
 from semantics.state.requests import FLY, READY, SND, Request, request_key
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
-from semantics.state.views import View
+from semantics.state.views import CellView
 
 if TYPE_CHECKING:
     from semantics.state.setting import Setting
@@ -24,7 +24,7 @@ def sends_cell(agent: Name) -> Cell:
     return ("sends", agent)
 
 
-class Pending(NamedTuple):
+class PendingRequest(NamedTuple):
     """A pending request: its cell, its position there, and its provenance."""
 
     request: Request
@@ -33,7 +33,7 @@ class Pending(NamedTuple):
     rests_on: Provenance
 
 
-class Eta(View):
+class Eta(CellView):
     """η over the cells of a configuration.
 
     Under `program_order` each agent has a line, under `unordered` a multiset. Under `fcfs` all agents share one queue
@@ -48,22 +48,22 @@ class Eta(View):
         self.cells = cells
         self.setting = setting
 
-    def of(self, agent: Name) -> tuple[Pending, ...]:
+    def of(self, agent: Name) -> tuple[PendingRequest, ...]:
         """Return an agent's requests, in line if there is one."""
         return tuple(each for cell in self._cells(agent) for each in self._at(cell, agent))
 
-    def all(self) -> tuple[Pending, ...]:
+    def all(self) -> tuple[PendingRequest, ...]:
         """Return all pending requests: the agents' by name, then the queue of `fcfs` in order of asking."""
         agents: tuple[Name, ...] = self.cells.read(AGENTS)
         if self._shares:
             return tuple(each for cell in (*map(line_cell, agents), QUEUE) for each in self._at(cell))
         return tuple(each for agent in agents for each in self.of(agent))
 
-    def queued(self) -> tuple[Pending, ...]:
+    def queued(self) -> tuple[PendingRequest, ...]:
         """Return the queue of `fcfs`, in order of asking."""
         return tuple(self._at(QUEUE))
 
-    def own(self, agent: Name) -> tuple[Pending, ...]:
+    def own(self, agent: Name) -> tuple[PendingRequest, ...]:
         """Return the requests in an agent's own line, which has all READY and FLY."""
         return tuple(self._at(line_cell(agent)))
 
@@ -74,7 +74,7 @@ class Eta(View):
         in_queue: int = self.cells.ask(QUEUE, count_of, agent)
         return len(self.own(agent)) + in_queue
 
-    def in_line(self, agent: Name) -> tuple[Pending, ...]:
+    def in_line(self, agent: Name) -> tuple[PendingRequest, ...]:
         """Return the requests of an agent that may be served next (under `fcfs` regardless of others' turns)."""
         asked = (*self.own(agent), *self._first_in_queue(agent)) if self._shares else self.of(agent)
         waiting = [each for each in asked if not isinstance(each.request, READY)]
@@ -83,14 +83,14 @@ class Eta(View):
         line = [each for each in waiting if not isinstance(each.request, SND)]
         return (*line[:1], *(each for each in waiting if isinstance(each.request, SND)))
 
-    def _first_in_queue(self, agent: Name) -> Iterator[Pending]:
+    def _first_in_queue(self, agent: Name) -> Iterator[PendingRequest]:
         """Yield an agent's messages in the queue, and the first of its other requests; rules need no more of it."""
         found: tuple[tuple[int, Request], ...] = self.cells.ask(QUEUE, first_of, agent)
         for position, request in found:
             kept = self.cells.read((MONITOR, *QUEUE))[position] if self.setting.monitored else NOTHING
-            yield Pending(request, QUEUE, position, kept)
+            yield PendingRequest(request, QUEUE, position, kept)
 
-    def ready(self, agent: Name) -> tuple[Pending, ...]:
+    def ready(self, agent: Name) -> tuple[PendingRequest, ...]:
         """Return the observations of an agent that may be delivered next."""
         ready = tuple(each for each in self.own(agent) if isinstance(each.request, READY))
         return ready if self.setting.scheduler is Scheduler.UNORDERED else ready[:1]
@@ -100,22 +100,24 @@ class Eta(View):
         cell = self._cell(request)
         if cell == QUEUE:
             return self._edit(appended, (request,), (rests_on,))
-        return self._write(cell, [*self._at(cell), Pending(request, cell, -1, rests_on)])
+        return self._write(cell, [*self._at(cell), PendingRequest(request, cell, -1, rests_on)])
 
-    def removing(self, pending: Pending) -> Changes:
+    def removing(self, pending: PendingRequest) -> Changes:
         """Return the writes of η − request."""
         if pending.cell == QUEUE:
             return self._edit(without, (pending.position,), (pending.position,))
         line = list(self._at(pending.cell))
         return self._write(pending.cell, line[: pending.position] + line[pending.position + 1 :])
 
-    def replacing(self, pending: Pending, request: Request, rests_on: Provenance | None = None) -> Changes:
+    def replacing(
+        self, pending: PendingRequest, request: Request, rests_on: Provenance | None = None
+    ) -> Changes:
         """Return the writes that replace a request: in its place, or at the end of the new request's own line."""
         kept = pending.rests_on if rests_on is None else rests_on
         if self._cell(request) != pending.cell:
             return self.removing(pending) | self.adding(request, kept)
         line = list(self._at(pending.cell))
-        line[pending.position] = Pending(request, pending.cell, pending.position, kept)
+        line[pending.position] = PendingRequest(request, pending.cell, pending.position, kept)
         return self._write(pending.cell, line)
 
     @property
@@ -134,7 +136,7 @@ class Eta(View):
         is_message = self.setting.scheduler is Scheduler.PROGRAM_ORDER and isinstance(request, SND)
         return sends_cell(request.agent) if is_message else line_cell(request.agent)
 
-    def _at(self, cell: Cell, agent: Name | None = None) -> Iterator[Pending]:
+    def _at(self, cell: Cell, agent: Name | None = None) -> Iterator[PendingRequest]:
         """Yield the requests of a cell, of all agents or of one; a queue without requests of that agent is not read."""
         if cell == QUEUE and agent is not None and not self.cells.test(cell, is_asked_by, agent):
             return
@@ -146,7 +148,7 @@ class Eta(View):
             rests_on = self.cells.read((MONITOR, *cell))
         for position, (request, kept) in enumerate(zip(requests, rests_on, strict=True)):
             if agent is None or request.agent == agent:
-                yield Pending(request, cell, position, kept)
+                yield PendingRequest(request, cell, position, kept)
 
     def _edit(self, edit: Edit, of_requests: tuple[Any, ...], of_provenance: tuple[Any, ...]) -> Changes:
         """Return the writes of a queue edit, which need not read the requests of others."""
@@ -156,7 +158,7 @@ class Eta(View):
             changes[watch] = self.cells.edited(watch, edit, *of_provenance)
         return changes
 
-    def _write(self, cell: Cell, line: list[Pending]) -> Changes:
+    def _write(self, cell: Cell, line: list[PendingRequest]) -> Changes:
         if self.setting.scheduler is Scheduler.UNORDERED or cell[0] == "sends":
             line = sorted(
                 line, key=lambda each: (request_key(each.request), sorted(map(repr, each.rests_on)))

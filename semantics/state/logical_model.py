@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from bigraphs import Bigraph, from_relations, open_signature
 from semantics.state.cells import NAMES, Cell, Cells, Changes, is_, is_something
-from semantics.state.signature import REGION, Name, Sorting
-from semantics.state.views import View
+from semantics.state.signature import REGION, EntityKinds, Name
+from semantics.state.views import CellView
 
 
 def parent_cell(node: Name) -> Cell:
@@ -18,13 +18,13 @@ def links_cell(node: Name) -> Cell:
     return ("links", node)
 
 
-class LogicalModel(View):
+class LogicalModel(CellView):
     """L over the cells of a configuration."""
 
     __slots__ = ("cells", "sorting")
     SORTS = frozenset({"parent", "links"})
 
-    def __init__(self, cells: Cells, sorting: Sorting) -> None:
+    def __init__(self, cells: Cells, sorting: EntityKinds) -> None:
         self.cells = cells
         self.sorting = sorting
 

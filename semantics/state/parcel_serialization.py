@@ -13,7 +13,7 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 from semantics.behaviours.observations import All, Fact, Nodes, Observation, Of, Query, QueryOperator, Swept
 from semantics.behaviours.values import LARGEST_NUMBER, MOST_PARTS, Route, Text, Truth, Value, in_order, parts
 from semantics.state.parcels import Controls, Parcel, Running
-from semantics.state.partition import Belief, Elsewhere, Passage, Whereabouts
+from semantics.state.partition import Belief, Elsewhere, HostReport, Passage
 from semantics.state.requests import MGR, OBS, READY, SND
 
 MOST_ITEMS = 10_000
@@ -31,7 +31,7 @@ NAMES: Mapping[str, Any] = {**TYPES, "Query": Query, "Observation": Observation}
 
 def elsewhere_json(seen: Elsewhere) -> dict[str, Any]:
     """Return an event between stations as plain data."""
-    if isinstance(seen, Whereabouts):
+    if isinstance(seen, HostReport):
         data: dict[str, Any] = {"words": f"{seen.agent} is at {seen.host}", "writes": []}
         return {**data, "agent": seen.agent, "host": seen.host}
     if isinstance(seen, Belief):
@@ -49,7 +49,7 @@ def elsewhere_of(data: Any) -> Elsewhere:
         case {"node": str(node), "slot": "parent" | "links" as slot, "names": [*names]}:
             return Belief(node, slot, _tuple((str, ...), names, 0))
         case {"agent": str(agent), "host": str(host)}:
-            return Whereabouts(agent, host)
+            return HostReport(agent, host)
         case {"agent": str(agent), "station": str(station), "number": int(number)} if number > 0:
             parcel = parcel_of(data["parcel"]) if "parcel" in data else None
             return Passage(agent, station, number, parcel)

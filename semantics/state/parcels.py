@@ -62,7 +62,7 @@ class Parcel:
     running: Running | None = None
 
 
-def asked(program: Program, request: Request, host: Name) -> Asked:
+def parcel_request(program: Program, request: Request, host: Name) -> Asked:
     """Return a pending request in the form of a parcel; raises ValueError if the text cannot have made it."""
     if not isinstance(request, CTR | FLY):
         return request

@@ -8,7 +8,7 @@ on an agent of another station then *leaves* in a parcel and *enters* there, whi
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
-from semantics.admission.objections import may_be_hosted, text_objection
+from semantics.admission.parcel_refusals import may_be_hosted, text_objection
 from semantics.admission.value_flow import flow_of
 from semantics.behaviours.stepping import joining
 from semantics.environment import Says
@@ -16,7 +16,7 @@ from semantics.state.agents import code_cell, host_cell, mailbox_cell, store_cel
 from semantics.state.cells import Cell, Changes
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.logical_model import links_cell, parent_cell
-from semantics.state.parcels import Parcel, Running, asked, requested
+from semantics.state.parcels import Parcel, Running, parcel_request, requested
 from semantics.state.requests import FLY
 from semantics.state.signature import REGION, Name
 
@@ -76,7 +76,7 @@ class Passage:
 
 
 @dataclass(frozen=True, slots=True)
-class Whereabouts:
+class HostReport:
     """Another station's report of an agent's host."""
 
     agent: Name
@@ -98,7 +98,7 @@ class Belief:
     names: tuple[Name, ...]
 
 
-Elsewhere = Passage | Whereabouts | Belief
+Elsewhere = Passage | HostReport | Belief
 """The events that involve other stations, as steps record them."""
 
 
@@ -137,7 +137,7 @@ def parcel_of(c: Configuration, a: Name) -> Parcel | None:
     """Return this station's contents of an agent, None if empty; raises ValueError while it flies a vehicle."""
     code, store, mail = c.alpha.code(a), c.alpha.store(a), c.alpha.mailbox(a)
     host, program = c.alpha.host(a), c.setting.program
-    requests = tuple(asked(program, pending.request, host) for pending in c.eta.of(a))
+    requests = tuple(parcel_request(program, pending.request, host) for pending in c.eta.of(a))
     says = tuple(c.read(counter) for counter in _counters(c, a))
     running = Running(host, code, store, requests, says) if code or store or requests else None
     return Parcel(a, mail, running) if mail or running else None
@@ -258,7 +258,7 @@ PASSING: tuple[Callable[..., Iterator[Transition]], ...] = (leave, enter, learn,
 
 def passing(c: Configuration, passage: Elsewhere) -> Iterator[Transition]:
     """Yield the transition of an event that involves other stations."""
-    if isinstance(passage, Whereabouts):
+    if isinstance(passage, HostReport):
         yield from learn(c, passage.agent, passage.host)
         return
     if isinstance(passage, Belief):

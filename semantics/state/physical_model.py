@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from physical import Band, Geometry, PlaceIndex, area, band_contains, contains, point, share_interior
 from semantics.state.cells import NAMES, Cell, Cells, Changes, is_something
-from semantics.state.signature import REGION, Name, Sorting
-from semantics.state.views import View
+from semantics.state.signature import REGION, EntityKinds, Name
+from semantics.state.views import CellView
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,13 +108,13 @@ def stands_outside(placement: Placement | None, places: tuple[Placed, ...]) -> b
     return isinstance(placement, Placed) and not any(encloses(at, placement) for at in places)
 
 
-class PhysicalModel(View):
+class PhysicalModel(CellView):
     """P and σ_P over the cells of a configuration."""
 
     __slots__ = ("cells", "sorting")
     SORTS = frozenset({"placement", "channels", "down"})
 
-    def __init__(self, cells: Cells, sorting: Sorting) -> None:
+    def __init__(self, cells: Cells, sorting: EntityKinds) -> None:
         self.cells = cells
         self.sorting = sorting
 

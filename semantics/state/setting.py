@@ -5,7 +5,7 @@ from enum import Enum
 
 from semantics.behaviours.program import Program
 from semantics.environment import Clause
-from semantics.state.signature import Name, Sorting
+from semantics.state.signature import EntityKinds, Name
 from semantics.timing.timing import Timing
 
 
@@ -28,7 +28,7 @@ class Control(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Setting(Sorting):
+class Setting(EntityKinds):
     """The declarations of a mission.
 
     Attributes:

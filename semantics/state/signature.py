@@ -69,7 +69,7 @@ class Signature:
 
 
 @dataclass(frozen=True, eq=False)
-class Sorting:
+class EntityKinds:
     """The part of a mission that P and L need: its kinds, and the kind of each of its entities.
 
     Attributes:

@@ -6,7 +6,7 @@ from semantics.state.cells import Cells
 from semantics.state.logical_model import LogicalModel
 from semantics.state.physical_model import PhysicalModel
 from semantics.state.relations import Linked, Parent, Relation
-from semantics.state.signature import REGION, Name, Sorting
+from semantics.state.signature import REGION, EntityKinds, Name
 
 
 class Structure:
@@ -14,7 +14,7 @@ class Structure:
 
     __slots__ = ("logical", "physical")
 
-    def __init__(self, cells: Cells, sorting: Sorting) -> None:
+    def __init__(self, cells: Cells, sorting: EntityKinds) -> None:
         self.logical = LogicalModel(cells, sorting)
         self.physical = PhysicalModel(cells, sorting)
 

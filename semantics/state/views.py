@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 from semantics.state.cells import Cell, Row
 
 
-class View:
+class CellView:
     """A part of a configuration over its cells; two views are equal if all of their cells are.
 
     Within a recorded rule a comparison raises TypeError, since it would read all cells without recording them.

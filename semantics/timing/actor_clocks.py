@@ -50,7 +50,7 @@ class Sort(IntEnum):
     """Since a dropped channel, or one that was left, may return."""
 
 
-class Clock(NamedTuple):
+class ActorClock(NamedTuple):
     """A clock: its measure, and its owner."""
 
     sort: Sort
@@ -62,7 +62,7 @@ BOUND, FREE = 1, 2
 """The values of a window's clock: the window binds the clause, or binds it no longer."""
 
 
-class Running(NamedTuple):
+class RunningClock(NamedTuple):
     """A clock that runs.
 
     Attributes:
@@ -71,7 +71,7 @@ class Running(NamedTuple):
         aim: The targets of a flight; when they change, its clock restarts.
     """
 
-    clock: Clock
+    clock: ActorClock
     interval: Interval
     aim: Hashable = None
 
@@ -79,7 +79,7 @@ class Running(NamedTuple):
 class Test(NamedTuple):
     """A bound on a clock: its age must lie in [least, most]."""
 
-    clock: Clock
+    clock: ActorClock
     least: int
     most: int | None = None
 
@@ -92,7 +92,7 @@ class StepClocks(NamedTuple):
         tests: The guards, of which one must hold; empty if the step is possible at any time.
     """
 
-    done: tuple[Clock, ...]
+    done: tuple[ActorClock, ...]
     tests: tuple[Test, ...] = ()
 
 
@@ -104,7 +104,7 @@ class ActorClocks(NamedTuple):
         steps: The clocks of each of its steps.
     """
 
-    running: tuple[Running, ...]
+    running: tuple[RunningClock, ...]
     steps: tuple[StepClocks, ...] = ()
 
 
@@ -115,17 +115,17 @@ def timing_of(c: Configuration) -> Timing:
     return timing
 
 
-def lasting(timing: Timing) -> Iterator[Running]:
+def lasting(timing: Timing) -> Iterator[RunningClock]:
     """Yield the clocks that run in every configuration: the mission's, and those of clauses."""
     steps = [each.step for each in timing.clauses]
     latest = [bound for step in steps if isinstance(step, Window | Sayable) for bound in _bounds_of(step)]
     if latest:
-        yield Running(Clock(Sort.MISSION), Interval(max(latest)))
+        yield RunningClock(ActorClock(Sort.MISSION), Interval(max(latest)))
     for number, step in enumerate(steps):
         if isinstance(step, Every):
-            yield Running(Clock(Sort.EVERY, number), Interval(step.least))
+            yield RunningClock(ActorClock(Sort.EVERY, number), Interval(step.least))
         elif isinstance(step, Window):
-            yield Running(Clock(Sort.WINDOW, number), Interval(FREE))
+            yield RunningClock(ActorClock(Sort.WINDOW, number), Interval(FREE))
 
 
 # --- vehicles -------------------------------------------------------------------------------------
@@ -134,8 +134,8 @@ def lasting(timing: Timing) -> Iterator[Running]:
 def of_vehicle(c: Configuration, vehicle: Name) -> ActorClocks:
     """Return the clocks of a vehicle's endurance; RESTORED runs only at a place that restores it."""
     endurance = dict(timing_of(c).endurances)[vehicle]
-    aloft = Running(Clock(Sort.ALOFT, vehicle), Interval(endurance.lasts))
-    restored = Running(Clock(Sort.RESTORED, vehicle), Interval(endurance.after))
+    aloft = RunningClock(ActorClock(Sort.ALOFT, vehicle), Interval(endurance.lasts))
+    restored = RunningClock(ActorClock(Sort.RESTORED, vehicle), Interval(endurance.after))
     return ActorClocks((aloft, restored) if is_restored(c, vehicle) else (aloft,))
 
 
@@ -166,7 +166,9 @@ def of_requests(c: Configuration, a: Name, served: Iterable[Transition | Fault])
     enabled = _serving_rules(steps)
     pending = [each.request for each in c.eta.in_line(a) if each.request in enabled]
     running = [
-        Running(Clock(Sort.REQUEST, request, channel), _service(c, request, channel, enabled[request]))
+        RunningClock(
+            ActorClock(Sort.REQUEST, request, channel), _service(c, request, channel, enabled[request])
+        )
         for request in pending
         if not isinstance(request, FLY)
         for channel in _channels(c, request)
@@ -185,27 +187,27 @@ def _serving_rules(steps: Iterable[Transition]) -> dict[Request, frozenset[str]]
     return found
 
 
-def _flights(c: Configuration, a: Name, enabled: Collection[Request]) -> Iterator[Running]:
+def _flights(c: Configuration, a: Name, enabled: Collection[Request]) -> Iterator[RunningClock]:
     for fly in dict.fromkeys(each.request for each in c.eta.own(a)):
         if isinstance(fly, FLY):
             interval = interval_of_flight(c, fly)
             if interval != ANY_TIME or timing_of(c).motions:
-                yield Running(Clock(Sort.FLIGHT, fly), Interval(interval.lo))
+                yield RunningClock(ActorClock(Sort.FLIGHT, fly), Interval(interval.lo))
             if fly in enabled and interval.hi is not None:
-                yield Running(Clock(Sort.AIM, fly), Interval(0, interval.hi), aim(c, fly))
+                yield RunningClock(ActorClock(Sort.AIM, fly), Interval(0, interval.hi), aim(c, fly))
 
 
-def _of_request(c: Configuration, step: Transition, running: Iterable[Running]) -> StepClocks:
+def _of_request(c: Configuration, step: Transition, running: Iterable[RunningClock]) -> StepClocks:
     assert step.served is not None
     request = step.served.request
     if isinstance(request, FLY):
-        flight = Clock(Sort.FLIGHT, request)
-        return StepClocks((flight, Clock(Sort.AIM, request)), _tests(running, [flight]))
-    clocks = [Clock(Sort.REQUEST, request, channel) for channel in _channels(c, request)]
+        flight = ActorClock(Sort.FLIGHT, request)
+        return StepClocks((flight, ActorClock(Sort.AIM, request)), _tests(running, [flight]))
+    clocks = [ActorClock(Sort.REQUEST, request, channel) for channel in _channels(c, request)]
     return StepClocks(tuple(clocks), _tests(running, clocks))
 
 
-def _tests(running: Iterable[Running], clocks: list[Clock]) -> tuple[Test, ...]:
+def _tests(running: Iterable[RunningClock], clocks: list[ActorClock]) -> tuple[Test, ...]:
     """Return the lower bounds, of which one must hold; empty if some clock has no lower bound."""
     bounds = {each.clock: each.interval for each in running}
     tests = tuple(Test(clock, bounds.get(clock, ANY_TIME).lo) for clock in clocks)
@@ -264,21 +266,21 @@ def of_moves(c: Configuration, a: Name, moves: Iterable[Transition | Fault]) -> 
     """Return the clock of an agent that can take a step of its own."""
     steps = [each for each in moves if isinstance(each, Transition)]
     running = tuple(_of_agent(c, a, steps[-1].label.rule)) if steps else ()
-    done = Clock(Sort.AGENT, a), Clock(Sort.AFTER, a)
+    done = ActorClock(Sort.AGENT, a), ActorClock(Sort.AFTER, a)
     clocks = [[done[1] if each.label.rule == "timeout" else done[0]] for each in steps]
     return ActorClocks(running, tuple(StepClocks(done, _tests(running, each)) for each in clocks))
 
 
-def _of_agent(c: Configuration, a: Name, rule: str) -> Iterator[Running]:
+def _of_agent(c: Configuration, a: Name, rule: str) -> Iterator[RunningClock]:
     timing = timing_of(c)
-    clock = Clock(Sort.AFTER if rule == "timeout" else Sort.AGENT, a)
+    clock = ActorClock(Sort.AFTER if rule == "timeout" else Sort.AGENT, a)
     interval = timing.react
     if rule == "timeout":
         interval = _after(c, a)
     elif rule == "spawn":
         interval = timing.command(rule) or ANY_TIME
     if interval != ANY_TIME:
-        yield Running(clock, interval)
+        yield RunningClock(clock, interval)
 
 
 def _after(c: Configuration, a: Name) -> Interval:
@@ -295,7 +297,7 @@ def _after(c: Configuration, a: Name) -> Interval:
 def of_clause(c: Configuration, number: int, steps: Iterable[Transition]) -> ActorClocks:
     """Return the clock of a clause's return, and the clocks of its steps."""
     several, most = list(steps), timing_of(c).clause(number).returns
-    returns = Running(Clock(Sort.RETURNS, number), Interval(0, most))
+    returns = RunningClock(ActorClock(Sort.RETURNS, number), Interval(0, most))
     is_running = most is not None and any(_returns(c, number, each) for each in several)
     return ActorClocks(
         (returns,) if is_running else (), tuple(_of_clause_step(c, number, each) for each in several)
@@ -304,8 +306,12 @@ def of_clause(c: Configuration, number: int, steps: Iterable[Transition]) -> Act
 
 def _of_clause_step(c: Configuration, number: int, step: Transition) -> StepClocks:
     if _returns(c, number, step):
-        return StepClocks((Clock(Sort.RETURNS, number),))
-    mission, every, window = Clock(Sort.MISSION), Clock(Sort.EVERY, number), Clock(Sort.WINDOW, number)
+        return StepClocks((ActorClock(Sort.RETURNS, number),))
+    mission, every, window = (
+        ActorClock(Sort.MISSION),
+        ActorClock(Sort.EVERY, number),
+        ActorClock(Sort.WINDOW, number),
+    )
     match timing_of(c).clause(number).step:
         case Every(least):
             tests: tuple[Test, ...] = (Test(every, least),)

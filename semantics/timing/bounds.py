@@ -10,8 +10,8 @@ from semantics.behaviours.values import show
 from semantics.environment import Appears, Drifts, Drops, Leaves, Says, Vanishes
 from semantics.state.requests import CTR, FLY, MGR, OBS, SND
 from semantics.state.setting import Setting
-from semantics.timing.actor_clocks import Clock, Sort, is_taken_up, word_of
-from semantics.timing.clocks import Situation, TimedStep
+from semantics.timing.actor_clocks import ActorClock, Sort, is_taken_up, word_of
+from semantics.timing.clocks import TimedStep, TimedView
 from semantics.timing.flight_history import travelling
 from semantics.timing.intervals import ANY_TIME, Interval
 from semantics.timing.timing import ONE_HOST, Every, Sayable, Window
@@ -19,7 +19,7 @@ from semantics.timing.timing import ONE_HOST, Every, Sayable, Window
 T = TypeVar("T")
 
 
-class Bound(NamedTuple):
+class WrittenBound(NamedTuple):
     """An assumption of the `timing` section as written, and its line; empty if the section has none."""
 
     words: str = ""
@@ -32,15 +32,15 @@ class Bound(NamedTuple):
 class Timed(NamedTuple):
     """The clocks that time a step, in order of preference, and its duration."""
 
-    clocks: tuple[Clock, ...]
+    clocks: tuple[ActorClock, ...]
     interval: Interval
 
 
-def timed_by(situation: Situation, step: TimedStep) -> Timed:
+def timed_by(situation: TimedView, step: TimedStep) -> Timed:
     """Return the clocks and the duration of a step."""
     request = None if step.transition.served is None else step.transition.served.request
     if isinstance(request, FLY):
-        flight, directed = Clock(Sort.FLIGHT, request), Clock(Sort.AIM, request)
+        flight, directed = ActorClock(Sort.FLIGHT, request), ActorClock(Sort.AIM, request)
         least, most = situation.bounds.get(flight, ANY_TIME), situation.bounds.get(directed, ANY_TIME)
         known = tuple(each for each in (flight, directed) if each in situation.first)
         return Timed(known or step.done[:1], Interval(least.lo, most.hi))
@@ -49,13 +49,13 @@ def timed_by(situation: Situation, step: TimedStep) -> Timed:
     if request is not None:
         return Timed(step.done, situation.bounds.get(step.done[0], ANY_TIME))
     sort = Sort.AFTER if step.transition.label.rule == "timeout" else Sort.AGENT
-    clock = Clock(sort, step.transition.label.agent)
+    clock = ActorClock(sort, step.transition.label.agent)
     return Timed(
         (clock if clock in situation.first else step.done[0],), situation.bounds.get(clock, ANY_TIME)
     )
 
 
-def _timed_clause(situation: Situation, step: TimedStep) -> Timed:
+def _timed_clause(situation: TimedView, step: TimedStep) -> Timed:
     clock = step.done[0]
     if clock.sort is Sort.RETURNS:
         return Timed((clock,), situation.bounds.get(clock, ANY_TIME))
@@ -71,14 +71,19 @@ def _timed_clause(situation: Situation, step: TimedStep) -> Timed:
             return Timed((clock,), ANY_TIME)
 
 
-def bound_of(situation: Situation, step: TimedStep) -> Bound:
+def bound_of(situation: TimedView, step: TimedStep) -> WrittenBound:
     """Return the line of the mission's text that bounds a step's duration."""
     begins = tuple(_beginnings(situation, step))
-    found = (Bound(*said) for begin in begins for said in situation.timing.lines if said[0].startswith(begin))
-    return next(found, Bound())
+    found = (
+        WrittenBound(*said)
+        for begin in begins
+        for said in situation.timing.lines
+        if said[0].startswith(begin)
+    )
+    return next(found, WrittenBound())
 
 
-def _beginnings(situation: Situation, step: TimedStep) -> Iterator[str]:
+def _beginnings(situation: TimedView, step: TimedStep) -> Iterator[str]:
     """Yield the possible beginnings of a step's bound, the most specific first."""
     label, setting = step.transition.label, situation.c.setting
     request = None if step.transition.served is None else step.transition.served.request
@@ -133,15 +138,19 @@ def clause_beginnings(setting: Setting, number: int) -> Iterator[str]:
             yield said
 
 
-def running_in(situation: Situation) -> Counter[Clock]:
+def running_in(situation: TimedView) -> Counter[ActorClock]:
     """Return the number of each clock that runs, including the clocks of steps without a bound."""
     done = {clock for step in situation.steps for clock in step.done}
     return Counter(situation.clocks) | Counter(done)
 
 
 def going_on(
-    since: Mapping[Clock, tuple[T, ...]], source: Situation, done: Iterable[Clock], after: Situation, now: T
-) -> dict[Clock, tuple[T, ...]]:
+    since: Mapping[ActorClock, tuple[T, ...]],
+    source: TimedView,
+    done: Iterable[ActorClock],
+    after: TimedView,
+    now: T,
+) -> dict[ActorClock, tuple[T, ...]]:
     """Return the start dates of the clocks after a step; of equal clocks the oldest is first, and is served first."""
     kept = dict(since)
     for clock in done:

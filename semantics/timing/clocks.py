@@ -16,8 +16,8 @@ from semantics.successors import Expansion, by_clause, expand
 from semantics.timing.actor_clocks import (
     BOUND,
     FREE,
+    ActorClock,
     ActorClocks,
-    Clock,
     Sort,
     is_restored,
     lasting,
@@ -41,7 +41,7 @@ class Guard(NamedTuple):
     most: int | None = None
 
 
-class Deadline(NamedTuple):
+class ClockDeadline(NamedTuple):
     """No time passes once a clock reaches a bound, unless another clock marks the clause as free."""
 
     clock: int
@@ -61,7 +61,7 @@ class TimedStep:
     """
 
     transition: Transition
-    done: tuple[Clock, ...]
+    done: tuple[ActorClock, ...]
     guards: tuple[Guard, ...]
     in_turn: bool = True
 
@@ -73,7 +73,7 @@ class TimedStep:
         )
 
 
-class Situation:
+class TimedView:
     """The timed view of one configuration.
 
     Attributes:
@@ -95,12 +95,14 @@ class Situation:
         self.by_clauses = tuple(tuple(by_clause(c, clause)) for clause in c.setting.environment)
         actors = tuple(self._actors())
         running = (*lasting(timing), *(each for clocks, _ in actors for each in clocks.running))
-        self.bounds: dict[Clock, Interval] = {each.clock: each.interval for each in running}
-        self.aims: dict[Clock, object] = {each.clock: each.aim for each in running if each.aim is not None}
-        self.clocks: tuple[Clock, ...] = tuple(each.clock for each in running)
+        self.bounds: dict[ActorClock, Interval] = {each.clock: each.interval for each in running}
+        self.aims: dict[ActorClock, object] = {
+            each.clock: each.aim for each in running if each.aim is not None
+        }
+        self.clocks: tuple[ActorClock, ...] = tuple(each.clock for each in running)
         self.first = {each: index for index, each in reversed(list(enumerate(self.clocks)))}
         self.steps: tuple[TimedStep, ...] = tuple(self._steps(actors))
-        self.deadlines: tuple[Deadline, ...] = tuple(dict.fromkeys(self._deadlines()))
+        self.deadlines: tuple[ClockDeadline, ...] = tuple(dict.fromkeys(self._deadlines()))
 
     def _actors(self) -> Iterator[tuple[ActorClocks, Sequence[Transition]]]:
         """Yield the clocks of each actor, with its steps."""
@@ -126,16 +128,16 @@ class Situation:
                     guards = tuple(Guard(self.first[clock], least, most) for clock, least, most in tests)
                     yield TimedStep(transition, done, guards, in_turn)
 
-    def _deadlines(self) -> Iterator[Deadline]:
+    def _deadlines(self) -> Iterator[ClockDeadline]:
         bound = {clock for step in self.steps if step.in_turn for clock in step.done}
         for clock, interval in self.bounds.items():
             if interval.hi is not None and clock in bound:
-                yield Deadline(self.first[clock], interval.hi)
-        mission = self.first.get(Clock(Sort.MISSION), 0)
+                yield ClockDeadline(self.first[clock], interval.hi)
+        mission = self.first.get(ActorClock(Sort.MISSION), 0)
         for number, transitions in enumerate(self.by_clauses):
             step = self.timing.clause(number).step
             if transitions and isinstance(step, Window) and step.within is not None:
-                yield Deadline(mission, step.within, self.first[Clock(Sort.WINDOW, number)])
+                yield ClockDeadline(mission, step.within, self.first[ActorClock(Sort.WINDOW, number)])
 
     # --- ages
 
@@ -175,9 +177,11 @@ class Situation:
         for number, transitions in enumerate(self.by_clauses):
             step = self.timing.clause(number).step
             if transitions and isinstance(step, Window):
-                window = self.first[Clock(Sort.WINDOW, number)]
+                window = self.first[ActorClock(Sort.WINDOW, number)]
                 if not ages[window]:
-                    late = step.within is not None and ages[self.first[Clock(Sort.MISSION)]] > step.within
+                    late = (
+                        step.within is not None and ages[self.first[ActorClock(Sort.MISSION)]] > step.within
+                    )
                     ages[window] = FREE if late else BOUND
         return tuple(ages)
 
@@ -194,7 +198,7 @@ class Situation:
         return tuple(
             vehicle
             for vehicle, endurance in self.timing.endurances
-            if ages[self.first[Clock(Sort.ALOFT, vehicle)]] > endurance.lasts
+            if ages[self.first[ActorClock(Sort.ALOFT, vehicle)]] > endurance.lasts
             and not is_restored(self.c, vehicle)
             and vehicle in self.c.structure.physical
         )
@@ -206,11 +210,11 @@ class Situation:
             for number, times in enumerate(self.timing.clauses)
             if isinstance(times.step, Sayable)
             and times.step.until is not None
-            and ages[self.first[Clock(Sort.MISSION)]] > times.step.until
+            and ages[self.first[ActorClock(Sort.MISSION)]] > times.step.until
         )
 
 
-class Passage:
+class ClockUpdate:
     """The effect of a step on the clocks.
 
     Attributes:
@@ -220,8 +224,8 @@ class Passage:
             the time that restoring takes.
     """
 
-    def __init__(self, source: Situation, step: TimedStep, target: Situation) -> None:
-        going_on: dict[Clock, list[int]] = defaultdict(list)
+    def __init__(self, source: TimedView, step: TimedStep, target: TimedView) -> None:
+        going_on: dict[ActorClock, list[int]] = defaultdict(list)
         for index, clock in enumerate(source.clocks):
             going_on[clock].append(index)
         for clock in step.done:
@@ -237,13 +241,13 @@ class Passage:
         self.sources = tuple(going_on[each].pop(0) if going_on[each] else None for each in target.clocks)
         self.leaving = tuple(
             (
-                source.first[Clock(Sort.RESTORED, vehicle)],
-                target.first[Clock(Sort.ALOFT, vehicle)],
+                source.first[ActorClock(Sort.RESTORED, vehicle)],
+                target.first[ActorClock(Sort.ALOFT, vehicle)],
                 endurance.after,
             )
             for vehicle, endurance in target.timing.endurances
-            if Clock(Sort.RESTORED, vehicle) in source.first
-            and Clock(Sort.RESTORED, vehicle) not in target.first
+            if ActorClock(Sort.RESTORED, vehicle) in source.first
+            and ActorClock(Sort.RESTORED, vehicle) not in target.first
         )
 
     def ages(self, ages: tuple[int, ...]) -> Iterator[tuple[int, ...]]:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.timing.actor_clocks import Sort
-from semantics.timing.clocks import Guard, Passage, Situation, TimedStep
+from semantics.timing.clocks import ClockUpdate, Guard, TimedStep, TimedView
 from semantics.timing.dates import clock_text
 
 
@@ -29,7 +29,7 @@ class DatedRun:
     """
 
     def __init__(self, initial: Configuration) -> None:
-        self.situation = Situation(initial)
+        self.situation = TimedView(initial)
         self.ages = {self.situation.first_ages()}
         self.now = 0
 
@@ -68,14 +68,14 @@ class DatedRun:
         Raises:
             UntimelyError: The clocks do not allow the step at that date.
         """
-        after = Situation(target)
+        after = TimedView(target)
         waited = set(self._waiting(date))
         steps = [
             each
             for each in self.situation.steps
             if each.in_turn and each.transition.label == label and each.transition.target == target
         ]
-        passages = ((step, Passage(self.situation, step, after)) for step in steps)
+        passages = ((step, ClockUpdate(self.situation, step, after)) for step in steps)
         ages = {
             each
             for step, passage in passages

@@ -7,7 +7,7 @@ from semantics.state.initial import Beliefs
 from semantics.state.signature import REGION
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import a
+from specs.elaboration.mission_mistakes import a
 from specs.elaboration.names import Names
 
 

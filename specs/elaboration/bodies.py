@@ -13,11 +13,11 @@ from semantics.behaviours.program import Behaviour, Program, reachable
 from semantics.behaviours.statements import Block, Loop
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.actors import Actor
+from specs.elaboration.initial_actors import InitialActor
 from specs.elaboration.names import Names
 from specs.elaboration.patterns import warn_of_hiding
-from specs.elaboration.rule_schemas import Checked, Maker, Schema
-from specs.elaboration.statements import Body, Numbering, SpawnSite
+from specs.elaboration.rule_schemas import CommandReactions, Maker, Schema
+from specs.elaboration.statements import ElaboratedBody, SpawnSite, StatementNumbers
 
 
 @dataclass
@@ -31,12 +31,12 @@ class Bodies:
         schemas: The rules that controls name, inline rules included.
     """
 
-    agents: dict[str, Body] = field(default_factory=dict)
-    behaviours: dict[str, Body] = field(default_factory=dict)
+    agents: dict[str, ElaboratedBody] = field(default_factory=dict)
+    behaviours: dict[str, ElaboratedBody] = field(default_factory=dict)
     parameters: dict[str, tuple[str, ...]] = field(default_factory=dict)
     schemas: dict[str, Schema] = field(default_factory=dict)
 
-    def all(self) -> Iterator[Body]:
+    def all(self) -> Iterator[ElaboratedBody]:
         """Yield every body."""
         yield from self.agents.values()
         yield from self.behaviours.values()
@@ -50,9 +50,9 @@ class Bodies:
                 found.setdefault(site.name, []).append(site)
         return found
 
-    def reached(self, start: Body) -> tuple[Body, ...]:
+    def reached(self, start: ElaboratedBody) -> tuple[ElaboratedBody, ...]:
         """Return the bodies that one runs: itself and those that it calls, transitively."""
-        found: dict[int, Body] = {}
+        found: dict[int, ElaboratedBody] = {}
         waiting = [start]
         while waiting:
             body = waiting.pop()
@@ -62,7 +62,7 @@ class Bodies:
                 waiting += [each for each in called if each is not None]
         return tuple(found.values())
 
-    def running(self, agent: str) -> tuple[Body, ...]:
+    def running(self, agent: str) -> tuple[ElaboratedBody, ...]:
         """Return the bodies that an initial or spawned bigActor may run."""
         starts = [self.agents[agent]] if agent in self.agents else []
         spawned = {site.behaviour for site in self.spawned.get(agent, ())}
@@ -70,7 +70,7 @@ class Bodies:
         return tuple({id(body): body for start in starts for body in self.reached(start)}.values())
 
 
-def declare_behaviours(mission: s.Mission, names: Names, actors: Iterable[Actor]) -> None:
+def declare_behaviours(mission: s.Mission, names: Names, actors: Iterable[InitialActor]) -> None:
     """Declare rules, behaviours and bigActors before their bodies, so that these may refer to each other."""
     for rule in mission.each(s.Rule):
         if names.declare("rule", rule.name.text, rule.name):
@@ -99,21 +99,21 @@ def _declare_spawned(mission: s.Mission, names: Names) -> None:
 
 
 def elaborate_bodies(
-    mission: s.Mission, names: Names, actors: tuple[Actor, ...], schemas: Mapping[str, Schema]
+    mission: s.Mission, names: Names, actors: tuple[InitialActor, ...], schemas: Mapping[str, Schema]
 ) -> tuple[Bodies, Program]:
     """Return all bodies, and the program with their numbered statements."""
     bodies = Bodies(schemas=dict(schemas))
-    program = Numbering(names, bodies.schemas)
+    program = StatementNumbers(names, bodies.schemas)
     first: dict[str, int] = {}
     copies: dict[int, int] = {}
     for actor in actors:
-        body, start = Body(actor.name, is_agent=True), len(program.statements)
+        body, start = ElaboratedBody(actor.name, is_agent=True), len(program.statements)
         bodies.agents.setdefault(actor.name, body)
         program.body(body, actor.body, {}, actor.constants)
         before = start - first.setdefault(actor.family or actor.name, start)
         copies |= {number: number - before for number in range(start, len(program.statements)) if before}
     for definition in mission.each(s.Definition):
-        body, name = Body(definition.name.text, is_agent=False), definition.name.text
+        body, name = ElaboratedBody(definition.name.text, is_agent=False), definition.name.text
         parameters = _parameters(definition, names)
         bodies.behaviours.setdefault(name, body)
         bodies.parameters.setdefault(name, tuple(parameters.values()))
@@ -127,8 +127,8 @@ def elaborate_bodies(
     behaviours = {
         name: Behaviour(name, bodies.parameters[name], body.block) for name, body in bodies.behaviours.items()
     }
-    reactions: dict[str, Checked | Maker] = {
-        name: Checked(command, names.kinds) for name, command in COMMANDS.items()
+    reactions: dict[str, CommandReactions | Maker] = {
+        name: CommandReactions(command, names.kinds) for name, command in COMMANDS.items()
     }
     reactions |= {name: Maker(schema, names.kinds) for name, schema in bodies.schemas.items()}
     statements, lines = tuple(program.statements), tuple(program.lines)
@@ -247,7 +247,7 @@ def possible_hosts(bodies: Bodies, names: Names) -> dict[str, frozenset[str] | N
     return {key: None if hosts is None else frozenset(hosts) for key, hosts in found.items()}
 
 
-def body_key(body: Body) -> str:
+def body_key(body: ElaboratedBody) -> str:
     """Return the unique key of a body."""
     return body.name if body.is_agent else f"{body.name}()"
 

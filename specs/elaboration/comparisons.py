@@ -9,24 +9,24 @@ from semantics.behaviours.values import Value, show
 from semantics.properties.propositions import ORDERS
 from specs import syntax as s
 from specs.codes import Code
+from specs.construct_text import write
 from specs.elaboration.names import Names
 from specs.elaboration.needs import requoted, unquoted
-from specs.elaboration.value_types import ANY, NAMES, NOTHING, Sort, Sorts, Types, sort_of
-from specs.writing import write
+from specs.elaboration.value_types import ANY, NAMES, NOTHING, Sorts, Types, ValueSort, sort_of
 
 _PLURALS: Final = {
-    Sort.NUMBER: "numbers",
-    Sort.TEXT: "texts",
-    Sort.ENTITY: "entities",
-    Sort.AGENT: "bigActors",
-    Sort.TRUTH: "true and false",
-    Sort.TUPLE: "tuples",
-    Sort.SET: "sets",
-    Sort.ROUTE: "routes",
-    Sort.OBSERVATION: "observations",
+    ValueSort.NUMBER: "numbers",
+    ValueSort.TEXT: "texts",
+    ValueSort.ENTITY: "entities",
+    ValueSort.AGENT: "bigActors",
+    ValueSort.TRUTH: "true and false",
+    ValueSort.TUPLE: "tuples",
+    ValueSort.SET: "sets",
+    ValueSort.ROUTE: "routes",
+    ValueSort.OBSERVATION: "observations",
 }
 
-_WORDS: Final = NAMES | {Sort.TEXT}
+_WORDS: Final = NAMES | {ValueSort.TEXT}
 
 
 def check_comparable(node: s.Stored, variable: VariableOf, value: Value, names: Names, types: Types) -> None:
@@ -36,7 +36,7 @@ def check_comparable(node: s.Stored, variable: VariableOf, value: Value, names: 
         hint = "write a whole number, or compare with == or !="
         names.findings.add(Code.NOT_COMPARABLE, node, message, hint)
         return
-    sorts = frozenset[Sort]().union(*(types.get(each, NOTHING).sorts for each in variable.variables))
+    sorts = frozenset[ValueSort]().union(*(types.get(each, NOTHING).sorts for each in variable.variables))
     sort, sorts = sort_of(value, names.agents), sorts or ANY.sorts
     if sort in _WORDS and sorts & _WORDS:
         _check_quotes(node, variable, value, sorts & _WORDS, names)
@@ -50,7 +50,7 @@ def check_comparable(node: s.Stored, variable: VariableOf, value: Value, names: 
 def _check_quotes(node: s.Stored, variable: VariableOf, value: Value, sorts: Sorts, names: Names) -> None:
     """Warn of a text that is compared with names, or of a name that is compared with texts."""
     sort = sort_of(value, names.agents)
-    if (sort is Sort.TEXT) is not (Sort.TEXT in sorts) and not {sort, Sort.TEXT} <= sorts:
+    if (sort is ValueSort.TEXT) is not (ValueSort.TEXT in sorts) and not {sort, ValueSort.TEXT} <= sorts:
         has = " or ".join(words for each, words in _PLURALS.items() if each in sorts)
         message = (
             f"these are never equal: '{variable}' has only {has}, and {write(node.value)} is {sort.value}"

@@ -12,11 +12,11 @@ from semantics.environment import Drifts
 from semantics.state.physical_model import Carried, Placed
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import shorten
 from specs.elaboration.geometry import elaborate_placement, moved_to
+from specs.elaboration.mission_mistakes import shorten
 from specs.elaboration.mobility import Mobility, moves
 from specs.elaboration.names import Names
-from specs.elaboration.world import World
+from specs.elaboration.world import InitialWorld
 
 LIST_THEM: Final = "list its placements: drifts among ..."
 
@@ -26,7 +26,7 @@ class Spots:
     """Elaborates written placements, and names of places, to placements of an entity."""
 
     names: Names
-    world: World
+    world: InitialWorld
 
     def placed(self, spot: s.Placement | s.Name, entity: str) -> Placed | None:
         """Return the placement; for a named place or a point, it is the entity's shape centred there."""

@@ -9,11 +9,11 @@ from semantics.environment import Appears, Clause, Drops, Leaves, Says, Vanishes
 from semantics.state.physical_model import Carried, Placed
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.constants import elaborate_constant
+from specs.elaboration.constant_values import elaborate_constant
 from specs.elaboration.drifts import Spots, drifts_among, drifts_within
 from specs.elaboration.mobility import Mobility, carries
 from specs.elaboration.names import Names
-from specs.elaboration.world import World
+from specs.elaboration.world import InitialWorld
 
 
 @dataclass(slots=True)
@@ -28,7 +28,7 @@ class _Clauses:
     """
 
     names: Names
-    world: World
+    world: InitialWorld
     mobility: Mobility
     spots: Spots
     all: tuple[s.EnvironmentClause, ...]
@@ -47,7 +47,7 @@ class _Clauses:
 
 
 def elaborate_environment(
-    mission: s.Mission, names: Names, world: World, mobility: Mobility
+    mission: s.Mission, names: Names, world: InitialWorld, mobility: Mobility
 ) -> tuple[tuple[Clause, ...], tuple[s.Span, ...], frozenset[str]]:
     """Return the clauses of a mission with their spans, and the entities whose flights always end."""
     written = tuple(clause for section in mission.each(s.Environment) for clause in section.clauses)

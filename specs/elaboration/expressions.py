@@ -10,7 +10,7 @@ from bigraphs.notation.spelling import listed
 from semantics.behaviours.expressions import (
     OPERATORS,
     Apply,
-    Either,
+    EvaluationScope,
     Expression,
     Fault,
     Host,
@@ -19,18 +19,18 @@ from semantics.behaviours.expressions import (
     RouteOf,
     Self,
     SetOf,
+    ShortCircuit,
     TupleOf,
     Variable,
     evaluate,
     leaves,
 )
-from semantics.behaviours.expressions import Scope as EvaluationScope
 from semantics.behaviours.observations import QueryOperator
 from semantics.behaviours.values import Text, Truth
 from semantics.state.signature import NO_ENTITIES
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import Findings
+from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.names import Names
 from specs.elaboration.needs import (
     AGENT,
@@ -114,7 +114,7 @@ def _binary(node: s.BinaryOperation, scope: Scope, names: Names) -> Expression:
     if node.operator in ("and", "or"):
         names.need(node.left, left, CONDITION, f"'{node.operator}'")
         names.need(node.right, right, CONDITION, f"'{node.operator}'")
-        return Either(node.operator == "or", left, right)
+        return ShortCircuit(node.operator == "or", left, right)
     operator = node.operator.removeprefix("not ")
     names.demands += operands(operator, (node.left, node.right), (left, right))
     applied = Apply(operator, (left, right))

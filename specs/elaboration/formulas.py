@@ -35,14 +35,14 @@ from semantics.properties.propositions import (
 from semantics.state.signature import REGION
 from specs import syntax as s
 from specs.codes import Code
+from specs.construct_text import write
 from specs.elaboration.among import Among
 from specs.elaboration.bodies import Bodies
 from specs.elaboration.comparisons import check_comparable
-from specs.elaboration.constants import elaborate_constant
-from specs.elaboration.findings import a
+from specs.elaboration.constant_values import elaborate_constant
+from specs.elaboration.mission_mistakes import a
 from specs.elaboration.names import Names
 from specs.elaboration.value_types import Types
-from specs.writing import write
 
 MOST_ATOMS: Final = 50_000
 """The most atoms of all properties together, after expansion."""
@@ -99,7 +99,7 @@ class TooLarge(Exception):
     """A formula exceeds a bound; carries the message and the hint."""
 
 
-class Formulas:
+class FormulaElaborator:
     """Elaborates the formulas of a mission; `atoms` counts all their atoms, `left` the quantifiers not expanded."""
 
     def __init__(self, names: Names, bodies: Bodies, types: Types, *, is_timed: bool = False) -> None:

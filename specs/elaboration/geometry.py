@@ -9,8 +9,8 @@ from physical.outliers import is_swapped, outliers
 from semantics.state.physical_model import Placed
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import Findings
-from specs.writing import write
+from specs.construct_text import write
+from specs.elaboration.mission_mistakes import Findings
 
 
 def elaborate_geometry(node: s.Geometry, findings: Findings) -> Geometry | None:

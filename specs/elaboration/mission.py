@@ -20,14 +20,13 @@ from semantics.state.signature import Name
 from specs import syntax as s
 from specs.codes import Code
 from specs.diagnostics import Diagnostic, MissionError, Source
-from specs.elaboration.actors import first_actors
 from specs.elaboration.beliefs import check_forest, elaborate_beliefs, settled
 from specs.elaboration.bodies import declare_behaviours, elaborate_bodies
-from specs.elaboration.checks import elaborate_checks, elaborate_control, elaborate_scheduler
+from specs.elaboration.check_section import elaborate_checks, elaborate_control, elaborate_scheduler
 from specs.elaboration.environment import appearing_channels, elaborate_environment
-from specs.elaboration.files import Library
-from specs.elaboration.findings import Findings
+from specs.elaboration.initial_actors import first_actors
 from specs.elaboration.live import elaborate_live
+from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.mobility import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
 from specs.elaboration.names import Names
 from specs.elaboration.needs import check_types
@@ -35,11 +34,12 @@ from specs.elaboration.overflights import warn_of_overflights
 from specs.elaboration.realisability import Ground, check_controls
 from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
-from specs.elaboration.timing import Ticks, elaborate_timing
+from specs.elaboration.timing import TickConversion, elaborate_timing
 from specs.elaboration.unread import independent
 from specs.elaboration.value_types import Inference
 from specs.elaboration.variation import AS_WRITTEN, Variation
 from specs.elaboration.world import elaborate_world
+from specs.elaboration.world_files import Library
 from specs.missions import shipped_missions
 from specs.parser import read
 from specs.preprocessing import MAX_BYTES, decode
@@ -131,7 +131,7 @@ def elaborate(
     said = tuple(clause.message for clause in clauses if isinstance(clause, Says))
     inference = Inference(program, frozenset(names.kinds), frozenset(names.agents), said)
     types = check_types(names.demands, inference, names.findings)
-    ticks = None if timing is None else Ticks(timing.tick, names.findings)
+    ticks = None if timing is None else TickConversion(timing.tick, names.findings)
     properties = elaborate_checks(mission, names, bodies, types, ticks)
     precautions = elaborate_live(mission, names)
     _stop(names.findings)

@@ -15,7 +15,7 @@ from semantics.state.physical_model import Carried, Placed
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.names import Names
-from specs.elaboration.world import World
+from specs.elaboration.world import InitialWorld
 
 _AFLOAT: Final = re.compile(r"(?i)vessel|tanker|drifter|boat|ship|ferry|buoy|raft|swimmer")
 
@@ -35,7 +35,7 @@ class Mobility:
     carried: set[str] = field(default_factory=set)
 
 
-def elaborate_mobility(mission: s.Mission, names: Names, world: World) -> Mobility:
+def elaborate_mobility(mission: s.Mission, names: Names, world: InitialWorld) -> Mobility:
     """Collect the moving entities from the world and the environment section."""
     clauses = [clause for section in mission.each(s.Environment) for clause in section.clauses]
     found = Mobility()
@@ -74,7 +74,7 @@ def fixed_entities(names: Names, mobility: Mobility) -> frozenset[str]:
     )
 
 
-def check_nesting(names: Names, world: World, mobility: Mobility) -> None:
+def check_nesting(names: Names, world: InitialWorld, mobility: Mobility) -> None:
     """Report each pair of immobile places that neither nest nor are disjoint."""
     places = {
         name: Place(placement.geometry, placement.altitude)
@@ -89,7 +89,7 @@ def check_nesting(names: Names, world: World, mobility: Mobility) -> None:
         names.findings.add(Code.PLACES_OVERLAP, max(spans), str(conflict), conflict.hint)
 
 
-def warn_of_outliers(names: Names, world: World, clauses: Iterable[tuple[Clause, s.Span]]) -> None:
+def warn_of_outliers(names: Names, world: InitialWorld, clauses: Iterable[tuple[Clause, s.Span]]) -> None:
     """Warn of positions so far from all others that their latitude and longitude may be exchanged."""
     geometries = dict(_geometries(names, world, clauses))
     _warn_of_all(names, geometries)
@@ -116,7 +116,7 @@ def _warn_of_all(names: Names, geometries: Mapping[tuple[s.Span, str], Geometry]
 
 
 def _geometries(
-    names: Names, world: World, clauses: Iterable[tuple[Clause, s.Span]]
+    names: Names, world: InitialWorld, clauses: Iterable[tuple[Clause, s.Span]]
 ) -> Iterator[tuple[tuple[s.Span, str], Geometry]]:
     """Yield the initial and possible geometries of each entity, with the span and the description of each."""
     for name, placement in world.placements.items():

@@ -13,7 +13,7 @@ from semantics.behaviours.values import Value, show
 from semantics.state.signature import NO_ENTITIES, REGION, Signature
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import Findings, a, shorten
+from specs.elaboration.mission_mistakes import Findings, a, shorten
 from specs.elaboration.needs import Demand, Need, Use, unquoted
 
 SORTS: Final = ("entity", "agent", "family", "kind", "channel", "rule", "behaviour")

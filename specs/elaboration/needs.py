@@ -13,7 +13,8 @@ from semantics.behaviours.values import Value, show
 from semantics.state.signature import NO_ENTITIES
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import Findings, shorten
+from specs.construct_text import write
+from specs.elaboration.mission_mistakes import Findings, shorten
 from specs.elaboration.value_types import (
     COLLECTIONS,
     EVERY,
@@ -21,15 +22,14 @@ from specs.elaboration.value_types import (
     NAMES,
     NOTHING,
     Inference,
-    Sort,
     Sorts,
     Type,
     Types,
+    ValueSort,
     compared,
     may_take,
     members_of,
 )
-from specs.writing import write
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,28 +60,35 @@ MOST_MESSAGES: Final = 50
 
 CONDITIONAL: Final = "a condition"
 _NAME_IT: Final = "write its name, or a variable that holds it"
-_NODES: Final = HOLDERS | {Sort.ENTITY}
+_NODES: Final = HOLDERS | {ValueSort.ENTITY}
 
 CONDITION: Final = Need(
-    Sorts({Sort.TRUTH}), "compare it, or ask something of it: x == 3, uav0 in obs, not empty(seen)"
+    Sorts({ValueSort.TRUTH}), "compare it, or ask something of it: x == 3, uav0 in obs, not empty(seen)"
 )
 COLLECTION: Final = Need(
     COLLECTIONS, "write a set, {a0, b0}, a route, [a0, b0], or a variable that holds one"
 )
 FILLED: Final = Need(COLLECTIONS, COLLECTION.remedy, filled=True)
-SEEN: Final = Need(Sorts({Sort.OBSERVATION}), "give it what a react received: case obs: Observation => ...")
-NUMBER: Final = Need(Sorts({Sort.NUMBER}), "write a whole number, or count: size(obs)")
+SEEN: Final = Need(
+    Sorts({ValueSort.OBSERVATION}), "give it what a react received: case obs: Observation => ..."
+)
+NUMBER: Final = Need(Sorts({ValueSort.NUMBER}), "write a whole number, or count: size(obs)")
 TUPLE: Final = Need(
-    Sorts({Sort.TUPLE, Sort.ROUTE}), "write a tuple, (a0, 3), or a route, [a0, b0]", filled=True
+    Sorts({ValueSort.TUPLE, ValueSort.ROUTE}), "write a tuple, (a0, 3), or a route, [a0, b0]", filled=True
 )
-NODE: Final = Need(_NODES, _NAME_IT, Sorts({Sort.ENTITY}), filled=True)
-NODES: Final = Need(_NODES, _NAME_IT, Sorts({Sort.ENTITY}))
+NODE: Final = Need(_NODES, _NAME_IT, Sorts({ValueSort.ENTITY}), filled=True)
+NODES: Final = Need(_NODES, _NAME_IT, Sorts({ValueSort.ENTITY}))
 AGENT: Final = Need(
-    HOLDERS | {Sort.AGENT}, f"{_NAME_IT}: send message to bigActor", Sorts({Sort.AGENT}), filled=True
+    HOLDERS | {ValueSort.AGENT},
+    f"{_NAME_IT}: send message to bigActor",
+    Sorts({ValueSort.AGENT}),
+    filled=True,
 )
-ENTITY: Final = Need(Sorts({Sort.ENTITY}), _NAME_IT)
+ENTITY: Final = Need(Sorts({ValueSort.ENTITY}), _NAME_IT)
 NAME: Final = Need(NAMES, _NAME_IT)
-MEMBER: Final = Need(Sorts({Sort.ENTITY, Sort.NUMBER}), "a member is called by its entity or its number")
+MEMBER: Final = Need(
+    Sorts({ValueSort.ENTITY, ValueSort.NUMBER}), "a member is called by its entity or its number"
+)
 
 OPERANDS: Final[Mapping[str, tuple[Need | None, ...]]] = {
     **dict.fromkeys(("<", "<=", ">", ">="), (NUMBER, NUMBER)),
@@ -118,7 +125,7 @@ class Use:
 
 
 @dataclass(frozen=True, slots=True)
-class Pair:
+class OperandPair:
     """Two operands that are checked together."""
 
     operator: str
@@ -128,7 +135,7 @@ class Pair:
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class CaseDistinction:
     """The cases of a `match`, one of which must accept the subject, or of a `react`, which has no subject."""
 
     where: s.Node
@@ -136,7 +143,7 @@ class Choice:
     cases: tuple[tuple[s.Pattern, Pattern], ...]
 
 
-Demand = Use | Pair | Choice
+Demand = Use | OperandPair | CaseDistinction
 
 
 def check_types(demands: list[Demand], inference: Inference, findings: Findings) -> Types:
@@ -146,7 +153,7 @@ def check_types(demands: list[Demand], inference: Inference, findings: Findings)
     for demand in demands:
         if isinstance(demand, Use):
             judge.use(demand)
-        elif isinstance(demand, Choice):
+        elif isinstance(demand, CaseDistinction):
             judge.choice(demand)
         elif demand.operator == "element":
             judge.item(demand)
@@ -166,7 +173,7 @@ def _gifts(inference: Inference, known: Types) -> Mapping[str, list[tuple[int, T
             message = inference.type(each.message, known)
             if all(message != other for _, other in sent):
                 sent.append((program.line(number), message))
-    seen = Sorts({Sort.OBSERVATION})
+    seen = Sorts({ValueSort.OBSERVATION})
     for number, statement in enumerate(program.statements):
         here = program.line(number)
         for line, message in [*(sent if isinstance(statement, React) else ()), (here, NOTHING)]:
@@ -194,7 +201,7 @@ class _Judge:
         needs = f"{use.by} {'is' if use.by == CONDITIONAL else 'needs'} {_words(use.need)}"
         message = f"{needs}, and {_shown(use.where)} is {_said(given, use.need)}"
         origin = self.origin(use.value, use.need) if isinstance(use.value, Variable) else ""
-        if use.need is COLLECTION and use.by != "'for'" and given.sorts == {Sort.ENTITY}:
+        if use.need is COLLECTION and use.by != "'for'" and given.sorts == {ValueSort.ENTITY}:
             asked = " if x in obs" if use.by == "'in'" else ""
             react = f"react {{ case obs: Observation{asked} => ... }}"
             remedy = f"observe it first: observe(CHILDREN({write(use.where)})) {react}"
@@ -202,7 +209,7 @@ class _Judge:
             return
         several = use.need in (NODE, AGENT) and bool(use.need.members & members_of(given))
         hint = f"take one: choose x in {write(use.where)} {{ ... }}" if several else use.need.remedy
-        if use.need.sorts & NAMES and Sort.TEXT in given.sorts | given.members:
+        if use.need.sorts & NAMES and ValueSort.TEXT in given.sorts | given.members:
             hint = self.unquoted(use.where) or "a name is written without quotes"
         if isinstance(use.where, s.TupleLiteral) and use.need.sorts >= COLLECTIONS:
             hint = f"in this order it is a route: {write(s.RouteLiteral(use.where.items))}"
@@ -225,7 +232,7 @@ class _Judge:
         first = min(lines, default=0)
         return f" (line {first})" if first else ""
 
-    def choice(self, choice: Choice) -> None:
+    def choice(self, choice: CaseDistinction) -> None:
         if choice.subject is None:
             given = self.inference.messages(self.known)
         else:
@@ -245,37 +252,39 @@ class _Judge:
         """Warn of a case with a text where only names occur, or with a name where only texts do."""
         for constant, there in compared(pattern, given):
             own = self.inference.constant(constant).sorts
-            if own.isdisjoint(there) and Sort.TEXT in own | there <= NAMES | {Sort.TEXT}:
+            if own.isdisjoint(there) and ValueSort.TEXT in own | there <= NAMES | {ValueSort.TEXT}:
                 what = f"{show(constant)} is {_listed(own)}, and {_listed(there)} stands there"
                 message = f"nothing is taken here: {what}"
                 hint = self.unquoted(where, "=") or requoted(constant)
                 self.findings.warn(Code.ALWAYS_THE_SAME, where, message, hint)
                 return
 
-    def item(self, pair: Pair) -> None:
+    def item(self, pair: OperandPair) -> None:
         """Report the index of an item that no tuple has."""
         given, index = self.inference.type(pair.values[0], self.known), pair.values[1]
         if given.tuples and isinstance(index, Literal) and isinstance(index.value, int):
             longest = max(length for length, _ in given.tuples)
-            if not 0 <= index.value < longest and given.sorts == {Sort.TUPLE}:
+            if not 0 <= index.value < longest and given.sorts == {ValueSort.TUPLE}:
                 message = (
                     f"{_shown(pair.left)} has {longest} items, counted from 0, and no item {index.value}"
                 )
                 self.findings.add(Code.WRONG_VALUE, pair.right, message, f"write 0 to {longest - 1}")
 
-    def sum(self, pair: Pair) -> None:
+    def sum(self, pair: OperandPair) -> None:
         left, right = (self.inference.type(value, self.known) for value in pair.values)
-        numbers = Sort.NUMBER in left.sorts and Sort.NUMBER in right.sorts
-        routes = Sort.ROUTE in left.sorts and Sort.ROUTE in right.sorts
-        joined = left.sorts & (COLLECTIONS if pair.operator == "-" else {Sort.SET})
+        numbers = ValueSort.NUMBER in left.sorts and ValueSort.NUMBER in right.sorts
+        routes = ValueSort.ROUTE in left.sorts and ValueSort.ROUTE in right.sorts
+        joined = left.sorts & (COLLECTIONS if pair.operator == "-" else {ValueSort.SET})
         if numbers or routes or (joined and right.sorts & COLLECTIONS) or not (left.sorts and right.sorts):
             return
-        alone = Sort.ROUTE in left.sorts and not joined
-        need = NUMBER if Sort.NUMBER in left.sorts else _SETS if joined else _ROUTE if alone else _ADDENDS
+        alone = ValueSort.ROUTE in left.sorts and not joined
+        need = (
+            NUMBER if ValueSort.NUMBER in left.sorts else _SETS if joined else _ROUTE if alone else _ADDENDS
+        )
         blamed = (pair.right, pair.values[1]) if need is not _ADDENDS else (pair.left, pair.values[0])
         self.use(Use(*blamed, need, f"'{pair.operator}'"))
 
-    def comparison(self, pair: Pair) -> None:
+    def comparison(self, pair: OperandPair) -> None:
         left, right = (self.inference.type(value, self.known) for value in pair.values)
         others = members_of(right) if pair.operator == "in" else right.sorts
         if not left.sorts or not others or left.sorts & others:
@@ -297,8 +306,8 @@ class _Judge:
 
 
 _SETS: Final = Need(COLLECTIONS, COLLECTION.remedy)
-_ROUTE: Final = Need(Sorts({Sort.ROUTE}), "routes are joined with routes: [a0] + [b0, a0]")
-_ADDENDS: Final = Need(HOLDERS | {Sort.NUMBER}, "add numbers, or join sets or routes: {a0} + {b0}")
+_ROUTE: Final = Need(Sorts({ValueSort.ROUTE}), "routes are joined with routes: [a0] + [b0, a0]")
+_ADDENDS: Final = Need(HOLDERS | {ValueSort.NUMBER}, "add numbers, or join sets or routes: {a0} + {b0}")
 
 
 def operands(
@@ -306,7 +315,7 @@ def operands(
 ) -> Iterator[Demand]:
     """Yield the required types of an operator's operands."""
     if operator in ("+", "-", "==", "!=", "in", "element"):
-        yield Pair(operator, nodes[0], nodes[1], (values[0], values[1]))
+        yield OperandPair(operator, nodes[0], nodes[1], (values[0], values[1]))
     for node, value, need in zip(nodes, values, OPERANDS.get(operator, ()), strict=False):
         if need is not None:
             yield Use(node, value, need, f"'{operator}'")
@@ -336,7 +345,7 @@ def _said(given: Type, need: Need) -> str:
 
 
 def _listed(sorts: Sorts) -> str:
-    words = [sort.value for sort in Sort if sort in sorts]
+    words = [sort.value for sort in ValueSort if sort in sorts]
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
 
 

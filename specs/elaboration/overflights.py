@@ -23,7 +23,7 @@ from semantics.state.setting import Setting
 from semantics.state.signature import REGION, Name
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import Findings
+from specs.elaboration.mission_mistakes import Findings
 
 Leg = tuple[Name, tuple[Name, ...]]
 """A vehicle, with the places of its VIA and its destination."""

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from semantics.behaviours.patterns import Anything, Elements, Exactly, Pattern
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.constants import elaborate_constant
+from specs.elaboration.constant_values import elaborate_constant
 from specs.elaboration.names import Names
 from specs.elaboration.scopes import Scope
 

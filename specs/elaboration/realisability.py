@@ -14,12 +14,12 @@ from semantics.state.physical_model import Placed
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.bodies import Bodies, body_key, possible_hosts
-from specs.elaboration.findings import a
+from specs.elaboration.mission_mistakes import a
 from specs.elaboration.mobility import Mobility
 from specs.elaboration.names import Names
 from specs.elaboration.rule_schemas import Schema
 from specs.elaboration.statements import ControlSite
-from specs.elaboration.world import World
+from specs.elaboration.world import InitialWorld
 
 MOST_HOSTS: Final = 50
 """The most possible hosts of a bigActor whose controls are checked; with more, only runs check them."""
@@ -54,7 +54,7 @@ class Ground:
     """
 
     names: Names
-    world: World
+    world: InitialWorld
     mobility: Mobility
     fixed: frozenset[str]
     holes: dict[tuple[str, str], tuple[tuple[str, Placed], ...]] = field(default_factory=dict)

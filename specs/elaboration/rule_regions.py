@@ -23,7 +23,7 @@ Pairs = tuple[tuple[NodeTerm, PlaceTerm], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Region:
+class WrittenRegion:
     """One written region: its nodes and sites, each with its parent, None for the region itself."""
 
     index: int
@@ -34,7 +34,7 @@ class Region:
         return (item for item, _ in self.items if isinstance(item, WrittenNode))
 
 
-def regions_of(regions: tuple[RegionTerm, ...]) -> Iterator[Region]:
+def regions_of(regions: tuple[RegionTerm, ...]) -> Iterator[WrittenRegion]:
     """Yield the regions of one side of a rule, flattened."""
     for index, region in enumerate(regions):
         items: list[tuple[WrittenNode | SiteTerm, WrittenNode | None]] = []
@@ -46,14 +46,14 @@ def regions_of(regions: tuple[RegionTerm, ...]) -> Iterator[Region]:
             items.append((term, above))
             if isinstance(term, WrittenNode):
                 waiting.extend((child, term) for child in reversed(term.children))
-        yield Region(index, tuple(items))
+        yield WrittenRegion(index, tuple(items))
 
 
 @dataclass(frozen=True)
 class Side:
     """One side of a rule with the meaning of its words."""
 
-    regions: tuple[Region, ...]
+    regions: tuple[WrittenRegion, ...]
     meaning: Mapping[str, NodeTerm | None]
 
     def term(self, node: WrittenNode) -> NodeTerm:

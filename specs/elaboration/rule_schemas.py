@@ -26,7 +26,7 @@ _WORD: Final = re.compile(r"[^\W\d]\w*")
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class SchemaParameter:
     """A parameter of a rule: its name in the patterns (`u#`), and its kind, if known."""
 
     name: str
@@ -60,7 +60,7 @@ class Schema:
 
     name: str
     text: str
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[SchemaParameter, ...]
     redex: Pattern
     reactum: Pattern
     moves: tuple[Moved, ...] = ()
@@ -95,7 +95,7 @@ class Schema:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Checked:
+class CommandReactions:
     """Makes the reactions of a command of the language; it fails if an argument is no node.
 
     Attributes:
@@ -159,7 +159,7 @@ class Maker:
         except (KeyError, Fault):
             return None
 
-    def _node(self, parameter: Parameter, value: Value) -> Name:
+    def _node(self, parameter: SchemaParameter, value: Value) -> Name:
         node = _node(value, self.kinds, f"a node was expected for {parameter.shown}, not")
         if parameter.kind is not None and self.kinds[node] != parameter.kind:
             raise Fault(

@@ -18,10 +18,10 @@ from semantics.behaviours.reaction_rules import (
 )
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import a
+from specs.elaboration.mission_mistakes import a
 from specs.elaboration.names import Names
-from specs.elaboration.rule_regions import Region, Side, region_places, regions_of
-from specs.elaboration.rule_schemas import Moved, Parameter, Schema
+from specs.elaboration.rule_regions import Side, WrittenRegion, region_places, regions_of
+from specs.elaboration.rule_schemas import Moved, Schema, SchemaParameter
 
 
 @dataclass(slots=True)
@@ -66,7 +66,7 @@ def elaborate_rules(mission: s.Mission, names: Names) -> dict[str, Schema]:
     return found
 
 
-def _parameters(rule: s.Rule, names: Names) -> Iterator[Parameter]:
+def _parameters(rule: s.Rule, names: Names) -> Iterator[SchemaParameter]:
     seen: set[str] = set()
     for parameter in rule.parameters:
         known = names.kind(parameter.kind)
@@ -74,13 +74,13 @@ def _parameters(rule: s.Rule, names: Names) -> Iterator[Parameter]:
             message = f"rule '{rule.name.text}' has two parameters '{parameter.name.text}'"
             names.findings.add(Code.DUPLICATE_NAME, parameter, message, "rename one of the two")
         seen.add(parameter.name.text)
-        yield Parameter(f"{parameter.name.text}#", parameter.kind.text if known else None)
+        yield SchemaParameter(f"{parameter.name.text}#", parameter.kind.text if known else None)
 
 
 def elaborate_rule(
     body: s.RuleBody,
     name: str,
-    parameters: tuple[Parameter, ...],
+    parameters: tuple[SchemaParameter, ...],
     given: Mapping[str, str | None],
     names: Names,
 ) -> Schema | None:
@@ -125,7 +125,7 @@ def word_of(node: WrittenNode) -> str:
     return node.name or "" if node.control is None else f"{node.name or ''}_{node.control}"
 
 
-def _name_nodes(reading: _Reading, region: Region) -> None:
+def _name_nodes(reading: _Reading, region: WrittenRegion) -> None:
     for node in region.nodes():
         word = word_of(node)
         if word not in reading.terms:

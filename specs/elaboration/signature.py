@@ -9,7 +9,7 @@ from bigraphs.notation.spelling import listed
 from semantics.state.signature import Kind, Signature
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.findings import shorten
+from specs.elaboration.mission_mistakes import shorten
 from specs.elaboration.names import AGENTS, Names
 from specs.elaboration.proposed_signature import proposed
 from specs.standard_signature import standard_kinds

@@ -17,6 +17,7 @@ from semantics.behaviours.values import Value
 from specs import syntax as s
 from specs.autopilot_words import ORDERS
 from specs.codes import Code
+from specs.construct_text import write
 from specs.elaboration.expressions import (
     check_arity,
     elaborate_agent,
@@ -24,16 +25,15 @@ from specs.elaboration.expressions import (
     elaborate_node,
     elaborate_query,
 )
-from specs.elaboration.findings import Findings
+from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.names import Names
-from specs.elaboration.needs import COLLECTION, CONDITION, CONDITIONAL, FILLED, Choice, Need
+from specs.elaboration.needs import COLLECTION, CONDITION, CONDITIONAL, FILLED, CaseDistinction, Need
 from specs.elaboration.patterns import check_distinct, elaborate_pattern, note_hiding
 from specs.elaboration.rule_regions import regions_of
-from specs.elaboration.rule_schemas import Parameter, Schema
+from specs.elaboration.rule_schemas import Schema, SchemaParameter
 from specs.elaboration.rules import elaborate_rule, word_of
 from specs.elaboration.scopes import Scope, Variables
 from specs.foreign_words import DONE
-from specs.writing import write
 
 LONGEST: Final = 7 * 24 * 3600.0
 """The longest duration in seconds."""
@@ -75,7 +75,7 @@ class ControlSite:
 
 
 @dataclass(slots=True)
-class Body:
+class ElaboratedBody:
     """The body of a bigActor or a behaviour: its block, and the statements in it that later checks examine.
 
     `runs` is the behaviour that it is declared with, if it contains nothing else.
@@ -94,7 +94,7 @@ class Body:
 
 
 @dataclass(slots=True)
-class Numbering:
+class StatementNumbers:
     """The statements of a mission so far, each with its line and its syntax node."""
 
     names: Names
@@ -127,7 +127,7 @@ class Numbering:
 
     def body(
         self,
-        body: Body,
+        body: ElaboratedBody,
         written: tuple[s.Statement, ...],
         parameters: Mapping[str, str],
         constants: Mapping[str, Value],
@@ -154,7 +154,7 @@ class _Place:
 class _Statements:
     """Elaborates the statements of one body. Each depth of nesting costs three frames of Python's stack."""
 
-    def __init__(self, program: Numbering, body: Body) -> None:
+    def __init__(self, program: StatementNumbers, body: ElaboratedBody) -> None:
         self.program = program
         self.names = program.names
         self.into = body
@@ -239,7 +239,7 @@ class _Statements:
             for word in words
             if (unique := place.scope.find(word)) is not None and word != HOST
         }
-        parameters = tuple(Parameter(f"{word}#", None) for word in bound)
+        parameters = tuple(SchemaParameter(f"{word}#", None) for word in bound)
         schema = elaborate_rule(body, "", parameters, dict.fromkeys(bound), self.names)
         name = f"rule#{number}"
         if schema is not None:
@@ -376,7 +376,7 @@ class _Statements:
     ) -> None:
         """Record cases, to be checked when all types are known."""
         pairs = zip((each.pattern for each in written), (each.pattern for each in cases), strict=True)
-        self.names.demands.append(Choice(where, subject, tuple(pairs)))
+        self.names.demands.append(CaseDistinction(where, subject, tuple(pairs)))
 
     def cases(
         self, written: tuple[s.Case, ...], place: _Place, number: int, *, react: bool

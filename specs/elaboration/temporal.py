@@ -14,9 +14,9 @@ from semantics.state.setting import Control
 from semantics.successors import rules_of
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.formulas import IMPLICATIONS, Context, Formulas, TooLarge, implications
+from specs.construct_text import write
+from specs.elaboration.formulas import IMPLICATIONS, Context, FormulaElaborator, TooLarge, implications
 from specs.elaboration.names import Names
-from specs.writing import write
 
 MOST_NESTED: Final = 32
 """The largest nesting depth of path operators."""
@@ -61,7 +61,7 @@ _OF_RUNS: Final = (s.PathPrefix, s.PathOperation, s.LeadsTo, s.PathQuantifier, s
 class TemporalFormulas:
     """Elaborates temporal properties; `formulas` elaborates the parts about single configurations."""
 
-    def __init__(self, formulas: Formulas) -> None:
+    def __init__(self, formulas: FormulaElaborator) -> None:
         self.formulas = formulas
         self.names: Names = formulas.names
         self.logic = "ltl"

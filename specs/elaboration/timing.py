@@ -27,13 +27,13 @@ from semantics.timing.timing import (
 )
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.constants import elaborate_constant
-from specs.elaboration.findings import Findings, a
+from specs.construct_text import write
+from specs.elaboration.constant_values import elaborate_constant
+from specs.elaboration.mission_mistakes import Findings, a
 from specs.elaboration.names import Names
-from specs.elaboration.world import World
-from specs.layout import pieces
+from specs.elaboration.world import InitialWorld
+from specs.mission_layout import pieces
 from specs.timing_mistakes import BEGINNING
-from specs.writing import write
 
 LONGEST: Final = 7 * 24 * 3600
 """The longest duration in seconds."""
@@ -48,7 +48,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
-class Ticks:
+class TickConversion:
     """Converts durations to ticks of `tick` milliseconds; reports those that are no whole number of ticks."""
 
     tick: int
@@ -116,8 +116,8 @@ class _Said:
     """
 
     names: Names
-    world: World
-    ticks: Ticks
+    world: InitialWorld
+    ticks: TickConversion
     clauses: tuple[Clause, ...]
     whole: bool
     times: dict[int, ClauseTimes] = field(default_factory=dict)
@@ -146,7 +146,7 @@ class _Said:
 def elaborate_timing(
     mission: s.Mission,
     names: Names,
-    world: World,
+    world: InitialWorld,
     clauses: tuple[Clause, ...],
     control: Control,
     *,
@@ -165,7 +165,7 @@ def elaborate_timing(
         hint = "it says so itself: leave --control atomic out" if says_timed else "write: control timed"
         names.findings.add(Code.NOT_TIMED, _head(sections[0]), message, hint)
     bounds = [each for section in sections for each in section.bounds]
-    said = _Said(names, world, Ticks(_tick(bounds, names.findings), names.findings), clauses, whole)
+    said = _Said(names, world, TickConversion(_tick(bounds, names.findings), names.findings), clauses, whole)
     for bound in sorted(
         bounds, key=lambda each: _is_of_one(said, each)
     ):  # a bound of one vehicle replaces that of its kind

@@ -9,13 +9,13 @@ from typing import Final
 
 from semantics.behaviours.expressions import (
     Apply,
-    Either,
     Expression,
     Host,
     Literal,
     RouteOf,
     Self,
     SetOf,
+    ShortCircuit,
     TupleOf,
     Variable,
 )
@@ -40,7 +40,7 @@ MISTAKEN: Final = Literal("")
 """Stands, by identity, for an expression with a mistake: the mission is refused, and its type is unknown."""
 
 
-class Sort(StrEnum):
+class ValueSort(StrEnum):
     """The sort of a value, by its description in messages."""
 
     NUMBER = "a number"
@@ -54,11 +54,11 @@ class Sort(StrEnum):
     OBSERVATION = "an observation"
 
 
-Sorts = frozenset[Sort]
-EVERY: Final = Sorts(Sort)
-NAMES: Final = Sorts({Sort.ENTITY, Sort.AGENT})
-HOLDERS: Final = Sorts({Sort.SET, Sort.ROUTE})
-COLLECTIONS: Final = HOLDERS | {Sort.OBSERVATION}
+Sorts = frozenset[ValueSort]
+EVERY: Final = Sorts(ValueSort)
+NAMES: Final = Sorts({ValueSort.ENTITY, ValueSort.AGENT})
+HOLDERS: Final = Sorts({ValueSort.SET, ValueSort.ROUTE})
+COLLECTIONS: Final = HOLDERS | {ValueSort.OBSERVATION}
 
 Tag = Text | str | None
 """The fixed text or name that distinguishes tuples of one length."""
@@ -86,7 +86,7 @@ class Type:
             self.sorts | other.sorts, self.members | other.members, _merged(self.tuples, other.tuples)
         )
 
-    def without(self, sort: Sort) -> Type:
+    def without(self, sort: ValueSort) -> Type:
         """Return the type without one of its sorts."""
         return Type(self.sorts - {sort}, self.members, self.tuples)
 
@@ -103,31 +103,31 @@ def _merged(
     return {**one, **other, **both}
 
 
-def of(*sorts: Sort) -> Type:
+def of(*sorts: ValueSort) -> Type:
     """Return the type of a value of these sorts, with unknown parts."""
     return Type(
-        Sorts(sorts), EVERY if HOLDERS & Sorts(sorts) else Sorts(), None if Sort.TUPLE in sorts else {}
+        Sorts(sorts), EVERY if HOLDERS & Sorts(sorts) else Sorts(), None if ValueSort.TUPLE in sorts else {}
     )
 
 
-def sort_of(value: Value, agents: Container[str]) -> Sort:
+def sort_of(value: Value, agents: Container[str]) -> ValueSort:
     """Return the sort of a constant; a name that is no bigActor's is an entity's or a place's."""
     if isinstance(value, str):
-        return Sort.AGENT if value in agents else Sort.ENTITY
+        return ValueSort.AGENT if value in agents else ValueSort.ENTITY
     return next(sort for type_, sort in _SORT_OF.items() if isinstance(value, type_))
 
 
-_SORT_OF: Final[Mapping[type, Sort]] = {
-    Text: Sort.TEXT,
-    Truth: Sort.TRUTH,
-    int: Sort.NUMBER,
-    tuple: Sort.TUPLE,
-    frozenset: Sort.SET,
-    Route: Sort.ROUTE,
-    Observation: Sort.OBSERVATION,
+_SORT_OF: Final[Mapping[type, ValueSort]] = {
+    Text: ValueSort.TEXT,
+    Truth: ValueSort.TRUTH,
+    int: ValueSort.NUMBER,
+    tuple: ValueSort.TUPLE,
+    frozenset: ValueSort.SET,
+    Route: ValueSort.ROUTE,
+    Observation: ValueSort.OBSERVATION,
 }
 
-ANY: Final = of(*Sort)
+ANY: Final = of(*ValueSort)
 NOTHING: Final = Type(Sorts())
 Types = Mapping[str, Type]
 
@@ -189,7 +189,7 @@ class Inference:
             case ChooseFrom(variable, members, _):
                 yield variable, of(*members_of(self.type(members, known)))
             case React(cases):
-                received = (ANY if messages is None else messages) | of(Sort.OBSERVATION)
+                received = (ANY if messages is None else messages) | of(ValueSort.OBSERVATION)
                 for case in cases:
                     yield from bound(case.pattern, received)
             case Match(value, cases):
@@ -203,7 +203,8 @@ class Inference:
             case tuple():
                 shape = (len(value), _tag(value[0]) if value else None)
                 return Type(
-                    Sorts({Sort.TUPLE}), tuples={shape: tuple(self.constant(each).sorts for each in value)}
+                    Sorts({ValueSort.TUPLE}),
+                    tuples={shape: tuple(self.constant(each).sorts for each in value)},
                 )
             case frozenset() | Route():
                 members = (self.constant(each).sorts for each in within(value))
@@ -219,18 +220,19 @@ class Inference:
             case Variable(name):
                 return known.get(name, NOTHING)
             case Host():
-                return of(Sort.ENTITY)
+                return of(ValueSort.ENTITY)
             case Self():
-                return of(Sort.AGENT)
-            case Either():
-                return of(Sort.TRUTH)
+                return of(ValueSort.AGENT)
+            case ShortCircuit():
+                return of(ValueSort.TRUTH)
             case TupleOf(items):
                 shape = (len(items), _tag(items[0].value) if isinstance(items[0], Literal) else None)
                 return Type(
-                    Sorts({Sort.TUPLE}), tuples={shape: tuple(self.type(each, known).sorts for each in items)}
+                    Sorts({ValueSort.TUPLE}),
+                    tuples={shape: tuple(self.type(each, known).sorts for each in items)},
                 )
             case SetOf(items) | RouteOf(items):
-                sort = Sort.ROUTE if isinstance(expression, RouteOf) else Sort.SET
+                sort = ValueSort.ROUTE if isinstance(expression, RouteOf) else ValueSort.SET
                 return Type(Sorts({sort}), Sorts().union(*(self.type(each, known).sorts for each in items)))
             case Apply(operator, arguments):
                 given = [self.type(argument, known) for argument in arguments]
@@ -245,7 +247,7 @@ def _tag(value: Value) -> Tag:
 
 def members_of(collection: Type) -> Sorts:
     """Return the sorts of the members of a set, a route or an observation."""
-    seen = NAMES if Sort.OBSERVATION in collection.sorts else Sorts()
+    seen = NAMES if ValueSort.OBSERVATION in collection.sorts else Sorts()
     return collection.members | seen if HOLDERS & collection.sorts else seen
 
 
@@ -253,7 +255,7 @@ def bound(pattern: Pattern, value: Type) -> Iterator[tuple[str, Type]]:
     """Yield the variables that a pattern binds, with the types, for a subject of that type."""
     match pattern:
         case Anything(str() as variable, kind):
-            seen, told = of(Sort.OBSERVATION), value.without(Sort.OBSERVATION)
+            seen, told = of(ValueSort.OBSERVATION), value.without(ValueSort.OBSERVATION)
             yield variable, seen if kind == "observation" else told if kind == "message" else value
         case Elements(items):
             parts = _items(items, value)
@@ -265,14 +267,14 @@ def may_take(pattern: Pattern, value: Type, inference: Inference) -> bool:
     """Whether a pattern may match a value of that type."""
     match pattern:
         case Anything(_, "observation"):
-            return Sort.OBSERVATION in value.sorts
+            return ValueSort.OBSERVATION in value.sorts
         case Anything(_, kind):
-            return bool(value.sorts - {Sort.OBSERVATION} if kind == "message" else value.sorts)
+            return bool(value.sorts - {ValueSort.OBSERVATION} if kind == "message" else value.sorts)
         case Exactly(constant):
             return bool(inference.constant(constant).sorts & value.sorts)
         case Elements(items):
             parts = zip(items, _items(items, value), strict=True)
-            return Sort.TUPLE in value.sorts and all(
+            return ValueSort.TUPLE in value.sorts and all(
                 may_take(item, of(*sorts), inference) for item, sorts in parts
             )
 
@@ -313,49 +315,51 @@ def _element(value: Type, index: Expression) -> Type:
         for position, sorts in enumerate(parts)
         if at is None or at == position
     ]
-    stops = value.members if Sort.ROUTE in value.sorts else Sorts()
+    stops = value.members if ValueSort.ROUTE in value.sorts else Sorts()
     return of(*stops.union(*items))
 
 
-def _always(*sorts: Sort) -> Callable[..., Type]:
+def _always(*sorts: ValueSort) -> Callable[..., Type]:
     return lambda *_: of(*sorts)
 
 
-def _set(members: Iterable[Sort]) -> Type:
-    return Type(Sorts({Sort.SET}), Sorts(members))
+def _set(members: Iterable[ValueSort]) -> Type:
+    return Type(Sorts({ValueSort.SET}), Sorts(members))
 
 
 def _sum(left: Type, right: Type) -> Type:
-    number = of(Sort.NUMBER) if Sort.NUMBER in left.sorts else NOTHING
+    number = of(ValueSort.NUMBER) if ValueSort.NUMBER in left.sorts else NOTHING
     return number | Type(left.sorts & HOLDERS, left.members | members_of(right))
 
 
 def _part(left: Type, members: Sorts) -> Type:
     """Return the type of a part of a collection: a route for a route, otherwise a set."""
-    route = Type(Sorts({Sort.ROUTE}), members) if Sort.ROUTE in left.sorts else NOTHING
-    return route | _set(members) if left.sorts - {Sort.ROUTE} else route
+    route = Type(Sorts({ValueSort.ROUTE}), members) if ValueSort.ROUTE in left.sorts else NOTHING
+    return route | _set(members) if left.sorts - {ValueSort.ROUTE} else route
 
 
 def _difference(left: Type, _: Type) -> Type:
-    number = of(Sort.NUMBER) if Sort.NUMBER in left.sorts else NOTHING
+    number = of(ValueSort.NUMBER) if ValueSort.NUMBER in left.sorts else NOTHING
     return number | _part(left, members_of(left)) if left.sorts & COLLECTIONS else number
 
 
 _RESULTS: Final[Mapping[str, Callable[..., Type]]] = {
-    **dict.fromkeys(("in", "==", "!=", "<", "<=", ">", ">=", "not", "empty", "linked"), _always(Sort.TRUTH)),
+    **dict.fromkeys(
+        ("in", "==", "!=", "<", "<=", ">", ">=", "not", "empty", "linked"), _always(ValueSort.TRUTH)
+    ),
     "+": _sum,
     "-": _difference,
-    "of": lambda left, _: _part(left, Sorts({Sort.ENTITY})),
+    "of": lambda left, _: _part(left, Sorts({ValueSort.ENTITY})),
     "union": lambda left, right: _set(members_of(left) | members_of(right)),
     "minus": lambda left, _: _part(left, members_of(left)),
     "intersect": lambda left, right: _part(left, members_of(left) & members_of(right)),
-    "[]": _always(Sort.AGENT),
-    "nodes": lambda _: _set({Sort.ENTITY}),
-    "children": lambda *_: _set({Sort.ENTITY}),
-    "agents": lambda _: _set({Sort.AGENT}),
-    "kind": _always(Sort.TEXT),
-    "parent": _always(Sort.ENTITY),
-    "size": _always(Sort.NUMBER),
+    "[]": _always(ValueSort.AGENT),
+    "nodes": lambda _: _set({ValueSort.ENTITY}),
+    "children": lambda *_: _set({ValueSort.ENTITY}),
+    "agents": lambda _: _set({ValueSort.AGENT}),
+    "kind": _always(ValueSort.TEXT),
+    "parent": _always(ValueSort.ENTITY),
+    "size": _always(ValueSort.NUMBER),
     "first": lambda value: of(*members_of(value)),
 }
 """The result types of operators, given the types of their arguments; unknown for all others."""

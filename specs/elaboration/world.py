@@ -10,10 +10,10 @@ from physical import centroid, point
 from semantics.state.physical_model import Carried, Placed, Placement
 from specs import syntax as s
 from specs.codes import Code
-from specs.elaboration.files import Library, read_source
-from specs.elaboration.findings import a
 from specs.elaboration.geometry import elaborate_placement
+from specs.elaboration.mission_mistakes import a
 from specs.elaboration.names import Names
+from specs.elaboration.world_files import Library, read_source
 
 MOST_ENTITIES: Final = 2_000
 MOST_PAIRS: Final = 1_200_000
@@ -23,7 +23,7 @@ _NOWHERE: Final = point(0, 0)
 
 
 @dataclass(slots=True)
-class World:
+class InitialWorld:
     """The initial P, and the facts about absent entities.
 
     Attributes:
@@ -69,9 +69,9 @@ class _Load:
     shape: Placed | None
 
 
-def elaborate_world(mission: s.Mission, names: Names, library: Library) -> World:
+def elaborate_world(mission: s.Mission, names: Names, library: Library) -> InitialWorld:
     """Declare all entities and channels, and return P."""
-    world, loads = World(), list[_Load]()
+    world, loads = InitialWorld(), list[_Load]()
     entries = [entry for section in mission.each(s.World) for entry in section.entries]
     for entry in entries:  # before entities, whose links declare all other channels
         if isinstance(entry, s.ChannelDeclaration):
@@ -111,7 +111,7 @@ def _join(channels: tuple[s.Name, ...], names: Names) -> None:
             names.declare("channel", channel.text, channel)
 
 
-def _entity(entry: s.Entity, names: Names, world: World) -> Iterator[_Load]:
+def _entity(entry: s.Entity, names: Names, world: InitialWorld) -> Iterator[_Load]:
     name = entry.name.text
     names.kind(entry.kind)
     placed = None if entry.placement is None else elaborate_placement(entry.placement, names.findings)
@@ -144,7 +144,7 @@ def _whereabouts(entry: s.Entity) -> tuple[str, str] | None:
     return None
 
 
-def _from_file(entry: s.FromSource, names: Names, world: World, library: Library) -> Iterator[_Load]:
+def _from_file(entry: s.FromSource, names: Names, world: InitialWorld, library: Library) -> Iterator[_Load]:
     found = read_source(entry, library, names, world.notes)
     hint = 'let the names of the file begin otherwise: from "FILE" as second has second_NAME'
     _, *others = [item.entity for item in found if names.is_taken("entity", item.entity)] or [""]
@@ -167,7 +167,7 @@ def _from_file(entry: s.FromSource, names: Names, world: World, library: Library
 # --- cargo ------------------------------------------------------------------------------------------------------
 
 
-def _load(loads: list[_Load], names: Names, world: World) -> None:
+def _load(loads: list[_Load], names: Names, world: InitialWorld) -> None:
     sound = [load for load in loads if _check_load(load, names, world)]
     by = {load.name: load.by for load in sound}
     for load in sound:
@@ -183,7 +183,7 @@ def _load(loads: list[_Load], names: Names, world: World) -> None:
             world.placements[load.name] = Carried(load.by, Placed(centroid(here.geometry)))
 
 
-def _check_load(load: _Load, names: Names, world: World) -> bool:
+def _check_load(load: _Load, names: Names, world: InitialWorld) -> bool:
     kind = names.entity(
         load.where if isinstance(load.where, s.Name) else s.Name(load.by, span=load.where.span)
     )

@@ -16,7 +16,7 @@ from adapters.mavlink.fleet import Craft
 from adapters.mavlink.message import Message, say
 from adapters.mavlink.tlog import Damage, Unread, entries, entry, messages_in, positions_of, read_tlog
 from physical import PhysicalError
-from physical.tally import Counting
+from physical.file_account import Counting
 
 DATA = (
     Path(os.environ.get("BIGACTORS_DATA", Path(__file__).parents[2].parent / "shared" / "data")) / "mavlink"

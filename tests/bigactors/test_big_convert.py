@@ -1,6 +1,6 @@
 import pytest
 
-from bigraphs.canonical import equal
+from bigraphs.canonical_form import equal
 from bigraphs.examples import example_text
 from bigraphs.notation import read_system
 

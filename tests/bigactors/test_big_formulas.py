@@ -2,11 +2,11 @@ import pytest
 
 from bigactors.commands.big.formulas import MOST_NESTED, parse_claim
 from bigactors.commands.big.temporal import Decider
+from bigraphs.claims import ClaimOutcome
 from bigraphs.errors import NotationError
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system
 from bigraphs.notation.formulas import MOST_WORDS
-from bigraphs.verdicts import Outcome
 
 SYSTEM = read_system("""\
 ctrl Room = 0; atomic ctrl Ball = 0; atomic fun ctrl Lamp(n) = 0;
@@ -101,6 +101,6 @@ def test_what_is_within_the_bounds_is_decided():
     formula = parse_claim("not " * (MOST_WORDS - 1) + "ball", "ltl", SYSTEM).formula
     verdict = Decider(explore(SYSTEM)).decide("ltl", "not " * (MOST_WORDS - 1) + "ball")
     assert str(formula).startswith("not not not")
-    assert verdict.outcome is Outcome.VIOLATED
+    assert verdict.outcome is ClaimOutcome.VIOLATED
     longest = Decider(explore(SYSTEM)).decide("ctl", "AX " * MOST_NESTED + "(ball or not ball)")
-    assert longest.outcome is Outcome.HOLDS
+    assert longest.outcome is ClaimOutcome.HOLDS

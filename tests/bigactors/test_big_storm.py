@@ -10,10 +10,10 @@ import pytest
 from bigactors.commands.big import storm
 from bigactors.commands.big.storm import answers, check_queries, translated
 from bigactors.mistakes import Mistake
+from bigraphs.claims import ClaimOutcome
 from bigraphs.errors import NotationError
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system
-from bigraphs.verdicts import Outcome
 
 needs_storm = pytest.mark.skipif(find_spec("stormpy") is None, reason="stormpy is not installed")
 
@@ -65,7 +65,7 @@ def asked(system, *queries, **limits):
 def test_a_die_from_a_coin_is_fair():
     queries = [f"P=? [F {face}]" for face in FACES]
     for each in asked(die(), *queries):
-        assert each.outcome is Outcome.HOLDS
+        assert each.outcome is ClaimOutcome.HOLDS
         assert each.value.number == pytest.approx(1 / 6, abs=1e-5)
         low, high = each.value.bounds
         assert low - 1e-9 <= 1 / 6 <= high + 1e-9
@@ -76,7 +76,7 @@ def test_a_die_from_a_coin_is_fair():
 @needs_storm
 def test_claims_about_probabilities_hold_or_are_violated():
     fine, wrong = asked(die(), "P>0.16 [F face1]", "P>=0.2 [F face1]")
-    assert (fine.outcome, wrong.outcome) == (Outcome.HOLDS, Outcome.VIOLATED)
+    assert (fine.outcome, wrong.outcome) == (ClaimOutcome.HOLDS, ClaimOutcome.VIOLATED)
     assert fine.value.compared
     assert wrong.value.number == pytest.approx(1 / 6, abs=1e-5)
 
@@ -113,7 +113,7 @@ def test_a_run_against_what_is_always():
 def test_rewards():
     bold, claim = asked(read_system(CHOICE), "Rmax=? [C<=1]", "R<=4 [C<=1]")
     assert bold.value.number == pytest.approx(5)
-    assert (claim.outcome, claim.run) == (Outcome.VIOLATED, None)
+    assert (claim.outcome, claim.run) == (ClaimOutcome.VIOLATED, None)
 
 
 @needs_storm
@@ -133,7 +133,7 @@ def test_a_strategy_is_what_gives_the_value():
 @needs_storm
 def test_of_a_part_nothing_is_claimed():
     (part,) = asked(die(), "P>=0.1 [F face1]", max_states=4)
-    assert part.outcome is Outcome.INCOMPLETE
+    assert part.outcome is ClaimOutcome.INCOMPLETE
     assert "beyond them nothing happens" in part.note
 
 
@@ -236,13 +236,13 @@ def test_a_query_without_an_answer_takes_no_others(monkeypatch):
     monkeypatch.setattr(storm, "translated", lambda text, _: text)
     found = explore(die())
     rewards, chance = answers(found, ["R=? [F goal]", "P=? [F goal]"])
-    assert rewards.outcome is Outcome.INCOMPLETE
+    assert rewards.outcome is ClaimOutcome.INCOMPLETE
     assert (
         rewards.note == "no answer: the system has no rewards; give a predicate one, as in preds = { p[2] }"
     )
-    assert (chance.outcome, chance.value.number) == (Outcome.HOLDS, 0.5)
+    assert (chance.outcome, chance.value.number) == (ClaimOutcome.HOLDS, 0.5)
     chance, long_run = answers(found, ["P=? [F goal]", "LRA=? [goal]"])
-    assert (chance.value.number, long_run.outcome) == (0.5, Outcome.INCOMPLETE)
+    assert (chance.value.number, long_run.outcome) == (0.5, ClaimOutcome.INCOMPLETE)
     assert long_run.note == "no answer: Storm failed: it ended"
 
 

@@ -6,12 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bigactors.commands.big.temporal import Decider, graph_of
+from bigraphs.claims import ClaimOutcome, WitnessRun, WitnessStep
 from bigraphs.examples import example_names, example_text
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system
-from bigraphs.verdicts import Outcome, Run, Step
 
-HOLDS, VIOLATED, INCOMPLETE = Outcome.HOLDS, Outcome.VIOLATED, Outcome.INCOMPLETE
+HOLDS, VIOLATED, INCOMPLETE = ClaimOutcome.HOLDS, ClaimOutcome.VIOLATED, ClaimOutcome.INCOMPLETE
 
 LAMP = read_system("""\
 atomic ctrl Off = 0; atomic ctrl On = 0; atomic ctrl Broken = 0;
@@ -54,12 +54,14 @@ def test_examples_have_known_answers(name, logic, text, outcome):
 def test_a_counterexample_is_a_stem_and_a_loop_of_rules():
     found = decided(LAMP, "ltl", "<> broken")
     assert found.outcome is VIOLATED
-    assert found.run == Run((Step(("press",), 1), Step(("release",), 0)), 0)
+    assert found.run == WitnessRun((WitnessStep(("press",), 1), WitnessStep(("release",), 0)), 0)
 
 
 def test_a_run_stays_where_nothing_can_happen():
     found = decided(LAMP, "ltl", "[] <> not broken")
-    assert found.run == Run((Step(("press",), 1), Step(("break",), 2), Step((), 2)), 2)
+    assert found.run == WitnessRun(
+        (WitnessStep(("press",), 1), WitnessStep(("break",), 2), WitnessStep((), 2)), 2
+    )
     assert decided(LAMP, "ltl", "[] (broken -> X broken)").outcome is HOLDS
     assert decided(LAMP, "ctl", "AG (broken -> AX broken)").outcome is HOLDS
 
@@ -67,7 +69,7 @@ def test_a_run_stays_where_nothing_can_happen():
 def test_rules_that_make_one_transition_are_different_steps():
     found = explore(LAMP)
     assert (len(found.starts), len(graph_of(found).targets)) == (3, 4)
-    assert decided(LAMP, "ltl", "[] not taken toggle").run == Run((Step(("toggle",), 1),))
+    assert decided(LAMP, "ltl", "[] not taken toggle").run == WitnessRun((WitnessStep(("toggle",), 1),))
     assert decided(LAMP, "ltl", "<> taken break or [] (on -> taken release)").outcome is HOLDS
     assert decided(LAMP, "ctl", "AG (enabled press <-> off)").outcome is HOLDS
 
@@ -208,7 +210,7 @@ def test_what_is_never_needed_is_told(logic, text, remark):
 
 def test_a_formula_of_runs_that_holds_has_a_witness():
     found = decided(NEVER_MENDED, "ltl", "[] (off -> X on)")
-    assert found.run == Run((Step(("press",), 1), Step(("release",), 0)), 0)
+    assert found.run == WitnessRun((WitnessStep(("press",), 1), WitnessStep(("release",), 0)), 0)
     assert found.note == "a witness of 2 steps, in --json"
 
 

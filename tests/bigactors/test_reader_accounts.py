@@ -16,8 +16,8 @@ from adapters.mavlink.message import say
 from adapters.mavlink.tlog import THINGS, entry, messages_in, positions_of
 from physical.ais_recording import read_recording
 from physical.ais_world import seen_at
+from physical.file_account import MAX_KINDS, Counting, FileAccount, in_a_line
 from physical.place_files import read_place_file
-from physical.tally import MAX_KINDS, Counting, Tally, in_a_line
 
 SENTENCES = (
     b"!AIVDM,1,1,,A,139>JhOP000eDI0NW>`00001P000,0*60",
@@ -204,7 +204,7 @@ def test_kinds_are_bounded_and_still_add_up():
 
 
 def test_an_account_is_told_in_rows():
-    tally = Tally(
+    tally = FileAccount(
         5, "line", "lines", (("position", 1),), (("comment", 3), ("noise", 1)), (("time missing", 1),)
     )
     assert tally.rows() == (

@@ -149,7 +149,7 @@ def test_compiled_loops_load_no_more_than_numba(start):
         "scipy.linalg",
         "checker.reduction.reducer",
         "checker.engines.fast.crosscheck",
-        "checker.engines.fast.ample",
+        "checker.engines.fast.ample_kernel",
     }
 
 

@@ -7,8 +7,8 @@ import pytest
 from test_json import validator
 
 from bigactors.pictures.timeline import draw_timeline, groups_of, marks
-from checker.properties.schedule import Flight, Milestone, Moments, Schedule
-from semantics.timing.bounds import Bound
+from checker.properties.schedule import EventDates, Milestone, PossibleFlight, Schedule
+from semantics.timing.bounds import WrittenBound
 from semantics.timing.intervals import Interval
 
 INFINITE = float("inf")
@@ -62,21 +62,21 @@ def test_a_timeline_is_of_all_runs(bigactors):
 
 
 def bar(takes, begins, ends):
-    flight = Flight("uav0", "a", "west0", "east0", takes, begins, ends, Bound())
+    flight = PossibleFlight("uav0", "a", "west0", "east0", takes, begins, ends, WrittenBound())
     ((_, (found,)),) = groups_of(Schedule(1000, (flight,)))
     return found
 
 
 def test_a_bar_is_full_where_a_vehicle_surely_flies():
-    assert bar(Interval(60, 90), Moments(0, 30), Moments(60, 120)).surely == (30, 60)
-    assert bar(Interval(10, 90), Moments(0, 30), Moments(10, 120)).surely is None
-    assert bar(Interval(10), Moments(0, 30), Moments(40, INFINITE)).surely == (30, 40)
+    assert bar(Interval(60, 90), EventDates(0, 30), EventDates(60, 120)).surely == (30, 60)
+    assert bar(Interval(10, 90), EventDates(0, 30), EventDates(10, 120)).surely is None
+    assert bar(Interval(10), EventDates(0, 30), EventDates(40, INFINITE)).surely == (30, 40)
 
 
 def test_what_is_not_bounded_goes_on_to_the_edge_of_the_picture():
-    milestone = Milestone("there", Moments(60, INFINITE, may_never=True))
+    milestone = Milestone("there", EventDates(60, INFINITE, may_never=True))
     schedule = Schedule(
-        1000, (), (milestone, Milestone("nowhere", Moments(INFINITE, -INFINITE, may_never=True)))
+        1000, (), (milestone, Milestone("nowhere", EventDates(INFINITE, -INFINITE, may_never=True)))
     )
     ((_, (there, nowhere)),) = groups_of(schedule)
     assert (there.words, there.ends) == ("1:00 or later, if at all", (60, INFINITE))

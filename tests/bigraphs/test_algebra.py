@@ -23,7 +23,7 @@ from bigraphs.algebra import (
     tensor,
 )
 from bigraphs.bigraph import find
-from bigraphs.canonical import equal
+from bigraphs.canonical_form import equal
 from bigraphs.errors import BigraphError
 from bigraphs.interface import Interface
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from bigraphs.bigraph import Bigraph, Node, assemble, children, find, links, points
 from bigraphs.errors import BigraphError
 from bigraphs.interface import Interface
-from bigraphs.relations import from_relations
+from bigraphs.relational_bigraphs import from_relations
 from bigraphs.signature import Control, Signature, open_signature
 
 A, B, Z = Node("A"), Node("B", None, (0,)), Node("Z", None, (0,))

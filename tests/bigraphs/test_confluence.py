@@ -2,7 +2,7 @@
 
 import pytest
 
-from bigraphs.canonical import equal
+from bigraphs.canonical_form import equal
 from bigraphs.confluence import Orders, compare_orders
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system, write_big

@@ -10,7 +10,7 @@ from bigraphs.algebra import close
 from bigraphs.drawing import draw_bigraph, draw_layout, save_bigraph
 from bigraphs.errors import BigraphError
 from bigraphs.layout import layout
-from bigraphs.relations import from_relations
+from bigraphs.relational_bigraphs import from_relations
 
 WORLD = close(
     from_relations(

@@ -11,7 +11,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from bigraphs.algebra import atom, ion, lean, nest
-from bigraphs.canonical import canonical, equal
+from bigraphs.canonical_form import canonical, equal
 from bigraphs.errors import BigraphError
 from bigraphs.exploration import explore
 from bigraphs.notation import read_big, read_system, write_big

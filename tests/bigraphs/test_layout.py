@@ -7,7 +7,7 @@ from scale import examples
 
 from bigraphs.layout import GAP, Box, label_size, layout, pill_width
 from bigraphs.link_curves import route
-from bigraphs.relations import from_relations
+from bigraphs.relational_bigraphs import from_relations
 
 
 @st.composite

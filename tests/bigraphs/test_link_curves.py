@@ -6,8 +6,8 @@ import pytest
 
 from bigraphs.layout import layout
 from bigraphs.link_curves import route
-from bigraphs.obstacles import innermost, label_boxes
-from bigraphs.relations import from_relations
+from bigraphs.link_detours import innermost, label_boxes
+from bigraphs.relational_bigraphs import from_relations
 
 
 def crowd(size, seed):

@@ -12,7 +12,7 @@ from bigraphs.bigraph import find
 from bigraphs.decomposition import recompose, take_apart
 from bigraphs.errors import BigraphError
 from bigraphs.matching import find_matches
-from bigraphs.relations import from_relations
+from bigraphs.relational_bigraphs import from_relations
 
 SLOT, ONE = merge(1), merge(0)
 

@@ -4,7 +4,7 @@ import pickle
 import pytest
 
 from bigraphs.notation.big.syntax import Absolute, Literal, Negated, Span
-from bigraphs.properties import Terminal
+from bigraphs.properties import TerminalState
 
 
 def test_records_are_equal_if_they_are_of_one_class_and_say_the_same_wherever_they_stand():
@@ -14,14 +14,14 @@ def test_records_are_equal_if_they_are_of_one_class_and_say_the_same_wherever_th
     assert one != Negated(Literal(2))
     assert one != Absolute(Literal(1))
     assert one != 1
-    assert len({one, other, Absolute(Literal(1)), Terminal(), Terminal()}) == 3
+    assert len({one, other, Absolute(Literal(1)), TerminalState(), TerminalState()}) == 3
 
 
 def test_records_show_all_their_fields():
     assert repr(Negated(Literal("a"), Span(0, 2))) == (
         "Negated(operand=Literal(value='a', span=Span(start=0, end=0)), span=Span(start=0, end=2))"
     )
-    assert repr(Terminal()) == "Terminal()"
+    assert repr(TerminalState()) == "TerminalState()"
 
 
 def test_records_are_frozen():

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from bigraphs.algebra import atom, close, ion, lean, merge, nest, placing, substitution
 from bigraphs.bigraph import check
-from bigraphs.canonical import canonical, equal
+from bigraphs.canonical_form import canonical, equal
 from bigraphs.decomposition import take_apart
 from bigraphs.errors import BigraphError
 from bigraphs.instantiation import instantiate

@@ -7,7 +7,7 @@ from engine_strategies import solid_rules, system
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bigraphs.canonical import equal
+from bigraphs.canonical_form import equal
 from bigraphs.exploration import explore
 from bigraphs.notation import read_big, read_system
 from bigraphs.simulation import Bounds, simulate

@@ -4,7 +4,7 @@ from hypothesis import given
 from bigraphs.bigraph import Node, assemble
 from bigraphs.labels import node_labels
 from bigraphs.networkx_graphs import to_networkx
-from bigraphs.relations import from_relations
+from bigraphs.relational_bigraphs import from_relations
 from bigraphs.text import draw_text
 
 

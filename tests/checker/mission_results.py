@@ -3,7 +3,7 @@
 from checked_missions import SPARE, load, moves, start
 
 from checker import Bound, Limits, Outcome, Report, Stop, Trace, Verdict, Violation, check
-from checker.reports.results import Issue, Level, Result
+from checker.reports.results import CheckResult, Issue, Level
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 
@@ -27,7 +27,7 @@ HOSTILE = '<a b="c"> & ]]> ::error::%0A,line=1\n\r\t\x00\x07\x1b[31m\x9f\ud800\u
 def result(text, name="m.mission", limits=SPARE):
     mission = load(text)
     report = check(mission.initial, mission.properties, limits)
-    return Result(name, name, report, check_line=7, text=mission.source.text)
+    return CheckResult(name, name, report, check_line=7, text=mission.source.text)
 
 
 def cut_off(text=ENTERS, name="m.mission"):
@@ -35,7 +35,7 @@ def cut_off(text=ENTERS, name="m.mission"):
 
 
 def failed(*issues, name="m.mission"):
-    return Result(name, name, failures=issues)
+    return CheckResult(name, name, failures=issues)
 
 
 MISTAKE = Issue(
@@ -58,7 +58,7 @@ def hostile():
         Verdict(asked[1], Outcome.INCOMPLETE),
     )
     unkept = Bound(Stop.NO_CHECKPOINT, (HOSTILE, HOSTILE))
-    return Result(HOSTILE, HOSTILE, Report(verdicts, 1, 0, 0, (unkept,), notes=(HOSTILE,)))
+    return CheckResult(HOSTILE, HOSTILE, Report(verdicts, 1, 0, 0, (unkept,), notes=(HOSTILE,)))
 
 
 def all_sorts():

@@ -10,7 +10,7 @@ from pyais.encode import encode_dict
 from physical import ais_decode
 from physical.ais_decode import decode, type_of
 from physical.ais_reports import AisError, PositionReport, StaticReport
-from physical.nmea import Part, Reason, checksum, parse_sentence, part_of
+from physical.nmea import DecodingFailure, Fragment, checksum, parse_sentence, part_of
 
 
 def parts_of(**fields):
@@ -68,7 +68,10 @@ def test_an_aircraft_reports_its_altitude(said, altitude):
 
 @pytest.mark.parametrize(("lat", "lon"), [(91, 181), (91, 5), (52, 181)])
 def test_what_is_not_available_is_no_position(lat, lon):
-    assert decode(parts_of(type=1, mmsi=244660274, lat=lat, lon=lon), None) == ((), Reason.NOT_AVAILABLE)
+    assert decode(parts_of(type=1, mmsi=244660274, lat=lat, lon=lon), None) == (
+        (),
+        DecodingFailure.NOT_AVAILABLE,
+    )
 
 
 @pytest.mark.parametrize(("msg_type", "speed"), [(1, 102.3), (18, 102.3), (9, 1023), (27, 63)])
@@ -98,7 +101,7 @@ def test_message_17_is_scaled_to_degrees_and_signed(lat, lon):
 def test_message_17_without_a_position_has_none():
     head = number(17, 6) + number(0, 2) + number(2655619, 30) + number(0, 2)
     where = number(181 * 600, 18) + number(91 * 600, 17)
-    assert decode(bits(head + where + number(0, 5), 80), None) == ((), Reason.NOT_AVAILABLE)
+    assert decode(bits(head + where + number(0, 5), 80), None) == ((), DecodingFailure.NOT_AVAILABLE)
 
 
 def test_message_27_is_coarse():
@@ -141,18 +144,18 @@ def test_the_name_of_a_buoy_goes_on_in_its_extension():
 def test_a_buoy_without_a_position_still_has_its_name():
     fields = {"type": 21, "mmsi": 992446001, "lat": 91, "lon": 181, "name": "NOORDERHOEK"}
     (static,), reason = decode(parts_of(**fields), None)
-    assert (static.name, reason) == ("NOORDERHOEK", Reason.NOT_AVAILABLE)
+    assert (static.name, reason) == ("NOORDERHOEK", DecodingFailure.NOT_AVAILABLE)
 
 
 def test_a_message_cut_before_its_heading_is_too_short():
     whole = parts_of(type=1, mmsi=244660274, lat=52.97, lon=5.41)[0].payload
     assert decode(payload(whole[:23]), None)[0]
-    assert decode(payload(whole[:22]), None) == ((), Reason.TRUNCATED)
+    assert decode(payload(whole[:22]), None) == ((), DecodingFailure.TRUNCATED)
 
 
 @pytest.mark.parametrize("first", b"0LMNOPw")
 def test_a_type_that_does_not_exist_is_unknown(first):
-    assert decode(payload(bytes([first]) + b"0" * 27), None) == ((), Reason.UNKNOWN)
+    assert decode(payload(bytes([first]) + b"0" * 27), None) == ((), DecodingFailure.UNKNOWN)
 
 
 @pytest.mark.parametrize("first", b"678:;<=>?@BDFGHIJ")
@@ -165,12 +168,15 @@ def test_a_message_without_position_or_name_is_passed_over():
 
 
 def test_a_number_beyond_nine_digits_is_undecodable():
-    assert decode(bits(number(1, 6) + "00" + "1" * 30 + "0" * 130, 168), None) == ((), Reason.UNDECODABLE)
+    assert decode(bits(number(1, 6) + "00" + "1" * 30 + "0" * 130, 168), None) == (
+        (),
+        DecodingFailure.UNDECODABLE,
+    )
 
 
 def test_a_third_part_of_message_24_is_undecodable():
     head = number(24, 6) + "00" + number(244660274, 30) + "10"
-    assert decode(bits(head + "0" * 128, 168), None) == ((), Reason.UNDECODABLE)
+    assert decode(bits(head + "0" * 128, 168), None) == ((), DecodingFailure.UNDECODABLE)
 
 
 def test_reading_without_pyais_names_the_extra(monkeypatch):
@@ -205,7 +211,7 @@ def test_no_payload_raises_and_every_position_is_on_the_earth(text, fill):
 @given(st.text(ARMOUR, min_size=10, max_size=70), st.sampled_from("123459AB4CE5I<K"))
 def test_no_payload_of_a_type_that_is_decoded_raises(text, first):
     part = payload(f"{first}{text}".encode())[0]
-    assert isinstance(part, Part)
+    assert isinstance(part, Fragment)
     assert isinstance(decode((part,), None), tuple)
 
 

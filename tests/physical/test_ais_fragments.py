@@ -6,11 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physical.ais_fragments import EMPTY, FRAGMENT_LINES, FRAGMENT_SECONDS, FRAGMENT_TABLE, join
-from physical.nmea import Part
+from physical.nmea import Fragment
 
 
 def fragment(number, total=2, sequence=b"1", payload=b"0"):
-    return Part(b"", "AI", sequence, b"A", total, number, payload, 6 * len(payload))
+    return Fragment(b"", "AI", sequence, b"A", total, number, payload, 6 * len(payload))
 
 
 def joined(parts, time=None):

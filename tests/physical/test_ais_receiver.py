@@ -2,9 +2,9 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from physical.ais_fragments import FRAGMENT_TABLE
-from physical.ais_receiver import GROUP_TABLE, Ear, hear
+from physical.ais_receiver import GROUP_TABLE, ReceiverState, hear
 from physical.ais_reports import PositionReport, StaticReport
-from physical.nmea import MAX_LINE, Reason, checksum
+from physical.nmea import MAX_LINE, DecodingFailure, checksum
 
 POSITION = b"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61"
 NAME = (
@@ -21,7 +21,7 @@ def tagged(body, sentence):
 
 def heard_all(*lines, now=None):
     """Hear lines one after the other: all reports, all reasons, the last state."""
-    ear, reports, reasons = Ear(), [], []
+    ear, reports, reasons = ReceiverState(), [], []
     for line in lines:
         heard = hear(ear, line, now)
         ear = heard.ear
@@ -36,13 +36,13 @@ def time_of(*lines, now=None):
 
 
 def test_a_position_is_heard():
-    heard = hear(Ear(), POSITION + b"\r\n")
+    heard = hear(ReceiverState(), POSITION + b"\r\n")
     assert heard.reports == (PositionReport(None, 3, 376427000, 37.346935, 23.44798, 0.0, None, 25.0),)
     assert (heard.pieces, heard.reasons) == (("position",), ())
 
 
 def test_hearing_a_whole_message_leaves_the_state_the_same_object():
-    ear = Ear(clock=1.0)
+    ear = ReceiverState(clock=1.0)
     assert hear(ear, POSITION).ear is ear
 
 
@@ -139,26 +139,28 @@ def test_the_first_line_of_a_group_may_be_a_tag_block_alone():
 def test_a_damaged_tag_block_costs_its_time_but_not_the_sentence():
     reports, reasons, _ = heard_all(b"\\c:1671533231*00\\" + POSITION)
     assert [report.time for report in reports] == [None]
-    assert reasons == [Reason.TAG_BLOCK]
+    assert reasons == [DecodingFailure.TAG_BLOCK]
 
 
 def test_other_sentences_comments_and_blank_lines_bring_nothing():
     for line in (b"", b"  \r\n", b"# synthetic", b"$GPGSV,3,1,10*00", b"!AIABM,1,1,1,B,,0*00"):
-        heard = hear(Ear(), line)
+        heard = hear(ReceiverState(), line)
         assert (heard.reports, heard.reasons) == ((), ())
 
 
 def test_what_is_no_sentence_is_told():
-    assert hear(Ear(), b"AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61").reasons == (Reason.NO_SENTENCE,)
+    assert hear(ReceiverState(), b"AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61").reasons == (
+        DecodingFailure.NO_SENTENCE,
+    )
 
 
 def test_a_line_beyond_the_limit_is_refused():
-    assert hear(Ear(), b" " * MAX_LINE + POSITION).reasons == (Reason.OVERLONG,)
+    assert hear(ReceiverState(), b" " * MAX_LINE + POSITION).reasons == (DecodingFailure.OVERLONG,)
 
 
 def test_a_damaged_time_leaves_the_clock_as_it_was():
-    heard = hear(Ear(clock=1.0), PGHP[:-1] + b"0")
-    assert (heard.ear.clock, heard.reasons) == (1.0, (Reason.CHECKSUM,))
+    heard = hear(ReceiverState(clock=1.0), PGHP[:-1] + b"0")
+    assert (heard.ear.clock, heard.reasons) == (1.0, (DecodingFailure.CHECKSUM,))
 
 
 def test_what_a_logger_writes_around_a_sentence_is_passed_over_but_for_its_time():
@@ -173,23 +175,26 @@ def test_what_a_logger_writes_around_a_sentence_is_passed_over_but_for_its_time(
         (tagged(b"s:rORBCOMM", b"") + tagged(b"c:1671533231", b""), b""),
         (b"1999-01-01T00:00:00Z " + tagged(b"c:1671533231", b""), b",1306879500"),
     ):
-        heard = hear(Ear(), before + POSITION + after)
+        heard = hear(ReceiverState(), before + POSITION + after)
         assert [report.time for report in heard.reports] == [1671533231.0], before + after
         assert (heard.reasons, heard.pieces) == ((), ("position",))
 
 
 def test_sentences_in_one_line_are_all_heard():
-    heard = hear(Ear(), POSITION * 3 + NAME[0] + NAME[1])
+    heard = hear(ReceiverState(), POSITION * 3 + NAME[0] + NAME[1])
     assert heard.pieces == ("position",) * 3 + ("part of a message", "message with a name or a type of ship")
-    heard = hear(Ear(), b"1671533231 " + POSITION + b" 1671533232 " + POSITION + POSITION)
+    heard = hear(ReceiverState(), b"1671533231 " + POSITION + b" 1671533232 " + POSITION + POSITION)
     assert [report.time for report in heard.reports] == [1671533231.0, 1671533232.0, 1671533232.0]
-    heard = hear(Ear(), POSITION + b",1671533231" + POSITION + POSITION + b",1671533232")
+    heard = hear(ReceiverState(), POSITION + b",1671533231" + POSITION + POSITION + b",1671533232")
     assert [report.time for report in heard.reports] == [1671533231.0, 1671533232.0, 1671533232.0]
 
 
 def test_a_torn_tag_block_gives_no_time():
-    heard = hear(Ear(), b"\\c:1671533231" + POSITION)
-    assert ([report.time for report in heard.reports], heard.reasons) == ([None], (Reason.TAG_BLOCK,))
+    heard = hear(ReceiverState(), b"\\c:1671533231" + POSITION)
+    assert ([report.time for report in heard.reports], heard.reasons) == (
+        [None],
+        (DecodingFailure.TAG_BLOCK,),
+    )
 
 
 def test_numbers_that_are_no_times_are_not_taken_for_one():
@@ -207,7 +212,7 @@ def test_numbers_that_are_no_times_are_not_taken_for_one():
 def test_a_lost_part_is_told_when_its_place_is_taken():
     other = b"AIVDM,2,1,9,B,55R3Vn82,0"
     _, reasons, _ = heard_all(NAME[0], b"!%s*%02X" % (other, checksum(other)))
-    assert reasons == [Reason.INCOMPLETE]
+    assert reasons == [DecodingFailure.INCOMPLETE]
 
 
 LINES = [
@@ -239,7 +244,7 @@ def mutated(draw):
 def test_no_lines_raise_and_the_state_stays_small(lines):
     reports, reasons, ear = heard_all(*lines)
     assert all(isinstance(report, PositionReport | StaticReport) for report in reports)
-    assert all(isinstance(reason, Reason) for reason in reasons)
+    assert all(isinstance(reason, DecodingFailure) for reason in reasons)
     assert len(ear.fragments.waiting) <= FRAGMENT_TABLE
     assert len(ear.groups) <= GROUP_TABLE
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from physical.ais_recording import PIECES, has_sentences, read_recording
 from physical.ais_reports import AisError, PositionReport
-from physical.nmea import MAX_LINE, Reason
-from physical.tally import Tally
+from physical.file_account import FileAccount
+from physical.nmea import MAX_LINE, DecodingFailure
 
 POSITION_KIND, PART_KIND, STATIC_KIND = (
     "position",
@@ -97,19 +97,23 @@ def test_north_sea_has_ten_positions_more_and_each_is_explained():
             "workum_2020",
             1496,
             {POSITION_KIND: 141, "time": 164, PART_KIND: 12, STATIC_KIND: 21},
-            {Reason.NOT_AVAILABLE: 3},
+            {DecodingFailure.NOT_AVAILABLE: 3},
         ),
         (
             "north_sea_2010",
             8551,
             {POSITION_KIND: 3132, "time": 4051, PART_KIND: 449, STATIC_KIND: 498},
-            {Reason.NOT_AVAILABLE: 28},
+            {DecodingFailure.NOT_AVAILABLE: 28},
         ),
         (
             "greece_sample",
             898,
             {POSITION_KIND: 764, STATIC_KIND: 2},
-            {Reason.EMPTY: 100, Reason.NOT_AVAILABLE: 4, "part of an incomplete message": 20},
+            {
+                DecodingFailure.EMPTY: 100,
+                DecodingFailure.NOT_AVAILABLE: 4,
+                "part of an incomplete message": 20,
+            },
         ),
     ],
 )
@@ -139,7 +143,7 @@ def test_lines_are_read_one_by_one():
 
 
 def test_an_empty_recording_has_no_reports():
-    assert read_recording(b"").tally == Tally(0, *PIECES)
+    assert read_recording(b"").tally == FileAccount(0, *PIECES)
 
 
 def test_parts_that_wait_at_the_end_are_incomplete():
@@ -149,7 +153,7 @@ def test_parts_that_wait_at_the_end_are_incomplete():
 
 def test_an_overlong_line_is_counted_once_and_the_next_is_read():
     recording = read_recording(b"x" * (5 * MAX_LINE) + b"\n" + POSITION)
-    assert recording.tally.left_out == ((Reason.OVERLONG.value, 1),)
+    assert recording.tally.left_out == ((DecodingFailure.OVERLONG.value, 1),)
     assert [report.mmsi for report in recording.positions] == [376427000]
 
 
@@ -189,7 +193,7 @@ def test_the_account_is_printed_reason_by_reason():
 
 def test_a_damaged_tag_block_is_counted_beside_its_sentence():
     tally = read_recording(b"\\c:1671533231*00\\" + POSITION).tally
-    assert (tally.taken, tally.asides) == ((("position", 1),), ((Reason.TAG_BLOCK.value, 1),))
+    assert (tally.taken, tally.asides) == ((("position", 1),), ((DecodingFailure.TAG_BLOCK.value, 1),))
 
 
 def test_a_file_without_sentences_of_ais_is_told_from_one_whose_sentences_are_of_no_use():

@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physical.ais_recording import Recording
+from physical.ais_recording import AISRecording
 from physical.ais_reports import AisError, PositionReport, StaticReport
 from physical.ais_world import (
     COARSE,
@@ -27,7 +27,7 @@ def at(time, lat=52.97, lon=5.41, mmsi=VESSEL, msg_type=1):
 
 
 def recording(*reports):
-    return Recording(tuple(reports))
+    return AISRecording(tuple(reports))
 
 
 def places(world):

@@ -3,8 +3,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from physical.nmea import (
-    Part,
-    Reason,
+    DecodingFailure,
+    Fragment,
     Sentence,
     TagBlock,
     address,
@@ -41,14 +41,14 @@ def test_a_sentence_with_the_right_checksum_is_split_into_its_fields():
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        (b"!AIVDM,1,1,,B,,0*26", Reason.CHECKSUM),
-        (b"!AIVDM,1,1,,B,,1*25", Reason.CHECKSUM),
-        (b"!AIVDM,1,1,,B,,0*zz", Reason.CHECKSUM),
-        (b"!AIVDM,1,1,,B,,0*-1", Reason.CHECKSUM),
-        (b"!AIVDM,1,1,,B,,0*2", Reason.NO_CHECKSUM),
-        (b"!AIVDM,1,1,,B,,0", Reason.NO_CHECKSUM),
-        (b"!AIVDM,1,1,,B,,0*25,1306879500", Reason.MALFORMED),
-        (b"!AIVDM,1,1,,\xff,,0*25", Reason.MALFORMED),
+        (b"!AIVDM,1,1,,B,,0*26", DecodingFailure.CHECKSUM),
+        (b"!AIVDM,1,1,,B,,1*25", DecodingFailure.CHECKSUM),
+        (b"!AIVDM,1,1,,B,,0*zz", DecodingFailure.CHECKSUM),
+        (b"!AIVDM,1,1,,B,,0*-1", DecodingFailure.CHECKSUM),
+        (b"!AIVDM,1,1,,B,,0*2", DecodingFailure.NO_CHECKSUM),
+        (b"!AIVDM,1,1,,B,,0", DecodingFailure.NO_CHECKSUM),
+        (b"!AIVDM,1,1,,B,,0*25,1306879500", DecodingFailure.MALFORMED),
+        (b"!AIVDM,1,1,,\xff,,0*25", DecodingFailure.MALFORMED),
     ],
 )
 def test_a_damaged_sentence_is_refused_with_its_reason(text, reason):
@@ -71,7 +71,7 @@ def test_the_address_is_read_from_what_starts_like_a_sentence(text, name):
 
 
 def test_a_part_carries_six_bits_a_character_less_the_fill_bits():
-    assert part(b"AIVDM,2,1,9,B,55R3Vn,2") == Part(
+    assert part(b"AIVDM,2,1,9,B,55R3Vn,2") == Fragment(
         parse_sentence(closed(b"AIVDM,2,1,9,B,55R3Vn,2")).raw, "AI", b"9", b"B", 2, 1, b"55R3Vn", 34
     )
 
@@ -79,17 +79,17 @@ def test_a_part_carries_six_bits_a_character_less_the_fill_bits():
 @pytest.mark.parametrize(
     ("body", "reason"),
     [
-        (b"AIVDM,1,1,,B,,0", Reason.EMPTY),
-        (b"AIVDM,1,1,,B,15[0,0", Reason.ARMOUR),
-        (b"AIVDM,1,1,,B,15 0,0", Reason.ARMOUR),
-        (b"AIVDM,1,2,,B,1550,0", Reason.MALFORMED),
-        (b"AIVDM,0,0,,B,1550,0", Reason.MALFORMED),
-        (b"AIVDM,x,1,,B,1550,0", Reason.MALFORMED),
-        (b"AIVDM,10,1,,B,1550,0", Reason.MALFORMED),
-        (b"AIVDM,1,1,,B,1550,6", Reason.MALFORMED),
-        (b"AIVDM,1,1,,B,1550", Reason.MALFORMED),
-        (b"AIVDM,1,1,,B,1550,0,0", Reason.MALFORMED),
-        (b"AIVDM,1,1,,AB,1550,0", Reason.MALFORMED),
+        (b"AIVDM,1,1,,B,,0", DecodingFailure.EMPTY),
+        (b"AIVDM,1,1,,B,15[0,0", DecodingFailure.ARMOUR),
+        (b"AIVDM,1,1,,B,15 0,0", DecodingFailure.ARMOUR),
+        (b"AIVDM,1,2,,B,1550,0", DecodingFailure.MALFORMED),
+        (b"AIVDM,0,0,,B,1550,0", DecodingFailure.MALFORMED),
+        (b"AIVDM,x,1,,B,1550,0", DecodingFailure.MALFORMED),
+        (b"AIVDM,10,1,,B,1550,0", DecodingFailure.MALFORMED),
+        (b"AIVDM,1,1,,B,1550,6", DecodingFailure.MALFORMED),
+        (b"AIVDM,1,1,,B,1550", DecodingFailure.MALFORMED),
+        (b"AIVDM,1,1,,B,1550,0,0", DecodingFailure.MALFORMED),
+        (b"AIVDM,1,1,,AB,1550,0", DecodingFailure.MALFORMED),
     ],
 )
 def test_a_sound_sentence_that_carries_no_payload_is_refused_with_its_reason(body, reason):
@@ -130,12 +130,12 @@ def test_a_tag_block_gives_time_source_and_group(body, tag):
     ],
 )
 def test_a_tag_block_that_cannot_be_read_is_refused(body):
-    assert parse_tag_block(body + b"*%02X" % checksum(body)) is Reason.TAG_BLOCK
+    assert parse_tag_block(body + b"*%02X" % checksum(body)) is DecodingFailure.TAG_BLOCK
 
 
 def test_a_tag_block_with_a_wrong_checksum_is_refused():
-    assert parse_tag_block(b"c:1671533231*00") is Reason.TAG_BLOCK
-    assert parse_tag_block(b"c:1671533231") is Reason.TAG_BLOCK
+    assert parse_tag_block(b"c:1671533231*00") is DecodingFailure.TAG_BLOCK
+    assert parse_tag_block(b"c:1671533231") is DecodingFailure.TAG_BLOCK
 
 
 def test_tag_blocks_before_one_sentence_are_read_together():
@@ -186,19 +186,19 @@ def test_the_years_of_rmc_begin_in_1980():
     ],
 )
 def test_a_time_that_does_not_exist_is_refused(body):
-    assert clock(body) is Reason.TIME
+    assert clock(body) is DecodingFailure.TIME
 
 
 @given(st.binary(max_size=120))
 @example(b"--\xff")
 def test_no_bytes_raise(text):
     assert isinstance(address(text), str)
-    assert isinstance(parse_tag_block(text), TagBlock | Reason)
-    assert isinstance(parse_sentence(text), Sentence | Reason)
+    assert isinstance(parse_tag_block(text), TagBlock | DecodingFailure)
+    assert isinstance(parse_sentence(text), Sentence | DecodingFailure)
 
 
 @given(st.lists(st.binary(max_size=12), max_size=14), st.sampled_from(["PGHP", "GPRMC", "GPZDA"]))
 def test_no_fields_raise(fields, name):
     sentence = Sentence(b"", name, tuple(fields))
-    assert isinstance(clock_of(sentence), float | Reason | None)
-    assert isinstance(part_of(sentence), Part | Reason)
+    assert isinstance(clock_of(sentence), float | DecodingFailure | None)
+    assert isinstance(part_of(sentence), Fragment | DecodingFailure)

@@ -1,7 +1,7 @@
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from physical.nmea import Reason, TagBlock, checksum
+from physical.nmea import DecodingFailure, TagBlock, checksum
 from physical.nmea_lines import Framed, framed_in
 
 SENTENCE = b"!AIVDM,1,1,,B,,0*25"
@@ -36,7 +36,7 @@ def test_a_tag_block_alone_is_a_frame_without_a_sentence():
 def test_a_tag_block_that_is_damaged_or_torn_is_told():
     for before in (b"\\c:5*00\\", b"\\c:5*50", b"\\1G2:7,c:1772596000"):
         (framed,) = framed_in(before + SENTENCE)
-        assert (framed.tag, framed.time, framed.reasons) == (None, None, (Reason.TAG_BLOCK,))
+        assert (framed.tag, framed.time, framed.reasons) == (None, None, (DecodingFailure.TAG_BLOCK,))
 
 
 def test_a_line_without_a_sentence_has_none():

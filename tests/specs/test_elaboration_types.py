@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 
 from semantics import strategies
-from semantics.behaviours.expressions import OPERATORS, Apply, Fault, Literal, Scope, evaluate
+from semantics.behaviours.expressions import OPERATORS, Apply, EvaluationScope, Fault, Literal, evaluate
 from semantics.behaviours.observations import Observation
 from semantics.behaviours.program import Program
 from semantics.behaviours.values import Route, Text, Truth, within
@@ -17,9 +17,9 @@ from specs import syntax as s
 from specs.codes import Code
 from specs.diagnostics import MissionError, Source
 from specs.elaboration import elaborate, load_mission
-from specs.elaboration.findings import Findings
+from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.needs import check_types, operands
-from specs.elaboration.value_types import Inference, Sort
+from specs.elaboration.value_types import Inference, ValueSort
 from specs.parser import parse_bytes
 
 ROOT = Path(__file__).parents[2]
@@ -44,9 +44,9 @@ def is_of(value, type_, agents):
     sort = sort_of(value, agents)
     if sort not in type_.sorts:
         return False
-    if sort in (Sort.SET, Sort.ROUTE):
+    if sort in (ValueSort.SET, ValueSort.ROUTE):
         return {sort_of(member, agents) for member in within(value)} <= type_.members
-    if sort is Sort.TUPLE and type_.tuples is not None:
+    if sort is ValueSort.TUPLE and type_.tuples is not None:
         return any(
             len(value) == length
             and first in (None, value[0])
@@ -58,16 +58,16 @@ def is_of(value, type_, agents):
 
 def sort_of(value, agents):
     named = {
-        int: Sort.NUMBER,
-        Text: Sort.TEXT,
-        Truth: Sort.TRUTH,
-        tuple: Sort.TUPLE,
-        frozenset: Sort.SET,
-        Route: Sort.ROUTE,
-        Observation: Sort.OBSERVATION,
+        int: ValueSort.NUMBER,
+        Text: ValueSort.TEXT,
+        Truth: ValueSort.TRUTH,
+        tuple: ValueSort.TUPLE,
+        frozenset: ValueSort.SET,
+        Route: ValueSort.ROUTE,
+        Observation: ValueSort.OBSERVATION,
     }
     if isinstance(value, str):
-        return Sort.AGENT if value in agents else Sort.ENTITY
+        return ValueSort.AGENT if value in agents else ValueSort.ENTITY
     return named[type(value)]
 
 
@@ -150,7 +150,7 @@ def judged(operator, values):
 
 def outcome(operator, values):
     """Return what an operator makes of these operands, None where it fails."""
-    scope = Scope("a", "uav0", {}, {}, {"uav0": "UAV", "place0": "Location"}, {})
+    scope = EvaluationScope("a", "uav0", {}, {}, {"uav0": "UAV", "place0": "Location"}, {})
     try:
         return evaluate(Apply(operator, tuple(map(Literal, values))), scope)
     except Fault:

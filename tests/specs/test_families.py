@@ -13,7 +13,7 @@ from semantics.properties.temporal import Steps
 from semantics.successors import successors
 from specs.diagnostics import MissionError, Source
 from specs.elaboration import elaborate
-from specs.elaboration.actors import MOST_WRITTEN
+from specs.elaboration.initial_actors import MOST_WRITTEN
 from specs.parser import parse
 
 WORLD = """

@@ -9,8 +9,8 @@ import pytest
 
 from specs.diagnostics import MissionError
 from specs.formatter import format_mission
+from specs.language_reference import EXAMPLES
 from specs.parser import parse_bytes
-from specs.reference import EXAMPLES
 
 ROOT = Path(__file__).parents[2]
 LARGEST = 4_000

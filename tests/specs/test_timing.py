@@ -15,8 +15,8 @@ from semantics.timing.timing import ClauseTimes, Endurance, Every, Motion, Sayab
 from specs import syntax as s
 from specs.diagnostics import MissionError, Source
 from specs.elaboration import elaborate, load_mission
-from specs.elaboration.findings import Findings
-from specs.elaboration.timing import Ticks
+from specs.elaboration.mission_mistakes import Findings
+from specs.elaboration.timing import TickConversion
 from specs.elaboration.variation import Variation
 from specs.formatter import format_mission
 from specs.parser import parse
@@ -102,7 +102,7 @@ def test_a_section_is_written_in_the_canonical_layout():
 @given(st.integers(1, 5_000), st.integers(0, 600_000))
 def test_durations_are_counted_exactly_in_milliseconds(tick, milliseconds):
     findings = Findings(Source("", ""))
-    ticks = Ticks(tick, findings).count(s.Duration(milliseconds / 1000, "s"))
+    ticks = TickConversion(tick, findings).count(s.Duration(milliseconds / 1000, "s"))
     if milliseconds % tick:
         assert len(findings) == 1
     else:

@@ -12,30 +12,30 @@ from bigactors.exits import Exit
 from bigactors.mistakes import Mistake
 from bigactors.terminal import paint
 from bigraphs import NotationError
-from bigraphs.exports.json import bigraph_json
-from bigraphs.system import System
-from bigraphs.transitions import TransitionSystem
-from bigraphs.verdicts import (
+from bigraphs.claims import (
+    ClaimOutcome,
+    ClaimVerdict,
     Decided,
-    Outcome,
     Quantifier,
-    Run,
-    Step,
     Value,
-    Verdict,
+    WitnessRun,
+    WitnessStep,
     deadlock_verdict,
     predicate_verdict,
     property_verdict,
 )
-from physical.messages import counted
+from bigraphs.exports.json import bigraph_json
+from bigraphs.system import System
+from bigraphs.transitions import TransitionSystem
+from physical.wordings import counted
 
 LOGICS: Final = ("ltl", "ctl")
 """The options that take formulas."""
 
 MARKS: Final = {
-    Outcome.HOLDS: ("✓", "green", Exit.HOLDS),
-    Outcome.VIOLATED: ("✗", "red", Exit.VIOLATED),
-    Outcome.INCOMPLETE: ("?", "yellow", Exit.INCOMPLETE),
+    ClaimOutcome.HOLDS: ("✓", "green", Exit.HOLDS),
+    ClaimOutcome.VIOLATED: ("✗", "red", Exit.VIOLATED),
+    ClaimOutcome.INCOMPLETE: ("?", "yellow", Exit.INCOMPLETE),
 }
 
 
@@ -43,14 +43,14 @@ SHOWN_CHOICES: Final = 8
 """The most choices of a strategy that are printed."""
 
 
-def of_verdict(found: TransitionSystem, verdict: Verdict) -> Decided:
+def of_verdict(found: TransitionSystem, verdict: ClaimVerdict) -> Decided:
     """Return a verdict with a shortest run to the state that proves it."""
     if verdict.state is None:
         return Decided(verdict.claim, verdict.outcome)
     path = found.path_to(verdict.state)
-    steps = tuple(Step(found.rules_between(*pair), pair[1]) for pair in pairwise(path))
+    steps = tuple(WitnessStep(found.rules_between(*pair), pair[1]) for pair in pairwise(path))
     what = f"a shortest run to state {verdict.state}, {len(steps)} steps"
-    return Decided(verdict.claim, verdict.outcome, Run(steps), what)
+    return Decided(verdict.claim, verdict.outcome, WitnessRun(steps), what)
 
 
 def verdicts_on(options: Namespace, found: TransitionSystem) -> Iterator[Decided]:
@@ -113,7 +113,7 @@ def decided_lines(found: TransitionSystem, decided: Decided) -> Iterator[str]:
     if value is not None and value.compared:
         said += f", it is {value.number:.6g}"
     elif value is not None:
-        mark, said = "=" if decided.outcome is Outcome.HOLDS else mark, f"{value.number:.6g}"
+        mark, said = "=" if decided.outcome is ClaimOutcome.HOLDS else mark, f"{value.number:.6g}"
     yield f"  {paint(mark, colour, sys.stdout)} {decided.claim}: {said}"
     if decided.note:
         yield f"      {decided.note}"
@@ -125,7 +125,7 @@ def decided_lines(found: TransitionSystem, decided: Decided) -> Iterator[str]:
         yield from _run_lines(found, decided.run)
 
 
-def _run_lines(found: TransitionSystem, run: Run) -> Iterator[str]:
+def _run_lines(found: TransitionSystem, run: WitnessRun) -> Iterator[str]:
     yield f"        0: {state_text(found.state(0))}"
     ends = len(run.steps) if run.loop is None else len(run.steps) - 1
     for step in run.steps[:ends]:
@@ -147,7 +147,7 @@ def _strategy(chosen: Mapping[int, str]) -> str:
     return ", ".join(shown) + more
 
 
-def _rules(step: Step) -> str:
+def _rules(step: WitnessStep) -> str:
     rules = ", ".join(step.rules) or "nothing can happen"
     chance = "" if step.chance is None else f", {step.chance:.6g}"
     return f"{step.action + ': ' if step.action else ''}{rules}{chance}"
@@ -176,7 +176,7 @@ def decided_json(found: TransitionSystem, decided: list[Decided]) -> dict[str, A
     }
 
 
-def _run_json(found: TransitionSystem, run: Run) -> list[dict[str, Any]]:
+def _run_json(found: TransitionSystem, run: WitnessRun) -> list[dict[str, Any]]:
     shown = run.steps if run.loop is None else run.steps[:-1]
     return [
         {
@@ -186,7 +186,7 @@ def _run_json(found: TransitionSystem, run: Run) -> list[dict[str, Any]]:
             "chance": step.chance,
             "state": bigraph_json(found.state(step.state)),
         }
-        for step in (Step((), 0), *shown)
+        for step in (WitnessStep((), 0), *shown)
     ]
 
 
@@ -196,5 +196,5 @@ def _value_json(value: Value) -> dict[str, Any]:
     return {"number": number, "bounds": bounds or None}
 
 
-def _loop_json(run: Run) -> dict[str, Any] | None:
+def _loop_json(run: WitnessRun) -> dict[str, Any] | None:
     return None if run.loop is None else {"to": run.loop, "rules": list(run.steps[-1].rules)}

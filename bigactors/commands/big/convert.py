@@ -14,7 +14,7 @@ from bigraphs.notation import read_bgm, read_system
 from bigraphs.notation.big.parser import parse_model
 from bigraphs.notation.big.portable import portable, unportable
 from bigraphs.notation.big.writer import checked_text, model_of
-from bigraphs.notation.files import read_text
+from bigraphs.notation.system_files import read_text
 from bigraphs.system import System, Value
 
 READ: Final = ("big", "bgm")

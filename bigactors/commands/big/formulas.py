@@ -126,7 +126,7 @@ class _Elaboration:
             raise self.wrong("logic", message, part, "write AG, EF, AX or A (F U G)")
         return part.formula
 
-    def wrong(self, code: str, message: str, at: _Part | s.Word, hint: str) -> NotationError:
+    def wrong(self, code: str, message: str, at: _Part | s.FormulaWord, hint: str) -> NotationError:
         """Return a mistake with its place."""
         return NotationError(code, message, self.text, at.start, length=at.end - at.start, hint=hint)
 
@@ -138,30 +138,30 @@ class _Elaboration:
 
     # --- atoms, then compound formulas: a method for each kind of term
 
-    def truth(self, at: s.Term, word: s.Word) -> _Part:
+    def truth(self, at: s.Term, word: s.FormulaWord) -> _Part:
         return _part(t.Now(Always(word.text == "true")), at)
 
-    def predicate(self, at: s.Term, word: s.Word) -> _Part:
+    def predicate(self, at: s.Term, word: s.FormulaWord) -> _Part:
         label = self.known(word, self.predicates, "predicate")
         return _part(occurs(label), at)
 
-    def taken(self, at: s.Term, word: s.Word) -> _Part:
+    def taken(self, at: s.Term, word: s.FormulaWord) -> _Part:
         if self.logic == "ctl":
             message = "in ctl no step is taken: all that may follow are looked at"
             raise self.wrong("logic", message, word, "write it in ltl, or say enabled")
         return _part(t.Taken(self.steps(word)), at)
 
-    def enabled(self, at: s.Term, word: s.Word) -> _Part:
+    def enabled(self, at: s.Term, word: s.FormulaWord) -> _Part:
         return _part(t.Enabled(self.steps(word)), at)
 
     def fairness(self, declared: s.Term) -> Iterator[t.Fairness]:
         """Yield the fairness to each of the rules that a declaration lists."""
-        strength, *listed = cast("tuple[s.Word, ...]", declared.parts)
+        strength, *listed = cast("tuple[s.FormulaWord, ...]", declared.parts)
         for word in listed:
             steps = t.Steps() if word.text == EACH_RULE else self.steps(word)
             yield fair_to(strength.text == "strong", steps, word.text)
 
-    def steps(self, word: s.Word) -> t.Steps:
+    def steps(self, word: s.FormulaWord) -> t.Steps:
         """Return the steps of a rule, or of all rules of a name (see `temporal.graph_of`)."""
         name = _unquoted(word.text)
         if name not in self.rules and name in self.instantaneous:
@@ -170,7 +170,7 @@ class _Elaboration:
         label = self.known(word, self.rules, "rule")
         return t.Steps((label,)) if label in self.labels else t.Steps((), label)
 
-    def known(self, word: s.Word, labels: tuple[str, ...], sort: str) -> str:
+    def known(self, word: s.FormulaWord, labels: tuple[str, ...], sort: str) -> str:
         """Return the label that a word names; spaces in its parameters are ignored."""
         name = _unquoted(word.text)
         if name in labels:
@@ -202,7 +202,7 @@ class _Elaboration:
 
     # --- operators of paths
 
-    def prefix(self, at: s.Term, operator: s.Word, inner: _Part) -> _Part:
+    def prefix(self, at: s.Term, operator: s.FormulaWord, inner: _Part) -> _Part:
         formula = self.state(inner)
         make = _PREFIXES.get(operator.text)
         if make is not None:
@@ -212,12 +212,12 @@ class _Elaboration:
             raise self.wrong("logic", message, operator, "write AG AF F")
         return self.over_path(t.Globally(t.Eventually(formula)), at, inner)
 
-    def operation(self, at: s.Term, left: _Part, operator: s.Word, right: _Part) -> _Part:
+    def operation(self, at: s.Term, left: _Part, operator: s.FormulaWord, right: _Part) -> _Part:
         formula = _OPERATIONS[operator.text](self.state(left), self.state(right))
         times = 2 if operator.text == "W" else 1  # CTL rewrites W by U
         return self.over_path(formula, at, left, right, times=times)
 
-    def quantified(self, at: s.Term, quantifier: s.Word, inner: _Part) -> _Part:
+    def quantified(self, at: s.Term, quantifier: s.FormulaWord, inner: _Part) -> _Part:
         letter, operator = quantifier.text[0], quantifier.text[1:]
         if self.logic == "ltl":
             message = f"ltl is about every run, and doesn't say '{letter}'"
@@ -231,7 +231,7 @@ class _Elaboration:
             raise self.wrong("logic", message, inner, "write AG, EF, AX or A (F U G)")
         return _part(make(inner.formula), at, inner)
 
-    def leads_to(self, at: s.Term, left: _Part, _leads: s.Word, right: _Part) -> _Part:
+    def leads_to(self, at: s.Term, left: _Part, _leads: s.FormulaWord, right: _Part) -> _Part:
         before, after = t.Denied(self.state(left)), t.Eventually(self.state(right))
         if self.logic == "ctl":
             always = t.OnAllPaths(t.Globally(t.Either(before, t.OnAllPaths(after))))

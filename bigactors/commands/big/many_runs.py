@@ -17,9 +17,9 @@ from bigactors.terminal import is_terminal, say, tell
 from bigraphs.sampling import (
     CONFIDENCE,
     End,
-    Estimate,
     FirstTimes,
     Sample,
+    SampleEstimate,
     Sampler,
     first_times,
     mean,
@@ -29,7 +29,7 @@ from bigraphs.sampling import (
 from bigraphs.simulation import Bounds
 from bigraphs.system import System, SystemKind
 from physical.map_style import PALETTE
-from physical.messages import counted
+from physical.wordings import counted
 
 LOOK_EVERY: Final = 0.2
 """Seconds between two updates of the progress line."""
@@ -131,7 +131,7 @@ def _told(found: FirstTimes) -> str:
     )
 
 
-def _estimated(found: Estimate) -> str:
+def _estimated(found: SampleEstimate) -> str:
     if not isfinite(found.low):
         return f"{found.value:.4g}"
     return f"{found.value:.4g} ({found.low:.4g} to {found.high:.4g})"
@@ -181,7 +181,7 @@ def as_data(
     }
 
 
-def _estimate_data(found: Estimate) -> dict[str, Any]:
+def _estimate_data(found: SampleEstimate) -> dict[str, Any]:
     interval = [found.low, found.high] if isfinite(found.low) else None
     return {"value": found.value, "interval": interval}
 

@@ -6,7 +6,7 @@ from typing import Final
 from bigraphs import Bigraph, BigraphError
 from bigraphs.notation import write_big
 from bigraphs.signature import Signature
-from physical.messages import counted
+from physical.wordings import counted
 
 LONG: Final = 300
 """The number of characters beyond which a state is replaced by its size, unless it is the requested output."""

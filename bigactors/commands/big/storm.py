@@ -15,14 +15,14 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final
 
 from bigactors.mistakes import Mistake
+from bigraphs.claims import ClaimOutcome, Decided, Value, WitnessRun, WitnessStep, predicate_hint
 from bigraphs.errors import NotationError
 from bigraphs.exports.markov import KINDS, OWN_LABELS, MarkovKind, label_names
 from bigraphs.exports.storm import storm_files
 from bigraphs.likeliest import Likeliest, decisions, likeliest_run
 from bigraphs.system import System
 from bigraphs.transitions import TransitionSystem
-from bigraphs.verdicts import Decided, Outcome, Run, Step, Value, predicate_hint
-from physical.messages import counted, install_extra
+from physical.wordings import counted, install_extra
 
 EXAMPLES: Final = "write P=? [F goal], Pmax=? [a U b], P>=0.9 [G !bad], T=? [F goal] or R=? [C<=10]"
 _OPERATORS: Final = "P|R|T|LRA"
@@ -105,7 +105,9 @@ def answers(found: TransitionSystem, queries: Sequence[str]) -> Iterator[Decided
     for text, reply in zip(queries, replies, strict=True):
         claim = f"storm {' '.join(text.split())}"
         if "error" in reply:
-            yield Decided(claim, Outcome.INCOMPLETE, note=_without_answer(text, reply["error"], found.system))
+            yield Decided(
+                claim, ClaimOutcome.INCOMPLETE, note=_without_answer(text, reply["error"], found.system)
+            )
         else:
             yield answer(found, claim, reply)
 
@@ -130,10 +132,10 @@ def _without_answer(text: str, error: str, system: System) -> str:
 
 def answer(found: TransitionSystem, claim: str, reply: dict[str, Any]) -> Decided:
     """Return Storm's answer to one query; for an incomplete system it covers only the explored part."""
-    outcome = Outcome.HOLDS if reply.get("true", True) else Outcome.VIOLATED
+    outcome = ClaimOutcome.HOLDS if reply.get("true", True) else ClaimOutcome.VIOLATED
     note = ""
     if not found.complete:
-        outcome = Outcome.INCOMPLETE
+        outcome = ClaimOutcome.INCOMPLETE
         note = f"of the {counted(found.expanded, 'state')} that were explored: beyond them nothing happens"
     value = Value(reply["value"], tuple(reply.get("bounds", ())), "true" in reply)
     strategy: list[int] | None = reply.get("choices")
@@ -148,16 +150,16 @@ def answer(found: TransitionSystem, claim: str, reply: dict[str, Any]) -> Decide
     return Decided(claim, outcome, run, what, note, value=value, strategy=chosen)
 
 
-def _run(likeliest: Likeliest | None, has_strategy: bool, is_against: bool) -> tuple[Run | None, str]:
+def _run(likeliest: Likeliest | None, has_strategy: bool, is_against: bool) -> tuple[WitnessRun | None, str]:
     """Return the likeliest run, and its description."""
     if likeliest is None:
         return None, ""
     steps = (
-        Step(each.rules, each.target, each.action or "", chance)
+        WitnessStep(each.rules, each.target, each.action or "", chance)
         for each, chance in zip(likeliest.transitions, likeliest.chances, strict=True)
     )
     by, sort = "by this strategy " if has_strategy else "", "against it" if is_against else "that shows it"
-    return Run(tuple(steps)), f"{by}the likeliest run {sort}, of probability {likeliest.chance:.6g}"
+    return WitnessRun(tuple(steps)), f"{by}the likeliest run {sort}, of probability {likeliest.chance:.6g}"
 
 
 def _replies(texts: list[str], files: dict[str, str] | None = None) -> list[dict[str, Any]]:

@@ -18,13 +18,13 @@ from bigraphs import BigraphError, NotationError
 from bigraphs.confluence import MOST_REACTIONS, Divergence, compare_orders
 from bigraphs.engine.machine import Machine
 from bigraphs.examples import example_names, example_text
-from bigraphs.exploration import Progress, explore
+from bigraphs.exploration import ExplorationProgress, explore
 from bigraphs.exports.json import bigraph_json
 from bigraphs.notation import load_system, read_system
 from bigraphs.system import System, SystemKind
 from bigraphs.transitions import TransitionSystem
 from bigraphs.workers import cores
-from physical.messages import counted
+from physical.wordings import counted
 
 if TYPE_CHECKING:
     from bigraphs.simulation import Stage
@@ -56,7 +56,7 @@ def explored(options: Namespace, system: System) -> TransitionSystem:
     name = Path(options.file).name
     with watching(name) as watch:
 
-        def told(progress: Progress) -> None:
+        def told(progress: ExplorationProgress) -> None:
             _show_progress(watch, name, progress)
 
         return explore(
@@ -96,7 +96,7 @@ def _divergence_lines(file: str, found: Divergence) -> Iterator[str]:
     yield f"hint: {hint}; let the rules exclude each other where that is not meant"
 
 
-def _show_progress(watch: Watch, name: str, progress: Progress) -> None:
+def _show_progress(watch: Watch, name: str, progress: ExplorationProgress) -> None:
     if watch.interrupted:
         raise KeyboardInterrupt
     if is_terminal(watch.stream):

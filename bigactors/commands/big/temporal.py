@@ -13,16 +13,16 @@ from typing import Final, cast
 import numpy as np
 
 from bigactors.commands.big.formulas import EACH_RULE, Claim, Occurs, fair_to, parse_claim
+from bigraphs.claims import ClaimOutcome, Decided, WitnessRun, WitnessStep
 from bigraphs.transitions import TransitionSystem
-from bigraphs.verdicts import Decided, Outcome, Run, Step
 from checker.engines.graph import STUTTER, Bools, Graph
 from checker.properties.temporal.components import Conditions
-from checker.properties.temporal.decision import Decision, Formulas
+from checker.properties.temporal.decision import Decision, FormulaDecider
 from checker.properties.temporal.fairness import classes, conditions_of
 from checker.properties.temporal.lassos import Lasso
-from checker.properties.temporal.truth import Truth
+from checker.properties.temporal.truth import FormulaTruth
 from checker.verdicts import Outcome as Known
-from physical.messages import counted
+from physical.wordings import counted
 from semantics.properties.propositions import Proposition
 from semantics.properties.temporal import Fairness, Now, Steps, Temporal, atoms
 from semantics.state.configuration import Label
@@ -73,20 +73,20 @@ class Decider:
         return graph_of(self.found).total()
 
     @cached_property
-    def formulas(self) -> Formulas:
+    def formulas(self) -> FormulaDecider:
         """The decision procedures, given the states in which predicates occur."""
         columns = zip(self.found.system.predicates, self.found.labels, strict=True)
         values = {
             cast("Proposition", Occurs(predicate.label)): np.frombuffer(bytes(holds), dtype=np.uint8) > 0
             for predicate, holds in columns
         }
-        truth = Truth(self.graph, values)
+        truth = FormulaTruth(self.graph, values)
 
         def is_still(formula: Temporal) -> bool:
             asked = tuple(atoms(formula))
             return all(isinstance(each, Now) and _is_constant(truth.here(each)) for each in asked)
 
-        return Formulas(truth, self.found.complete, is_still)
+        return FormulaDecider(truth, self.found.complete, is_still)
 
     def decide(self, logic: str, text: str) -> Decided:
         """Decide a formula of a logic, `ltl` or `ctl`; raises NotationError for an invalid formula.
@@ -96,7 +96,7 @@ class Decider:
         claim = parse_claim(text, logic, self.found.system)
         said = f"{logic} {' '.join(text.split())}"
         if not len(self.found):
-            return Decided(said, Outcome.INCOMPLETE)
+            return Decided(said, ClaimOutcome.INCOMPLETE)
         linear = logic == "ltl"
         decide = self.formulas.linear if linear else self.formulas.branching
         found = decide(claim.formula, self.conditions(claim.fairness))
@@ -113,14 +113,16 @@ class Decider:
         if linear:
             what = f"a {'shortest ' if lasso.shortest else ''}run on which it is false"
             what += "" if lasso.loop else ", whatever follows"
-            return Decided(said, Outcome.VIOLATED, self.run(lasso), what)
+            return Decided(said, ClaimOutcome.VIOLATED, self.run(lasso), what)
         if not len(lasso):
-            return Decided(said, Outcome.VIOLATED, note="false in the initial state; no single run shows it")
-        return Decided(said, Outcome.VIOLATED, self.run(lasso), "a run that shows it")
+            return Decided(
+                said, ClaimOutcome.VIOLATED, note="false in the initial state; no single run shows it"
+            )
+        return Decided(said, ClaimOutcome.VIOLATED, self.run(lasso), "a run that shows it")
 
     def unviolated(self, said: str, found: Decision, linear: bool) -> Decided:
         """Return the verdict on a formula without a violation."""
-        outcome = Outcome(found.outcome.value)
+        outcome = ClaimOutcome(found.outcome.value)
         if found.run is None or not len(found.run):
             return Decided(said, outcome, note=found.note)
         run = self.run(found.run)
@@ -147,16 +149,16 @@ class Decider:
             if not any(self.graph.taken(labels).any() for labels in classes(each, self.graph.labels)):
                 yield f"{each} is about no step that ever is"
 
-    def run(self, lasso: Lasso) -> Run:
+    def run(self, lasso: Lasso) -> WitnessRun:
         """Return a lasso of edges as a run."""
-        return Run(tuple(self.steps(lasso)), len(lasso.stem) if lasso.loop else None)
+        return WitnessRun(tuple(self.steps(lasso)), len(lasso.stem) if lasso.loop else None)
 
-    def steps(self, lasso: Lasso) -> Iterator[Step]:
+    def steps(self, lasso: Lasso) -> Iterator[WitnessStep]:
         """Yield the steps of a lasso, with its loop taken once."""
         for edge in (*lasso.stem, *lasso.loop):
             action = int(self.graph.actions[edge])
             rules = () if action == STUTTER else (self.graph.labels[action].rule,)
-            yield Step(rules, int(self.graph.targets[edge]))
+            yield WitnessStep(rules, int(self.graph.targets[edge]))
 
 
 def _is_constant(values: Bools) -> bool:

@@ -25,7 +25,7 @@ from checker.limits import Stop
 from checker.reports.report import MARKS, coverage_text
 from checker.reports.results import caution_text
 from checker.verdicts import Outcome, Report
-from physical.messages import counted
+from physical.wordings import counted
 from semantics.successors import rules_of
 
 if TYPE_CHECKING:

@@ -103,7 +103,7 @@ def show_foreign(options: Namespace) -> Exit:
     from bigactors.commands.replay.trace_reader import account_for, watched_in
     from bigactors.missions import opening, variation_of
     from bigraphs import draw_text
-    from physical.messages import counted
+    from physical.wordings import counted
     from semantics.state.abstraction import all_as_it_is
 
     if options.waypoints:

@@ -17,8 +17,8 @@ from checker import Step, Trace
 from physical import PhysicalError, PhysicalProperty
 from physical.ais_recording import read_recording
 from physical.ais_world import COARSE, Finest, dated, physical_property
+from physical.file_account import Counting, FileAccount
 from physical.mmsi import digits
-from physical.tally import Counting, Tally
 from semantics.live_policy import Fallback, LivePolicy
 from specs.elaboration import ElaboratedMission
 
@@ -41,14 +41,14 @@ class Shown:
     times: tuple[float, ...]
     findings: tuple[Finding, ...]
     positions: int
-    tallies: tuple[Tally, ...] = ()
+    tallies: tuple[FileAccount, ...] = ()
 
 
 def watched(path: str, mission: ElaboratedMission, names: dict[str, str]) -> Shown:
     """Return a recording's view of a mission's world; raises Mistake if it can't be read or has no position."""
     plan = Plan(mission.initial, precautions=LivePolicy(Fallback.CONTINUE))
     state, steps, times, findings, count = started(plan), list[Step](), list[float](), list[Finding](), 0
-    accounts: list[Tally] = []
+    accounts: list[FileAccount] = []
     try:
         for time, heard in feed(path, mission, names, accounts):
             turn = watch(plan, state, Batch((heard,)), time)
@@ -66,7 +66,7 @@ def watched(path: str, mission: ElaboratedMission, names: dict[str, str]) -> Sho
     return Shown(Trace(mission.initial, tuple(steps)), tuple(times), tuple(findings), count, tuple(accounts))
 
 
-def _nothing_shown(path: str, accounts: Iterable[Tally]) -> Mistake:
+def _nothing_shown(path: str, accounts: Iterable[FileAccount]) -> Mistake:
     """Return the mistake for a recording without a usable position, with the recording's contents."""
     rows = [row for tally in accounts for row in tally.summary()]
     message = "; ".join(["it shows no position", *rows])
@@ -74,7 +74,7 @@ def _nothing_shown(path: str, accounts: Iterable[Tally]) -> Mistake:
 
 
 def feed(
-    path: str, mission: ElaboratedMission, names: dict[str, str], accounts: list[Tally] | None = None
+    path: str, mission: ElaboratedMission, names: dict[str, str], accounts: list[FileAccount] | None = None
 ) -> Iterator[tuple[float, Heard]]:
     """Yield the dated positions of a recording; at its end, append its tallies to `accounts`."""
     told = [] if accounts is None else accounts
@@ -84,7 +84,7 @@ def feed(
 
 
 def _telemetry(
-    path: str, mission: ElaboratedMission, names: dict[str, str], accounts: list[Tally]
+    path: str, mission: ElaboratedMission, names: dict[str, str], accounts: list[FileAccount]
 ) -> Iterator[tuple[float, PhysicalProperty]]:
     """Yield the positions of the vehicles that `names` maps by system id; without any, of all systems as UAVs."""
     kinds = mission.setting.kinds
@@ -103,7 +103,9 @@ def _telemetry(
     accounts.append(counting.tally(counting.total, *THINGS))
 
 
-def _ais(path: str, names: dict[str, str], accounts: list[Tally]) -> Iterator[tuple[float, PhysicalProperty]]:
+def _ais(
+    path: str, names: dict[str, str], accounts: list[FileAccount]
+) -> Iterator[tuple[float, PhysicalProperty]]:
     naming, finest, counting = NamingService(names), Finest(), Counting()
     recording = read_recording(Path(path))
     positions = dated(recording.positions)

@@ -19,7 +19,7 @@ from adapters.plugin import Plugin, Preflight, preflights
 from bigactors.commands.run.fences import placements_of
 from bigactors.mistakes import Mistake
 from bigactors.terminal import tell
-from checker.reduction.bounds import Bounds
+from checker.reduction.overapproximation import Overapproximation
 from checker.reduction.possible_values import Roles
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction
@@ -127,7 +127,7 @@ def _place(mission: ElaboratedMission, line: int) -> str:
 
 def _controls(mission: ElaboratedMission) -> Iterator[tuple[Name, int, tuple[Reaction, ...]]]:
     """Yield the controls of each agent, with their lines and all possible arguments."""
-    program, roles = mission.setting.program, Roles(Bounds(mission.initial))
+    program, roles = mission.setting.program, Roles(Overapproximation(mission.initial))
     for agent in roles.agents:
         for number in sorted(roles[agent].statements):
             statement = program.statements[number]

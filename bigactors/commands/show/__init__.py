@@ -160,7 +160,7 @@ def _write_tracks(options: Namespace) -> Exit:
     """Write the dated positions in a recording or a trace; those of a recording completely."""
     from adapters.recording.reading import is_recording
     from bigactors.commands.show.tracks import write_recorded, write_traced
-    from physical.messages import counted
+    from physical.wordings import counted
 
     if options.trace is None:
         raise Mistake("tracks are those of a trace", "give the trace with --trace", options.output)

@@ -11,8 +11,8 @@ from adapters.recording.mcap_files import McapReader, RecordingError
 from bigactors.files import write_text
 from bigactors.mistakes import Mistake, unreadable
 from checker import Trace
+from physical.geojson_tracks import PositionFix, Track, write_tracks
 from physical.shape import Geometry
-from physical.tracks import Fix, Track, write_tracks
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Placed
 
@@ -20,7 +20,7 @@ from semantics.state.physical_model import Placed
 def write_recorded(path: str, output: str) -> int:
     """Write the tracks of all recorded entities with point positions; return their number; raises Mistake."""
     kinds: dict[str, str] = {}
-    found: defaultdict[str, list[Fix]] = defaultdict(list)
+    found: defaultdict[str, list[PositionFix]] = defaultdict(list)
     try:
         for message in McapReader(Path(path)).messages():
             match message.data:
@@ -36,14 +36,14 @@ def write_recorded(path: str, output: str) -> int:
     return _write([Track(name, kinds[name], tuple(fixes)) for name, fixes in sorted(found.items())], output)
 
 
-def _fix(north: int, east: int, time: float, more: Mapping[Any, Any]) -> Fix:
+def _fix(north: int, east: int, time: float, more: Mapping[Any, Any]) -> PositionFix:
     """Return a position, dated by its observation, or else by its arrival."""
     height = None
     match more.get("altitude"):
         case [int() | float() as low, int() | float() as high]:
             height = (low + high) / 2
     seen = more.get("time")
-    return Fix((north, east), seen if isinstance(seen, int | float) else time, height)
+    return PositionFix((north, east), seen if isinstance(seen, int | float) else time, height)
 
 
 def write_traced(trace: Trace, times: Sequence[float], output: str) -> int:
@@ -53,7 +53,9 @@ def write_traced(trace: Trace, times: Sequence[float], output: str) -> int:
     return _write([Track(name, kinds[name], fixes) for name, fixes in found if len(fixes) > 1], output)
 
 
-def _stands(configurations: Iterable[Configuration], times: Sequence[float], name: str) -> Iterator[Fix]:
+def _stands(
+    configurations: Iterable[Configuration], times: Sequence[float], name: str
+) -> Iterator[PositionFix]:
     """Yield each new position of a point. The first is dated by the first step."""
     before: Geometry | None = None
     for number, each in enumerate(configurations):
@@ -61,7 +63,7 @@ def _stands(configurations: Iterable[Configuration], times: Sequence[float], nam
         if isinstance(at, Placed) and at.geometry.is_point and at.geometry is not before:
             before = at.geometry
             time = times[max(number - 1, 0)] if times else None
-            yield Fix(
+            yield PositionFix(
                 before.ring[0],
                 time,
                 None if at.altitude is None else (at.altitude.low + at.altitude.high) / 2,

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from bigactors.commands.simulate.one_run import Choice, OneRun, nothing_more, print_step
-from physical.messages import counted
+from physical.wordings import counted
 from semantics.properties.property import Property
 from semantics.properties.propositions import holds
 from semantics.state.printing import print_changes, print_configuration

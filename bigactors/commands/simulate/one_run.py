@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from checker import Step, Trace
-from physical.messages import counted
+from physical.wordings import counted
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.printing import print_changes, print_configuration
 from semantics.successors import Expansion, expand

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 from bigraphs.errors import NotationError
 from bigraphs.notation.bgm import syntax
 from bigraphs.notation.bgm.syntax import Line, Query, Term, Wide
+from bigraphs.notation.bounded_parsing import read_into
 from bigraphs.notation.lalr import Span, Tables, Token, kept_tables
-from bigraphs.notation.reading import read_into
 from bigraphs.notation.spelling import did_you_mean
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import Final
 from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph
 from bigraphs.errors import NotationError
-from bigraphs.notation.bgm import queries
+from bigraphs.notation.bgm import property_elaboration
 from bigraphs.notation.bgm.parser import parse_bgm
 from bigraphs.notation.bgm.syntax import (
     ControlLine,
@@ -23,13 +23,13 @@ from bigraphs.notation.bgm.syntax import (
     Wide,
 )
 from bigraphs.notation.bgm.terms import Terms, holes, name_and_kind, names_in, walk
-from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.big.solidity import faults
 from bigraphs.notation.big.syntax import MAX_SIZE
 from bigraphs.notation.lalr import Span
-from bigraphs.properties import Property
+from bigraphs.properties import SystemProperty
 from bigraphs.signature import Control, Signature
-from bigraphs.system import Position, PriorityClass, Rule, System, SystemKind
+from bigraphs.system import PriorityClass, Rule, SourcePosition, System, SystemKind
 
 _ONE: Final = 1
 
@@ -170,7 +170,7 @@ class _Reading:
         constants = frozenset(used & self.declared)
         text = self.findings.text
         start = text.rfind("\n", 0, line.offset)
-        position = Position(text.count("\n", 0, line.offset) + 1, line.offset - start)
+        position = SourcePosition(text.count("\n", 0, line.offset) + 1, line.offset - start)
         return Rule(name, before, after, order, link_constants=constants, position=position)
 
     def without_rest(self, line: RuleLine) -> tuple[Wide, Wide]:
@@ -211,13 +211,13 @@ class _Reading:
                 self.add("redex", message, line.offset, hint=hint)
         return len(self.findings) == before and redex.outer == reactum.outer
 
-    def properties(self) -> Iterator[Property]:
+    def properties(self) -> Iterator[SystemProperty]:
         lines = [line for line in self.lines if isinstance(line, PropertyLine)]
         self.refuse_again("property", [(line.name, line.offset) for line in lines])
         for line in lines:
-            found = queries.formula(line.query, self.terms, self.declared)
+            found = property_elaboration.formula(line.query, self.terms, self.declared)
             if found is not None:
-                yield Property(line.name, found)
+                yield SystemProperty(line.name, found)
 
 
 def _numbered(wide: Wide) -> Wide:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from bigraphs.bigraph import Bigraph, Link, Node, Place, assemble
 from bigraphs.notation.bgm.syntax import Hole, Prefix, Wide
-from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.big.syntax import MAX_SIZE
 from bigraphs.notation.lalr import Span
 from bigraphs.signature import Signature

@@ -43,12 +43,12 @@ class Expressions(Values):
     def new_names(self, at: Span, names: tuple[str, ...]) -> syntax.NewNames:
         return syntax.NewNames(names, at)
 
-    def merge(self, at: Span, width: Token | None) -> syntax.Placed:
-        return syntax.Placed(((0,),) * self.width(width, 2), 1, at)
+    def merge(self, at: Span, width: Token | None) -> syntax.PlacingLiteral:
+        return syntax.PlacingLiteral(((0,),) * self.width(width, 2), 1, at)
 
-    def split(self, at: Span, width: Token | None) -> syntax.Placed:
+    def split(self, at: Span, width: Token | None) -> syntax.PlacingLiteral:
         count = self.width(width, 2)
-        return syntax.Placed((tuple(range(count)),), count, at)
+        return syntax.PlacingLiteral((tuple(range(count)),), count, at)
 
     def width(self, token: Token | None, default: int) -> int:
         """Return a width; record a mistake if it exceeds the size limit of bigraphs, before such a term is built."""
@@ -63,9 +63,9 @@ class Expressions(Values):
     def set(self, _at: Span, numbers: tuple[int, ...]) -> tuple[int, ...]:
         return numbers
 
-    def placing(self, at: Span, *parts: Any) -> syntax.Placed:
+    def placing(self, at: Span, *parts: Any) -> syntax.PlacingLiteral:
         sets = tuple(part for part in parts[:-1] if part is not None)
-        return syntax.Placed(sets, self.width(parts[-1], 0), at)
+        return syntax.PlacingLiteral(sets, self.width(parts[-1], 0), at)
 
     def identity(self, at: Span, width: Token | None) -> syntax.Identity:
         return syntax.Identity(self.width(width, 1), (), at)

@@ -20,7 +20,7 @@ from bigraphs.notation.big.syntax import (
     Nest,
     NewNames,
     Number,
-    Placed,
+    PlacingLiteral,
     Share,
     Substitute,
     ValueExpression,
@@ -35,7 +35,7 @@ DEEPEST: Final = 90
 def write_big(bigraph: Bigraph) -> str:
     """Return the text of a bigraph; raises BigraphError for a named node, and for places that nest too deeply.
 
-    >>> from bigraphs.relations import from_relations
+    >>> from bigraphs.relational_bigraphs import from_relations
     >>> from dataclasses import replace
     >>> one = from_relations({"u": "UAV", "a": "Area"}, {"u": "a"}, {"net": ["u"]})
     >>> write_big(replace(one, nodes=tuple(replace(node, name=None) for node in one.nodes)))
@@ -141,7 +141,7 @@ def _nested(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
     if written == sorted(written):
         return regions
     rank = {site: place for place, site in enumerate(written)}
-    order = Placed(tuple((rank[site],) for site in range(len(written))), len(written))
+    order = PlacingLiteral(tuple((rank[site],) for site in range(len(written))), len(written))
     return [Chain(_chain("||", regions), (("*", order),))]
 
 
@@ -166,8 +166,10 @@ def _layers(bigraph: Bigraph, edges: Sequence[str]) -> list[Expression]:
         found = _shared(whats, [bigraph.nodes[number].parents for number in layer], kept, slots, where)
         slots = [*(number for number in layer if number not in closed), *kept]
     rank = {place: slot for slot, place in enumerate(slots)}
-    sites = Placed(tuple(tuple(rank[place] for place in parents) for parents in bigraph.sites), len(slots))
-    in_order = sites == Placed(tuple((slot,) for slot in range(len(slots))), len(slots))
+    sites = PlacingLiteral(
+        tuple(tuple(rank[place] for place in parents) for parents in bigraph.sites), len(slots)
+    )
+    in_order = sites == PlacingLiteral(tuple((slot,) for slot in range(len(slots))), len(slots))
     return [found if in_order else Chain(found, (("*", sites),))]
 
 
@@ -223,5 +225,7 @@ def _shared(
     placed = [*parents, *((place,) for place in kept)]
     what = _chain("||", [*whats, *([Identity(len(kept))] if kept else [])])
     return Share(
-        what, Placed(tuple(tuple(rank[place] for place in each) for each in placed), len(slots)), where
+        what,
+        PlacingLiteral(tuple(tuple(rank[place] for place in each) for each in placed), len(slots)),
+        where,
     )

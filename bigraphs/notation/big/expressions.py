@@ -10,7 +10,7 @@ from bigraphs.bigraph import Bigraph
 from bigraphs.errors import BigraphError
 from bigraphs.interface import Interface
 from bigraphs.notation.big.declarations import BigDeclaration, ReactDeclaration
-from bigraphs.notation.big.scope import NESTED, Frame, Scope
+from bigraphs.notation.big.scope import NESTED, CallFrame, FileScope
 from bigraphs.notation.big.syntax import (
     MAX_SIZE,
     Chain,
@@ -21,7 +21,7 @@ from bigraphs.notation.big.syntax import (
     Nest,
     NewNames,
     Number,
-    Placed,
+    PlacingLiteral,
     Ref,
     Repeat,
     Share,
@@ -44,7 +44,7 @@ MAX_DEPTH: Final = 220
 class Evaluation:
     """The bigraphs of one file; `value` returns None after a recorded mistake, so that the evaluation finds all."""
 
-    def __init__(self, scope: Scope, known: Mapping[str, Bigraph] | None = None) -> None:
+    def __init__(self, scope: FileScope, known: Mapping[str, Bigraph] | None = None) -> None:
         self.scope = scope
         self.controls: dict[str, Control] = {}
         self._known: dict[str, Bigraph | None] = dict(known or {})
@@ -53,7 +53,7 @@ class Evaluation:
         self._work = 0
         self._depth = 0
 
-    def named(self, name: str, given: tuple[Value, ...], span: Span, frame: Frame) -> Bigraph | None:
+    def named(self, name: str, given: tuple[Value, ...], span: Span, frame: CallFrame) -> Bigraph | None:
         """Return a declared bigraph for these arguments."""
         declaration = self._declaration(name, given, span)
         if declaration is None:
@@ -78,7 +78,9 @@ class Evaluation:
             self._under_way.discard(key)
         return self._known.get(key)
 
-    def instance(self, declaration: Declared, frame: Frame, parts: Sequence[Part]) -> list[Bigraph] | None:
+    def instance(
+        self, declaration: Declared, frame: CallFrame, parts: Sequence[Part]
+    ) -> list[Bigraph] | None:
         """Return the bigraphs of a declaration's parts from a template; None if they must be evaluated as written."""
         key = _instances(declaration, frame)
         if self._templates.get(key, False) is None:
@@ -90,7 +92,7 @@ class Evaluation:
         self.controls.update((control.name, control) for control in found[1])
         return found[0]
 
-    def is_well(self, declaration: Declared, frame: Frame) -> None:
+    def is_well(self, declaration: Declared, frame: CallFrame) -> None:
         """Record an evaluation without a mistake, so that a template may make other instances."""
         if declaration.parameters and not isinstance(self.scope, SymbolicScope):
             self._templates.setdefault(_instances(declaration, frame), None)
@@ -110,7 +112,7 @@ class Evaluation:
             return self.scope.instance(self.scope.names.given_bigs[name], given, span)
         return found if found is not None and len(found.parameters) == len(given) else None
 
-    def value(self, expression: Expression, frame: Frame) -> Bigraph | None:
+    def value(self, expression: Expression, frame: CallFrame) -> Bigraph | None:
         """Return the bigraph of an expression."""
         if self._depth >= MAX_DEPTH:
             self.scope.add("too-deep", f"expressions nest deeper than {MAX_DEPTH}", expression.span, frame)
@@ -125,7 +127,7 @@ class Evaluation:
             self._depth -= 1
         return found if found is None or self._affordable(_size(found), expression.span, frame) else None
 
-    def _affordable(self, size: int, span: Span, frame: Frame) -> bool:
+    def _affordable(self, size: int, span: Span, frame: CallFrame) -> bool:
         self._work += size
         if size > MAX_SIZE:
             self.scope.add("too-large", f"a bigraph of more than {MAX_SIZE} parts", span, frame)
@@ -134,7 +136,7 @@ class Evaluation:
             self.scope.findings.add("too-large", message, Span(span.start, span.start + 1))
         return size <= MAX_SIZE and self._work <= MAX_WORK
 
-    def _evaluated(self, expression: Expression, frame: Frame) -> Bigraph | None:
+    def _evaluated(self, expression: Expression, frame: CallFrame) -> Bigraph | None:
         match expression:
             case Ref(name, arguments):
                 given = self.scope.arguments(arguments, frame)
@@ -154,7 +156,7 @@ class Evaluation:
             case _:
                 return _element(expression)
 
-    def _ion(self, ion: Ion, frame: Frame) -> Bigraph | None:
+    def _ion(self, ion: Ion, frame: CallFrame) -> Bigraph | None:
         control = self.scope.control(ion, frame)
         if control is None:
             return None
@@ -162,7 +164,7 @@ class Evaluation:
         make = algebra.atom if control.status == "atomic" else algebra.ion
         return make(Signature((control,)), control.name, ion.links)
 
-    def _nested(self, ion: Ion, inside: Expression, frame: Frame) -> Bigraph | None:
+    def _nested(self, ion: Ion, inside: Expression, frame: CallFrame) -> Bigraph | None:
         around, content = self._ion(ion, frame), self.value(inside, frame)
         if around is None or content is None or not around.sites:
             return None
@@ -172,14 +174,14 @@ class Evaluation:
             return None
         return algebra.nest(around, content)
 
-    def _wired(self, wires: Sequence[Wire], found: Bigraph | None, frame: Frame) -> Bigraph | None:
+    def _wired(self, wires: Sequence[Wire], found: Bigraph | None, frame: CallFrame) -> Bigraph | None:
         for wire in reversed(_once(wires)):
             if found is None or not self._has_names(wire, found, frame):
                 return None
             found = _wire(wire, found)
         return found
 
-    def _has_names(self, wire: Wire, body: Bigraph, frame: Frame) -> bool:
+    def _has_names(self, wire: Wire, body: Bigraph, frame: CallFrame) -> bool:
         names = wire.names if isinstance(wire, Close) else wire.inner
         missing = sorted(set(names) - set(body.outer_names))
         if missing:
@@ -191,7 +193,7 @@ class Evaluation:
             return False
         return not missing
 
-    def _chain(self, chain: Chain, frame: Frame) -> Bigraph | None:
+    def _chain(self, chain: Chain, frame: CallFrame) -> Bigraph | None:
         """Evaluate a chain from the left; a run of one operator is joined pairwise, as each is associative."""
         written = [chain.first, *(operand for _, operand in chain.rest)]
         operands = [self.value(operand, frame) for operand in written]
@@ -212,7 +214,7 @@ class Evaluation:
         return found
 
     def _joinable(
-        self, operator: str, run: Sequence[Bigraph], written: Sequence[Expression], frame: Frame
+        self, operator: str, run: Sequence[Bigraph], written: Sequence[Expression], frame: CallFrame
     ) -> bool:
         """Check the interfaces of operands in order, and record the first that does not fit."""
         outer, inner = set(run[0].outer_names), {name for name, _ in run[0].inner_links}
@@ -233,7 +235,7 @@ class Evaluation:
             inner |= set(face.names)
         return True
 
-    def _shared(self, share: Share, frame: Frame) -> Bigraph | None:
+    def _shared(self, share: Share, frame: CallFrame) -> Bigraph | None:
         what, by, where = (self.value(part, frame) for part in (share.what, share.by, share.where))
         if what is None or by is None or where is None:
             return None
@@ -260,7 +262,7 @@ class Evaluation:
             return _share(what, by, where)
         return None
 
-    def _repeated(self, repeat: Repeat, frame: Frame) -> Bigraph | None:
+    def _repeated(self, repeat: Repeat, frame: CallFrame) -> Bigraph | None:
         times = self.scope.value(repeat.times, frame)
         body = self.value(repeat.body, frame)
         if times is None or body is None:
@@ -279,7 +281,7 @@ class Evaluation:
         return _joined(repeat.operator, run) if times else run[0]
 
 
-def _instances(declaration: Declared, frame: Frame) -> tuple[object, ...]:
+def _instances(declaration: Declared, frame: CallFrame) -> tuple[object, ...]:
     """Return the key of instances that share a template: the same declaration, with values of the same types."""
     return (
         type(declaration),
@@ -334,7 +336,7 @@ def _element(expression: Expression) -> Bigraph:
             return algebra.merge(0)
         case Identity(width, names):
             return algebra.identity(Interface(width, names))
-        case Placed(parents, regions):
+        case PlacingLiteral(parents, regions):
             return algebra.placing(parents, regions)
         case Close(names):
             return algebra.compose(algebra.closure(names[0]), algebra.substitution(names[0], names))

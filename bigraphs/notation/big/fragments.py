@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from bigraphs.bigraph import Bigraph
 from bigraphs.notation.big.declarations import BigDeclaration, ControlDeclaration, Model
 from bigraphs.notation.big.expressions import Evaluation
-from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.file_mistakes import Findings
+from bigraphs.notation.big.name_check import SyntaxWalk, survey
 from bigraphs.notation.big.names import Names, index
 from bigraphs.notation.big.parser import parse_expression, parse_model
-from bigraphs.notation.big.rules import Rules
-from bigraphs.notation.big.scope import Frame, Scope, control_of
-from bigraphs.notation.big.survey import Survey, survey
+from bigraphs.notation.big.rules import RuleElaborator
+from bigraphs.notation.big.scope import CallFrame, FileScope, control_of
 from bigraphs.notation.big.syntax import NOWHERE, Identity
 from bigraphs.notation.big.systems import check_declared
 from bigraphs.rules import ReactionRule
@@ -36,22 +36,22 @@ def read_theory(text: str) -> Theory:
     model = Model(parse_model(text).declarations)
     names = index(model, findings)
     survey(model, names, findings)
-    scope = Scope(names, findings, {})
+    scope = FileScope(names, findings, {})
     evaluation = Evaluation(scope)
-    rules = Rules(evaluation, None)
+    rules = RuleElaborator(evaluation, None)
     check_declared(names, scope, evaluation, rules)
     findings.raise_any()
     return _theory(names, evaluation, rules)
 
 
-def _theory(names: Names, evaluation: Evaluation, rules: Rules) -> Theory:
+def _theory(names: Names, evaluation: Evaluation, rules: RuleElaborator) -> Theory:
     plain = [control_of(each, ()) for each in names.controls.values() if not each.parameters]
     every = {control.name: control for control in (*plain, *evaluation.controls.values())}
     signature = Signature(tuple(every.values()))
     bigs = [big.name for big in names.bigs.values() if not big.parameters and not big.arguments]
-    found = [(name, evaluation.named(name, (), NOWHERE, Frame())) for name in bigs]
+    found = [(name, evaluation.named(name, (), NOWHERE, CallFrame())) for name in bigs]
     reacts = [react.name for react in names.reacts.values() if not react.parameters and not react.arguments]
-    known = [rule for name in reacts if (rule := rules.named(name, (), NOWHERE, Frame())) is not None]
+    known = [rule for name in reacts if (rule := rules.named(name, (), NOWHERE, CallFrame())) is not None]
     return Theory(
         signature,
         tuple((name, replace(big, signature=signature)) for name, big in found if big is not None),
@@ -69,9 +69,9 @@ def read_big(text: str, signature: Signature, known: Mapping[str, Bigraph] | Non
     expression = parse_expression(text)
     findings = Findings(text)
     names = _names_of(signature, known or {})
-    Survey(names, findings, frozenset()).expression(expression)
-    evaluation = Evaluation(Scope(names, findings, {}), known)
-    found = evaluation.value(expression, Frame())
+    SyntaxWalk(names, findings, frozenset()).expression(expression)
+    evaluation = Evaluation(FileScope(names, findings, {}), known)
+    found = evaluation.value(expression, CallFrame())
     findings.raise_any()
     if found is None:
         raise AssertionError("no bigraph, and no mistake")

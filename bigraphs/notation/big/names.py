@@ -14,7 +14,7 @@ from bigraphs.notation.big.declarations import (
     Model,
     ReactDeclaration,
 )
-from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.lalr import Span
 
 

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from bigraphs.errors import NotationError
-from bigraphs.notation.big.build import Build
+from bigraphs.notation.big.build_syntax import Build
 from bigraphs.notation.big.declarations import Model
 from bigraphs.notation.big.grammar import GRAMMAR, WORDS
 from bigraphs.notation.big.syntax import Expression
+from bigraphs.notation.bounded_parsing import read_into
 from bigraphs.notation.lalr import Tables, kept_tables
-from bigraphs.notation.reading import read_into
 
 if TYPE_CHECKING:
     from lark import Lark

@@ -35,7 +35,7 @@ from bigraphs.notation.big.syntax import (
     Nest,
     NewNames,
     Number,
-    Placed,
+    PlacingLiteral,
     Ref,
     Repeat,
     Share,
@@ -205,13 +205,13 @@ def _simple(expression: Expression) -> str:
             return f"{outer}/{_braces(inner)}"
         case NewNames(names):
             return _braces(names)
-        case Identity() | Placed():
+        case Identity() | PlacingLiteral():
             return _placing(expression)
         case _:
             return f"({format_expression(expression)})"
 
 
-def _placing(expression: Identity | Placed) -> str:
+def _placing(expression: Identity | PlacingLiteral) -> str:
     match expression:
         case Identity(1, ()):
             return "id"
@@ -221,7 +221,7 @@ def _placing(expression: Identity | Placed) -> str:
             return f"id{_braces(names)}"
         case Identity(width, names):
             return f"id({width}, {_braces(names)})"
-        case Placed(parents, regions):
+        case PlacingLiteral(parents, regions):
             sets = _commas(_braces(map(str, within)) for within in parents)
             return f"([{sets}], {regions})"
 

@@ -8,14 +8,14 @@ from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph
 from bigraphs.notation.big.declarations import ConditionTerm, ReactDeclaration
 from bigraphs.notation.big.expressions import Evaluation
-from bigraphs.notation.big.scope import Frame
+from bigraphs.notation.big.scope import CallFrame
 from bigraphs.notation.big.solidity import faults, pattern_of
 from bigraphs.notation.big.syntax import Expression, ValueExpression
 from bigraphs.notation.lalr import Span
-from bigraphs.system import Condition, Position, Rule, SystemKind, Value, Where
+from bigraphs.system import Condition, Rule, SourcePosition, SystemKind, Value, Where
 
 
-class Rules:
+class RuleElaborator:
     """The rules of one file; the kind of the system determines their weights."""
 
     def __init__(self, evaluation: Evaluation, kind: SystemKind | None) -> None:
@@ -23,9 +23,9 @@ class Rules:
         self.scope = evaluation.scope
         self.kind = kind
         self._known: dict[str, Rule | None] = {}
-        self._positions: dict[int, Position] = {}
+        self._positions: dict[int, SourcePosition] = {}
 
-    def named(self, name: str, given: tuple[Value, ...], span: Span, frame: Frame) -> Rule | None:
+    def named(self, name: str, given: tuple[Value, ...], span: Span, frame: CallFrame) -> Rule | None:
         """Return a declared rule for these arguments, or None after a recorded mistake."""
         declaration = self._declaration(name, given, span)
         if declaration is None:
@@ -47,7 +47,7 @@ class Rules:
             return self.scope.instance(self.scope.names.given_reacts[name], given, span)
         return found if found is not None and len(found.parameters) == len(given) else None
 
-    def rule(self, react: ReactDeclaration, given: tuple[Value, ...], frame: Frame) -> Rule | None:
+    def rule(self, react: ReactDeclaration, given: tuple[Value, ...], frame: CallFrame) -> Rule | None:
         """Return the rule of a declaration for these arguments."""
         patterns = [(condition.pattern, pattern_of) for condition in react.conditions]
         parts = [(react.redex, lean), (react.reactum, lean), *patterns]
@@ -72,7 +72,7 @@ class Rules:
             position=self.position(react.span),
         )
 
-    def _sides(self, react: ReactDeclaration, frame: Frame) -> list[Bigraph] | None:
+    def _sides(self, react: ReactDeclaration, frame: CallFrame) -> list[Bigraph] | None:
         redex = self.evaluation.value(react.redex, frame)
         reactum = self.evaluation.value(react.reactum, frame)
         patterns = [self.pattern(condition.pattern, frame) for condition in react.conditions]
@@ -83,26 +83,26 @@ class Rules:
 
     def reward(self, expression: ValueExpression | None) -> int | float:
         """Return the reward of an action or a predicate, 0 by default."""
-        found = 0 if expression is None else self.scope.value(expression, Frame())
+        found = 0 if expression is None else self.scope.value(expression, CallFrame())
         if expression is not None and (isinstance(found, str) or not _finite(found)):
-            self.scope.add("type", "a reward is a number", expression.span, Frame())
+            self.scope.add("type", "a reward is a number", expression.span, CallFrame())
         return found if isinstance(found, int | float) else 0
 
-    def position(self, span: Span) -> Position:
+    def position(self, span: Span) -> SourcePosition:
         """Return the line and column of a span's start."""
         if span.start not in self._positions:
             text, start = self.scope.findings.text, span.start
-            self._positions[start] = Position(
+            self._positions[start] = SourcePosition(
                 text.count("\n", 0, start) + 1, start - text.rfind("\n", 0, start)
             )
         return self._positions[span.start]
 
-    def pattern(self, expression: Expression, frame: Frame) -> Bigraph | None:
+    def pattern(self, expression: Expression, frame: CallFrame) -> Bigraph | None:
         """Return the pattern of a condition or predicate."""
         found = self.evaluation.value(expression, frame)
         return None if found is None else self.as_pattern(found, expression.span, frame)
 
-    def as_pattern(self, bigraph: Bigraph, span: Span, frame: Frame) -> Bigraph | None:
+    def as_pattern(self, bigraph: Bigraph, span: Span, frame: CallFrame) -> Bigraph | None:
         """Return the part of a bigraph that determines its occurrence."""
         found = pattern_of(bigraph)
         if not found.nodes:
@@ -113,7 +113,7 @@ class Rules:
             return found
         return None
 
-    def _fitting(self, react: ReactDeclaration, redex: Bigraph, reactum: Bigraph, frame: Frame) -> bool:
+    def _fitting(self, react: ReactDeclaration, redex: Bigraph, reactum: Bigraph, frame: CallFrame) -> bool:
         """Check that the two sides form a rule; record every mistake."""
         before = len(self.scope.findings)
         for message, hint in faults(redex):
@@ -129,7 +129,9 @@ class Rules:
         self._check_sites(react, len(redex.sites), len(reactum.sites), frame)
         return len(self.scope.findings) == before
 
-    def _check_faces(self, react: ReactDeclaration, redex: Bigraph, reactum: Bigraph, frame: Frame) -> None:
+    def _check_faces(
+        self, react: ReactDeclaration, redex: Bigraph, reactum: Bigraph, frame: CallFrame
+    ) -> None:
         at = react.reactum.span
         if redex.regions != reactum.regions:
             found = f"the redex has {_regions(redex.regions)}, the reactum {reactum.regions}"
@@ -143,7 +145,7 @@ class Rules:
             hint = f"close it with /{new[0]}, or give it to the redex"
             self.scope.add("rule", f"the redex lacks the name '{new[0]}' of the reactum", at, frame, hint)
 
-    def _check_sites(self, react: ReactDeclaration, given: int, wanted: int, frame: Frame) -> None:
+    def _check_sites(self, react: ReactDeclaration, given: int, wanted: int, frame: CallFrame) -> None:
         sites = react.instantiation
         if sites is None and given != wanted:
             found = f"the redex has {_sites(given)}, the reactum {wanted}"
@@ -156,7 +158,7 @@ class Rules:
             found = f"the redex has {_sites(given)}, there is no site {max(sites)}"
             self.scope.add("rule", found, react.reactum.span, frame, "count sites from 0")
 
-    def _weight(self, react: ReactDeclaration, frame: Frame) -> float | None:
+    def _weight(self, react: ReactDeclaration, frame: CallFrame) -> float | None:
         if self.kind in (None, SystemKind.BRS):
             return None
         if react.weight is None:

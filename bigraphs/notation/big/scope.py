@@ -8,7 +8,7 @@ from typing import Any, Final, TypeVar
 
 from bigraphs.notation.big import values
 from bigraphs.notation.big.declarations import BigDeclaration, ControlDeclaration, ReactDeclaration
-from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.big.names import Names
 from bigraphs.notation.big.syntax import Ion, ValueExpression, Variable
 from bigraphs.notation.lalr import Span
@@ -23,7 +23,7 @@ _Given = TypeVar("_Given", BigDeclaration, ReactDeclaration)
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class CallFrame:
     """The declaration under evaluation: `label` is its call, if it has parameters; `values` are their values."""
 
     label: str = ""
@@ -32,18 +32,18 @@ class Frame:
 
     def inside(
         self, name: str, parameters: Sequence[str], arguments: Sequence[Value], free: Iterable[str] = ()
-    ) -> Frame:
+    ) -> CallFrame:
         """Return the frame of a call from this one; free names keep their values."""
         given = {each: self.values[each] for each in free if each in self.values}
         given.update(zip(parameters, arguments, strict=True))
-        return Frame(call(name, tuple(arguments)) if parameters else "", given, self.depth + 1)
+        return CallFrame(call(name, tuple(arguments)) if parameters else "", given, self.depth + 1)
 
     def key(self, name: str, given: tuple[Value, ...]) -> str:
         """Return the key of a call: its arguments and the values of its free names."""
         return " ".join((call(name, given), *(f"{each}={value!r}" for each, value in self.values.items())))
 
 
-class Scope:
+class FileScope:
     """The constants and controls of one file, each evaluated once, and the types of parameters."""
 
     def __init__(self, names: Names, findings: Findings, given: Mapping[str, Value]) -> None:
@@ -55,22 +55,22 @@ class Scope:
         self._instances: dict[tuple[type, str], dict[str, Any]] = {}
         self._depth = 0
 
-    def add(self, code: str, message: str, span: Span, frame: Frame, hint: str = "") -> None:
+    def add(self, code: str, message: str, span: Span, frame: CallFrame, hint: str = "") -> None:
         """Add a mistake, with the call in which it occurred."""
         where = f", in {frame.label}" if frame.label else ""
         self.findings.add(code, message + where, span, hint)
 
-    def value(self, expression: ValueExpression, frame: Frame) -> Value | None:
+    def value(self, expression: ValueExpression, frame: CallFrame) -> Value | None:
         """Return the value of an expression, or None after a recorded mistake."""
         return values.evaluate(expression, lambda name: self._variable(name, frame), self.findings)
 
-    def arguments(self, expressions: Sequence[ValueExpression], frame: Frame) -> tuple[Value, ...] | None:
+    def arguments(self, expressions: Sequence[ValueExpression], frame: CallFrame) -> tuple[Value, ...] | None:
         """Return the values of arguments."""
         found = [self.value(expression, frame) for expression in expressions]
         known = tuple(value for value in found if value is not None)
         return known if len(known) == len(found) else None
 
-    def _variable(self, variable: Variable, frame: Frame) -> Value | None:
+    def _variable(self, variable: Variable, frame: CallFrame) -> Value | None:
         if variable.name in frame.values:
             return frame.values[variable.name]
         return self.constant(variable.name)
@@ -109,8 +109,8 @@ class Scope:
         declaration: BigDeclaration | ReactDeclaration,
         given: tuple[Value, ...],
         span: Span,
-        frame: Frame,
-    ) -> Frame | None:
+        frame: CallFrame,
+    ) -> CallFrame | None:
         """Return the frame of a call; None after a recorded mistake if it leaves a system parameter undefined."""
         free = self.names.free.get((type(declaration), declaration.name), ())
         parameters = declaration.parameters
@@ -125,7 +125,7 @@ class Scope:
         self.add("name", found, span, frame, hint)
         return None
 
-    def control(self, ion: Ion, frame: Frame) -> Control | None:
+    def control(self, ion: Ion, frame: CallFrame) -> Control | None:
         """Return the control of an ion, with the values of its parameters."""
         declaration = self.names.controls.get(ion.control)
         given = self.arguments(ion.arguments, frame)
@@ -154,7 +154,7 @@ class Scope:
     def _by_call(self, choices: Sequence[_Given]) -> dict[str, Any]:
         table: dict[str, Any] = {}
         for each in choices:
-            values_ = self.arguments(each.arguments, Frame())
+            values_ = self.arguments(each.arguments, CallFrame())
             written = "" if values_ is None else call(each.name, values_)
             if written in table:
                 self.findings.add("name", f"'{written}' is declared twice", each.span)
@@ -162,7 +162,7 @@ class Scope:
         return table
 
     def fits(
-        self, name: str, parameters: Sequence[str], given: Sequence[Value], span: Span, frame: Frame
+        self, name: str, parameters: Sequence[str], given: Sequence[Value], span: Span, frame: CallFrame
     ) -> bool:
         """Check that each parameter has the same type in all calls."""
         fitting = True

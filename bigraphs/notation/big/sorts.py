@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bigraphs.notation.big.declarations import LinkDeclaration, Model, PlaceDeclaration, SortDeclaration
-from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.big.names import Names
 from bigraphs.notation.lalr import Span
 from bigraphs.sorting import UNSORTED, LinkSort, Sorting, unkept, violations

@@ -99,7 +99,7 @@ class Identity(Record):
     span: Span = NOWHERE
 
 
-class Placed(Record):
+class PlacingLiteral(Record):
     """`([{0, 1}, {0}], 2)`: for each site its regions, and the number of regions.
 
     The parser turns `merge(n)` and `split(n)` into this form.
@@ -168,5 +168,5 @@ class Repeat(Record):
 
 Wire: TypeAlias = Close | Substitute
 Expression: TypeAlias = (
-    Ref | Number | Ion | Nest | Identity | Placed | Wire | NewNames | Wired | Chain | Share | Repeat
+    Ref | Number | Ion | Nest | Identity | PlacingLiteral | Wire | NewNames | Wired | Chain | Share | Repeat
 )

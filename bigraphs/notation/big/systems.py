@@ -13,13 +13,13 @@ from bigraphs.bigraph import Bigraph, relabelled
 from bigraphs.notation.big import values
 from bigraphs.notation.big.declarations import Call, ClassTerm, Model, ParameterDeclaration, SystemTerm
 from bigraphs.notation.big.expressions import Evaluation
-from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.file_mistakes import Findings
+from bigraphs.notation.big.name_check import survey
 from bigraphs.notation.big.names import Names, index
 from bigraphs.notation.big.parser import parse_model
-from bigraphs.notation.big.rules import Rules
-from bigraphs.notation.big.scope import Frame, Scope, control_of
+from bigraphs.notation.big.rules import RuleElaborator
+from bigraphs.notation.big.scope import CallFrame, FileScope, control_of
 from bigraphs.notation.big.sorts import check_sorted, sorting_of
-from bigraphs.notation.big.survey import survey
 from bigraphs.notation.lalr import Span
 from bigraphs.signature import Signature
 from bigraphs.system import Action, Predicate, PriorityClass, Rule, System, SystemKind, Value
@@ -52,10 +52,10 @@ class _Systems:
         self.findings = findings
         self.names = index(model, findings)
         survey(model, self.names, findings, constants)
-        self.scope = Scope(self.names, findings, self.given(constants))
+        self.scope = FileScope(self.names, findings, self.given(constants))
         self.evaluation = Evaluation(self.scope)
         kind = SystemKind(model.system.kind) if model.system is not None else None
-        self.rules = Rules(self.evaluation, kind)
+        self.rules = RuleElaborator(self.evaluation, kind)
         self.ranges: dict[str, tuple[Value, ...]] = {}
 
     def given(self, constants: Mapping[str, Value]) -> dict[str, Value]:
@@ -110,7 +110,7 @@ class _Systems:
 
     def parameter(self, parameter: ParameterDeclaration) -> None:
         """Evaluate the values of system parameters."""
-        found = [self.scope.value(value, Frame()) for value in parameter.values]
+        found = [self.scope.value(value, CallFrame()) for value in parameter.values]
         typed = [
             None if value is None else values.typed(parameter.type, value, written.span, self.findings)
             for value, written in zip(found, parameter.values, strict=True)
@@ -143,14 +143,14 @@ class _Systems:
         return found[::-1]
 
     def initial(self, call: Call) -> Bigraph | None:
-        given = self.scope.arguments(call.arguments, Frame())
-        found = None if given is None else self.evaluation.named(call.name, given, call.span, Frame())
+        given = self.scope.arguments(call.arguments, CallFrame())
+        found = None if given is None else self.evaluation.named(call.name, given, call.span, CallFrame())
         if found is not None and (found.sites or found.inner_links):
             message = f"a first state is ground, '{call.name}' has {found.inner}"
             self.findings.add("initial", message, call.span, "fill its sites with 1, close its inner names")
         return None if found is None else lean(found)
 
-    def instances(self, call: Call) -> Iterator[tuple[tuple[Value, ...], Frame]]:
+    def instances(self, call: Call) -> Iterator[tuple[tuple[Value, ...], CallFrame]]:
         """Yield the arguments of a call for each combination of its parameters' values, with the frame of these values.
 
         The order is BigraphER's, as it determines which instantaneous rule acts first. Values of a range come in source
@@ -166,7 +166,7 @@ class _Systems:
             self.findings.add("too-large", f"more than {MAX_INSTANCES} instances of '{call.name}'", call.span)
             return
         for chosen in reversed(list(product(*(self.ranges[name] for name in names)))):
-            frame = Frame(values=dict(zip(names, chosen, strict=True)))
+            frame = CallFrame(values=dict(zip(names, chosen, strict=True)))
             given = self.scope.arguments(call.arguments, frame)
             if given is not None:
                 yield given, frame
@@ -215,24 +215,24 @@ class _Systems:
     def predicates(self, call: Call) -> Iterator[Predicate]:
         for given, frame in self.instances(call):
             found = self.evaluation.named(call.name, given, call.span, frame)
-            pattern = None if found is None else self.rules.as_pattern(found, call.span, Frame())
+            pattern = None if found is None else self.rules.as_pattern(found, call.span, CallFrame())
             reward = None if call.reward is None else self.rules.reward(call.reward)
             if pattern is not None:
                 yield Predicate(call.name, pattern, reward, given, self.rules.position(call.span))
 
 
-def check_declared(names: Names, scope: Scope, evaluation: Evaluation, rules: Rules) -> None:
+def check_declared(names: Names, scope: FileScope, evaluation: Evaluation, rules: RuleElaborator) -> None:
     """Evaluate every declaration without parameters, so that mistakes in unused ones are found too."""
     for name in names.constants:
         scope.constant(name)
     for big in names.all_bigs():
-        given = scope.arguments(big.arguments, Frame())
+        given = scope.arguments(big.arguments, CallFrame())
         if not big.parameters and given is not None:
-            evaluation.named(big.name, given, big.span, Frame())
+            evaluation.named(big.name, given, big.span, CallFrame())
     for react in names.all_reacts():
-        given = scope.arguments(react.arguments, Frame())
+        given = scope.arguments(react.arguments, CallFrame())
         if not react.parameters and given is not None:
-            rules.named(react.name, given, react.span, Frame())
+            rules.named(react.name, given, react.span, CallFrame())
 
 
 def bigraphs_of(system: System) -> Iterator[Bigraph]:

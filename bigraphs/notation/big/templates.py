@@ -14,8 +14,8 @@ from typing import TypeAlias
 from bigraphs.bigraph import Bigraph, relabelled
 from bigraphs.notation.big import values
 from bigraphs.notation.big.declarations import ControlDeclaration
-from bigraphs.notation.big.findings import Findings
-from bigraphs.notation.big.scope import Frame, Scope, control_of
+from bigraphs.notation.big.file_mistakes import Findings
+from bigraphs.notation.big.scope import CallFrame, FileScope, control_of
 from bigraphs.notation.big.syntax import Expression, ValueExpression, Variable
 from bigraphs.signature import Control, Signature
 from bigraphs.system import Value
@@ -24,7 +24,7 @@ Part: TypeAlias = tuple[Expression, Callable[[Bigraph], Bigraph]]
 """An expression, and the function applied to its bigraph."""
 
 
-class Symbol(str):
+class Placeholder(str):
     """A placeholder for a value: a parameter, or a value computed from earlier ones.
 
     As a string it is `#` and its number; no string of the language has this form.
@@ -46,10 +46,10 @@ class Template:
     """
 
     bigraphs: tuple[Bigraph, ...]
-    steps: tuple[tuple[ValueExpression, Frame], ...]
+    steps: tuple[tuple[ValueExpression, CallFrame], ...]
     controls: Mapping[str, tuple[ControlDeclaration, tuple[Value, ...]]]
     fixed: tuple[Control, ...]
-    scope: Scope
+    scope: FileScope
 
     def instance(self, given: Sequence[Value]) -> tuple[list[Bigraph], list[Control]] | None:
         """Return the bigraphs for these arguments, with their controls; None after a mistake in an argument."""
@@ -68,7 +68,9 @@ class Template:
         names = {mark: control.name for mark, control in made.items()}
         return [relabelled(each, names, signature) for each in self.bigraphs], distinct
 
-    def _computed(self, expression: ValueExpression, frame: Frame, known: Sequence[Value]) -> Value | None:
+    def _computed(
+        self, expression: ValueExpression, frame: CallFrame, known: Sequence[Value]
+    ) -> Value | None:
         def lookup(variable: Variable) -> Value | None:
             found = frame.values.get(variable.name)
             return self.scope.constant(variable.name) if found is None else _resolved(found, known)
@@ -76,28 +78,30 @@ class Template:
         return values.evaluate(expression, lookup, Findings(""))
 
 
-class SymbolicScope(Scope):
+class SymbolicScope(FileScope):
     """A scope whose values may be symbols; an operation that needs a real value records a mistake."""
 
-    def __init__(self, scope: Scope, parameters: Sequence[str]) -> None:
+    def __init__(self, scope: FileScope, parameters: Sequence[str]) -> None:
         super().__init__(scope.names, Findings(scope.findings.text), {})
         self.constants = scope.constants
-        self.frame = Frame(values={name: Symbol(f"#{number}") for number, name in enumerate(parameters)})
-        self.steps: list[tuple[ValueExpression, Frame]] = []
+        self.frame = CallFrame(
+            values={name: Placeholder(f"#{number}") for number, name in enumerate(parameters)}
+        )
+        self.steps: list[tuple[ValueExpression, CallFrame]] = []
         self.controls: dict[str, tuple[ControlDeclaration, tuple[Value, ...]]] = {}
         self.fixed: dict[str, Control] = {}
 
-    def value(self, expression: ValueExpression, frame: Frame) -> Value | None:
+    def value(self, expression: ValueExpression, frame: CallFrame) -> Value | None:
         """Return the value of an expression; a symbol if it depends on symbols."""
         symbols = [
-            name for name in values.variables(expression) if isinstance(frame.values.get(name), Symbol)
+            name for name in values.variables(expression) if isinstance(frame.values.get(name), Placeholder)
         ]
         if not symbols:
             return super().value(expression, frame)
         if isinstance(expression, Variable):
             return frame.values[expression.name]
         self.steps.append((expression, frame))
-        return Symbol(f"#{len(self.frame.values) + len(self.steps) - 1}")
+        return Placeholder(f"#{len(self.frame.values) + len(self.steps) - 1}")
 
     def fits(self, *_: object) -> bool:
         """Return True: the instance that was evaluated as written has arguments of the same types."""
@@ -106,16 +110,16 @@ class SymbolicScope(Scope):
     def filled(self, declaration: ControlDeclaration, given: tuple[Value, ...]) -> Control:
         """Return a control, with symbols in its name if they are among the arguments."""
         mark = super().filled(declaration, given)
-        if any(isinstance(value, Symbol) for value in given):
+        if any(isinstance(value, Placeholder) for value in given):
             self.controls[mark.name] = declaration, given
         else:
             self.fixed[mark.name] = mark
         return mark
 
-    def template(self, bigraphs: Iterable[Bigraph], scope: Scope) -> Template:
+    def template(self, bigraphs: Iterable[Bigraph], scope: FileScope) -> Template:
         """Return the template of bigraphs that were evaluated here."""
         return Template(tuple(bigraphs), tuple(self.steps), self.controls, tuple(self.fixed.values()), scope)
 
 
 def _resolved(value: Value, known: Sequence[Value]) -> Value:
-    return known[value.number] if isinstance(value, Symbol) else value
+    return known[value.number] if isinstance(value, Placeholder) else value

@@ -9,7 +9,7 @@ from typing import Final, TypeAlias
 
 from bigraphs.errors import BigraphError
 from bigraphs.notation.big.build_values import LARGEST
-from bigraphs.notation.big.findings import Findings
+from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.big.syntax import (
     Absolute,
     Arithmetic,

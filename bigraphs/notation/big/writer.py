@@ -26,7 +26,7 @@ from bigraphs.notation.big.functions import folded
 from bigraphs.notation.big.grammar import RESERVED
 from bigraphs.notation.big.printer import format_model
 from bigraphs.notation.big.syntax import Arguments, ValueExpression
-from bigraphs.notation.reading import check_bounds
+from bigraphs.notation.bounded_parsing import check_bounds
 from bigraphs.signature import Control
 from bigraphs.sorting import base
 from bigraphs.system import Action, Predicate, Rule, System, SystemKind, Value

@@ -14,7 +14,7 @@ import numpy as np
 
 from checker.engines.archive import Kinds, read_archive, write_archive
 from checker.engines.cluster import kernel
-from checker.engines.cluster.keys import DIGEST
+from checker.engines.cluster.row_keys import DIGEST
 from checker.engines.cluster.shard import Shard, spelling
 from checker.engines.contract import CheckpointError
 from checker.engines.fast import kernel as loops

@@ -12,11 +12,11 @@ from typing import TypeVar
 
 from checker.engines.cluster.checkpoints import Latest, read_latest, write_latest
 from checker.engines.cluster.crew import Crew, LostError
-from checker.engines.cluster.lookup import Configurations, Found, Origins, Survey, look_at_each
-from checker.engines.cluster.merging import is_mergeable, merge
+from checker.engines.cluster.lookup import CrewConfigurations, CrewOrigins, CrewRows, CrewSurvey, look_at_each
+from checker.engines.cluster.merged_findings import is_mergeable, merge
 from checker.engines.cluster.numbering import Places
-from checker.engines.cluster.rounds import Stage
-from checker.engines.cluster.shard import Standing
+from checker.engines.cluster.rounds import RoundLimits
+from checker.engines.cluster.shard import ShardProgress
 from checker.engines.contract import (
     Exploration,
     Inspect,
@@ -68,7 +68,7 @@ class Expedition:
         self.folder = self._folder()
         self.latest = self._resumed()
         self.layer = 0
-        self.standings: list[Standing] = []
+        self.standings: list[ShardProgress] = []
         self.bounds: list[Bound] = []
         self.is_lost = True
         self.is_kept = False
@@ -94,7 +94,7 @@ class Expedition:
 
     def run(self, inspect: tuple[Inspect, ...]) -> Exploration:
         """Explore all reachable configurations, and collect the findings of inspections."""
-        found = Found(self.crew, self.surely, self.initial.setting)
+        found = CrewRows(self.crew, self.surely, self.initial.setting)
         together = tuple(each for each in inspect if is_mergeable(each))
         parts = self.surely(lambda: self.crew.every("inspect", together))
         summaries = self.surely(lambda: self.crew.every("summary"))
@@ -108,8 +108,8 @@ class Expedition:
         for _, counts in summaries:
             rules.update(counts)
         return Exploration(
-            Configurations(found),
-            Origins(found),
+            CrewConfigurations(found),
+            CrewOrigins(found),
             places.depth,
             sum(found.expanded),
             rules.total(),
@@ -117,7 +117,7 @@ class Expedition:
             sorted(self.bounds + self.met(), key=str),
             time.monotonic() - self.began,
             rule_runs=sum(standing.runs for standing in self.standings),
-            survey=Survey(found),
+            survey=CrewSurvey(found),
             allowed=rules.total(),
         )
 
@@ -179,7 +179,7 @@ class Expedition:
         if self.bounds:
             return
         self.is_kept = False
-        stage = Stage(
+        stage = RoundLimits(
             ROUND * self.crew.size, self.seconds_left(now), self.limits.configurations, self.limits.memory
         )
         explored = self.crew.every("explore", self.layer, stage)
@@ -232,6 +232,6 @@ class Expedition:
         self.losses, self.is_kept = 0, True
         self.kept = time.monotonic()
 
-    def load(self, number: int) -> list[Standing]:
+    def load(self, number: int) -> list[ShardProgress]:
         """Let all workers return to a checkpoint."""
         return self.crew.every("load", str(self.folder), number, self.digest, self.layer)

@@ -7,9 +7,9 @@ from typing import Any, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from checker.engines.cluster.cluster_worker import Edges
 from checker.engines.cluster.crew import Crew
 from checker.engines.cluster.numbering import Places
-from checker.engines.cluster.worker import Edges
 from checker.engines.contract import Inspect
 from checker.engines.graph import Graph
 from semantics.properties.propositions import Proposition
@@ -24,7 +24,7 @@ BLOCK = 1 << 16
 Value = TypeVar("Value")
 
 
-class Found:
+class CrewRows:
     """The rows of a crew after its exploration.
 
     Attributes:
@@ -64,7 +64,7 @@ class Found:
 class Numbered(Sequence[Value]):
     """A sequence of values, one for each configuration, by its number."""
 
-    def __init__(self, found: Found) -> None:
+    def __init__(self, found: CrewRows) -> None:
         self.found = found
 
     def __len__(self) -> int:
@@ -86,7 +86,7 @@ class Numbered(Sequence[Value]):
         """Return the value for a worker's row."""
 
 
-class Configurations(Numbered[Configuration]):
+class CrewConfigurations(Numbered[Configuration]):
     """The configurations, each fetched at its access."""
 
     def at(self, worker: int, row: int) -> Configuration:
@@ -95,7 +95,7 @@ class Configurations(Numbered[Configuration]):
         return Configuration(self.found.setting, cells)
 
 
-class Origins(Numbered[int]):
+class CrewOrigins(Numbered[int]):
     """The configuration from which each configuration was first reached."""
 
     def at(self, worker: int, row: int) -> int:
@@ -103,10 +103,10 @@ class Origins(Numbered[int]):
         return self.found.places.number(*self.found.one(worker, "origin", row))
 
 
-def look_at_each(found: Found, inspections: Iterable[Inspect]) -> None:
+def look_at_each(found: CrewRows, inspections: Iterable[Inspect]) -> None:
     """Run inspections on every expanded configuration: those that can't be merged from workers."""
     looking = tuple(inspections)
-    configurations = Configurations(found)
+    configurations = CrewConfigurations(found)
     for number in range(len(found.places) if looking else 0):
         worker, row = found.places.find(number)
         if row < found.expanded[worker]:
@@ -116,10 +116,10 @@ def look_at_each(found: Found, inspections: Iterable[Inspect]) -> None:
                 each(number, c, expansion)
 
 
-class Survey:
+class CrewSurvey:
     """The survey for temporal properties: the leader gathers all data and decides them."""
 
-    def __init__(self, found: Found) -> None:
+    def __init__(self, found: CrewRows) -> None:
         self.found = found
 
     def valuation(self, asked: Iterable[Proposition]) -> dict[Proposition, NDArray[np.bool_]]:

@@ -22,11 +22,11 @@ from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
+from checker.engines.cluster.cluster_worker import Worker
 from checker.engines.cluster.crew import ClusterError, LostError
 from checker.engines.cluster.explorer import Expedition
-from checker.engines.cluster.links import Address, Sockets
 from checker.engines.cluster.transfer import WORKERS_AT_MOST
-from checker.engines.cluster.worker import Worker
+from checker.engines.cluster.worker_links import Address, Sockets
 from checker.engines.contract import (
     CheckpointError,
     Cluster,
@@ -35,7 +35,7 @@ from checker.engines.contract import (
     MachineError,
     Options,
 )
-from physical.messages import install_extra
+from physical.wordings import install_extra
 from semantics.state.configuration import Configuration
 
 PATIENCE = 120.0
@@ -51,7 +51,7 @@ class ForgottenError(Exception):
     """An actor was restarted since it joined a crew."""
 
 
-class Process:
+class RayProcess:
     """A Ray actor; it can work in any number of crews.
 
     Attributes:
@@ -105,7 +105,7 @@ def processes(node: str, workers: int) -> tuple[Any, ...]:  # noqa: ARG001  # ea
     """Return `workers` actors, spread over the machines of the cluster; a second call returns the same ones."""
     # Ray must not repeat a call: a restarted actor has lost its memory, and only all together can resume.
     options = {"num_cpus": 0, "max_restarts": -1, "max_task_retries": 0, "scheduling_strategy": "SPREAD"}
-    actor = load_ray().remote(Process).options(**options)
+    actor = load_ray().remote(RayProcess).options(**options)
     return tuple(actor.remote() for _ in range(workers))
 
 

@@ -8,7 +8,7 @@ from checker.limits import memory_taken
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
+class RoundLimits:
     """The limits within which workers continue without their leader.
 
     Attributes:

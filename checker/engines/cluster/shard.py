@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.cluster import kernel
-from checker.engines.cluster.keys import Keys
-from checker.engines.cluster.transfer import Dictionary, Entry, Parcel, Told
+from checker.engines.cluster.row_keys import Keys
+from checker.engines.cluster.transfer import ColumnUpdate, Dictionary, RowParcel, SentValues
 from checker.engines.fast import kernel as loops
 from checker.engines.fast.columns import WORD, Packing, shifts
 from checker.engines.fast.effects import Deeper, Varies
@@ -33,7 +33,7 @@ SENT = 1 << 17
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class ShardProgress:
     """A worker's progress.
 
     Attributes:
@@ -184,7 +184,7 @@ class Shard(Space):
         self.learned = []
         self.rules_before: Counter[str] = Counter()
         self.happened_before: frozenset[str] = frozenset()
-        self.told = [Told() for _ in range(self.workers)]
+        self.told = [SentValues() for _ in range(self.workers)]
         self.dictionaries = [Dictionary() for _ in range(self.workers)]
         self.outbox = Outbox()
         self._forget_sent()
@@ -219,7 +219,7 @@ class Shard(Space):
 
     # --- rounds ---------------------------------------------------------------------------------------------------
 
-    def expand(self, layer: int, most: int) -> tuple[Parcel, ...]:
+    def expand(self, layer: int, most: int) -> tuple[RowParcel, ...]:
         """Expand at most `most` rows of a layer, and return a parcel for each worker."""
         self.enter(layer)
         until = min(self.expanded + most, self.end)
@@ -273,19 +273,19 @@ class Shard(Space):
         kernel.owners_of(self.rows.words, origins, rows, self.packing.words, self.owning(), owners)
         return owners
 
-    def parcels(self, *, always: bool = False) -> tuple[Parcel, ...]:
+    def parcels(self, *, always: bool = False) -> tuple[RowParcel, ...]:
         """Return the waiting rows, a parcel for each worker; new values go with the rows, or to all if `always`."""
         found = []
         for peer in range(self.workers):
             rows, origins = self.outbox.taken_out(peer, self.packing.words)
             tells = peer != self.me and (always or len(origins))
             news = self.told[peer].news(self.learner.columns) if tells else ()
-            found.append(Parcel(news, self.packing, rows, origins))
+            found.append(RowParcel(news, self.packing, rows, origins))
         self.sent += sum(parcel.bytes for parcel in found)
         self.outbox = Outbox()
         return tuple(found)
 
-    def take(self, *parcels: Parcel) -> None:
+    def take(self, *parcels: RowParcel) -> None:
         """Store the rows that the others have sent, in the order of the workers."""
         self.hear(parcels)
         for peer, parcel in enumerate(parcels):
@@ -293,7 +293,7 @@ class Shard(Space):
                 arrays = (self.rows.words, self.rows.origins.loops, self.table.room)
                 loops.store(*arrays, None, None, self.batch, 0, count, self.state)
 
-    def hear(self, parcels: Sequence[Parcel]) -> None:
+    def hear(self, parcels: Sequence[RowParcel]) -> None:
         """Add the values that the others have sent."""
         heard = [(peer, entry) for peer, parcel in enumerate(parcels) for entry in parcel.news]
         for peer, entry in heard:
@@ -301,7 +301,7 @@ class Shard(Space):
         if heard:
             self._see()
 
-    def _note(self, dictionary: Dictionary, entry: Entry) -> None:
+    def _note(self, dictionary: Dictionary, entry: ColumnUpdate) -> None:
         """Add another worker's values; a cell that varies there varies here, too."""
         learner, cell = self.learner, entry.place[0]
         if len(entry.place) == 3 and learner.columns.dig(cell, entry.place[1] + 1):
@@ -312,7 +312,7 @@ class Shard(Space):
         if any(codes) and cell not in learner.varying:
             learner.relearn(Varies(cell))
 
-    def translated(self, peer: int, parcel: Parcel) -> Iterator[int]:
+    def translated(self, peer: int, parcel: RowParcel) -> Iterator[int]:
         """Put the rows of a parcel into the batch, some at a time; yield their number."""
         if not len(parcel):
             return
@@ -389,9 +389,9 @@ class Shard(Space):
         """The first row of each layer, the end of the layer in expansion, and the end of the next."""
         return (*self.begins, self.end, self.size)
 
-    def standing(self) -> Standing:
+    def standing(self) -> ShardProgress:
         """Return the worker's progress."""
-        return Standing(
+        return ShardProgress(
             self.size,
             self.expanded,
             self.end,

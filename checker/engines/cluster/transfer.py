@@ -17,7 +17,7 @@ WORKERS_AT_MOST = 256
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class ColumnUpdate:
     """The values that a sender's column got since the last parcel.
 
     Attributes:
@@ -32,7 +32,7 @@ class Entry:
 
 
 @dataclass(frozen=True, slots=True)
-class Parcel:
+class RowParcel:
     """Rows with their origins, in the sender's numbers.
 
     Attributes:
@@ -42,7 +42,7 @@ class Parcel:
         origins: The sender's row from which each was reached.
     """
 
-    news: tuple[Entry, ...]
+    news: tuple[ColumnUpdate, ...]
     packing: Packing
     rows: NDArray[np.uint64]
     origins: NDArray[np.uint32]
@@ -57,22 +57,22 @@ class Parcel:
 
 
 @dataclass(slots=True)
-class Told:
+class SentValues:
     """The number of values of each column that another worker knows."""
 
     sizes: list[int] = field(default_factory=list)
 
-    def news(self, columns: Columns) -> tuple[Entry, ...]:
+    def news(self, columns: Columns) -> tuple[ColumnUpdate, ...]:
         """Return the new values, and note them as sent."""
         found = tuple(self._entries(columns))
         self.sizes = [len(column.values) for column in columns.all]
         return found
 
-    def _entries(self, columns: Columns) -> Iterator[Entry]:
+    def _entries(self, columns: Columns) -> Iterator[ColumnUpdate]:
         for number, column in enumerate(columns.all):
             known = self.sizes[number] if number < len(self.sizes) else 0
             if number >= len(self.sizes) or known < len(column.values):
-                yield Entry(number, column.place, tuple(column.values[known:]))
+                yield ColumnUpdate(number, column.place, tuple(column.values[known:]))
 
 
 Arrays = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]

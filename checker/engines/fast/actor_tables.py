@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from checker.engines.fast.bits import WORD
-from checker.engines.fast.kernel import ALPHA, TREE, Ints, Model, State, code_at, walk
+from checker.engines.fast.kernel import ALPHA, TREE, Ints, LearnedModel, State, code_at, walk
 from checker.engines.fast.loops import inner
 from checker.engines.fast.table import Words
 
@@ -103,7 +103,7 @@ class Members(NamedTuple):
 
 
 @inner(cache=True)
-def meet(m: Model, r: Members, here: Words, state: State) -> int:
+def meet(m: LearnedModel, r: Members, here: Words, state: State) -> int:
     """Note the actors of a row; return their number, or -1 if something is not learned yet."""
     group = np.int64(0)
     if state[ALPHA] >= 0:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from checker.engines.fast.kernel import PLACE, Batch, Ints, State, code_at
+from checker.engines.fast.kernel import PLACE, Ints, State, SuccessorBatch, code_at
 from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.table import Words, hashed
 
@@ -69,7 +69,7 @@ class Exchanges(NamedTuple):
     most: int
 
 
-class Desk(NamedTuple):
+class RowScratch(NamedTuple):
     """Scratch space for one row.
 
     Attributes:
@@ -127,7 +127,9 @@ def enter_all(keys: Words, values: Ints, new: Words, to: Ints) -> None:
 
 
 @inner(cache=True)
-def read_whole(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, column: int, node: int) -> int:
+def read_whole(
+    x: Exchanges, d: RowScratch, words: Words, at: int, columns: Words, column: int, node: int
+) -> int:
     """Return the entry of a whole cell, UNKNOWN if it is not learned yet."""
     d.unknown[KIND], d.unknown[WHAT], count = WHOLE, column, 0
     for k in range(x.holes_from[column], x.holes_from[column + 1]):
@@ -144,7 +146,7 @@ def read_whole(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, col
 
 
 @inner(cache=True)
-def read_row(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, stamp: int) -> int:
+def read_row(x: Exchanges, d: RowScratch, words: Words, at: int, columns: Words, stamp: int) -> int:
     """Note the entries of a row and colour its members; return the number of entries, -1 if one is unknown."""
     count = np.int64(0)
     d.colours[:] = np.uint64(0)
@@ -179,7 +181,7 @@ def read_row(x: Exchanges, d: Desk, words: Words, at: int, columns: Words, stamp
 
 
 @inner(cache=True)
-def sort_members(x: Exchanges, d: Desk) -> int:
+def sort_members(x: Exchanges, d: RowScratch) -> int:
     """Sort the members of each class by colour, then by number; return the number of colours."""
     groups = np.int64(0)
     for k in range(len(d.order)):
@@ -198,7 +200,7 @@ def sort_members(x: Exchanges, d: Desk) -> int:
 
 
 @inner(cache=True)
-def end_of_group(x: Exchanges, d: Desk, begin: int) -> int:
+def end_of_group(x: Exchanges, d: RowScratch, begin: int) -> int:
     """Return the end of the group of equal members that begins at `begin`."""
     first = d.order[begin]
     end = begin + 1
@@ -212,7 +214,7 @@ def end_of_group(x: Exchanges, d: Desk, begin: int) -> int:
 
 
 @inner(cache=True)
-def is_tied(d: Desk, begin: int, end: int) -> bool:
+def is_tied(d: RowScratch, begin: int, end: int) -> bool:
     """Return whether a group is tied: its order matters."""
     if end - begin > 1:
         for k in range(begin, end):
@@ -222,7 +224,7 @@ def is_tied(d: Desk, begin: int, end: int) -> bool:
 
 
 @inner(cache=True)
-def first_tied(x: Exchanges, d: Desk, begin: int) -> int:
+def first_tied(x: Exchanges, d: RowScratch, begin: int) -> int:
     """Return the begin of the first tied group from `begin` on; -1 if there is none."""
     while begin < len(d.order):
         end = end_of_group(x, d, begin)
@@ -233,7 +235,7 @@ def first_tied(x: Exchanges, d: Desk, begin: int) -> int:
 
 
 @inner(cache=True)
-def refine(x: Exchanges, d: Desk, count: int) -> None:
+def refine(x: Exchanges, d: RowScratch, count: int) -> None:
     """Refine the colours of members by the colours of members in the same items."""
     d.met[:] = np.uint64(0)
     for h in range(count):
@@ -252,7 +254,7 @@ def refine(x: Exchanges, d: Desk, count: int) -> None:
 
 
 @inner(cache=True)
-def orders_left(x: Exchanges, d: Desk) -> int:
+def orders_left(x: Exchanges, d: RowScratch) -> int:
     """Return the number of orders of tied members, at most `most` + 1."""
     found = np.int64(1)
     begin = first_tied(x, d, 0)
@@ -265,7 +267,7 @@ def orders_left(x: Exchanges, d: Desk) -> int:
 
 
 @njit(cache=True, inline="always")
-def move(x: Exchanges, d: Desk, entry: int) -> int:
+def move(x: Exchanges, d: RowScratch, entry: int) -> int:
     """Return the move of an entry under the present order, UNKNOWN if it is not learned yet."""
     node = np.int64(x.shapes[entry])
     begin, end = x.mentions_from[entry], x.mentions_from[entry + 1]
@@ -291,7 +293,7 @@ def is_about(x: Exchanges, entry: int, one: int, other: int) -> bool:
 
 
 @inner(cache=True)
-def may_change(x: Exchanges, d: Desk, count: int, one: int, other: int) -> int:
+def may_change(x: Exchanges, d: RowScratch, count: int, one: int, other: int) -> int:
     """Return 1 if the row is invariant under the swap of two members, 0 if not, UNSETTLED if a move is unknown."""
     difference = np.uint64(0)
     for k in range(len(d.place)):
@@ -308,7 +310,7 @@ def may_change(x: Exchanges, d: Desk, count: int, one: int, other: int) -> int:
 
 
 @inner(cache=True)
-def free_groups(x: Exchanges, d: Desk, count: int) -> bool:
+def free_groups(x: Exchanges, d: RowScratch, count: int) -> bool:
     """Mark tied groups as free if their order does not matter; return False if a move is unknown."""
     begin = first_tied(x, d, 0)
     while begin >= 0:
@@ -326,7 +328,7 @@ def free_groups(x: Exchanges, d: Desk, count: int) -> bool:
 
 
 @inner(cache=True)
-def settle(x: Exchanges, d: Desk, count: int) -> int:
+def settle(x: Exchanges, d: RowScratch, count: int) -> int:
     """Sort the members; return the number of orders that remain, UNSETTLED if a move is unknown."""
     while True:
         groups, before = sort_members(x, d), np.int64(0)
@@ -344,7 +346,7 @@ def settle(x: Exchanges, d: Desk, count: int) -> int:
 
 
 @inner(cache=True)
-def next_order(x: Exchanges, d: Desk) -> bool:
+def next_order(x: Exchanges, d: RowScratch) -> bool:
     """Advance to the next order of tied members; False after the last."""
     begin = first_tied(x, d, 0)
     while begin >= 0:
@@ -369,7 +371,7 @@ def next_order(x: Exchanges, d: Desk) -> bool:
 
 
 @inner(cache=True)
-def note_places(d: Desk) -> bool:
+def note_places(d: RowScratch) -> bool:
     """Note the position of each member; return whether some member has moved."""
     moved = False
     for k in range(len(d.order)):
@@ -386,7 +388,7 @@ def copy(source: Ints, target: Ints) -> None:
 
 
 @inner(cache=True)
-def choose_order(x: Exchanges, d: Desk, count: int) -> bool:
+def choose_order(x: Exchanges, d: RowScratch, count: int) -> bool:
     """Find the best of all remaining orders; return False if a move is unknown."""
     best, found = np.uint64(0), False
     while True:
@@ -416,7 +418,7 @@ def put(words: Words, at: int, columns: Words, column: int, code: int) -> None:
 
 
 @inner(cache=True)
-def order_members(x: Exchanges, d: Desk, count: int) -> int:
+def order_members(x: Exchanges, d: RowScratch, count: int) -> int:
     """Note the position of each member; return 1 if some member has moved, 0 if none, UNSETTLED if unknown."""
     left = settle(x, d, count)
     if left == UNSETTLED or (left > 1 and not choose_order(x, d, count)):
@@ -425,7 +427,9 @@ def order_members(x: Exchanges, d: Desk, count: int) -> int:
 
 
 @inner(cache=True)
-def represent(x: Exchanges, d: Desk, words: Words, at: int, width: int, columns: Words, stamp: int) -> bool:
+def represent(
+    x: Exchanges, d: RowScratch, words: Words, at: int, width: int, columns: Words, stamp: int
+) -> bool:
     """Replace a row by its canonical representative; return False if an entry or move is unknown."""
     count = read_row(x, d, words, at, columns, stamp)
     moved = order_members(x, d, count) if count >= 0 else np.int64(UNSETTLED)
@@ -451,7 +455,9 @@ def represent(x: Exchanges, d: Desk, words: Words, at: int, width: int, columns:
 
 
 @njit(cache=True, nogil=True)
-def represent_all(x: Exchanges, d: Desk, batch: Batch, gathered: int, columns: Words, width: int) -> int:
+def represent_all(
+    x: Exchanges, d: RowScratch, batch: SuccessorBatch, gathered: int, columns: Words, width: int
+) -> int:
     """Replace gathered rows by their representatives; return the number done before the first unknown entry or move."""
     d.whole[:] = 0
     for k in range(gathered):

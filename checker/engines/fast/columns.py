@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.recording import Ask
-from checker.engines.fast.value_templates import Family, Hole, holes, put_together, taken_apart
+from checker.engines.fast.recording import ColumnQuestion
+from checker.engines.fast.value_templates import Family, ObservationHole, holes, join_value, split_value
 from semantics.behaviours.observations import NOTHING_SEEN
 from semantics.state.cells import NAMES, Cell, Row
 from semantics.state.signature import Name
@@ -37,7 +37,7 @@ Place = tuple[Cell, int, Name] | tuple[Cell]
 
 
 @dataclass(slots=True)
-class Growth:
+class ColumnGrowth:
     """A counter of new columns and of columns that need one more bit."""
 
     times: int = 0
@@ -48,7 +48,7 @@ class Column:
 
     __slots__ = ("codes", "growth", "place", "values")
 
-    def __init__(self, place: Place, first: Any, growth: Growth, alike: "Column | None" = None) -> None:
+    def __init__(self, place: Place, first: Any, growth: ColumnGrowth, alike: "Column | None" = None) -> None:
         self.place = place
         self.growth = growth
         self.values: list[Any] = [first] if alike is None else alike.values
@@ -90,7 +90,7 @@ class Columns:
         self.all: list[Column] = []
         self.numbers: dict[Place, int] = {}
         self.holes: dict[Cell, int] = {}
-        self.growth = Growth()
+        self.growth = ColumnGrowth()
         self.about = {name: Column((NAMES, 0, name), NOTHING_SEEN, self.growth) for name in self.names}
 
     def __len__(self) -> int:
@@ -103,7 +103,7 @@ class Columns:
             found = self._add(place, ABSENT)
         return found
 
-    def asked(self, ask: Ask) -> int:
+    def asked(self, ask: ColumnQuestion) -> int:
         """Return the number of the column that a question reads."""
         return self.number((ask.cell,) if ask.hole is None else (ask.cell, *ask.hole))
 
@@ -135,7 +135,7 @@ class Columns:
 
     def start(self, cell: Cell, value: Any) -> None:
         """Create the columns of a cell that every configuration has, with its initial value."""
-        skeleton, families = taken_apart(value, self.mobile)
+        skeleton, families = split_value(value, self.mobile)
         self._add((cell,), skeleton)
         self.dig(cell, len(families))
 
@@ -162,7 +162,7 @@ class Columns:
         """Return the code of each column for a row, creating missing columns and codes."""
         found: dict[int, int] = {}
         for cell, value in row.items():
-            skeleton, families = taken_apart(value, self.mobile)
+            skeleton, families = split_value(value, self.mobile)
             number = self.number((cell,))
             found[number] = self.all[number].code(skeleton)
             self.dig(cell, len(families))
@@ -185,14 +185,14 @@ class Columns:
         if not self.holes.get(cell):
             return skeleton
 
-        def family_at(hole: Hole) -> Family:
+        def family_at(hole: ObservationHole) -> Family:
             told = {name: self.all[n].values[codes.get(n, 0)] for name, n in self.of_hole(cell, hole.number)}
             said = {name: fact for name, fact in told.items() if fact != NOTHING_SEEN}
             return dict(sorted({**dict(hole.still), **said}.items()))
 
-        return put_together(skeleton, family_at)
+        return join_value(skeleton, family_at)
 
-    def holes_of(self, number: int, code: int) -> tuple[Hole, ...]:
+    def holes_of(self, number: int, code: int) -> tuple[ObservationHole, ...]:
         """Return the holes of a skeleton, given its column and code."""
         return tuple(holes(self.all[number].values[code]))
 

@@ -6,9 +6,9 @@ from typing import Any
 
 from checker.engines.fast.columns import Columns, Place, Writes
 from checker.engines.fast.leaves import Effect
-from checker.engines.fast.recording import Conclusion, Edited, Heard, Pointwise
+from checker.engines.fast.recording import Conclusion, Edited, ObservedFacts, Pointwise
 from checker.engines.fast.trees import LearningError
-from checker.engines.fast.value_templates import Family, taken_apart
+from checker.engines.fast.value_templates import Family, split_value
 from semantics.behaviours.observations import NOTHING_SEEN
 from semantics.state.cells import Cell, Changes, Row, merged
 from semantics.state.configuration import Transition
@@ -53,7 +53,7 @@ class RecordedEffect:
 
 
 @dataclass(slots=True)
-class Writing:
+class EffectWriter:
     """Translates conclusions into writes.
 
     Attributes:
@@ -110,7 +110,7 @@ class Writing:
         if isinstance(value, Edited):
             found.edits.append(value)
             return
-        skeleton, families = taken_apart(value, self.columns.mobile)
+        skeleton, families = split_value(value, self.columns.mobile)
         if cell not in self.varying:
             if cell in self.still.layout.index and self.still.read(cell) == value:
                 conclusion = found.step.target.state
@@ -127,7 +127,7 @@ class Writing:
 
     def _say(self, cell: Cell, number: int, family: Family, found: RecordedEffect) -> None:
         here = self.columns.of_hole(cell, number)
-        if isinstance(family, Heard):
+        if isinstance(family, ObservedFacts):
             there = dict(self.columns.of_hole(family.cell, family.hole.number))
             found.effect.copies += [(column, there[name]) for name, column in here if column != there[name]]
             return

@@ -16,11 +16,11 @@ from checker.engines.contract import Exploration, Inspect, Options, Progress
 from checker.engines.estimate import estimate
 from checker.engines.fast.checkpoint import Journey, resume, save
 from checker.engines.fast.compiling import compilation_uncounted
-from checker.engines.fast.graph import GraphSurvey
-from checker.engines.fast.inspecting import inspect_fast
 from checker.engines.fast.learner import Learner
+from checker.engines.fast.row_graph import GraphSurvey
+from checker.engines.fast.row_inspection import inspect_fast
 from checker.engines.fast.space import Space
-from checker.limits import Bound, BoundMet, Limits, Part, Stop, bounded, is_full, memory_left
+from checker.limits import Bound, BoundMet, CheckPart, Limits, Stop, bounded, is_full, memory_left
 from semantics.state.configuration import Configuration
 
 if TYPE_CHECKING:
@@ -204,9 +204,9 @@ class _Explorer:
                 crosscheck(self.space, self.keeping.doubted, self.reduce)
             inspect_fast(survey, inspect)
         except BoundMet as met:
-            self.bounds.append(met.bound.met_in(Part.LOOKING))
+            self.bounds.append(met.bound.met_in(CheckPart.LOOKING))
         except (OSError, MemoryError) as error:
-            self.bounds.append(self.end_of_room(error).met_in(Part.LOOKING))
+            self.bounds.append(self.end_of_room(error).met_in(CheckPart.LOOKING))
 
     def end_of_room(self, error: OSError | MemoryError) -> Bound:
         """Return the bound for exhausted memory, or for exhausted room in files."""

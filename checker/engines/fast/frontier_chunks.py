@@ -5,7 +5,7 @@ from typing import Protocol
 from checker.engines.fast import kernel
 from checker.engines.fast.kernel import AT, GATHERED, PUT_OFF, SEEN, SIFTED
 from checker.engines.fast.mapped_arrays import Pages
-from checker.engines.fast.pipeline import Pipeline, Slice
+from checker.engines.fast.pipeline import Pipeline, RowSlice
 from checker.engines.fast.rows import Rows
 
 FEW = 1 << 6
@@ -20,7 +20,7 @@ class Storing(Protocol):
 
     rows: Rows
     table: Pages
-    batch: kernel.Batch
+    batch: kernel.SuccessorBatch
     state: kernel.State
     actors: int
     stored: int
@@ -37,16 +37,18 @@ class Storing(Protocol):
     def epoch(self) -> int:
         """A number that changes when results found ahead become void."""
 
-    def known(self) -> kernel.Model:
+    def known(self) -> kernel.LearnedModel:
         """Return a snapshot of the trees that other threads may read during learning."""
 
     def show(self) -> None:
         """Publish the stored rows to other threads."""
 
-    def new_batch(self, successors: int = 0, later: int = 0) -> kernel.Batch:
+    def new_batch(self, successors: int = 0, later: int = 0) -> kernel.SuccessorBatch:
         """Return an empty batch with room for `later` deferred rows."""
 
-    def store(self, batch: kernel.Batch, steps: tuple[int, int], found: tuple[int, int], at: int) -> None:
+    def store(
+        self, batch: kernel.SuccessorBatch, steps: tuple[int, int], found: tuple[int, int], at: int
+    ) -> None:
         """Store transitions and possibly new successors of the rows before row `at`."""
 
     def expand_here(self, until: int) -> None:
@@ -68,13 +70,13 @@ class Slices:
         self.space = space
         self.pipeline = Pipeline(threads, self._expand, self._sift)
         self.pace, self.breadth = FEW, 1.0
-        self.spare: list[kernel.Batch] = []
+        self.spare: list[kernel.SuccessorBatch] = []
 
     def advance(self, end: int) -> None:
         """Store the results of the next slice, while others go ahead; no slice crosses `end`."""
         self._commit(self._next(end))
 
-    def _next(self, end: int) -> Slice:
+    def _next(self, end: int) -> RowSlice:
         """Return the next slice, expanded; let other slices go ahead up to the stored rows."""
         pipeline, space = self.pipeline, self.space
         if pipeline.begin is not None and pipeline.begin > space.expanded:  # a batch was full before its end
@@ -91,7 +93,7 @@ class Slices:
             begin = part.end
         return pipeline.take()
 
-    def _slice(self, begin: int, end: int) -> Slice:
+    def _slice(self, begin: int, end: int) -> RowSlice:
         """Return rows as a slice, with the trees known now."""
         space = self.space
         known = space.known()
@@ -99,9 +101,9 @@ class Slices:
         state = space.state.copy()
         state[[AT, GATHERED, PUT_OFF]] = begin, 0, 0
         batch = self.spare.pop() if self.spare else space.new_batch(later=LATER_ROWS)
-        return Slice(begin, end, space.epoch, known, batch, state)
+        return RowSlice(begin, end, space.epoch, known, batch, state)
 
-    def _expand(self, part: Slice) -> None:
+    def _expand(self, part: RowSlice) -> None:
         """Expand a slice, in any thread."""
         rows = self.space.rows
         folded = rows.shown
@@ -111,13 +113,13 @@ class Slices:
         else:  # a look-up takes no longer than this check
             part.state[SIFTED] = part.state[GATHERED]
 
-    def _sift(self, part: Slice) -> None:
+    def _sift(self, part: RowSlice) -> None:
         """Drop the successors of a slice that are stored rows."""
         space = self.space
         part.state[SEEN] = space.stored
         kernel.sift(space.rows.words, space.table.room, part.batch, part.state)
 
-    def _commit(self, part: Slice) -> None:
+    def _commit(self, part: RowSlice) -> None:
         """Store the results of a slice; deferred rows are expanded at their turn."""
         space, steps, found = self.space, 0, 0
         for row, steps_before, found_before in part.put_off():

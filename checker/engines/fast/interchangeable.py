@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-from checker.engines.fast.recording import Scope
+from checker.engines.fast.recording import QuestionScope
 from checker.engines.fast.rule_cache import Exchange, NoImage, names_in
-from checker.reduction.automorphisms import Automorphisms
+from checker.reduction.mission_automorphisms import Automorphisms
 from checker.reduction.pairing import Pairing, Unlike
 from semantics.behaviours.observations import AGENT
 from semantics.state.cells import Cell, Row
@@ -95,7 +95,7 @@ class Likeness:
         except Unlike:
             return None
 
-    def models(self, names: Sequence[Name], scope: Scope) -> dict[Name, Name]:
+    def models(self, names: Sequence[Name], scope: QuestionScope) -> dict[Name, Name]:
         """Return the first interchangeable name for each name with a part, unless it is the name itself.
 
         A name that the transition's own questions in `scope` mention is interchangeable with none.
@@ -114,7 +114,7 @@ class Likeness:
         }
         return {name: model for name, model in models.items() if name != model}
 
-    def _taken(self, scope: Scope) -> dict[Name, list[Hashable]]:
+    def _taken(self, scope: QuestionScope) -> dict[Name, list[Hashable]]:
         """Return, for each name, the contents of constant cells that mention it, with the name removed."""
         found: dict[Name, list[Hashable]] = {}
         for cell in scope.taken:
@@ -149,7 +149,7 @@ class Likeness:
         return True
 
 
-def _mentioned(scope: Scope) -> frozenset[Any]:
+def _mentioned(scope: QuestionScope) -> frozenset[Any]:
     """Return the names that questions and answers mention."""
     found: set[Any] = set()
     for ask, answer in scope.asked.items():

@@ -37,7 +37,7 @@ from checker.engines.fast.tree_compression import (
     NO_ROOM,
     NOWHERE,
     UNMET,
-    Folded,
+    FoldedTable,
     fold,
     intern,
     leave_open,
@@ -54,7 +54,7 @@ Ints = NDArray[np.int32]
 State = NDArray[np.int64]
 
 
-class Model(NamedTuple):
+class LearnedModel(NamedTuple):
     """The learned trees and leaves in the form that the loops read.
 
     Attributes:
@@ -82,7 +82,7 @@ class Model(NamedTuple):
     clauses: Ints
 
 
-class Batch(NamedTuple):
+class SuccessorBatch(NamedTuple):
     """Gathered successors that are not looked up yet.
 
     Attributes:
@@ -194,7 +194,7 @@ def write_part(columns: Words, writes: Ints, steps: Ints, step: int, target: Wor
 
 
 @njit(cache=True, inline="always")
-def write_piece(columns: Words, writes: Ints, steps: Ints, step: int, f: Folded, piece: int) -> None:
+def write_piece(columns: Words, writes: Ints, steps: Ints, step: int, f: FoldedTable, piece: int) -> None:
     """Apply the writes of a transition, or of a part, to a piece in `sought`."""
     record = STEP * step
     for k in range(steps[record + WRITES], steps[record + WRITES_END]):
@@ -207,7 +207,7 @@ def write_piece(columns: Words, writes: Ints, steps: Ints, step: int, f: Folded,
 
 @inner(cache=True)
 def change_piece(
-    columns: Words, writes: Ints, steps: Ints, step: int, f: Folded, piece: int, adding: bool
+    columns: Words, writes: Ints, steps: Ints, step: int, f: FoldedTable, piece: int, adding: bool
 ) -> int:
     """Return the number of a piece of the successor after the writes of a transition or part."""
     seek_piece(f, piece)
@@ -222,7 +222,7 @@ def change_pieces(
     steps: Ints,
     touches: Words,
     step: int,
-    f: Folded,
+    f: FoldedTable,
     touched: int,
     adding: bool,
 ) -> int:
@@ -248,7 +248,7 @@ def change_pieces(
 
 @inner(cache=True)
 def copy_pieces(
-    columns: Words, copies: Ints, begin: int, end: int, f: Folded, touched: int, adding: bool
+    columns: Words, copies: Ints, begin: int, end: int, f: FoldedTable, touched: int, adding: bool
 ) -> int:
     """Apply a transition's copies to the successor; return the successor's own pieces."""
     for k in range(begin, end):
@@ -291,7 +291,9 @@ def is_repeated(target: Words, taken: Ints, steps: Ints, began: int, end: int, s
 
 
 @njit(cache=True, inline="always")
-def find_leaves(m: Model, source: Words, at: int, first: int, last: int, leaves: Ints, state: State) -> int:
+def find_leaves(
+    m: LearnedModel, source: Words, at: int, first: int, last: int, leaves: Ints, state: State
+) -> int:
     """Note the leaf of each actor of a row, agents first; return the union of their flags, or UNKNOWN."""
     flags = np.int64(0)
     for k in range(last - first + len(m.clauses)):
@@ -307,7 +309,7 @@ def find_leaves(m: Model, source: Words, at: int, first: int, last: int, leaves:
 
 
 @njit(cache=True, inline="always")
-def part_step(m: Model, source: Words, at: int, part: int, state: State) -> int:
+def part_step(m: LearnedModel, source: Words, at: int, part: int, state: State) -> int:
     """Return the transition that holds the writes of a part; less than 0 if it is not learned yet."""
     tree = m.part[part]
     reference = walk(source, at, m.root[tree], m.nodes, m.next, state)
@@ -319,7 +321,7 @@ def part_step(m: Model, source: Words, at: int, part: int, state: State) -> int:
 
 @njit(cache=True, inline="always")
 def make_plain(
-    m: Model, source: Words, at: int, step: int, target: Words, to: int, width: int, state: State
+    m: LearnedModel, source: Words, at: int, step: int, target: Words, to: int, width: int, state: State
 ) -> int:
     """Write the successor of a row by a transition; return less than 0 if something is not learned yet."""
     record, own = STEP * step, np.int64(0)
@@ -336,7 +338,9 @@ def make_plain(
 
 
 @njit(cache=True, inline="always")
-def make_folded(m: Model, f: Folded, step: int, adding: bool, kept: Words, to: int, state: State) -> int:
+def make_folded(
+    m: LearnedModel, f: FoldedTable, step: int, adding: bool, kept: Words, to: int, state: State
+) -> int:
     """Write the compressed successor of the unfolded row; return less than 0 if a part or piece is unknown."""
     record, own = STEP * step, np.int64(0)
     touched = change_pieces(m.columns, m.writes, m.steps, m.masks, step, f, np.int64(0), adding)
@@ -353,7 +357,7 @@ def make_folded(m: Model, f: Folded, step: int, adding: bool, kept: Words, to: i
 
 
 @inner(cache=True)
-def make_whole(m: Model, f: Folded, step: int, kept: Words, to: int, state: State) -> int:
+def make_whole(m: LearnedModel, f: FoldedTable, step: int, kept: Words, to: int, state: State) -> int:
     """Write the compressed successor like `make_folded`, but look up only its final pieces.
 
     `make_folded` also looks up intermediate pieces, before parts write to them. Such a piece may occur in no row and
@@ -380,7 +384,9 @@ def make_whole(m: Model, f: Folded, step: int, kept: Words, to: int, state: Stat
 
 
 @njit(cache=True, nogil=True)
-def gather(m: Model, words: Words, f: Folded | None, batch: Batch, state: State, until: int) -> bool:
+def gather(
+    m: LearnedModel, words: Words, f: FoldedTable | None, batch: SuccessorBatch, state: State, until: int
+) -> bool:
     """Gather the successors of rows until row `until` or until half of the batch is full; False at something unknown.
 
     The successors of a row are distinct: first those of served requests, then the agents' own steps, then the
@@ -494,9 +500,9 @@ def store(
     words: Words,
     origins: Any,
     table: Any,
-    m: Model | None,
-    f: Folded | None,
-    batch: Batch,
+    m: LearnedModel | None,
+    f: FoldedTable | None,
+    batch: SuccessorBatch,
     begin: int,
     end: int,
     state: State,
@@ -543,7 +549,7 @@ def count(steps: Ints, begin: int, end: int, counts: State) -> None:
 
 
 @njit(cache=True, inline="always")
-def keep(batch: Batch, k: int, left: int, width: int) -> None:
+def keep(batch: SuccessorBatch, k: int, left: int, width: int) -> None:
     """Move a successor behind those that remain."""
     for j in range(width):
         batch.kept[left * width + j] = batch.kept[k * width + j]
@@ -560,7 +566,7 @@ def note_later(later: State, put_off: int, k: int, left: int) -> int:
 
 
 @njit(cache=True, nogil=True)
-def drop_repeated(batch: Batch, state: State) -> None:
+def drop_repeated(batch: SuccessorBatch, state: State) -> None:
     """Drop successors that a small cache of recent ones holds: most duplicates within a batch."""
     target, hashes, lately = batch.kept, batch.hashes, batch.lately
     later = batch.later[: LATER * state[PUT_OFF]]
@@ -585,7 +591,7 @@ def drop_repeated(batch: Batch, state: State) -> None:
 
 
 @njit(cache=True, nogil=True)
-def sift(words: Words, table: Any, batch: Batch, state: State) -> None:
+def sift(words: Words, table: Any, batch: SuccessorBatch, state: State) -> None:
     """Drop successors that are rows below number `SEEN`.
 
     Other threads may store rows from that number on. Such a row never counts as found: its words may not be visible
@@ -608,7 +614,7 @@ def sift(words: Words, table: Any, batch: Batch, state: State) -> None:
 
 @njit(cache=True)
 def classify(
-    m: Model, words: Words, f: Folded | None, rows: State, tree: int, found: Ints, state: State
+    m: LearnedModel, words: Words, f: FoldedTable | None, rows: State, tree: int, found: Ints, state: State
 ) -> int:
     """Note the leaf of each row in a tree; return the number of rows classified before the first unknown one."""
     root, nodes, leads = m.root, m.nodes, m.next
@@ -629,7 +635,13 @@ def classify(
 
 @njit(cache=True)
 def look_up(
-    words: Words, table: Any, m: Model | None, f: Folded | None, batch: Batch, targets: Any, state: State
+    words: Words,
+    table: Any,
+    m: LearnedModel | None,
+    f: FoldedTable | None,
+    batch: SuccessorBatch,
+    targets: Any,
+    state: State,
 ) -> None:
     """Note the row number of each successor in the batch; with tree compression (`f`, and the model), add no piece."""
     target, hashes = batch.kept, batch.hashes

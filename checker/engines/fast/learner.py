@@ -11,12 +11,12 @@ from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from checker.engines.fast.columns import Columns, Packing, Place, Writes
-from checker.engines.fast.effects import RecordedEffect, Relearn, Varies, Writing
+from checker.engines.fast.effects import EffectWriter, RecordedEffect, Relearn, Varies
 from checker.engines.fast.interchangeable import Likeness
-from checker.engines.fast.leaves import ALIKE, CROWDED, NO_TURN, STEP, UNLIKE, Effect, Leaves, Step
-from checker.engines.fast.recording import Ask, Edited, Recorder, Scope, Source
-from checker.engines.fast.rule_cache import Exchange, Kin, Outcome, Parts
-from checker.engines.fast.rule_cache_lookup import Learned, Sharing
+from checker.engines.fast.leaves import ALIKE, CROWDED, NO_TURN, STEP, UNLIKE, Effect, LeafStep, LeafTables
+from checker.engines.fast.recording import CellRecorder, CellSource, ColumnQuestion, Edited, QuestionScope
+from checker.engines.fast.rule_cache import CachedOutcome, Exchange, Kin, PartLessons
+from checker.engines.fast.rule_cache_lookup import Learned, SharedLessons
 from checker.engines.fast.trees import Trees
 from checker.engines.fast.value_templates import agents_of, mobile_names, settled
 from semantics.behaviours.expressions import Fault
@@ -32,7 +32,7 @@ from semantics.state.signature import Name
 from semantics.successors import remembered, served, turn_of
 
 
-class Actor(NamedTuple):
+class TransitionGroup(NamedTuple):
     """Some rules, and the agent or clause to which they apply."""
 
     rules: Callable[[Configuration, Any], Iterable[Transition | Fault]]
@@ -49,7 +49,7 @@ PREDICTED = ("code", "store", "line")
 
 
 @dataclass(slots=True, eq=False)
-class Run:
+class RuleRun:
     """One run of an actor's rules; after a shared lesson it happens only when one of its parts is unknown.
 
     Attributes:
@@ -58,8 +58,8 @@ class Run:
         concluded: The transitions.
     """
 
-    actor: Actor
-    recorder: Recorder | None = None
+    actor: TransitionGroup
+    recorder: CellRecorder | None = None
     concluded: list[RecordedEffect] = field(default_factory=list)
 
 
@@ -74,23 +74,23 @@ class PartOf:
         kin: The lessons of interchangeable parts; None if there are none.
     """
 
-    run: Run
+    run: RuleRun
     step: int
     name: Name
     kin: Kin | None
 
 
 @dataclass(slots=True)
-class Known:
+class LabelEntry:
     """A label: its number, the first actor with it, and all transitions with it."""
 
     number: int
-    first: Actor
+    first: TransitionGroup
     steps: list[int] = field(default_factory=list)
 
 
 @dataclass(slots=True)
-class CodedSource(Source):
+class CodedSource(CellSource):
     """A configuration as a packed row; only the requested columns are decoded."""
 
     columns: Columns
@@ -139,37 +139,37 @@ class Learner:
     still: Row
     pending: int
     columns: Columns = field(init=False)
-    writing: Writing = field(init=False)
+    writing: EffectWriter = field(init=False)
     likeness: Likeness = field(init=False)
-    sharing: Sharing = field(init=False)
+    sharing: SharedLessons = field(init=False)
     trees: Trees = field(default_factory=Trees)
-    leaves: Leaves = field(default_factory=Leaves)
-    owners: list[Actor | PartOf | Edited | Question] = field(default_factory=list)
+    leaves: LeafTables = field(default_factory=LeafTables)
+    owners: list[TransitionGroup | PartOf | Edited | Question] = field(default_factory=list)
     taken: defaultdict[Cell, set[int]] = field(default_factory=lambda: defaultdict(set))
     writers: defaultdict[Cell, set[int]] = field(default_factory=lambda: defaultdict(set))
     homes: dict[Cell | Name, int] = field(default_factory=dict)
-    planted: dict[Actor | Edited, int] = field(default_factory=dict)
+    planted: dict[TransitionGroup | Edited, int] = field(default_factory=dict)
     varying: set[Cell] = field(default_factory=set)
     rules: dict[str, int] = field(default_factory=dict)
-    labels: dict[Hashable, Known] = field(default_factory=dict)
+    labels: dict[Hashable, LabelEntry] = field(default_factory=dict)
     steps: dict[int, Label] = field(default_factory=dict)
-    whose: dict[int, Actor] = field(default_factory=dict)
+    whose: dict[int, TransitionGroup] = field(default_factory=dict)
     answers: dict[int, Hashable] = field(default_factory=dict)
-    reads: dict[int, tuple[tuple[int, Ask, Any], ...]] = field(default_factory=dict)
+    reads: dict[int, tuple[tuple[int, ColumnQuestion, Any], ...]] = field(default_factory=dict)
     runs: int = 0
 
     def __post_init__(self) -> None:
         mobile = mobile_names(self.setting, self.still)
         self.columns = Columns(mobile, agents_of(self.setting, self.still))
-        self.writing = Writing(self.columns, self.still, self.varying)
+        self.writing = EffectWriter(self.columns, self.still, self.varying)
         self.likeness = Likeness(self.setting, self.still, mobile, self.columns.apart)
-        self.sharing = Sharing(self.likeness, self.columns, self.varying, self.still)
+        self.sharing = SharedLessons(self.likeness, self.columns, self.varying, self.still)
         for cell, value in self.still.items():
             self.columns.start(cell, value)
             if cell[0] in PREDICTED or (cell[0] in ("placement", "parent") and cell[-1] in mobile):
                 self.varying.add(cell)
 
-    def tree(self, actor: Actor | Edited) -> int:
+    def tree(self, actor: TransitionGroup | Edited) -> int:
         """Return the number of the tree of an actor, or of an edit; all transitions with that edit share its tree."""
         if actor not in self.planted:
             self.planted[actor] = self._plant(actor)
@@ -179,7 +179,7 @@ class Learner:
         """Return the number of a new tree for a question."""
         return self._plant(question)
 
-    def _plant(self, owner: Actor | PartOf | Edited | Question) -> int:
+    def _plant(self, owner: TransitionGroup | PartOf | Edited | Question) -> int:
         self.owners.append(owner)
         return self.trees.plant()
 
@@ -195,7 +195,7 @@ class Learner:
             if isinstance(owner, PartOf):
                 self._learn_part(tree, owner, source)
                 return True
-            if isinstance(owner, Actor):
+            if isinstance(owner, TransitionGroup):
                 self._learn_root(tree, owner, source)
             elif isinstance(owner, Edited):
                 self._learn_edit(tree, owner, source)
@@ -227,8 +227,8 @@ class Learner:
         for tree in trees.pop(cell, ()):
             self.trees.forget(tree)
 
-    def _learn_root(self, tree: int, actor: Actor, source: CodedSource) -> None:
-        kin, run = self.sharing.kin_of(actor.rules, actor.about), Run(actor)
+    def _learn_root(self, tree: int, actor: TransitionGroup, source: CodedSource) -> None:
+        kin, run = self.sharing.kin_of(actor.rules, actor.about), RuleRun(actor)
         exchange = self.likeness.nobody if kin is None else kin.exchange
         found = self.sharing.known(kin, source)
         if found is None:
@@ -249,7 +249,7 @@ class Learner:
         for part in parts:
             self.learn(part, source)
 
-    def _run(self, run: Run, source: CodedSource, exchange: Exchange) -> Learned:
+    def _run(self, run: RuleRun, source: CodedSource, exchange: Exchange) -> Learned:
         """Run an actor's rules on a configuration; `exchange` renames interchangeable parts as in the shared lesson."""
         self.runs += 1
         actor, recorder = run.actor, self._recorder(source)
@@ -264,12 +264,12 @@ class Learner:
         outcomes = [self._outcome(each, scope, exchange) for each in run.concluded]
         return self._found(scope, source, outcomes, CROWDED if is_full else 0)
 
-    def _recorder(self, source: CodedSource) -> Recorder:
-        return Recorder(source, self.still, self.varying.__contains__, self.columns.mobile)
+    def _recorder(self, source: CodedSource) -> CellRecorder:
+        return CellRecorder(source, self.still, self.varying.__contains__, self.columns.mobile)
 
-    def _outcome(self, each: RecordedEffect, scope: Scope, exchange: Exchange) -> Outcome:
+    def _outcome(self, each: RecordedEffect, scope: QuestionScope, exchange: Exchange) -> CachedOutcome:
         columns, models = self.columns.all, self.likeness.models(each.apart, scope)
-        return Outcome(
+        return CachedOutcome(
             general(each.step.label),
             each.step.shown,
             _turn(each.step),
@@ -277,21 +277,21 @@ class Learner:
             tuple((columns[to].place, columns[of].place) for to, of in each.effect.copies),
             tuple(each.edits),
             each.apart,
-            Parts({exchange.name(name): exchange.name(model) for name, model in models.items()}),
+            PartLessons({exchange.name(name): exchange.name(model) for name, model in models.items()}),
         )
 
     def _written(self, writes: Writes) -> tuple[tuple[Place, Any], ...]:
         columns = self.columns.all
         return tuple((columns[number].place, columns[number].values[code]) for number, code in writes)
 
-    def _effect(self, outcome: Outcome) -> Effect:
+    def _effect(self, outcome: CachedOutcome) -> Effect:
         number = self.columns.number
         writes = [
             (number(place), self.columns.all[number(place)].code(held)) for place, held in outcome.writes
         ]
         return Effect(writes, [(number(to), number(of)) for to, of in outcome.copies])
 
-    def _part(self, run: Run, step: int, name: Name, outcome: Outcome, kin: Kin | None) -> PartOf:
+    def _part(self, run: RuleRun, step: int, name: Name, outcome: CachedOutcome, kin: Kin | None) -> PartOf:
         assert outcome.parts is not None
         if kin is None and not outcome.parts.has_like(name):
             return PartOf(run, step, name, None)
@@ -317,18 +317,22 @@ class Learner:
             assert recorder is not None
             recorder.source = source  # it gives the same answers to the rules' own questions
             writes, scope = recorder.apart(lambda: self.writing.part(concluded, part.name))
-            found = self._found(scope, source, [Outcome(writes=self._written(writes))])
+            found = self._found(scope, source, [CachedOutcome(writes=self._written(writes))])
             self.sharing.teach(part.kin, found)
         self._grow_one(tree, found, self._effect(found.outcomes[0]).writes)
 
     def _learn_edit(self, tree: int, edited: Edited, source: CodedSource) -> None:
         self.runs += 1
-        scope = Scope({Ask(edited.cell): source.skeleton(edited.cell)})
+        scope = QuestionScope({ColumnQuestion(edited.cell): source.skeleton(edited.cell)})
         writes = self.writing.edit(edited, source.skeleton(edited.cell))
         self._grow_one(tree, self._found(scope, source), writes)
 
     def _found(
-        self, scope: Scope, source: CodedSource, outcomes: Sequence[Outcome] = (), flags: int = 0
+        self,
+        scope: QuestionScope,
+        source: CodedSource,
+        outcomes: Sequence[CachedOutcome] = (),
+        flags: int = 0,
     ) -> Learned:
         codes = {ask: source.code(self.columns.asked(ask)) for ask in scope.asked if ask.question is None}
         return Learned(scope.asked, codes, scope.taken, flags, outcomes)
@@ -338,16 +342,16 @@ class Learner:
         owner = self.owners[tree]
         for cell in cells:
             self.writers[cell].add(tree)
-            if isinstance(owner, Actor):
+            if isinstance(owner, TransitionGroup):
                 home = self.homes.setdefault(cell, self._home(owner))
                 self.homes.setdefault(cell[-1], home)
 
-    def _home(self, actor: Actor) -> int:
+    def _home(self, actor: TransitionGroup) -> int:
         """Return the first tree of the agent or clause of an actor."""
         return min(
             tree
             for each, tree in self.planted.items()
-            if isinstance(each, Actor) and each.about == actor.about
+            if isinstance(each, TransitionGroup) and each.about == actor.about
         )
 
     def by_home(self) -> list[int]:
@@ -363,13 +367,13 @@ class Learner:
     def _grow_one(self, tree: int, found: Learned, writes: Writes) -> None:
         """Add a path with a single effect to a tree."""
         self._note_writer(tree, writes)
-        self._grow(tree, found, self.leaves.add([Step(Effect(writes))]))
+        self._grow(tree, found, self.leaves.add([LeafStep(Effect(writes))]))
 
     def _grow(self, tree: int, found: Learned, leaf: int) -> None:
         """Add a path to a leaf to a tree."""
         for cell in found.taken:
             self.taken[cell].add(tree)
-        path: list[tuple[Ask, Any]] = []
+        path: list[tuple[ColumnQuestion, Any]] = []
         columns = []
         for ask, answer in found.asked.items():
             number = self.columns.asked(ask)
@@ -377,22 +381,24 @@ class Learner:
             path.append((ask, found.codes[ask] if ask.question is None else answer))
         self.trees.grow(tree, path, leaf, columns)
 
-    def _steps(self, actor: Actor, outcomes: Sequence[Outcome], effects: Sequence[Effect]) -> list[Step]:
+    def _steps(
+        self, actor: TransitionGroup, outcomes: Sequence[CachedOutcome], effects: Sequence[Effect]
+    ) -> list[LeafStep]:
         keys = [(each.label, each.shown) for each in outcomes]
         first, steps = len(self.leaves.rule), []
         for number, (key, outcome, effect) in enumerate(zip(keys, outcomes, effects, strict=True), first):
             assert outcome.label is not None
             self.steps[number] = outcome.label
             rule = self.rules.setdefault(outcome.label.rule, len(self.rules))
-            steps.append(Step(effect, rule, outcome.turn, self._alike(actor, key, keys, number)))
+            steps.append(LeafStep(effect, rule, outcome.turn, self._alike(actor, key, keys, number)))
         return steps
 
-    def _alike(self, actor: Actor, key: Hashable, beside: Sequence[Hashable], number: int) -> int:
+    def _alike(self, actor: TransitionGroup, key: Hashable, beside: Sequence[Hashable], number: int) -> int:
         """Return the number of a label that two transitions of one configuration may share, else `UNLIKE`.
 
         They share it within one leaf, or in two clauses.
         """
-        known = self.labels.setdefault(key, Known(len(self.labels), actor))
+        known = self.labels.setdefault(key, LabelEntry(len(self.labels), actor))
         if known.first != actor:  # earlier transitions with the label must be compared, too
             for other in known.steps:
                 self.leaves.steps.room[STEP * other + ALIKE] = known.number

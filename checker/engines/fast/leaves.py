@@ -41,7 +41,7 @@ class Effect:
     parts: list[int] = field(default_factory=list)
 
 
-class Step(NamedTuple):
+class LeafStep(NamedTuple):
     """One transition of a leaf.
 
     Attributes:
@@ -57,7 +57,7 @@ class Step(NamedTuple):
     alike: int = UNLIKE
 
 
-class Leaves:
+class LeafTables:
     """All leaves of an exploration: `LEAF` numbers a leaf, `STEP` a transition, `PAIR` a write or copy.
 
     Attributes:
@@ -72,7 +72,7 @@ class Leaves:
         self.copies, self.part = (Growing(np.int32, shared=True) for _ in range(2))
         self.rule = Growing(np.int32)
 
-    def add(self, steps: Sequence[Step], flags: int = 0) -> int:
+    def add(self, steps: Sequence[LeafStep], flags: int = 0) -> int:
         """Add a leaf and return its number."""
         first = len(self.rule)
         for step in steps:
@@ -88,7 +88,7 @@ class Leaves:
         """Return the numbers of a leaf's transitions."""
         return range(*map(int, self.leaves.room[LEAF * leaf + FIRST : LEAF * leaf + END + 1]))
 
-    def _add(self, step: Step) -> None:
+    def _add(self, step: LeafStep) -> None:
         begins = [len(each) // PAIR for each in (self.copies, self.writes)]
         parts = len(self.part)
         for pairs, all_of in ((step.effect.copies, self.copies), (step.effect.writes, self.writes)):

@@ -24,13 +24,13 @@ from checker.engines.fast.bits import WORD
 from checker.engines.fast.columns import Packing
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.leaves import LEAF
-from checker.engines.fast.path_ends import Paths
+from checker.engines.fast.path_ends import SearchPaths
 from checker.engines.fast.value_templates import agents_of
 from checker.properties.inspections import never_ends
 from checker.reduction.actors import Acting, Actor
 from checker.reduction.ample import Ample
-from checker.reduction.variables import Footprint
-from checker.reduction.visible import Seen
+from checker.reduction.variables import SlotFootprint
+from checker.reduction.visible import VisiblePart
 from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name
 
@@ -68,12 +68,12 @@ class Choosing:
         self.numbers: dict[Actor, int] = {}
         self.everyone = {name: k for k, name in enumerate(sorted(agents_of(learner.setting, learner.still)))}
         self.part = Growing(np.int32)
-        self.footprints: dict[Footprint, int] = {}
+        self.footprints: dict[SlotFootprint, int] = {}
         self.begins = Growing(np.int32)
         self.actors = Growing(np.int32)
         self.step_actor = Growing(np.int32)
         self.step_flags = Growing(np.int32)
-        self.paths = Paths(len(self.everyone), self.wide)
+        self.paths = SearchPaths(len(self.everyone), self.wide)
         self.stride = self.width = 0
         self.roomy: tuple[int, int] | None = None
         self.room: tuple[Any, ...] = ()
@@ -159,7 +159,7 @@ class Choosing:
             return KINDS * len(self.everyone) + int(actor.owner)
         return KINDS * self.everyone[str(actor.owner)] + AGENT_PARTS.index(actor.kind)
 
-    def _footprint(self, footprint: Footprint) -> int:
+    def _footprint(self, footprint: SlotFootprint) -> int:
         return self.footprints.setdefault(footprint, len(self.footprints))
 
     def _take_leaves(self) -> None:
@@ -237,7 +237,7 @@ class Choosing:
         self.seen = np.array(asked, np.int32)
         self.seen_answers = np.array(answers, np.uint8)
 
-    def _columns(self, seen: Seen) -> list[int]:
+    def _columns(self, seen: VisiblePart) -> list[int]:
         """Return the columns of a cell: its skeleton, and the facts in its holes if its value counts."""
         columns = self.learner.columns
         number = columns.numbers.get((seen.cell,))

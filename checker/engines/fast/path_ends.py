@@ -102,7 +102,7 @@ def end_of(trails: Trails, row: int, taken: Words) -> int:
     return row
 
 
-class Paths:
+class SearchPaths:
     """The paths of one search.
 
     Args:

@@ -24,7 +24,7 @@ from checker.engines.fast.table import Words
 
 @inner(cache=True)
 def compare(footprints: Words, disturbed: Any, count: int, one: int, other: int) -> int:
-    """Note whether one footprint disturbs another (see `checker.reduction.variables.Footprint`): 1 no, 2 yes."""
+    """Note whether one footprint disturbs another (see `checker.reduction.variables.SlotFootprint`): 1 no, 2 yes."""
     words = len(footprints) // (PARTS * count)
     a, b = one * PARTS * words, other * PARTS * words
     found = 1

@@ -11,7 +11,16 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from checker.engines.fast.kernel import AT, GATHERED, LATER, PUT_OFF, SIFTED, Batch, Model, State
+from checker.engines.fast.kernel import (
+    AT,
+    GATHERED,
+    LATER,
+    PUT_OFF,
+    SIFTED,
+    LearnedModel,
+    State,
+    SuccessorBatch,
+)
 
 EACH = 4
 """The number of slices ahead for each thread: one in expansion, the others waiting."""
@@ -24,7 +33,7 @@ WORTH = 1 << 8
 
 
 @dataclass(slots=True, eq=False)
-class Slice:
+class RowSlice:
     """Rows that one thread expands.
 
     Attributes:
@@ -39,8 +48,8 @@ class Slice:
     begin: int
     end: int
     epoch: int
-    model: Model
-    batch: Batch
+    model: LearnedModel
+    batch: SuccessorBatch
     state: State
     expanding: Future[None] | None = None
 
@@ -77,13 +86,15 @@ class Pipeline:
         is_far_ahead: Whether more slices were ready at the last `take` than can be stored at once.
     """
 
-    def __init__(self, threads: int, expand: Callable[[Slice], None], sift: Callable[[Slice], None]) -> None:
+    def __init__(
+        self, threads: int, expand: Callable[[RowSlice], None], sift: Callable[[RowSlice], None]
+    ) -> None:
         self.threads = threads
         self.expand = expand
         self.sift = sift
-        self.awaited: Slice | None = None
+        self.awaited: RowSlice | None = None
         self.is_far_ahead = False
-        self.ahead: deque[Slice] = deque()
+        self.ahead: deque[RowSlice] = deque()
         self.beside = ThreadPoolExecutor(threads - 1, "expanding") if threads > 1 else None
 
     @property
@@ -105,19 +116,19 @@ class Pipeline:
         """Return the greatest size of a slice such that all threads get some of `rows` rows."""
         return rows if self.beside is None else max(rows // (SHARE * self.threads), WORTH)
 
-    def add(self, part: Slice) -> None:
+    def add(self, part: RowSlice) -> None:
         """Add a slice behind the others; another thread expands it, or this one at its turn."""
         self.ahead.append(part)
         if self.beside is not None and part.end - part.begin >= WORTH:
             part.expanding = self.beside.submit(self._expand_beside, part)
 
-    def _expand_beside(self, part: Slice) -> None:
+    def _expand_beside(self, part: RowSlice) -> None:
         """Expand a slice in another thread, and sift it if storing lags behind."""
         self.expand(part)
         if self.is_far_ahead and part is not self.awaited:
             self.sift(part)
 
-    def take(self) -> Slice:
+    def take(self) -> RowSlice:
         """Return the first slice once it is expanded; meanwhile expand slices that no thread has begun."""
         self.awaited = first = self.ahead.popleft()
         ready = sum(each.expanding is not None and each.expanding.done() for each in self.ahead)

@@ -13,7 +13,7 @@ from operator import and_, or_
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.survey import Survey, known
+from checker.engines.fast.row_survey import RowSurvey, distinct_leaves
 from semantics.properties.propositions import (
     Always,
     And,
@@ -80,7 +80,7 @@ class Profiles:
         changing: Whether a read value differs between rows; set by `truths`.
     """
 
-    def __init__(self, survey: Survey, formula: Proposition) -> None:
+    def __init__(self, survey: RowSurvey, formula: Proposition) -> None:
         self.survey = survey
         self.formula = formula
         self.changing = False
@@ -109,7 +109,7 @@ class Profiles:
 
     def _codes(self, one: Subject, rows: Numbers) -> Numbers:
         leaves = self.survey.classify(self.trees[one], rows)
-        self.met[one].update(known(leaves))
+        self.met[one].update(distinct_leaves(leaves))
         return self.survey.numbered(leaves, self.numbers[one])
 
     def ranks_of(self, anchor: Inside, parts: Instances) -> list[int]:

@@ -8,14 +8,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from checker.engines.fast.value_templates import Hole, has_no_holes, put_together, taken_apart
+from checker.engines.fast.value_templates import ObservationHole, has_no_holes, join_value, split_value
 from semantics.behaviours.observations import Fact
-from semantics.state.cells import Cell, Changes, Edit, Part, Question, Row, State, merged
+from semantics.state.cells import Cell, Changes, Edit, Part, Question, Row, WritableCells, merged
 from semantics.state.signature import Name
 
 
 @dataclass(frozen=True, slots=True)
-class Ask:
+class ColumnQuestion:
     """A question to a column: its value, or a function of its value, mostly a truth value.
 
     Attributes:
@@ -31,12 +31,12 @@ class Ask:
     constants: tuple[Any, ...] = ()
 
 
-Asked = dict[Ask, Any]
+Asked = dict[ColumnQuestion, Any]
 """Questions with their answers, in the order of their first occurrence."""
 
 
-class Source(Protocol):
-    """The cells of one configuration, split into skeletons and facts, as `Recorder` reads them."""
+class CellSource(Protocol):
+    """The cells of one configuration, split into skeletons and facts, as `CellRecorder` reads them."""
 
     def skeleton(self, cell: Cell) -> Any:
         """Return the skeleton of a cell's value, None if there is no such cell."""
@@ -59,7 +59,7 @@ class Edited:
 
 
 @dataclass(slots=True)
-class Scope:
+class QuestionScope:
     """The questions of a rule, or the further questions of one part of its conclusion.
 
     Attributes:
@@ -78,7 +78,7 @@ class Scope:
 
 
 @dataclass(slots=True)
-class Recorder:
+class CellRecorder:
     """Cells that record the questions put to them.
 
     Attributes:
@@ -90,11 +90,11 @@ class Recorder:
         families: The pointwise definitions created.
     """
 
-    source: Source
+    source: CellSource
     still: Row
     varies: Callable[[Cell], bool]
     mobile: frozenset[Name]
-    scopes: list[Scope] = field(default_factory=lambda: [Scope()])
+    scopes: list[QuestionScope] = field(default_factory=lambda: [QuestionScope()])
     families: list[Any] = field(default_factory=list)
 
     def read(self, cell: Cell) -> Any:
@@ -102,15 +102,15 @@ class Recorder:
         if not self.varies(cell):
             self.scopes[-1].take(cell)
             return self.still.read(cell)
-        skeleton = self._note(Ask(cell), lambda: self.source.skeleton(cell))
-        return put_together(skeleton, lambda hole: Heard(self, cell, hole))
+        skeleton = self._note(ColumnQuestion(cell), lambda: self.source.skeleton(cell))
+        return join_value(skeleton, lambda hole: ObservedFacts(self, cell, hole))
 
     def test(self, cell: Cell, question: Question, *constants: Any) -> bool:
         """Return the truth of a predicate of a cell, and record it."""
         if not self.varies(cell):
             self.scopes[-1].take(cell)
             return bool(question(self.still.read(cell), *constants))
-        ask = Ask(cell, None, question, constants)
+        ask = ColumnQuestion(cell, None, question, constants)
         answer: bool = self._note(ask, lambda: bool(question(self.source.skeleton(cell), *constants)))
         return answer
 
@@ -120,20 +120,23 @@ class Recorder:
             self.scopes[-1].take(cell)
             return question(self.still.read(cell), *constants)
         answer = self._note(
-            Ask(cell, None, question, constants), lambda: question(self.source.skeleton(cell), *constants)
+            ColumnQuestion(cell, None, question, constants),
+            lambda: question(self.source.skeleton(cell), *constants),
         )
-        return put_together(answer, lambda hole: Heard(self, cell, hole))
+        return join_value(answer, lambda hole: ObservedFacts(self, cell, hole))
 
     def edited(self, cell: Cell, edit: Edit, *constants: Any) -> Any:
         """Return the edited value of a cell: a placeholder, with the cell unread, if neither contains observations."""
-        is_plain = not taken_apart(constants, self.mobile)[1]
+        is_plain = not split_value(constants, self.mobile)[1]
         if is_plain and self.varies(cell) and self.test(cell, has_no_holes):
             return Edited(cell, edit, constants)
         return edit(self.read(cell), *constants)
 
     def hear(self, cell: Cell, number: int, name: Name) -> Fact:
         """Return an observation's fact about a mobile name, and record it."""
-        fact: Fact = self._note(Ask(cell, (number, name)), lambda: self.source.fact(cell, number, name))
+        fact: Fact = self._note(
+            ColumnQuestion(cell, (number, name)), lambda: self.source.fact(cell, number, name)
+        )
         return fact
 
     def each(self, names: Iterable[str], part: Callable[[str], Part]) -> Mapping[str, Part]:
@@ -150,13 +153,13 @@ class Recorder:
         """Return the cells with the parts of a conclusion applied."""
         return Conclusion(self, {}, (parts,))
 
-    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # the recorder is the initial state
+    def changed(self, since: WritableCells) -> Set[Cell]:  # noqa: ARG002  # the recorder is the initial state
         """Return the empty set: nothing was written."""
         return frozenset()
 
-    def apart(self, part: Callable[[], Part]) -> tuple[Part, Scope]:
+    def apart(self, part: Callable[[], Part]) -> tuple[Part, QuestionScope]:
         """Return a part, with the questions that it asked in addition to the rule's."""
-        self.scopes.append(Scope())
+        self.scopes.append(QuestionScope())
         try:
             return part(), self.scopes[-1]
         finally:
@@ -170,7 +173,7 @@ class Recorder:
         self.scopes[-1].known[what] = found = work()
         return found
 
-    def _note(self, ask: Ask, answer: Callable[[], Any]) -> Any:
+    def _note(self, ask: ColumnQuestion, answer: Callable[[], Any]) -> Any:
         for scope in self.scopes:
             if ask in scope.asked:
                 return scope.asked[ask]
@@ -181,7 +184,7 @@ class Recorder:
 class Pointwise(Mapping[str, Part]):
     """A pointwise definition; each part is evaluated at its access."""
 
-    def __init__(self, recorder: Recorder, names: tuple[str, ...], part: Callable[[str], Part]) -> None:
+    def __init__(self, recorder: CellRecorder, names: tuple[str, ...], part: Callable[[str], Part]) -> None:
         self.recorder = recorder
         self.names = dict.fromkeys(names)
         self.part = part
@@ -199,10 +202,10 @@ class Pointwise(Mapping[str, Part]):
         return len(self.names)
 
 
-class Heard(Mapping[Name, Fact]):
+class ObservedFacts(Mapping[Name, Fact]):
     """The facts of an observation in a cell; a fact about a mobile name is recorded at its access."""
 
-    def __init__(self, recorder: Recorder, cell: Cell, hole: Hole) -> None:
+    def __init__(self, recorder: CellRecorder, cell: Cell, hole: ObservationHole) -> None:
         self.recorder = recorder
         self.cell = cell
         self.hole = hole
@@ -226,7 +229,7 @@ class Conclusion:
     __slots__ = ("changes", "families", "recorder")
 
     def __init__(
-        self, recorder: Recorder, changes: Changes, families: tuple[Mapping[str, Changes], ...] = ()
+        self, recorder: CellRecorder, changes: Changes, families: tuple[Mapping[str, Changes], ...] = ()
     ) -> None:
         self.recorder = recorder
         self.changes = changes
@@ -274,7 +277,7 @@ class Conclusion:
         """Return the cells with a pointwise definition applied; no changes may follow it."""
         return Conclusion(self.recorder, self.changes, (*self.families, parts))
 
-    def changed(self, since: State) -> Set[Cell]:  # noqa: ARG002  # all that was written is known
+    def changed(self, since: WritableCells) -> Set[Cell]:  # noqa: ARG002  # all that was written is known
         """Return the written cells."""
         return (
             merged(each for family in self.families for each in family.values()).keys() | self.changes.keys()

@@ -38,12 +38,12 @@ class Rows:
         return self._words.room
 
     @property
-    def folded(self) -> tree_compression.Folded | None:
+    def folded(self) -> tree_compression.FoldedTable | None:
         """The tables of tree compression, None for plain rows. Growing replaces them: don't keep them."""
         return None if self._folding is None else self._folding.folded
 
     @property
-    def shown(self) -> tree_compression.Folded | None:
+    def shown(self) -> tree_compression.FoldedTable | None:
         """The same tables for reading threads, as last published."""
         return None if self._folding is None else self._folding.shown
 

@@ -13,9 +13,9 @@ from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 from checker.engines.fast.columns import ABSENT, Place
-from checker.engines.fast.recording import Ask, Edited
-from checker.engines.fast.value_templates import put_together, taken_apart
-from checker.reduction.renaming import WORD, Renaming, asked
+from checker.engines.fast.recording import ColumnQuestion, Edited
+from checker.engines.fast.value_templates import join_value, split_value
+from checker.reduction.configuration_renaming import WORD, Renaming, requested_keys
 from semantics.behaviours.observations import AGENT
 from semantics.state.cells import Cell
 from semantics.state.configuration import Label
@@ -34,7 +34,7 @@ class NoImage(Exception):
 def names_in(value: Any) -> frozenset[Any]:
     """Return the names that a value mentions; raises NoImage if they can't be determined."""
     try:
-        found = asked(lambda renaming: renaming.value(value))
+        found = requested_keys(lambda renaming: renaming.value(value))
     except TypeError:
         raise NoImage from None
     return frozenset(each.removeprefix(AGENT) if isinstance(each, str) else each for each in found)
@@ -86,12 +86,12 @@ class Exchange:
         cell = self.cell(place[0])
         return (cell,) if len(place) == 1 else (cell, place[1], self.name(place[2]))
 
-    def ask(self, ask: Ask) -> Ask:
+    def ask(self, ask: ColumnQuestion) -> ColumnQuestion:
         """Return the image of a question."""
         hole = None if ask.hole is None else (ask.hole[0], self.name(ask.hole[1]))
-        return Ask(self.cell(ask.cell), hole, ask.question, self.constant(ask.constants))
+        return ColumnQuestion(self.cell(ask.cell), hole, ask.question, self.constant(ask.constants))
 
-    def answer(self, ask: Ask, answer: Any) -> Any:
+    def answer(self, ask: ColumnQuestion, answer: Any) -> Any:
         """Return the image of the answer to a question."""
         is_skeleton = ask.hole is None and ask.question is None
         return self.value(ask.cell, answer) if is_skeleton else self.constant(answer)
@@ -112,9 +112,9 @@ class Exchange:
         is_sorted = not {"sends", "mailbox", *(["line"] if self.unordered else ())}.isdisjoint(cell)
         if is_sorted and len(skeleton) > 1:
             raise NoImage  # the elements of the image, and their attachments, may be in another order
-        whole = put_together(skeleton, lambda hole: dict(hole.still))
+        whole = join_value(skeleton, lambda hole: dict(hole.still))
         image = self._renamed(lambda: self.renaming.content(cell, whole, unordered=self.unordered))
-        return taken_apart(image, self.mobile)[0]
+        return split_value(image, self.mobile)[0]
 
     def edited(self, edited: Edited) -> Edited:
         """Return the image of an edit."""
@@ -151,7 +151,7 @@ class Exchange:
             raise NoImage from None
 
 
-class Outcome(NamedTuple):
+class CachedOutcome(NamedTuple):
     """One transition, or the writes of a part.
 
     Attributes:
@@ -172,11 +172,11 @@ class Outcome(NamedTuple):
     copies: tuple[tuple[Place, Place], ...] = ()
     edits: tuple[Edited, ...] = ()
     apart: tuple[Name, ...] = ()
-    parts: "Parts | None" = None
+    parts: "PartLessons | None" = None
 
-    def image(self, under: Exchange) -> "Outcome":
+    def image(self, under: Exchange) -> "CachedOutcome":
         """Return the outcome under other names; raises NoImage if it has no image. The lessons of parts are shared."""
-        return Outcome(
+        return CachedOutcome(
             None if self.label is None else under.label(self.label),
             tuple(map(under.shown, self.shown)),
             self.turn,
@@ -193,7 +193,7 @@ def _held(under: Exchange, place: Place, value: Any) -> Any:
 
 
 @dataclass(slots=True)
-class Parts:
+class PartLessons:
     """The lessons of the parts of one transition, and which parts are interchangeable.
 
     Attributes:
@@ -229,7 +229,7 @@ class Lesson:
     """
 
     flags: int
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[CachedOutcome, ...]
     still: frozenset[Cell]
     taken: Mapping[Cell, Any]
     depths: Mapping[Cell, int]
@@ -253,7 +253,7 @@ Taken = tuple[tuple[Cell, Any], ...]
 """Cells assumed constant, with their values, sorted."""
 
 
-class Stage(NamedTuple):
+class LessonStage(NamedTuple):
     """One stage of a run: assumptions about constant cells, then one question with its answer; none at the end.
 
     Attributes:
@@ -263,7 +263,7 @@ class Stage(NamedTuple):
     """
 
     taken: Taken
-    ask: Ask | None = None
+    ask: ColumnQuestion | None = None
     answer: Any = None
 
 
@@ -277,7 +277,7 @@ class Branch:
         lesson: The conclusion, if there is no further question.
     """
 
-    ask: Ask | None = None
+    ask: ColumnQuestion | None = None
     after: dict[Any, "Lessons"] = field(default_factory=dict)
     lesson: Lesson | None = None
 
@@ -301,7 +301,7 @@ class Lessons:
         if since != self.since:
             self.branches, self.since = {}, since
 
-    def find(self, answer: Callable[[Ask], Any], holds: Callable[[Cell], Any]) -> Lesson | None:
+    def find(self, answer: Callable[[ColumnQuestion], Any], holds: Callable[[Cell], Any]) -> Lesson | None:
         """Return the lesson for the given answers and cell values, None if it is unknown."""
         node = self
         while True:
@@ -313,7 +313,7 @@ class Lessons:
                 return None
             node = found
 
-    def learn(self, stages: Iterable[Stage], lesson: Lesson) -> None:
+    def learn(self, stages: Iterable[LessonStage], lesson: Lesson) -> None:
         """Add a lesson to the tree, unless another question was asked after the same answers.
 
         Rules may iterate over names in order and stop; interchangeable agents may then ask in different orders.
@@ -340,7 +340,7 @@ class Kin(NamedTuple):
     exchange: Exchange
 
 
-def mentioned(asked: Iterable[Ask], outcomes: Iterable[Outcome]) -> frozenset[Name]:
+def mentioned(asked: Iterable[ColumnQuestion], outcomes: Iterable[CachedOutcome]) -> frozenset[Name]:
     """Return the names that questions and outcomes mention; raises NoImage if they can't be determined."""
     found: set[Any] = set()
     for ask in asked:

@@ -6,8 +6,16 @@ from typing import Any, Final, NamedTuple, Protocol
 
 from checker.engines.fast.columns import Columns
 from checker.engines.fast.interchangeable import Likeness
-from checker.engines.fast.recording import Ask, Asked
-from checker.engines.fast.rule_cache import Kin, Lesson, Lessons, NoImage, Outcome, Stage, mentioned
+from checker.engines.fast.recording import Asked, ColumnQuestion
+from checker.engines.fast.rule_cache import (
+    CachedOutcome,
+    Kin,
+    Lesson,
+    Lessons,
+    LessonStage,
+    NoImage,
+    mentioned,
+)
 from semantics.state.cells import Cell, Row
 from semantics.state.signature import Name
 
@@ -15,7 +23,7 @@ WRITTEN: Final = object()
 """The stand-in for the value of a varying cell."""
 
 
-class Source(Protocol):
+class CodeSource(Protocol):
     """One configuration, given by its codes."""
 
     def code(self, number: int) -> int:
@@ -34,14 +42,14 @@ class Learned(NamedTuple):
     """
 
     asked: Asked
-    codes: dict[Ask, int]
+    codes: dict[ColumnQuestion, int]
     taken: Mapping[Cell, int]
     flags: int
-    outcomes: Sequence[Outcome]
+    outcomes: Sequence[CachedOutcome]
 
 
 @dataclass(slots=True)
-class Sharing:
+class SharedLessons:
     """The lessons of all classes of interchangeable agents.
 
     Attributes:
@@ -66,14 +74,14 @@ class Sharing:
         first, exchange = found
         return Kin(self.lessons.setdefault((rules, first), Lessons()), exchange)
 
-    def known(self, kin: Kin | None, source: Source) -> Learned | None:
+    def known(self, kin: Kin | None, source: CodeSource) -> Learned | None:
         """Return the result of a shared lesson for a configuration, in the agent's own names; None if there is none."""
         if kin is None:
             return None
         exchange, back = kin.exchange, kin.exchange.inverse
-        asked, codes = dict[Ask, Any](), dict[Ask, int]()
+        asked, codes = dict[ColumnQuestion, Any](), dict[ColumnQuestion, int]()
 
-        def answer(ask: Ask) -> Any:
+        def answer(ask: ColumnQuestion) -> Any:
             image = back.ask(ask)
             if image.cell not in self.varying:
                 raise NoImage
@@ -125,7 +133,7 @@ class Sharing:
                 mentioned(found.asked, found.outcomes),
             ).image(kin.exchange)
             stages = [
-                Stage(
+                LessonStage(
                     tuple(
                         sorted(
                             (kin.exchange.cell(cell), lesson.taken[kin.exchange.cell(cell)]) for cell in taken
@@ -145,7 +153,7 @@ class Sharing:
         kin.lessons.learn(stages, lesson)
 
 
-def _stages(found: Learned, about: Set[Cell]) -> Iterator[tuple[list[Cell], Ask | None, Any]]:
+def _stages(found: Learned, about: Set[Cell]) -> Iterator[tuple[list[Cell], ColumnQuestion | None, Any]]:
     """Yield each question with the relevant cells assumed constant since the previous one; at the end, None."""
     taken: list[list[Cell]] = [[] for _ in range(len(found.asked) + 1)]
     for cell, asked in found.taken.items():

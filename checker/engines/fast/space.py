@@ -35,7 +35,7 @@ from checker.engines.fast.kernel import (
     TURNS,
     WORDS,
 )
-from checker.engines.fast.learner import Actor, CodedSource, Learner
+from checker.engines.fast.learner import CodedSource, Learner, TransitionGroup
 from checker.engines.fast.mapped_arrays import Pages
 from checker.engines.fast.origins import OriginPages, Rising
 from checker.engines.fast.rows import Rows
@@ -107,12 +107,14 @@ class Space:
         self.slices = Slices(self, threads)
         self.pipeline = self.slices.pipeline
         self.stored = self.changes = 0
-        self.shown: kernel.Model | None = None
+        self.shown: kernel.LearnedModel | None = None
         self.packing: Packing
-        self.batch: kernel.Batch
+        self.batch: kernel.SuccessorBatch
         self.state[TURNS] = learner.setting.scheduler is Scheduler.FCFS
         self.learned: list[tuple[int, int, int, int]] = []
-        self.clauses = [learner.tree(Actor(by_clause, clause)) for clause in learner.setting.environment]
+        self.clauses = [
+            learner.tree(TransitionGroup(by_clause, clause)) for clause in learner.setting.environment
+        ]
         self.actors = len(self.clauses)
         self.groups: list[tuple[Name, ...]] = []
         self.trees: tuple[NDArray[np.int32], ...] = ()
@@ -215,7 +217,7 @@ class Space:
 
     def _expand(self, choosing: "Choosing", until: int, room: int) -> bool:
         """Expand rows until row `until` or until there are `room` rows; return False at something not learned yet."""
-        from checker.engines.fast.ample import expand_reduced  # noqa: PLC0415  # compiled only for a reduction
+        from checker.engines.fast.ample_kernel import expand_reduced  # noqa: PLC0415  # compiled only for a reduction
 
         loop: Callable[..., bool] = expand_reduced
         swaps = self.exchanging
@@ -232,7 +234,9 @@ class Space:
             known if self.exchanging is None else self.exchanging.represent(self.batch, self.state) and known
         )
 
-    def store(self, batch: kernel.Batch, steps: tuple[int, int], found: tuple[int, int], at: int) -> None:
+    def store(
+        self, batch: kernel.SuccessorBatch, steps: tuple[int, int], found: tuple[int, int], at: int
+    ) -> None:
         """Store part of a batch: transitions and possibly new successors of the rows before row `at`."""
         kernel.count(batch.steps, *steps, self.counts.room)
         begin, end = found
@@ -247,7 +251,7 @@ class Space:
         """A number that changes when results found ahead become void."""
         return self.changes + self.learner.trees.forgotten
 
-    def known(self) -> kernel.Model:
+    def known(self) -> kernel.LearnedModel:
         """Return a snapshot of the trees that other threads may read during learning."""
         if self.shown is None:
             trees = self.learner.trees
@@ -260,7 +264,7 @@ class Space:
         self.rows.show()
         self.stored = self.size
 
-    def _store_some(self, batch: kernel.Batch, begin: int, end: int) -> int:
+    def _store_some(self, batch: kernel.SuccessorBatch, begin: int, end: int) -> int:
         """Store successors of a batch until there is no room; return the first one not stored."""
         arrays = (self.rows.words, self.rows.origins.loops, self.table.room)
         folded = self.rows.folded
@@ -400,7 +404,7 @@ class Space:
             leaves.writes,
             leaves.part,
         )
-        self.model = kernel.Model._make(
+        self.model = kernel.LearnedModel._make(
             (*(each.room for each in learned), self.masks.room, self.packing.columns, *self.trees)
         )
         self.shown = self.model if self.pipeline.threads == 1 else None
@@ -442,7 +446,8 @@ class Space:
         """Return the trees of all agents, group by group, and the bounds of the groups."""
         learner = self.learner
         trees = [
-            [learner.tree(Actor(rules, a)) for rules in (served, moves) for a in group] for group in groups
+            [learner.tree(TransitionGroup(rules, a)) for rules in (served, moves) for a in group]
+            for group in groups
         ]
         return [tree for group in trees for tree in group], [0, *accumulate(map(len, trees))]
 
@@ -518,13 +523,13 @@ class Space:
             self.actors = actors
             self._make_batches(len(self.batch.hashes))
 
-    def new_batch(self, successors: int = 0, later: int = 0) -> kernel.Batch:
+    def new_batch(self, successors: int = 0, later: int = 0) -> kernel.SuccessorBatch:
         """Return an empty batch for `successors` successors (default: `BATCH`), with room for `later` deferred rows."""
         successors = successors or BATCH
         folded = self.rows.folded is not None
         whole = 0 if folded and self.choosing is None else successors
         words = np.zeros(whole * self.packing.words, np.uint64)
-        return kernel.Batch(
+        return kernel.SuccessorBatch(
             words,
             np.zeros(self.rows.kept * successors, np.uint64) if folded else words,
             np.zeros(successors, np.uint64),

@@ -20,16 +20,16 @@ from checker.engines.fast.canonicalise import (
     UNKNOWN,
     WHAT,
     WHOLE,
-    Desk,
     Exchanges,
+    RowScratch,
     enter_all,
     represent_all,
 )
 from checker.engines.fast.columns import Packing, Writes
-from checker.engines.fast.kernel import AT, GATHERED, NODE, UNSORTED, Batch, State
+from checker.engines.fast.kernel import AT, GATHERED, NODE, UNSORTED, State, SuccessorBatch
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.value_templates import holes, taken_apart
-from checker.reduction.items import Items, Member, Place, Roles
+from checker.engines.fast.value_templates import holes, split_value
+from checker.reduction.member_items import Items, Member, Place, Roles
 from checker.reduction.representatives import MOST_ORDERS
 from semantics.state.cells import AGENTS, NAMES
 
@@ -64,7 +64,7 @@ class Exchanging:
         self.entered = 0
         self.keys, self.values = np.zeros(1024, np.uint64), np.zeros(1024, np.int32)
 
-    def represent(self, batch: Batch, state: State) -> bool:
+    def represent(self, batch: SuccessorBatch, state: State) -> bool:
         """Replace successors by representatives; at one still unknown, drop its row's successors and return False."""
         assert self.where is not None
         gathered = int(state[GATHERED])
@@ -132,7 +132,7 @@ class Exchanging:
             for code, entry in known.items():
                 self._show(number, code, entry)
         count = len(self.items.members)
-        self.desk = Desk(
+        self.desk = RowScratch(
             np.zeros(3 * len(active), np.int32),
             np.zeros(len(places), np.int64),
             np.zeros(count, np.uint64),
@@ -264,7 +264,7 @@ class Exchanging:
         if len(place) == 3:
             deep = place[1] + 1
         else:
-            value, families = taken_apart(value, columns.mobile)
+            value, families = split_value(value, columns.mobile)
             deep = sum(1 for _ in holes(value))
         if columns.dig(cell, deep):
             learner.forget_those(learner.writers, cell)

@@ -75,7 +75,7 @@ class Interned(NamedTuple):
     counts: Numbers
 
 
-class Folded(NamedTuple):
+class FoldedTable(NamedTuple):
     """The interned pieces and nodes, and the row that one thread unfolded last, for the compiled loops.
 
     While a successor is built, `below` holds the successor's pieces instead of the row's.
@@ -143,7 +143,7 @@ def put_numbers(numbers: Numbers, begin: int, words: Words, at: int) -> None:
 
 
 @njit(cache=True, inline="always")
-def unfold_piece(f: Folded, piece: int, number: int) -> None:
+def unfold_piece(f: FoldedTable, piece: int, number: int) -> None:
     """Write the words of a piece, unless they are there already."""
     if f.below[piece] != number:
         f.below[piece] = number
@@ -153,7 +153,7 @@ def unfold_piece(f: Folded, piece: int, number: int) -> None:
 
 
 @inner(cache=True)
-def unfold(f: Folded, rows: Words, row: int) -> None:
+def unfold(f: FoldedTable, rows: Words, row: int) -> None:
     """Write the words of a row; the words that it shares with the previous row are there already."""
     for k in range(FOUR):
         number = number_in(rows, PAIR * row, k)
@@ -166,7 +166,7 @@ def unfold(f: Folded, rows: Words, row: int) -> None:
 
 
 @njit(cache=True, inline="always")
-def put_piece(f: Folded, piece: int, number: int, touched: int) -> int:
+def put_piece(f: FoldedTable, piece: int, number: int, touched: int) -> int:
     """Set a piece of the successor; return the set of pieces that it does not share with the row, as bits."""
     if not (touched >> piece) & 1:
         f.before[piece] = f.below[piece]
@@ -175,7 +175,7 @@ def put_piece(f: Folded, piece: int, number: int, touched: int) -> int:
 
 
 @njit(cache=True, inline="always")
-def fold(f: Folded, touched: int, adding: bool, kept: Words, at: int) -> int:
+def fold(f: FoldedTable, touched: int, adding: bool, kept: Words, at: int) -> int:
     """Write the compressed successor and restore the row's pieces; return less than 0 if a piece or node is unknown."""
     least = np.int64(0)
     for k in range(FOUR):
@@ -211,7 +211,7 @@ def step_left_open(kept: Words, at: int) -> int:
 
 
 @inner(cache=True)
-def take(f: Folded, words: Words, begin: int, width: int, adding: bool) -> int:
+def take(f: FoldedTable, words: Words, begin: int, width: int, adding: bool) -> int:
     """Set the pieces of a successor given in plain words; return the pieces that differ from the row's, as bits."""
     touched, wide = np.int64(0), f.pieces.counts[WIDE]
     for first in range(0, width, wide):
@@ -225,7 +225,7 @@ def take(f: Folded, words: Words, begin: int, width: int, adding: bool) -> int:
 
 
 @njit(cache=True, inline="always")
-def seek_piece(f: Folded, piece: int) -> None:
+def seek_piece(f: FoldedTable, piece: int) -> None:
     """Copy the words of a piece of the successor to `sought`."""
     wide = f.pieces.counts[WIDE]
     begin = f.below[piece] * wide
@@ -234,7 +234,7 @@ def seek_piece(f: Folded, piece: int) -> None:
 
 
 @njit(cache=True, inline="always")
-def seek_piece_of_row(f: Folded, piece: int) -> None:
+def seek_piece_of_row(f: FoldedTable, piece: int) -> None:
     """Copy the words of a piece of the unfolded row to `sought`."""
     begin = f.begins[piece]
     for k in range(f.pieces.counts[WIDE]):
@@ -242,7 +242,7 @@ def seek_piece_of_row(f: Folded, piece: int) -> None:
 
 
 @njit(cache=True, inline="always")
-def put_sought(f: Folded, piece: int, touched: int) -> int:
+def put_sought(f: FoldedTable, piece: int, touched: int) -> int:
     """Set a piece of the successor to `sought` unless it is the row's; return the successor's own pieces."""
     differs, begin = False, f.begins[piece]
     for k in range(f.pieces.counts[WIDE]):
@@ -251,7 +251,7 @@ def put_sought(f: Folded, piece: int, touched: int) -> int:
 
 
 @njit(cache=True)
-def fold_rows(f: Folded, words: Words, width: int, kept: Words, begin: int) -> int:
+def fold_rows(f: FoldedTable, words: Words, width: int, kept: Words, begin: int) -> int:
     """Compress rows from number `begin` on; return the first one without room, or the number of rows."""
     count = len(kept) // PAIR
     for k in range(begin, count):
@@ -262,7 +262,7 @@ def fold_rows(f: Folded, words: Words, width: int, kept: Words, begin: int) -> i
 
 
 @njit(cache=True)
-def unfold_rows(f: Folded, kept: Words, width: int, words: Words) -> None:
+def unfold_rows(f: FoldedTable, kept: Words, width: int, words: Words) -> None:
     """Write the words of compressed rows one after another."""
     for k in range(len(kept) // PAIR):
         unfold(f, kept, k)
@@ -271,7 +271,7 @@ def unfold_rows(f: Folded, kept: Words, width: int, words: Words) -> None:
 
 
 @njit(cache=True)
-def begin_with_zeros(f: Folded) -> None:
+def begin_with_zeros(f: FoldedTable) -> None:
     """Let the row unfolded last be all zeros: all its pieces, and all its nodes, have number 0."""
     f.below[:] = intern(f.pieces, f.whole, True)
     put_numbers(f.below, 0, f.sought, 0)
@@ -349,8 +349,8 @@ class Pool:
         self.interned = self.interned._replace(words=self._words.room, index=self._index.room)
 
 
-class Desk(local):
-    """One thread's scratch space for unfolding and compressing rows (see `Folded`); no row is unfolded at first."""
+class FoldingScratch(local):
+    """One thread's scratch space for unfolding and folding rows (see `FoldedTable`); no row is unfolded at first."""
 
     def __init__(self, count: int, width: int) -> None:
         super().__init__()
@@ -385,22 +385,22 @@ class Folding:
         self._piece_of = np.repeat(np.argsort(order), wide)
         self.pieces = Pool(wide, pieces)
         self.nodes = Pool(PAIR, nodes)
-        self._desk = Desk(count, self.pieces.width)
+        self._desk = FoldingScratch(count, self.pieces.width)
         begin_with_zeros(self.folded)
         self.show()
 
     @property
-    def folded(self) -> Folded:
+    def folded(self) -> FoldedTable:
         """The tables and scratch space of the thread that adds. Growing replaces them: don't keep them."""
         return self._at_desk(self.pieces.interned, self.nodes.interned)
 
     @property
-    def shown(self) -> Folded:
+    def shown(self) -> FoldedTable:
         """The tables last published to reading threads. Growing replaces them: don't keep them."""
         return self._at_desk(*self._shown)
 
-    def _at_desk(self, pieces: Interned, nodes: Interned) -> Folded:
-        return Folded(pieces, nodes, int(self._deep), self._piece_of, self._begins, *self._desk.rooms)
+    def _at_desk(self, pieces: Interned, nodes: Interned) -> FoldedTable:
+        return FoldedTable(pieces, nodes, int(self._deep), self._piece_of, self._begins, *self._desk.rooms)
 
     def show(self) -> None:
         """Publish the present pieces and nodes to reading threads."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.columns import Column
-from checker.engines.fast.recording import Ask
+from checker.engines.fast.recording import ColumnQuestion
 
 UNKNOWN = 0
 RECORD = 8
@@ -51,7 +51,7 @@ class Trees:
     root: Growing = field(default_factory=lambda: Growing(np.int32))
     nodes: Growing = field(default_factory=lambda: Growing(np.uint64))
     next: Growing = field(default_factory=lambda: Growing(np.int32))
-    asks: list[Ask] = field(default_factory=list)
+    asks: list[ColumnQuestion] = field(default_factory=list)
     answers: list[dict[Any, int]] = field(default_factory=list)
     waiting: list[dict[Any, list[int]]] = field(default_factory=list)
     answered: list[int] = field(default_factory=list)
@@ -62,7 +62,11 @@ class Trees:
         return self.root.append(UNKNOWN)
 
     def grow(
-        self, tree: int, path: Sequence[tuple[Ask, Any]], leaf: int, columns: Sequence[tuple[Column, int]]
+        self,
+        tree: int,
+        path: Sequence[tuple[ColumnQuestion, Any]],
+        leaf: int,
+        columns: Sequence[tuple[Column, int]],
     ) -> None:
         """Add a path to a leaf to a tree; `columns` are those of its questions, with their numbers.
 
@@ -106,7 +110,7 @@ class Trees:
         """Return a node's reference for a code of its column; `UNKNOWN` for None."""
         return UNKNOWN if code is None else self._follow_code(node, code)
 
-    def _new_node(self, ask: Ask, column: int) -> int:
+    def _new_node(self, ask: ColumnQuestion, column: int) -> int:
         self.asks.append(ask)
         self.answers.append({})
         self.waiting.append({})

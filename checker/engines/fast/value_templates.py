@@ -20,7 +20,7 @@ from semantics.state.signature import Name
 
 
 @dataclass(frozen=True, slots=True)
-class Hole:
+class ObservationHole:
     """The position of an observation in a skeleton.
 
     Attributes:
@@ -54,22 +54,22 @@ def agents_of(setting: Setting, first: Row) -> frozenset[Name]:
     return frozenset((*(cell[-1] for cell, _ in first.items() if cell[0] == "host"), *spawned))
 
 
-def taken_apart(value: Any, mobile: frozenset[Name]) -> tuple[Any, tuple[Family, ...]]:
+def split_value(value: Any, mobile: frozenset[Name]) -> tuple[Any, tuple[Family, ...]]:
     """Return the skeleton of a value, and the facts by name for each of its holes."""
     families: list[Family] = []
 
-    def dig(seen: Observation) -> Hole:
+    def dig(seen: Observation) -> ObservationHole:
         families.append(seen.family)
         told = ((name, seen.fact(name)) for name in sorted(set(seen.family) - mobile))
         still = tuple((name, fact) for name, fact in told if fact != NOTHING_SEEN)
-        return Hole(len(families) - 1, still, seen.swept)
+        return ObservationHole(len(families) - 1, still, seen.swept)
 
     return _mapped(_mapped(value, frozenset, settled), Observation, dig), tuple(families)
 
 
-def put_together(skeleton: Any, family_at: Callable[[Hole], Family]) -> Any:
+def join_value(skeleton: Any, family_at: Callable[[ObservationHole], Family]) -> Any:
     """Return the value of a skeleton, with the facts that `family_at` gives for each hole."""
-    return _mapped(skeleton, Hole, lambda hole: Observation(family_at(hole), hole.swept))
+    return _mapped(skeleton, ObservationHole, lambda hole: Observation(family_at(hole), hole.swept))
 
 
 def settled(value: Any) -> Any:
@@ -77,10 +77,10 @@ def settled(value: Any) -> Any:
     return _mapped(value, Observation, lambda seen: Observation(dict(seen.facts), seen.swept), sets=True)
 
 
-def holes(skeleton: Any) -> Iterator[Hole]:
+def holes(skeleton: Any) -> Iterator[ObservationHole]:
     """Yield the holes of a skeleton, in the order of their numbers."""
     match skeleton:
-        case Hole():
+        case ObservationHole():
             yield skeleton
         case tuple():
             for part in skeleton:

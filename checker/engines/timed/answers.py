@@ -7,18 +7,18 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Final, NamedTuple, Protocol
 
-from checker.engines.timed.first_runs import Run
+from checker.engines.timed.first_runs import TimedRun
 from checker.properties.inspections import InTime
 from semantics.environment import Says
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.signature import Name
 from semantics.successors import Expansion
-from semantics.timing.clocks import Situation
+from semantics.timing.clocks import TimedView
 
 
 @dataclass(frozen=True, slots=True)
-class Wait:
+class WaitAnswer:
     """The wait for a proposition.
 
     Attributes:
@@ -28,12 +28,12 @@ class Wait:
     """
 
     most: float
-    late: Run | None = None
+    late: TimedRun | None = None
     ever: bool = False
 
 
 @dataclass(frozen=True, slots=True)
-class Moments:
+class FirstMoments:
     """The moments at which a proposition is first true.
 
     Attributes:
@@ -42,7 +42,7 @@ class Moments:
         may_wait: Whether it may never become true.
     """
 
-    first: Run | None
+    first: TimedRun | None
     latest: float
     may_wait: bool
 
@@ -54,7 +54,7 @@ class TakenStep(NamedTuple):
     step: int
 
 
-class Span(NamedTuple):
+class DateSpan(NamedTuple):
     """The earliest and the latest date of an event, in ticks from the start.
 
     The earliest is infinite if the event never happens, the latest if nothing bounds it.
@@ -64,11 +64,11 @@ class Span(NamedTuple):
     latest: float
 
 
-NO_SPAN: Final = Span(math.inf, -math.inf)
+NO_SPAN: Final = DateSpan(math.inf, -math.inf)
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class TimelockRun:
     """A run to a timelock: no time can pass after it.
 
     Attributes:
@@ -76,7 +76,7 @@ class Stop:
         steps: The number of steps before the repetition.
     """
 
-    run: Run
+    run: TimedRun
     steps: int
 
 
@@ -96,7 +96,7 @@ class Times(Protocol):
         """The size of the searched state space, in words."""
 
     @property
-    def situations(self) -> Sequence[Situation]:
+    def situations(self) -> Sequence[TimedView]:
         """The timed situation of each configuration, in the order of the exploration."""
 
     def taken(self, place: int) -> set[int]:
@@ -111,22 +111,22 @@ class Times(Protocol):
     def unsayable(self, place: int) -> set[int]:
         """Return the clauses whose message has expired at some time in a configuration."""
 
-    def run_before(self, place: int, by: Transition | None) -> Run:
+    def run_before(self, place: int, by: Transition | None) -> TimedRun:
         """Return the first run to a configuration, then through a transition if that is ever taken there."""
 
-    def transitions(self, run: Run) -> tuple[Transition, ...]:
+    def transitions(self, run: TimedRun) -> tuple[Transition, ...]:
         """Return the transitions of a run."""
 
-    def within(self, asked: Proposition | None, awaited: Proposition, most: int) -> Wait:
+    def within(self, asked: Proposition | None, awaited: Proposition, most: int) -> WaitAnswer:
         """Return the longest wait for a proposition from the start, or from wherever another one is true."""
 
-    def moments(self, formula: Proposition) -> Moments:
+    def moments(self, formula: Proposition) -> FirstMoments:
         """Return the earliest and latest moments at which a proposition becomes true."""
 
     def where(self, formula: Proposition) -> Sequence[bool]:
         """Return for each configuration whether a proposition is true there."""
 
-    def way_to(self, run: Run, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
+    def way_to(self, run: TimedRun, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
         """Return the shortest in-turn steps from the end of a run to a configuration, empty if none lead there."""
 
     def unbounded(self) -> Set[str]:
@@ -135,13 +135,13 @@ class Times(Protocol):
     def longest_flights(self) -> Mapping[Name, int]:
         """Return the longest flight of each agent in ticks, where it is bounded."""
 
-    def spans(self, steps: Sequence[Set[TakenStep]]) -> list[Span]:
+    def spans(self, steps: Sequence[Set[TakenStep]]) -> list[DateSpan]:
         """Return for each set of steps the span of dates at which one of them is taken."""
 
-    def exhausted(self) -> tuple[dict[str, Run], int]:
+    def exhausted(self) -> tuple[dict[str, TimedRun], int]:
         """Return the first run that exhausts each vehicle, and the number of configurations with an exhausted one."""
 
-    def stop(self) -> Stop | None:
+    def stop(self) -> TimelockRun | None:
         """Return the first run to a timelock, None if there is none."""
 
 
@@ -164,7 +164,7 @@ def shown_to(inspection: object) -> InTime:
     return shown
 
 
-def _taken(situation: Situation, steps: set[int]) -> Expansion:
+def _taken(situation: TimedView, steps: set[int]) -> Expansion:
     taken = {situation.steps[at].transition for at in steps}
     expansion = situation.expansion
     by_agents = tuple(each for each in expansion.by_agents if each in taken)

@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from functools import cached_property
 from itertools import combinations
 
-from checker.engines.timed.answers import NO_SPAN, Moments, Span, Stop, TakenStep, Wait
+from checker.engines.timed.answers import NO_SPAN, DateSpan, FirstMoments, TakenStep, TimelockRun, WaitAnswer
 from checker.engines.timed.digital_graph import Timeline
-from checker.engines.timed.first_runs import DELAY, Run, dated, first_run
+from checker.engines.timed.first_runs import DELAY, TimedRun, dated, first_run
 from checker.properties.critical_path import way_to
 from checker.properties.longest_paths import first_ticks, last_ticks, longest, stopped
 from semantics.properties.propositions import Proposition, holds
@@ -19,7 +19,7 @@ from semantics.state.configuration import Configuration, Transition
 from semantics.state.requests import FLY
 from semantics.state.signature import Name
 from semantics.timing.actor_clocks import Sort
-from semantics.timing.clocks import Situation, TimedStep
+from semantics.timing.clocks import TimedStep, TimedView
 
 Awaiting = tuple[int, float | None]
 """A state, and the ticks since something is awaited; None if nothing is."""
@@ -28,7 +28,7 @@ IN_TIME = -math.inf
 """The elapsed time of a wait that certainly ends in time: its actual length is irrelevant."""
 
 
-class Ticks:
+class DigitalAnswers:
     """Answers from a timeline."""
 
     def __init__(self, timeline: Timeline) -> None:
@@ -42,7 +42,7 @@ class Ticks:
         return f"{len(self.timeline.states):,} timed configurations"
 
     @cached_property
-    def situations(self) -> tuple[Situation, ...]:
+    def situations(self) -> tuple[TimedView, ...]:
         """The timed situation of each configuration."""
         return tuple(self.timeline.situations[number] for number in self.timeline.order)
 
@@ -75,7 +75,7 @@ class Ticks:
 
     # --- runs
 
-    def run_before(self, place: int, by: Transition | None) -> Run:
+    def run_before(self, place: int, by: Transition | None) -> TimedRun:
         """Return the first run to a configuration, then through a transition if that is ever taken there."""
         number, situation = self.timeline.order[place], self.situations[place]
         steps = {at for at in self.taken(place) if situation.steps[at].transition == by}
@@ -88,7 +88,7 @@ class Ticks:
         run = self._first(is_there)
         return run.then(min(steps)) if steps else run
 
-    def transitions(self, run: Run) -> tuple[Transition, ...]:
+    def transitions(self, run: TimedRun) -> tuple[Transition, ...]:
         """Return the transitions of a run."""
         number, found = 0, list[Transition]()
         for at in run.steps:
@@ -96,7 +96,7 @@ class Ticks:
             number = self.timeline.passages[number, at][0]
         return tuple(found)
 
-    def _first(self, is_end: object) -> Run:
+    def _first(self, is_end: object) -> TimedRun:
         run = first_run(0, self.edges.__getitem__, is_end)  # type: ignore[arg-type]
         assert run is not None
         return run
@@ -105,7 +105,7 @@ class Ticks:
         """Return for each configuration whether a proposition is true there."""
         return [holds(formula, each.c) for each in self.situations]
 
-    def way_to(self, run: Run, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
+    def way_to(self, run: TimedRun, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
         """Return the shortest in-turn steps from the end of a run to a configuration, empty if none lead there."""
         timeline, reached = self.timeline, set(self.timeline.order)
 
@@ -139,7 +139,7 @@ class Ticks:
         true = dict(zip(self.timeline.order, self.where(formula), strict=True))
         return [true[number] for number, _ in self.timeline.states]
 
-    def within(self, asked: Proposition | None, awaited: Proposition, most: int) -> Wait:
+    def within(self, asked: Proposition | None, awaited: Proposition, most: int) -> WaitAnswer:
         """Return the longest wait for a proposition from the start, or from wherever another one is true."""
         inside = [not true for true in self.true_in(awaited)]
         begins = [state == 0 for state in range(len(inside))] if asked is None else self.true_in(asked)
@@ -147,7 +147,7 @@ class Ticks:
         starts = [state for state, begin in enumerate(begins) if begin and inside[state]]
         longest_stay = max((stays[state] for state in starts), default=0)
         if longest_stay <= most:
-            return Wait(longest_stay)
+            return WaitAnswer(longest_stay)
 
         def waiting(state: int, before: float | None) -> Awaiting:
             if not inside[state]:
@@ -163,19 +163,19 @@ class Ticks:
                 yield step, waiting(target, passed)
 
         run = first_run(waiting(0, None), follow, lambda node: node[1] == most + 1)
-        return Wait(longest_stay, run, math.isinf(longest_stay))
+        return WaitAnswer(longest_stay, run, math.isinf(longest_stay))
 
-    def moments(self, formula: Proposition) -> Moments:
+    def moments(self, formula: Proposition) -> FirstMoments:
         """Return the earliest and latest moments at which a proposition becomes true."""
         true = self.true_in(formula)
         if true[0]:
-            return Moments(Run(), 0, may_wait=False)
+            return FirstMoments(TimedRun(), 0, may_wait=False)
         inside = [not each for each in true]
         waits = longest(self.edges, inside, lambda _: True)[0]
         latest = longest(self.edges, inside, lambda state: any(true[to] for _, to in self.edges[state]))[0]
-        return Moments(self._earliest(true), latest, math.isinf(waits))
+        return FirstMoments(self._earliest(true), latest, math.isinf(waits))
 
-    def _earliest(self, true: Sequence[bool]) -> Run | None:
+    def _earliest(self, true: Sequence[bool]) -> TimedRun | None:
         """Return the first of the earliest runs to a state of the given set, None if it is unreachable."""
         left = self._left(true)
         if 0 not in left:
@@ -207,7 +207,7 @@ class Ticks:
                 (waiting.append if takes else waiting.appendleft)((ticks + takes, source))
         return left
 
-    def spans(self, steps: Sequence[Set[TakenStep]]) -> list[Span]:
+    def spans(self, steps: Sequence[Set[TakenStep]]) -> list[DateSpan]:
         """Return for each set of steps the span of dates at which one of them is taken."""
         sets: dict[tuple[int, int], list[int]] = {}
         for number, several in enumerate(steps):
@@ -218,12 +218,12 @@ class Ticks:
         for (at, _), edges, (first, last) in zip(self.timeline.states, self.edges, ticks, strict=True):
             for number in (number for step, _ in edges for number in sets.get((at, step), ())):
                 known = found[number]
-                found[number] = Span(min(known.earliest, first), max(known.latest, last))
+                found[number] = DateSpan(min(known.earliest, first), max(known.latest, last))
         return found
 
     # --- endurance and timelocks
 
-    def exhausted(self) -> tuple[dict[str, Run], int]:
+    def exhausted(self) -> tuple[dict[str, TimedRun], int]:
         """Return the first run that exhausts each vehicle, and the number of configurations with an exhausted one."""
         states: dict[str, set[int]] = {}
         for state, (number, ages) in enumerate(self.timeline.states):
@@ -232,7 +232,7 @@ class Ticks:
         runs = {vehicle: self._first(ends.__contains__) for vehicle, ends in states.items()}
         return runs, len({self.timeline.configuration(each) for ends in states.values() for each in ends})
 
-    def stop(self) -> Stop | None:
+    def stop(self) -> TimelockRun | None:
         """Return the first run to a timelock, None if there is none."""
         stops = stopped(self.edges, [not edges for edges in self.edges])
         run = first_run(0, self.edges.__getitem__, stops.__getitem__)
@@ -245,10 +245,10 @@ class Ticks:
             seen[state] = len(run.steps)
             step, state = self.edges[state][0]
             run = run.then(step)
-        return Stop(run, seen[state])
+        return TimelockRun(run, seen[state])
 
 
-def control_pairs(situation: Situation) -> Iterable[tuple[list[TimedStep], list[TimedStep]]]:
+def control_pairs(situation: TimedView) -> Iterable[tuple[list[TimedStep], list[TimedStep]]]:
     """Return the pairs of pending controls, each as the steps that serve it."""
     controls: dict[object, list[TimedStep]] = {}
     for step in situation.steps:

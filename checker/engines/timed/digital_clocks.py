@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from checker.engines.contract import Exploration, Inspect, Options, Progress
 from checker.engines.reference import crowded
 from checker.engines.timed.answers import shown_in_time, shown_to
-from checker.engines.timed.digital_answers import Ticks
+from checker.engines.timed.digital_answers import DigitalAnswers
 from checker.engines.timed.digital_graph import Timeline
 from checker.engines.timed.first_runs import DELAY, layers
 from checker.limits import Stop, is_full
@@ -71,7 +71,7 @@ def _progress(timeline: Timeline, count: int, seconds: float) -> Progress:
     return Progress(states, sum(map(len, timeline.edges)), 0, waiting, count / max(seconds, 1e-9))
 
 
-def _summarise(timeline: Timeline, found: Exploration) -> Ticks:
+def _summarise(timeline: Timeline, found: Exploration) -> DigitalAnswers:
     """Record the configurations in the order of discovery, and each taken transition once."""
     places, origins = {timeline.configuration(0): 0}, [0]
     for depth, layer in enumerate(layers(0, timeline.edges.__getitem__)):
@@ -100,4 +100,4 @@ def _summarise(timeline: Timeline, found: Exploration) -> Ticks:
     found.rules = Counter(
         timeline.situations[number].steps[step].transition.label.rule for number, step in taken
     )
-    return Ticks(timeline)
+    return DigitalAnswers(timeline)

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections import deque
 
-from checker.engines.timed.first_runs import DELAY, Edge
+from checker.engines.timed.first_runs import DELAY, RunEdge
 from semantics.state.configuration import Configuration
-from semantics.timing.actor_clocks import Clock, Sort
-from semantics.timing.clocks import Passage, Situation, TimedStep
+from semantics.timing.actor_clocks import ActorClock, Sort
+from semantics.timing.clocks import ClockUpdate, TimedStep, TimedView
 
-Edges = tuple[Edge, ...]
+Edges = tuple[RunEdge, ...]
 
 
 class Timeline:
@@ -29,9 +29,9 @@ class Timeline:
     def __init__(self, initial: Configuration) -> None:
         self.initial = initial
         self.numbers: dict[Configuration, int] = {}
-        self.situations: list[Situation] = []
-        self.passages: dict[tuple[int, int], tuple[int, Passage]] = {}
-        self.constants: dict[Clock, int] = {}
+        self.situations: list[TimedView] = []
+        self.passages: dict[tuple[int, int], tuple[int, ClockUpdate]] = {}
+        self.constants: dict[ActorClock, int] = {}
         self.caps: list[tuple[int, ...]] = []
         self.order: list[int] = []
         self.taken: set[tuple[int, int]] = set()
@@ -53,7 +53,7 @@ class Timeline:
         number = self.numbers.get(c)
         if number is None:
             number = self.numbers[c] = len(self.situations)
-            situation = Situation(c)
+            situation = TimedView(c)
             self.situations.append(situation)
             for clock, constant in zip(situation.clocks, situation.constants, strict=True):
                 before = self.constants.get(clock)
@@ -62,7 +62,7 @@ class Timeline:
             self.caps.append(self._caps(situation))
         return number
 
-    def _caps(self, situation: Situation) -> tuple[int, ...]:
+    def _caps(self, situation: TimedView) -> tuple[int, ...]:
         return tuple(0 if each.sort is Sort.WINDOW else self.constants[each] for each in situation.clocks)
 
     def reach(self, number: int, ages: tuple[int, ...]) -> int:
@@ -80,21 +80,21 @@ class Timeline:
         """Follow every enabled step of a state, and a tick if the deadlines allow it."""
         number, ages = self.states[index]
         situation = self.situations[number]
-        found: list[Edge] = []
+        found: list[RunEdge] = []
         for at, step in enumerate(situation.steps):
             if step.in_turn and step.is_due(ages):
                 target, passage = self.passage(number, at, step)
-                found += (Edge(at, self.reach(target, each)) for each in passage.ages(ages))
+                found += (RunEdge(at, self.reach(target, each)) for each in passage.ages(ages))
         if situation.slack(ages) != 0:
-            found.append(Edge(DELAY, self.reach(number, older(ages, self.caps[number]))))
+            found.append(RunEdge(DELAY, self.reach(number, older(ages, self.caps[number]))))
         self.edges[index] = tuple(found)
 
-    def passage(self, number: int, at: int, step: TimedStep) -> tuple[int, Passage]:
+    def passage(self, number: int, at: int, step: TimedStep) -> tuple[int, ClockUpdate]:
         """Return the target of a step, and its effect on the clocks."""
         known = self.passages.get((number, at))
         if known is None:
             target = self.number(step.transition.target)
-            known = target, Passage(self.situations[number], step, self.situations[target])
+            known = target, ClockUpdate(self.situations[number], step, self.situations[target])
             self.passages[number, at] = known
         return known
 

@@ -16,7 +16,7 @@ DELAY = -1
 """The step number of a delay: one tick passes."""
 
 
-class Edge(NamedTuple):
+class RunEdge(NamedTuple):
     """An edge between two states: the number of a step in its configuration, or `DELAY`."""
 
     step: int
@@ -24,7 +24,7 @@ class Edge(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class TimedRun:
     """A run.
 
     Attributes:
@@ -37,7 +37,7 @@ class Run:
     dates: tuple[int, ...] = ()
     end: int = 0
 
-    def then(self, step: int) -> Run:
+    def then(self, step: int) -> TimedRun:
         """Return the run with one more step at its end."""
         return replace(self, steps=(*self.steps, step), dates=(*self.dates, self.end))
 
@@ -47,12 +47,12 @@ Follow = Callable[[Node], Iterable[tuple[int, Node]]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Group(Generic[Node]):
+class StateGroup(Generic[Node]):
     """The states that a sequence of steps reaches first, at any dates."""
 
     states: tuple[Node, ...]
     step: int = DELAY
-    before: Group[Node] | None = None
+    before: StateGroup[Node] | None = None
 
     @property
     def steps(self) -> tuple[int, ...]:
@@ -64,12 +64,12 @@ class Group(Generic[Node]):
         return tuple(reversed(found))
 
 
-def groups(start: Node, follow: Follow[Node]) -> Iterator[Group[Node]]:
+def groups(start: Node, follow: Follow[Node]) -> Iterator[StateGroup[Node]]:
     """Yield the states in groups, one for each first sequence of steps: the shortest first, then by step numbers."""
     met = {start}
-    layer = [Group(tuple(_waiting([start], follow, met)))]
+    layer = [StateGroup(tuple(_waiting([start], follow, met)))]
     while layer:
-        following: list[Group[Node]] = []
+        following: list[StateGroup[Node]] = []
         for group in layer:
             look()
             yield group
@@ -81,7 +81,7 @@ def groups(start: Node, follow: Follow[Node]) -> Iterator[Group[Node]]:
                 fresh = [each for each in dict.fromkeys(targets) if each not in met]
                 met.update(fresh)
                 if fresh:
-                    following.append(Group(tuple(_waiting(fresh, follow, met)), step, group))
+                    following.append(StateGroup(tuple(_waiting(fresh, follow, met)), step, group))
         layer = following
 
 
@@ -107,7 +107,7 @@ def _waiting(states: list[Node], follow: Follow[Node], met: set[Node]) -> list[N
     return states
 
 
-def first_run(start: Node, follow: Follow[Node], is_end: Callable[[Node], bool]) -> Run | None:
+def first_run(start: Node, follow: Follow[Node], is_end: Callable[[Node], bool]) -> TimedRun | None:
     """Return the first run from a state to an end, None if there is none."""
     for group in groups(start, follow):
         if any(map(is_end, group.states)):
@@ -118,7 +118,7 @@ def first_run(start: Node, follow: Follow[Node], is_end: Callable[[Node], bool])
 
 def dated(
     start: Node, follow: Follow[Node], steps: tuple[int, ...], is_end: Callable[[Node], bool]
-) -> tuple[Run, tuple[Node, ...]]:
+) -> tuple[TimedRun, tuple[Node, ...]]:
     """Return a sequence of steps with its earliest dates to an end, and the ends it reaches on them."""
     leading = _leading(start, follow, steps, is_end)
     now, dates, states = 0, list[int](), [start]
@@ -144,7 +144,7 @@ def dated(
             now += 1
         states = list(ends)
         dates += [] if step is None else [now]
-    return Run(steps, tuple(dates), now), tuple(states)
+    return TimedRun(steps, tuple(dates), now), tuple(states)
 
 
 def _leading(

@@ -10,11 +10,16 @@ from typing import TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.inspecting import truths
-from checker.engines.timed.answers import Moments, Span, Stop, TakenStep, Wait
+from checker.engines.fast.row_inspection import truths
+from checker.engines.timed.answers import DateSpan, FirstMoments, TakenStep, TimelockRun, WaitAnswer
 from checker.engines.timed.digital_answers import control_pairs
-from checker.engines.timed.first_runs import Run
-from checker.engines.zones.automaton import (
+from checker.engines.timed.first_runs import TimedRun
+from checker.engines.zones.difference_bounds import MOST, NONE
+from checker.engines.zones.earliest_dates import Dates, Zone, tested, whole
+from checker.engines.zones.first_run import run_of
+from checker.engines.zones.observers import Meter, Observer, ObserverClock, Rule
+from checker.engines.zones.questions import NO_TURN, first_turn, is_aloft, longest_flight, unbounded
+from checker.engines.zones.timed_automaton import (
     EDGE,
     EDGES,
     EDGES_END,
@@ -25,14 +30,9 @@ from checker.engines.zones.automaton import (
     STEP,
     Constraint,
 )
-from checker.engines.zones.bounds import MOST, NONE
-from checker.engines.zones.dates import Dates, Zone, tested, whole
-from checker.engines.zones.first_run import run_of
-from checker.engines.zones.observers import Meter, Observer, Rule, Watch
-from checker.engines.zones.questions import NO_TURN, first_turn, is_aloft, longest_flight, unbounded
-from checker.engines.zones.search import Search
 from checker.engines.zones.timed_automaton_of import Network
 from checker.engines.zones.timed_survey import TimedSurvey
+from checker.engines.zones.zone_search import Search
 from checker.limits import look
 from checker.properties.critical_path import way_to
 from checker.properties.inspections import InTime
@@ -41,8 +41,8 @@ from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name
-from semantics.timing.actor_clocks import Clock, Sort, Test
-from semantics.timing.clocks import Situation, TimedStep
+from semantics.timing.actor_clocks import ActorClock, Sort, Test
+from semantics.timing.clocks import TimedStep, TimedView
 from semantics.timing.timing import Sayable
 
 Made = TypeVar("Made")
@@ -91,7 +91,7 @@ class ZoneTimes:
         return f"{self.search.count:,} zones"
 
     @property
-    def situations(self) -> Sequence[Situation]:
+    def situations(self) -> Sequence[TimedView]:
         """The timed situation of each configuration."""
         return OfRows(self.network.situation, self.order)
 
@@ -114,7 +114,7 @@ class ZoneTimes:
         found: NDArray[np.int64] = self.search.ranks.room[rows].astype(np.int64)
         return found
 
-    def latest(self, zones: NDArray[np.int64], clock: Clock) -> NDArray[np.int32]:
+    def latest(self, zones: NDArray[np.int64], clock: ActorClock) -> NDArray[np.int32]:
         """Return the greatest value of a clock in some zones; `NONE` where it doesn't run."""
         indices = self.network.indices(clock)[self._locations[zones]]
         sizes = self.network.automaton.locations.used[SIZE::LOCATION][self._locations[zones]]
@@ -251,7 +251,7 @@ class ZoneTimes:
             return [(frozenset(), every)]
         latest = np.zeros(len(self.order), np.int64)
         zones = np.arange(len(self.places))
-        np.maximum.at(latest, self.places, self.latest(zones, Clock(Sort.MISSION)))
+        np.maximum.at(latest, self.places, self.latest(zones, ActorClock(Sort.MISSION)))
         late = np.stack([latest > until for until in ends.values()])
         kinds, which = np.unique(late, axis=1, return_inverse=True)
         return [
@@ -264,7 +264,7 @@ class ZoneTimes:
 
     # --- runs
 
-    def way_to(self, run: Run, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
+    def way_to(self, run: TimedRun, is_end: Callable[[Configuration], bool]) -> tuple[Transition, ...]:
         """Return the shortest in-turn steps from the end of a run to a configuration, empty if none lead there."""
 
         def follow(row: int) -> Iterator[tuple[tuple[int, int], int]]:
@@ -281,15 +281,15 @@ class ZoneTimes:
         edges = (e for location in self.network.locations(row) for e in self.network.automaton.out(location))
         return {each.step: int(rows[each.target]) for each in sorted(edges, key=lambda each: each.step)}
 
-    def transitions(self, run: Run) -> tuple[Transition, ...]:
+    def transitions(self, run: TimedRun) -> tuple[Transition, ...]:
         """Return the transitions of a run."""
         situation, found = self.network.situation(0), list[Transition]()
         for at in run.steps:
             found.append(situation.steps[at].transition)
-            situation = Situation(found[-1].target)
+            situation = TimedView(found[-1].target)
         return tuple(found)
 
-    def run_before(self, place: int, by: Transition | None) -> Run:
+    def run_before(self, place: int, by: Transition | None) -> TimedRun:
         """Return the first run to a configuration, then through a transition if that is ever taken there."""
         situation = self.situations[place]
         steps = {
@@ -325,52 +325,52 @@ class ZoneTimes:
         inside = [not true for true in self.true_in(awaited)]
         begins = None if asked is None else self.true_in(asked)
 
-        def rule(before: Watch, location: int) -> Watch | None:
+        def rule(before: ObserverClock, location: int) -> ObserverClock | None:
             if not inside[location]:
-                return Watch.OFF if begins is not None or location == self.network.first else None
-            if before is Watch.ON:
-                return Watch.ON
+                return ObserverClock.OFF if begins is not None or location == self.network.first else None
+            if before is ObserverClock.ON:
+                return ObserverClock.ON
             starts = location == self.network.first if begins is None else begins[location]
-            return Watch.START if starts else Watch.OFF
+            return ObserverClock.START if starts else ObserverClock.OFF
 
         return rule
 
-    def within(self, asked: Proposition | None, awaited: Proposition, most: int) -> Wait:
+    def within(self, asked: Proposition | None, awaited: Proposition, most: int) -> WaitAnswer:
         """Return the longest wait for a proposition from the start, or from wherever another one is true."""
         rule = self.waiting(asked, awaited)
-        if asked is None and rule(Watch.OFF, self.network.first) is Watch.OFF:
-            return Wait(0)
-        meter = Meter(most + 1, goal=(Watch.ON, most + 1))
+        if asked is None and rule(ObserverClock.OFF, self.network.first) is ObserverClock.OFF:
+            return WaitAnswer(0)
+        meter = Meter(most + 1, goal=(ObserverClock.ON, most + 1))
         observer, search = self.explored(Observer(self.network, rule, meter))
         if search.found < 0:
-            return Wait(int(_shown(observer, search, Watch.ON)[1].max(initial=0)))
+            return WaitAnswer(int(_shown(observer, search, ObserverClock.ON)[1].max(initial=0)))
         run = self._measured(search).run()
-        longest = self._longest(rule, Watch.ON, most)
-        return Wait(longest, run, math.isinf(longest))
+        longest = self._longest(rule, ObserverClock.ON, most)
+        return WaitAnswer(longest, run, math.isinf(longest))
 
-    def moments(self, formula: Proposition) -> Moments:
+    def moments(self, formula: Proposition) -> FirstMoments:
         """Return the earliest and latest moments at which a proposition becomes true."""
         true = self.true_in(formula)
         if true[self.network.first]:
-            return Moments(Run(), 0, may_wait=False)
+            return FirstMoments(TimedRun(), 0, may_wait=False)
 
-        def rule(before: Watch, location: int) -> Watch:
+        def rule(before: ObserverClock, location: int) -> ObserverClock:
             if true[location]:
-                return Watch.END
-            return Watch.ON if before is Watch.ON else Watch.START
+                return ObserverClock.END
+            return ObserverClock.ON if before is ObserverClock.ON else ObserverClock.START
 
         first = self._first(rule)
-        latest = NEVER if first is None else self._longest(rule, Watch.END)
-        return Moments(first, latest, math.isinf(self._longest(rule, Watch.ON)))
+        latest = NEVER if first is None else self._longest(rule, ObserverClock.END)
+        return FirstMoments(first, latest, math.isinf(self._longest(rule, ObserverClock.ON)))
 
-    def _first(self, rule: Rule) -> Run | None:
+    def _first(self, rule: Rule) -> TimedRun | None:
         """Return the first of the earliest runs to an end of the observer."""
         observer, search = self.explored(Observer(self.network, rule, Meter(upper=MOST)))
-        ends, _ = _shown(observer, search, Watch.END)
+        ends, _ = _shown(observer, search, ObserverClock.END)
         if not len(ends):
             return None
         earliest = int(ends.min())
-        meter = Meter(upper=earliest, most=earliest, goal=(Watch.END, 0))
+        meter = Meter(upper=earliest, most=earliest, goal=(ObserverClock.END, 0))
         _, search = self.explored(Observer(self.network, rule, meter))
         return self._measured(search).run()
 
@@ -392,7 +392,7 @@ class ZoneTimes:
 
         return run_of(search, goal, search.found)
 
-    def _longest(self, rule: Rule, where: Watch, least: int = 0) -> float:
+    def _longest(self, rule: Rule, where: ObserverClock, least: int = 0) -> float:
         """Return the greatest value of the observer's clock in one of its states.
 
         The clock is counted up to a constant, which grows until the value is certain. It is infinite if some run to
@@ -423,7 +423,7 @@ class ZoneTimes:
             clock = observer.clock(place)
             if not clock or ages[clock - 1] == 0:
                 seen.clear()
-            if not clock or watch is Watch.END:
+            if not clock or watch is ObserverClock.END:
                 continue
             measured = ages[: clock - 1]
             capped = self.network.capped(location, measured)
@@ -440,7 +440,7 @@ class ZoneTimes:
 
     # --- dates of steps
 
-    def spans(self, steps: Sequence[Set[TakenStep]]) -> list[Span]:
+    def spans(self, steps: Sequence[Set[TakenStep]]) -> list[DateSpan]:
         """Return for each set of steps the span of dates at which one of them is taken."""
         from checker.engines.zones.spans import Spans  # noqa: PLC0415 - few ask for them
 
@@ -448,11 +448,11 @@ class ZoneTimes:
 
     # --- endurance and timelocks
 
-    def exhausted(self) -> tuple[dict[str, Run], int]:
+    def exhausted(self) -> tuple[dict[str, TimedRun], int]:
         """Return the first run that exhausts each vehicle, and the number of configurations with an exhausted one."""
         zones, first, where = np.arange(len(self.places)), dict[Name, int](), np.zeros(0, np.int64)
         for vehicle, endurance in self.network.timing.endurances:
-            late = self.latest(zones, Clock(Sort.ALOFT, vehicle)) > endurance.lasts
+            late = self.latest(zones, ActorClock(Sort.ALOFT, vehicle)) > endurance.lasts
             showing = zones[self._aloft[vehicle][self.places] & late]
             if len(showing):
                 first[vehicle] = int(showing[0])
@@ -471,12 +471,14 @@ class ZoneTimes:
         """Return the clock constraint in a location for each vehicle that has exceeded its endurance."""
         place = int(self.search.ranks.room[self.network.place(location).number])
         return {
-            vehicle: Constraint(self.network.index(location, Clock(Sort.ALOFT, vehicle)), endurance.lasts + 1)
+            vehicle: Constraint(
+                self.network.index(location, ActorClock(Sort.ALOFT, vehicle)), endurance.lasts + 1
+            )
             for vehicle, endurance in self.network.timing.endurances
             if place >= 0 and self._aloft[vehicle][place]
         }
 
-    def _exhausting(self, vehicle: Name, zone: int) -> Run:
+    def _exhausting(self, vehicle: Name, zone: int) -> TimedRun:
         def goal(location: int) -> list[Zone]:
             size = len(self.network.automaton.location(location).clocks)
             tests = [test for name, test in self.exhaustion(location).items() if name == vehicle]
@@ -485,7 +487,7 @@ class ZoneTimes:
 
         return run_of(self.search, goal, self.search.depth(zone), self.reached.tolist()).run()
 
-    def stop(self) -> Stop | None:
+    def stop(self) -> TimelockRun | None:
         """Return the first run to a timelock, None if there is none."""
         from checker.engines.zones.timelock import first_stop  # noqa: PLC0415 - few missions go round in no time
 
@@ -493,7 +495,7 @@ class ZoneTimes:
 
 
 def _shown(
-    observer: Observer, search: Search, where: Watch
+    observer: Observer, search: Search, where: ObserverClock
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the least and the greatest value of the observer's clock, the last, in the zones of one of its states."""
     places = search.places.room[: search.count]

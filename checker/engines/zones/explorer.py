@@ -11,10 +11,10 @@ import numpy as np
 from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError
 from checker.engines.fast.compiling import compilation_uncounted
 from checker.engines.timed.zone_answers import OfRows, ZoneTimes
-from checker.engines.zones.automaton import TooLargeError
-from checker.engines.zones.inspecting import inspect_zones
-from checker.engines.zones.search import CHUNK, Search
+from checker.engines.zones.timed_automaton import ConstantTooLargeError
 from checker.engines.zones.timed_automaton_of import Network
+from checker.engines.zones.zone_inspection import inspect_zones
+from checker.engines.zones.zone_search import CHUNK, Search
 from checker.limits import Bound, BoundMet, Limits, Stop, bounded, is_full
 from semantics.state.configuration import Configuration
 
@@ -48,7 +48,7 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
                 _visit_all(network, search, found, counted, started)
     except BoundMet as met:  # within the learning of rules
         found.bounds.append(met.bound)
-    except TooLargeError as error:
+    except ConstantTooLargeError as error:
         raise TickError(str(error)) from error
     times = ZoneTimes(network, search)
     if network.crowded(times.reached):

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from checker.engines.zones.bounds import close
-from checker.engines.zones.dates import Dates, Moment, Zone
-from checker.engines.zones.search import Route, Search
+from checker.engines.zones.difference_bounds import close
+from checker.engines.zones.earliest_dates import Dates, TimedState, Zone
+from checker.engines.zones.zone_search import Search, ShortestRun
 from checker.limits import look
 
 Wanted = Callable[[int], list[Zone]]
@@ -25,13 +25,13 @@ def run_of(search: Search, wanted: Wanted, length: int, ends: Iterable[int] | No
     """Return the first run of a number of steps to a goal that fewer steps don't reach."""
     automaton = search.automaton
     among = range(len(automaton)) if ends is None else ends
-    route = Route(automaton, search.location, search.ages, length, [at for at in among if wanted(at)])
+    route = ShortestRun(automaton, search.location, search.ages, length, [at for at in among if wanted(at)])
     group = next(
         group
         for group in route.groups_at_end(look)
         if any(meets(route, zone, wanted) for zone in route.zones_of(group))
     )
-    return Dates(automaton, Moment(search.location, search.ages), route.steps_to(group), wanted)
+    return Dates(automaton, TimedState(search.location, search.ages), route.steps_to(group), wanted)
 
 
 def meets(search: Search, zone: int, wanted: Wanted) -> bool:

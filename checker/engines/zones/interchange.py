@@ -15,12 +15,12 @@ from itertools import count, islice
 from typing import Final, NamedTuple
 
 from checker.engines.timed.zone_answers import ZoneTimes
-from checker.engines.zones.automaton import Automaton, Constraint, Edge
-from checker.engines.zones.observers import Meter, Observer, Watch
+from checker.engines.zones.observers import Meter, Observer, ObserverClock
+from checker.engines.zones.timed_automaton import Constraint, Edge, TimedAutomaton
 from checker.engines.zones.timed_automaton_of import Network
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
-from semantics.timing.actor_clocks import Clock
+from semantics.timing.actor_clocks import ActorClock
 
 FIRST: Final = "first"
 """The initial location; no time passes in it."""
@@ -29,7 +29,7 @@ WRONG: Final = "wrong"
 """The location that is reachable exactly if the property is violated."""
 
 
-class Place(NamedTuple):
+class ExportedLocation(NamedTuple):
     """A location: its name and invariant, or that it is urgent."""
 
     name: str
@@ -37,7 +37,7 @@ class Place(NamedTuple):
     is_urgent: bool = False
 
 
-class Step(NamedTuple):
+class ExportedEdge(NamedTuple):
     """An edge.
 
     Attributes:
@@ -56,7 +56,7 @@ class Step(NamedTuple):
     sets: tuple[tuple[str, int], ...] = ()
 
 
-class Model(NamedTuple):
+class ExportedAutomaton(NamedTuple):
     """A timed automaton.
 
     Attributes:
@@ -70,11 +70,11 @@ class Model(NamedTuple):
     name: str
     asked: Property | None
     clocks: tuple[str, ...]
-    places: tuple[Place, ...]
-    steps: tuple[Step, ...]
+    places: tuple[ExportedLocation, ...]
+    steps: tuple[ExportedEdge, ...]
 
 
-def model_of(times: ZoneTimes, asked: Property | None, name: str) -> Model:
+def model_of(times: ZoneTimes, asked: Property | None, name: str) -> ExportedAutomaton:
     """Return a mission's automaton; with a deadline or an endurance, `WRONG` is reachable exactly if it is violated.
 
     Raises:
@@ -90,19 +90,21 @@ def model_of(times: ZoneTimes, asked: Property | None, name: str) -> Model:
         raise ValueError("only deadlines and endurance are exported")
     awaited = asked.formula if asked.then is None else asked.then
     rule = times.waiting(None if asked.then is None else asked.formula, awaited)
-    observer = Observer(network, rule, Meter(asked.bound + 1, goal=(Watch.ON, asked.bound + 1)))
+    observer = Observer(network, rule, Meter(asked.bound + 1, goal=(ObserverClock.ON, asked.bound + 1)))
     goals = ((at, observer.automaton.location(at).goal) for at in range(len(observer.automaton)))
     late = {at: [goal] for at, goal in goals if goal is not None}
     walk = _Walk(network, observer.automaton, [each.location for each in observer.spots], late)
     return _model(name, asked, walk, 0, observer.first_ages())
 
 
-def _model(name: str, asked: Property | None, walk: _Walk, location: int, ages: Sequence[int]) -> Model:
+def _model(
+    name: str, asked: Property | None, walk: _Walk, location: int, ages: Sequence[int]
+) -> ExportedAutomaton:
     first = walk.place(location, [""] * len(ages))
     sets = tuple((clock, age) for clock, age in zip(first.names, ages, strict=True) if age)
-    steps = (Step(FIRST, walk.spots[first], "begin", sets=sets), *walk.steps())
+    steps = (ExportedEdge(FIRST, walk.spots[first], "begin", sets=sets), *walk.steps())
     clocks = sorted({clock for spot in walk.spots for clock in spot.names}, key=lambda each: int(each[1:]))
-    return Model(name, asked, tuple(clocks), tuple(walk.places()), steps)
+    return ExportedAutomaton(name, asked, tuple(clocks), tuple(walk.places()), steps)
 
 
 class _Spot(NamedTuple):
@@ -128,17 +130,17 @@ class _Walk:
     """
 
     network: Network
-    automaton: Automaton
+    automaton: TimedAutomaton
     locations: Sequence[int]
     wrong: Mapping[int, Sequence[Constraint]]
     spots: dict[_Spot, str] = field(default_factory=dict)
     met: Counter[tuple[int, bool]] = field(default_factory=Counter)
-    names: Mapping[Clock | None, tuple[str, ...]] = field(init=False)
+    names: Mapping[ActorClock | None, tuple[str, ...]] = field(init=False)
 
     def __post_init__(self) -> None:
         self.names = _named([Counter(self.clocks(at)) for at in range(len(self.automaton))])
 
-    def clocks(self, at: int) -> tuple[Clock | None, ...]:
+    def clocks(self, at: int) -> tuple[ActorClock | None, ...]:
         """Return the measured subjects of a location's clocks."""
         measured = self.network.clocks(self.locations[at])
         return (*measured, *([None] if len(self.automaton.location(at).clocks) > len(measured) else []))
@@ -155,7 +157,7 @@ class _Walk:
             self.spots[spot] = f"{'u' if is_late else 'l'}{at}{f'_{known}' if known else ''}"
         return spot
 
-    def steps(self) -> Iterator[Step]:
+    def steps(self) -> Iterator[ExportedEdge]:
         """Yield the edges of all reached locations."""
         done = 0
         while done < len(self.spots):
@@ -163,13 +165,13 @@ class _Walk:
                 yield from self._steps(spot)
                 done += 1
 
-    def _steps(self, spot: _Spot) -> Iterator[Step]:
+    def _steps(self, spot: _Spot) -> Iterator[ExportedEdge]:
         for edge in self.automaton.out(spot.at):
             yield from self._step(spot, edge)
         for clock, least, _ in self.wrong.get(spot.at, ()):
-            yield Step(self.spots[spot], WRONG, WRONG, guard=(f"{spot.names[clock - 1]} >= {least}",))
+            yield ExportedEdge(self.spots[spot], WRONG, WRONG, guard=(f"{spot.names[clock - 1]} >= {least}",))
 
-    def _step(self, spot: _Spot, edge: Edge) -> Iterator[Step]:
+    def _step(self, spot: _Spot, edge: Edge) -> Iterator[ExportedEdge]:
         tests = [
             f"{spot.names[clock - 1]} {relation} {bound}"
             for clock, least, most in edge.tests
@@ -184,7 +186,7 @@ class _Walk:
         for is_late, guard in ways:
             target = self.place(edge.target, kept, is_late=is_late)
             sets = tuple((name, 0) for name, old in zip(target.names, kept, strict=True) if not old)
-            yield Step(
+            yield ExportedEdge(
                 self.spots[spot],
                 self.spots[target],
                 f"s{edge.step}",
@@ -209,28 +211,30 @@ class _Walk:
         situation = self.network.situation(self.network.place(self.locations[at]).number)
         return str(situation.steps[step].transition.label)
 
-    def places(self) -> Iterator[Place]:
+    def places(self) -> Iterator[ExportedLocation]:
         """Yield the reached locations."""
         for spot, name in self.spots.items():
             if spot.is_late or self.stands(spot.at):
-                yield Place(name, is_urgent=True)
+                yield ExportedLocation(name, is_urgent=True)
             else:
                 deadlines = self.automaton.location(spot.at).deadlines
-                yield Place(name, tuple(f"{spot.names[clock - 1]} <= {most}" for clock, most in deadlines))
+                yield ExportedLocation(
+                    name, tuple(f"{spot.names[clock - 1]} <= {most}" for clock, most in deadlines)
+                )
 
 
-def _named(locations: Sequence[Counter[Clock | None]]) -> dict[Clock | None, tuple[str, ...]]:
+def _named(locations: Sequence[Counter[ActorClock | None]]) -> dict[ActorClock | None, tuple[str, ...]]:
     """Return the names of each clock, as many as ever run at once, given the counts of clocks in each location.
 
     Clocks that never run together may share a name, so names are few.
     """
-    most: Counter[Clock | None] = Counter()
-    beside: defaultdict[Clock | None, set[Clock | None]] = defaultdict(set)
+    most: Counter[ActorClock | None] = Counter()
+    beside: defaultdict[ActorClock | None, set[ActorClock | None]] = defaultdict(set)
     for each in locations:
         most |= each
         for clock in each:
             beside[clock].update(each)
-    numbers: dict[Clock | None, list[int]] = {}
+    numbers: dict[ActorClock | None, list[int]] = {}
     for clock, others in beside.items():
         taken = {number for other in others for number in numbers.get(other, ())}
         numbers[clock] = list(islice((each for each in count() if each not in taken), most[clock]))

@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.loops import inner, njit
-from checker.engines.zones.automaton import (
+from checker.engines.zones.difference_bounds import Matrix, end, extrapolate, let_pass, restrict
+from checker.engines.zones.timed_automaton import (
     CLOCKS,
     DEADLINE,
     DEADLINES,
@@ -38,13 +39,12 @@ from checker.engines.zones.automaton import (
     TESTS,
     TESTS_END,
 )
-from checker.engines.zones.bounds import Matrix, end, extrapolate, let_pass, restrict
 
 Ints = NDArray[np.int32]
 State = NDArray[np.int64]
 
 
-class Model(NamedTuple):
+class CompiledAutomaton(NamedTuple):
     """A timed automaton for the loops; see `Automaton`.
 
     `left` holds for each location the least number of steps to the goal, 0 where it is unknown.
@@ -117,7 +117,7 @@ def load(z: Zones, zone: int, size: int, d: Matrix) -> None:
 
 
 @inner(cache=True)
-def meets(m: Model, edge: int, d: Matrix, size: int) -> bool:
+def meets(m: CompiledAutomaton, edge: int, d: Matrix, size: int) -> bool:
     """Intersect a matrix with the guard of an edge; False for an empty result."""
     for k in range(m.edges[edge + TESTS], m.edges[edge + TESTS_END]):
         clock, least, most = m.tests[TEST * k], m.tests[TEST * k + 1], m.tests[TEST * k + 2]
@@ -129,13 +129,13 @@ def meets(m: Model, edge: int, d: Matrix, size: int) -> bool:
 
 
 @inner(cache=True)
-def before_rank(m: Model, z: Zones, state: State) -> int:
+def before_rank(m: CompiledAutomaton, z: Zones, state: State) -> int:
     """Return the rank of the row that is expanded, 0 at first."""
     return 0 if state[RANKED] == 0 or state[GROUPS] > 0 else np.int64(z.ranks[m.rows[z.places[state[AT]]]])
 
 
 @inner(cache=True)
-def keep(m: Model, z: Zones, state: State, location: int, d: Matrix, size: int) -> None:
+def keep(m: CompiledAutomaton, z: Zones, state: State, location: int, d: Matrix, size: int) -> None:
     """Keep a zone, unless another one includes it."""
     at = LOCATION * location
     total = np.int64(0)
@@ -185,7 +185,9 @@ def keep(m: Model, z: Zones, state: State, location: int, d: Matrix, size: int) 
 
 
 @njit(cache=True)
-def enter(m: Model, z: Zones, state: State, location: int, d: Matrix, e: Matrix, bounds: Matrix) -> None:
+def enter(
+    m: CompiledAutomaton, z: Zones, state: State, location: int, d: Matrix, e: Matrix, bounds: Matrix
+) -> None:
     """Keep the zone entered in a location, and its closure under delays."""
     at = LOCATION * location
     size = m.locations[at + SIZE]
@@ -216,7 +218,15 @@ def enter(m: Model, z: Zones, state: State, location: int, d: Matrix, e: Matrix,
 
 @inner(cache=True)
 def follow(
-    m: Model, z: Zones, state: State, zone: int, edge: int, d: Matrix, e: Matrix, f: Matrix, bounds: Matrix
+    m: CompiledAutomaton,
+    z: Zones,
+    state: State,
+    zone: int,
+    edge: int,
+    d: Matrix,
+    e: Matrix,
+    f: Matrix,
+    bounds: Matrix,
 ) -> None:
     """Keep the successor of a zone by an edge, if its distance from the goal is small enough."""
     target, sources = m.edges[edge + TARGET], m.edges[edge + SOURCES] - 1
@@ -239,7 +249,7 @@ def follow(
 
 
 @inner(cache=True)
-def ways_of(m: Model, z: Zones, begin: int, last: int) -> int:
+def ways_of(m: CompiledAutomaton, z: Zones, begin: int, last: int) -> int:
     """Return the number of edges from some zones, -1 if some are unknown."""
     ways = np.int64(0)
     for zone in range(begin, last):
@@ -262,7 +272,7 @@ def is_full(z: Zones, state: State, ways: int, largest: int) -> bool:
 
 
 @inner(cache=True)
-def next_step(m: Model, z: Zones, begin: int, last: int, step: int) -> int:
+def next_step(m: CompiledAutomaton, z: Zones, begin: int, last: int, step: int) -> int:
     """Return the next step after another one in some zones, -1 if there is none."""
     following = np.int64(-1)
     for zone in range(begin, last):
@@ -285,7 +295,7 @@ class Scratch(NamedTuple):
 
 
 @inner(cache=True)
-def take(m: Model, z: Zones, state: State, begin: int, last: int, step: int, s: Scratch) -> None:
+def take(m: CompiledAutomaton, z: Zones, state: State, begin: int, last: int, step: int, s: Scratch) -> None:
     """Take one step from some zones."""
     for zone in range(begin, last):
         at = LOCATION * z.places[zone]
@@ -295,7 +305,7 @@ def take(m: Model, z: Zones, state: State, begin: int, last: int, step: int, s: 
 
 
 @njit(cache=True)
-def advance(m: Model, z: Zones, state: State, largest: int, until: int, s: Scratch) -> int:
+def advance(m: CompiledAutomaton, z: Zones, state: State, largest: int, until: int, s: Scratch) -> int:
     """Expand the zones of a layer, row by row, up to a number of zones; return why that ended."""
     while state[AT] < state[LAYER] and state[COUNT] < until:
         begin = state[AT]
@@ -316,7 +326,7 @@ def advance(m: Model, z: Zones, state: State, largest: int, until: int, s: Scrat
 
 
 @njit(cache=True, _nrt=True)
-def arrange(m: Model, z: Zones, state: State, kept: State) -> None:
+def arrange(m: CompiledAutomaton, z: Zones, state: State, kept: State) -> None:
     """Reorder the zones of the layer under construction and keep only the given ones; the others are covered."""
     begin = state[LAYER]
     used = z.begins[begin]
@@ -343,7 +353,9 @@ def arrange(m: Model, z: Zones, state: State, kept: State) -> None:
 
 
 @njit(cache=True)
-def advance_by_groups(m: Model, z: Zones, state: State, largest: int, last_group: int, s: Scratch) -> int:
+def advance_by_groups(
+    m: CompiledAutomaton, z: Zones, state: State, largest: int, last_group: int, s: Scratch
+) -> int:
     """Expand groups in order, up to a number of groups; return why that ended."""
     while state[AT] < last_group:
         group = state[AT]

@@ -41,9 +41,9 @@ from checker.engines.fast.leaves import (
 )
 from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
-from checker.engines.zones import automaton as automata
-from checker.engines.zones.automaton import DEADLINE, EDGE, LOCATION, TEST
-from checker.engines.zones.bounds import NONE
+from checker.engines.zones import timed_automaton as automata
+from checker.engines.zones.difference_bounds import NONE
+from checker.engines.zones.timed_automaton import DEADLINE, EDGE, LOCATION, TEST
 from semantics.timing.actor_clocks import BOUND
 from semantics.timing.actor_clocks import FREE as UNBOUND
 
@@ -51,11 +51,11 @@ Ints = NDArray[np.int32]
 State = NDArray[np.int64]
 
 
-class Timed(NamedTuple):
+class LearnedClocks(NamedTuple):
     """The learned clocks of actors, for the loops.
 
     Attributes:
-        agents, clauses: The trees for the clocks of the actors of `Model`, in the same order.
+        agents, clauses: The trees for the clocks of the actors of `LearnedModel`, in the same order.
         vehicles: The trees for the clocks of vehicles with an endurance.
         answers: For each leaf of those trees the ranges of its clocks and of its steps (`ANSWER` numbers).
         running: Clocks with their bounds (`RUNNING`).
@@ -85,7 +85,7 @@ ANSWER, RUNNING, TIMES, RESTORING, WINDOW, CHOICE = 4, 3, 4, 3, 2, 3
 CLOCK, LO, HI = range(RUNNING)
 
 
-class Growth(NamedTuple):
+class AutomatonGrowth(NamedTuple):
     """The growing automaton, with room, and additional data for each location.
 
     Attributes:
@@ -106,8 +106,8 @@ class Growth(NamedTuple):
     before: Ints
 
 
-class View(NamedTuple):
-    """The steps and clocks of one row, as `look` finds them.
+class LocationView(NamedTuple):
+    """The steps and clocks of one row, as `find_steps` finds them.
 
     Attributes:
         leaves: For each actor its leaf: the agents' first, then the clauses'.
@@ -141,7 +141,9 @@ KNOWN, MISS, FULL = range(3)
 
 
 @inner(cache=True)
-def look(m: kernel.Model, t: Timed, words: Words, row: int, v: View, state: State) -> bool:
+def find_steps(
+    m: kernel.LearnedModel, t: LearnedClocks, words: Words, row: int, v: LocationView, state: State
+) -> bool:
     """Find the steps and clocks of a row; False if a tree lacks an answer."""
     state[AT], at = row, row * state[WORDS]
     first, last = np.int64(0), np.int64(len(m.agents))
@@ -180,7 +182,7 @@ def look(m: kernel.Model, t: Timed, words: Words, row: int, v: View, state: Stat
 
 
 @inner(cache=True)
-def note_clocks(m: kernel.Model, t: Timed, v: View) -> None:
+def note_clocks(m: kernel.LearnedModel, t: LearnedClocks, v: LocationView) -> None:
     """Record the first index of each clock, and the bound clocks: those that an in-turn step ends."""
     stamp, index = v.counts[STAMP], np.int64(1)
     for clock in t.lasting:
@@ -208,7 +210,7 @@ def note_clocks(m: kernel.Model, t: Timed, v: View) -> None:
 
 
 @inner(cache=True)
-def steps_of_clause(m: kernel.Model, v: View, clause: int) -> int:
+def steps_of_clause(m: kernel.LearnedModel, v: LocationView, clause: int) -> int:
     """Return the number of steps of a clause."""
     leaf = LEAF * v.leaves[v.counts[AGENTS] + clause]
     return m.leaves[leaf + END] - m.leaves[leaf + FIRST]
@@ -221,7 +223,15 @@ def digit(windows: int, window: int) -> int:
 
 
 @inner(cache=True)
-def add_location(m: kernel.Model, t: Timed, g: Growth, v: View, row: int, windows: int, s: State) -> int:
+def add_location(
+    m: kernel.LearnedModel,
+    t: LearnedClocks,
+    g: AutomatonGrowth,
+    v: LocationView,
+    row: int,
+    windows: int,
+    s: State,
+) -> int:
     """Return the location of a row that was looked at, a new one at the first visit; -1 if there is no room."""
     found = np.int64(g.of_rows[row])
     while found >= 0 and g.windows[found] != windows:
@@ -264,7 +274,9 @@ def add_location(m: kernel.Model, t: Timed, g: Growth, v: View, row: int, window
 
 
 @inner(cache=True)
-def add_deadlines(m: kernel.Model, t: Timed, g: Growth, v: View, windows: int, begin: int) -> int:
+def add_deadlines(
+    m: kernel.LearnedModel, t: LearnedClocks, g: AutomatonGrowth, v: LocationView, windows: int, begin: int
+) -> int:
     """Add the deadline of a crowded location, or else of the windows; return the end of the deadlines."""
     least = np.int64(NONE)
     for window in range(len(t.windows) // WINDOW):
@@ -283,7 +295,7 @@ def add_deadlines(m: kernel.Model, t: Timed, g: Growth, v: View, windows: int, b
 
 @inner(cache=True)
 def target_row(
-    m: kernel.Model,
+    m: kernel.LearnedModel,
     words: Words,
     row: int,
     step: int,
@@ -319,7 +331,7 @@ def target_row(
 
 
 @inner(cache=True)
-def source_of(t: Timed, a: View, done: int, end: int, clock: int, earlier: int) -> int:
+def source_of(t: LearnedClocks, a: LocationView, done: int, end: int, clock: int, earlier: int) -> int:
     """Return the index of the source clock that continues in the target's, after so many equal ones; 0 for a reset."""
     if a.stamps[clock] != a.counts[STAMP]:
         return 0
@@ -334,7 +346,8 @@ def source_of(t: Timed, a: View, done: int, end: int, clock: int, earlier: int) 
 
 @inner(cache=True)
 def add_edges(  # each argument is another part of the state
-    m: kernel.Model, t: Timed, g: Growth, a: View, b: View, here: int, row: int, times: int, number: int, step: int,
+    m: kernel.LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
+    here: int, row: int, times: int, number: int, step: int,
     choices: Ints, s: State,
 ) -> int:  # fmt: skip
     """Add the edges of a step to a row that was looked at, one for each combination of tests and choices.
@@ -421,7 +434,8 @@ def put(tests: Ints, s: State, clock: int, least: int, most: int) -> None:
 
 @inner(cache=True)
 def add_sources(
-    t: Timed, g: Growth, a: View, b: View, done: int, end: int, target: int, choices: Ints, count: int, chosen: int,
+    t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView, done: int, end: int,
+    target: int, choices: Ints, count: int, chosen: int,
     s: State,
 ) -> None:  # fmt: skip
     """Add for each clock of the target the source clock that continues in it."""
@@ -438,24 +452,32 @@ def add_sources(
 
 @njit(cache=True)
 def begin(
-    m: kernel.Model, t: Timed, g: Growth, v: View, words: Words, windows: int, state: State, s: State
+    m: kernel.LearnedModel,
+    t: LearnedClocks,
+    g: AutomatonGrowth,
+    v: LocationView,
+    words: Words,
+    windows: int,
+    state: State,
+    s: State,
 ) -> int:
     """Add the location of the first row; return why that ended."""
-    if not look(m, t, words, 0, v, state):
+    if not find_steps(m, t, words, 0, v, state):
         return MISS
     return KNOWN if add_location(m, t, g, v, 0, windows, s) >= 0 else FULL
 
 
 @njit(cache=True)
 def leave(
-    m: kernel.Model, t: Timed, g: Growth, a: View, b: View, words: Words, origins: Any, table: Any, most: int,
+    m: kernel.LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
+    words: Words, origins: Any, table: Any, most: int,
     scratch: Words, taken: Ints, choices: Ints, locations: State, state: State, s: State,
 ) -> int:  # fmt: skip
     """Add the edges of the given locations, from the next undone one; return why that ended."""
     while s[DONE] < len(locations):
         here = locations[s[DONE]]
         row, began = np.int64(g.rows[here]), (s[LEAVING], s[TESTED], s[SOURCED])
-        if not look(m, t, words, row, a, state):
+        if not find_steps(m, t, words, row, a, state):
             return MISS
         why = KNOWN
         if not a.counts[IS_CROWDED]:
@@ -473,7 +495,8 @@ def leave(
 
 @inner(cache=True)
 def leave_by_steps(
-    m: kernel.Model, t: Timed, g: Growth, a: View, b: View, words: Words, origins: Any, table: Any, most: int,
+    m: kernel.LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
+    words: Words, origins: Any, table: Any, most: int,
     scratch: Words, taken: Ints, choices: Ints, here: int, row: int, state: State, s: State,
 ) -> int:  # fmt: skip
     """Add the edges of each in-turn step of a location; equal steps of an agent count once."""
@@ -496,7 +519,7 @@ def leave_by_steps(
             if again:
                 continue
             taken[2 * number], taken[2 * number + 1] = target, alike
-            if not look(m, t, words, target, b, state):
+            if not find_steps(m, t, words, target, b, state):
                 return MISS
             times = TIMES * (t.answers[record + 2] + step - first)
             if add_edges(m, t, g, a, b, here, target, times, number, step, choices, s) == FULL:

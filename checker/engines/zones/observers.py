@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from enum import Enum, auto
 from typing import NamedTuple
 
-from checker.engines.zones.automaton import Automaton, Constraint, Edge, Location
-from checker.engines.zones.bounds import NONE
+from checker.engines.zones.difference_bounds import NONE
+from checker.engines.zones.timed_automaton import Constraint, Edge, Location, TimedAutomaton
 from checker.engines.zones.timed_automaton_of import NOWHERE, Network
 
 
-class Watch(Enum):
+class ObserverClock(Enum):
     """The state of the additional clock in a location."""
 
     OFF = auto()
@@ -22,14 +22,14 @@ class Watch(Enum):
     """The clock is read, and the location has no edges."""
 
 
-class Spot(NamedTuple):
+class ObservedLocation(NamedTuple):
     """A location of the mission's automaton, with the state of the additional clock."""
 
     location: int
-    watch: Watch
+    watch: ObserverClock
 
 
-Rule = Callable[[Watch, int], Watch | None]
+Rule = Callable[[ObserverClock, int], ObserverClock | None]
 """The state of the clock in a location, given its state before; None to cut off the location."""
 
 
@@ -46,7 +46,7 @@ class Meter:
     lower: int = NONE
     upper: int = NONE
     most: int = NONE
-    goal: tuple[Watch, int] | None = None
+    goal: tuple[ObserverClock, int] | None = None
 
 
 @dataclass(slots=True)
@@ -65,9 +65,9 @@ class Observer:
     rule: Rule
     meter: Meter
     is_exact: bool = False
-    automaton: Automaton = field(default_factory=Automaton)
-    spots: list[Spot] = field(default_factory=list)
-    numbers: dict[Spot, int] = field(default_factory=dict)
+    automaton: TimedAutomaton = field(default_factory=TimedAutomaton)
+    spots: list[ObservedLocation] = field(default_factory=list)
+    numbers: dict[ObservedLocation, int] = field(default_factory=dict)
     meter_clock: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -77,32 +77,32 @@ class Observer:
         for least, most in zip(lower, upper, strict=True):
             self.automaton.clock(*(max(least, most),) * 2 if self.is_exact else (least, most))
         self.meter_clock = self.automaton.clock(self.meter.lower, self.meter.upper)
-        watch = self.rule(Watch.OFF, self.network.first)
+        watch = self.rule(ObserverClock.OFF, self.network.first)
         assert watch is not None
         self._add(self.network.first, watch)
         for number, spot in enumerate(self.spots):  # grows during the loop
-            self.automaton.leave(number, [] if spot.watch is Watch.END else self._edges(spot))
+            self.automaton.leave(number, [] if spot.watch is ObserverClock.END else self._edges(spot))
 
     def clock(self, number: int) -> int:
         """Return the index of the additional clock in a location, 0 where it doesn't run."""
-        off = self.spots[number].watch is Watch.OFF
+        off = self.spots[number].watch is ObserverClock.OFF
         return 0 if off else len(self.automaton.location(number).clocks)
 
     def first_ages(self) -> tuple[int, ...]:
         """Return the initial clock values."""
         ages = self.network.first_ages
-        return ages if self.spots[0].watch is Watch.OFF else (*ages, 0)
+        return ages if self.spots[0].watch is ObserverClock.OFF else (*ages, 0)
 
-    def _add(self, location: int, watch: Watch) -> int:
-        spot = Spot(location, Watch.ON if watch is Watch.START else watch)
+    def _add(self, location: int, watch: ObserverClock) -> int:
+        spot = ObservedLocation(location, ObserverClock.ON if watch is ObserverClock.START else watch)
         if spot in self.numbers:
             return self.numbers[spot]
         clocks, deadlines, goal = self.network.automaton.location(location)
-        if spot.watch is not Watch.OFF:
+        if spot.watch is not ObserverClock.OFF:
             clocks = (*clocks, self.meter_clock)
             if self.meter.goal is not None and self.meter.goal[0] is spot.watch:
                 goal = Constraint(len(clocks), self.meter.goal[1])
-            if spot.watch is Watch.END:
+            if spot.watch is ObserverClock.END:
                 deadlines = (NOWHERE,)
             elif self.meter.most >= 0:
                 deadlines = (*deadlines, (len(clocks), self.meter.most))
@@ -110,16 +110,16 @@ class Observer:
         number = self.numbers[spot] = self.automaton.add(Location(clocks, deadlines, goal))
         return number
 
-    def _edges(self, spot: Spot) -> list[Edge]:
+    def _edges(self, spot: ObservedLocation) -> list[Edge]:
         found = []
         clock = len(self.network.automaton.location(spot.location).clocks) + 1
-        runs = spot.watch is Watch.ON
+        runs = spot.watch is ObserverClock.ON
         for step, tests, target, sources in self.network.automaton.out(spot.location):
             watch = self.rule(spot.watch, target)
             if watch is None:
                 continue
-            if watch is not Watch.OFF:
-                sources = (*sources, clock if runs and watch is not Watch.START else 0)  # noqa: PLW2901
+            if watch is not ObserverClock.OFF:
+                sources = (*sources, clock if runs and watch is not ObserverClock.START else 0)  # noqa: PLW2901
             late = (Constraint(clock, 0, self.meter.most),) if runs and self.meter.most >= 0 else ()
             found.append(Edge(step, (*tests, *late), self._add(target, watch), sources))
         return found

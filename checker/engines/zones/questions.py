@@ -26,7 +26,7 @@ NO_TURN = math.inf
 """The turn of a step that waits for none."""
 
 
-class Control(NamedTuple):
+class PendingControl(NamedTuple):
     """A pending control.
 
     Attributes:
@@ -38,12 +38,12 @@ class Control(NamedTuple):
     tests: tuple[Test, ...]
 
 
-def controls_of(a: Name, c: Configuration) -> tuple[Control, ...]:
+def controls_of(a: Name, c: Configuration) -> tuple[PendingControl, ...]:
     """Return an agent's pending controls that a rule can serve."""
     steps = list(served(c, a)) if a in c.alpha else []
     times = dict(zip(map(id, steps), of_requests(c, a, steps).steps, strict=True))
     return tuple(
-        Control(_turn(several[0]), _one_of([times[id(each)] for each in several]))
+        PendingControl(_turn(several[0]), _one_of([times[id(each)] for each in several]))
         for several in _controls(steps)
     )
 

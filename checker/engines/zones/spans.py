@@ -13,14 +13,14 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.timed.answers import NO_SPAN, Span, TakenStep
-from checker.engines.zones.automaton import Constraint, Edge
-from checker.engines.zones.bounds import FREE, MOST
-from checker.engines.zones.dates import Dates, Zone, tested, whole
+from checker.engines.timed.answers import NO_SPAN, DateSpan, TakenStep
+from checker.engines.zones.difference_bounds import FREE, MOST
+from checker.engines.zones.earliest_dates import Dates, Zone, tested, whole
 from checker.engines.zones.first_run import run_of
-from checker.engines.zones.observers import Meter, Observer, Watch
-from checker.engines.zones.search import Search
+from checker.engines.zones.observers import Meter, Observer, ObserverClock
+from checker.engines.zones.timed_automaton import Constraint, Edge
 from checker.engines.zones.timed_automaton_of import Network
+from checker.engines.zones.zone_search import Search
 
 Asked = list[list[tuple[Edge, int]]]
 """For each location the edges of requested steps, each with the number of its set."""
@@ -54,17 +54,17 @@ class Spans:
             for place, step in several:
                 self.sets.setdefault((int(times.order[place]), step), []).append(number)
 
-    def found(self) -> list[Span]:
+    def found(self) -> list[DateSpan]:
         """Return the earliest and the latest date of each set."""
         if not self.sets:
             return [NO_SPAN] * len(self.steps)
-        return [Span(*each) for each in zip(self._earliest(), self._latest(), strict=True)]
+        return [DateSpan(*each) for each in zip(self._earliest(), self._latest(), strict=True)]
 
     def _watched(self, meter: Meter) -> tuple[Observer, Search, Asked]:
         """Search with a clock that runs from the start."""
 
-        def rule(before: Watch, _: int) -> Watch:
-            return Watch.START if before is Watch.OFF else Watch.ON
+        def rule(before: ObserverClock, _: int) -> ObserverClock:
+            return ObserverClock.START if before is ObserverClock.OFF else ObserverClock.ON
 
         observer, search = self.times.explored(Observer(self.times.network, rule, meter))
         rows = [self.times.network.place(spot.location).number for spot in observer.spots]

@@ -25,27 +25,33 @@ from checker.engines.fast.space import Space
 from checker.engines.fast.table import most_in
 from checker.engines.fast.value_templates import settled
 from checker.engines.zones import location_successors
-from checker.engines.zones.automaton import (
+from checker.engines.zones.difference_bounds import NONE
+from checker.engines.zones.location_successors import (
+    ANSWER,
+    CHOICE,
+    AutomatonGrowth,
+    LearnedClocks,
+    LocationView,
+)
+from checker.engines.zones.timed_automaton import (
     CLOCKS,
     DEADLINE,
     DEADLINES,
     EDGE,
     LOCATION,
     TEST,
-    Automaton,
     Constraint,
+    TimedAutomaton,
 )
-from checker.engines.zones.bounds import NONE
-from checker.engines.zones.location_successors import ANSWER, CHOICE, Growth, Timed, View
 from checker.limits import look
 from semantics.environment import Clause
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
 from semantics.successors import by_clause, moves, served
 from semantics.timing.actor_clocks import (
+    ActorClock,
     ActorClocks,
-    Clock,
-    Running,
+    RunningClock,
     Sort,
     StepClocks,
     lasting,
@@ -55,7 +61,7 @@ from semantics.timing.actor_clocks import (
     of_vehicle,
     timing_of,
 )
-from semantics.timing.clocks import STRICT, Situation, TimedStep
+from semantics.timing.clocks import STRICT, TimedStep, TimedView
 from semantics.timing.intervals import Interval
 from semantics.timing.timing import Window
 
@@ -66,7 +72,7 @@ MARGIN = 1 << 12
 """The number of further locations, and edges, for which room is reserved."""
 
 
-class Place(NamedTuple):
+class MissionLocation(NamedTuple):
     """A location of a mission: the number of its row, and the states of the windows' clocks."""
 
     number: int
@@ -90,10 +96,10 @@ class Network(Space):
     def __init__(self, initial: Configuration, pending: int) -> None:
         self.initial = initial
         self.timing = timing_of(initial)
-        self.automaton = Automaton()
-        self.numbers: dict[tuple[Clock, Hashable], int] = {}
-        self.clocks_of: list[Clock] = []
-        self.caps: dict[Clock, int] = {}
+        self.automaton = TimedAutomaton()
+        self.numbers: dict[tuple[ActorClock, Hashable], int] = {}
+        self.clocks_of: list[ActorClock] = []
+        self.caps: dict[ActorClock, int] = {}
         self.outgrown = False
         self.windows = [
             number for number, each in enumerate(self.timing.clauses) if isinstance(each.step, Window)
@@ -109,9 +115,9 @@ class Network(Space):
         self.lasting = {each.clock: self._number(each) for each in lasting(self.timing)}
         self.restored = [self._restoring(vehicle) for vehicle, _ in self.timing.endurances]
         self.questions: dict[tuple[object, Name | int], int] = {}
-        self.timed: Timed
+        self.timed: LearnedClocks
         super().__init__(Learner(initial.setting, initial.state, pending), None)  # type: ignore[arg-type]  # a stored one
-        self.situation = lru_cache(1 << 12)(lambda number: Situation(self.configuration(number)))
+        self.situation = lru_cache(1 << 12)(lambda number: TimedView(self.configuration(number)))
         situation = self.situation(0)
         ages = situation.first_ages()
         windows = [age for age, each in zip(ages, situation.clocks, strict=True) if each.sort is Sort.WINDOW]
@@ -145,7 +151,7 @@ class Network(Space):
         arrays = (self.answers, self.running, self.times, self.done, self.tested, self.served)
         lasting = [number for number in self.lasting.values() if number >= 0]
         always = (lasting, [each for several in self.restored for each in several], windows)
-        self.timed = Timed._make(
+        self.timed = LearnedClocks._make(
             (
                 *(np.array(each, np.int32) for each in numbers),
                 *(each.room for each in arrays),
@@ -195,7 +201,7 @@ class Network(Space):
             len(self.times) // location_successors.TIMES,
         ]
 
-    def _number(self, running: Running) -> int:
+    def _number(self, running: RunningClock) -> int:
         """Return the number of a clock, a new one at its first use; below 0 for a window's clock."""
         clock, interval, aim = running
         if clock.sort is Sort.WINDOW:
@@ -214,10 +220,10 @@ class Network(Space):
     def _restoring(self, vehicle: Name) -> tuple[int, int, int]:
         """Return the clocks RESTORED and ALOFT of a vehicle, and the time that its restoring takes."""
         endurance = dict(self.timing.endurances)[vehicle]
-        restored = self._number(Running(Clock(Sort.RESTORED, vehicle), Interval(endurance.after)))
+        restored = self._number(RunningClock(ActorClock(Sort.RESTORED, vehicle), Interval(endurance.after)))
         return (
             restored,
-            self._number(Running(Clock(Sort.ALOFT, vehicle), Interval(endurance.lasts))),
+            self._number(RunningClock(ActorClock(Sort.ALOFT, vehicle), Interval(endurance.lasts))),
             endurance.after,
         )
 
@@ -228,7 +234,7 @@ class Network(Space):
         self.counts_of[location_successors.DONE] = 0
         choices = np.zeros(CHOICE * (len(self.restored) + len(self.windows) + 1), np.int32)
 
-        def work(model: object, timed: Timed, growth: Growth, view: View) -> int:
+        def work(model: object, timed: LearnedClocks, growth: AutomatonGrowth, view: LocationView) -> int:
             other, arrays = self._view(), (self.rows.words, self.rows.origins.loops, self.table.room)
             most = min(self.rows.room, most_in(len(self.table.room)), int(self.state[LIMIT]))
             scratch = np.zeros(self.packing.words, np.uint64), np.zeros(2 * self.margin, np.int32), choices
@@ -275,7 +281,7 @@ class Network(Space):
         ):
             each.reserve(size * self.margin)
 
-    def _growth(self) -> Growth:
+    def _growth(self) -> AutomatonGrowth:
         automaton = self.automaton
         arrays = (
             automaton.locations,
@@ -285,13 +291,13 @@ class Network(Space):
             automaton.deadlines,
         )
         known = (automaton.clocks, self.of_locations, self.said, self.of_rows, self.before)
-        return Growth(*(each.room for each in (*arrays, *known)))
+        return AutomatonGrowth(*(each.room for each in (*arrays, *known)))
 
-    def _view(self) -> View:
+    def _view(self) -> LocationView:
         clocks = len(self.clocks_of)
         actors = np.zeros(self.actors, np.int32), np.zeros(self.actors + len(self.restored), np.int32)
         numbers = np.zeros(location_successors.CLOCKS + 1, np.int64)
-        return View(
+        return LocationView(
             *actors,
             numbers,
             np.zeros(clocks, np.int32),
@@ -315,10 +321,10 @@ class Network(Space):
     first = 0
     """The first location."""
 
-    def place(self, location: int) -> Place:
+    def place(self, location: int) -> MissionLocation:
         """Return the row and the windows of a location."""
         said = int(self.said.room[location])
-        return Place(
+        return MissionLocation(
             int(self.of_locations.room[location]), tuple(said // 3**at % 3 for at in range(len(self.windows)))
         )
 
@@ -335,15 +341,15 @@ class Network(Space):
         ends = records[records[:, DEADLINES] < records[:, DEADLINES + 1]][:, DEADLINES]
         return bool(np.any(self.automaton.deadlines.room[DEADLINE * ends + 1] < 0))
 
-    def clocks(self, location: int) -> tuple[Clock, ...]:
+    def clocks(self, location: int) -> tuple[ActorClock, ...]:
         """Return the clocks of a location, from its first."""
         return tuple(self.clocks_of[each] for each in self.automaton.location(location).clocks)
 
-    def index(self, location: int, clock: Clock) -> int:
+    def index(self, location: int, clock: ActorClock) -> int:
         """Return the index of a clock that runs in a location."""
         return self.clocks(location).index(clock) + 1
 
-    def indices(self, clock: Clock) -> NDArray[np.int64]:
+    def indices(self, clock: ActorClock) -> NDArray[np.int64]:
         """Return the index of a clock without an aim in each location, 0 where it doesn't run."""
         automaton = self.automaton
         records = automaton.locations.used.reshape(-1, LOCATION)
@@ -355,7 +361,7 @@ class Network(Space):
         found[locations] = at - records[locations, CLOCKS] + 1
         return found
 
-    def measured(self, situation: Situation, ages: Iterable[int]) -> tuple[int, ...]:
+    def measured(self, situation: TimedView, ages: Iterable[int]) -> tuple[int, ...]:
         """Return the values of the clocks that measure time, in the order of locations."""
         return tuple(
             age for age, clock in zip(ages, situation.clocks, strict=True) if clock.sort is not Sort.WINDOW
@@ -406,16 +412,16 @@ def _asked(of: Callable[..., ActorClocks], about: Name | int, c: Configuration) 
     )
 
 
-def _settled(clock: Clock) -> Clock:
+def _settled(clock: ActorClock) -> ActorClock:
     return clock._replace(of=settled(clock.of))
 
 
-def cap(clock: Clock, interval: Interval) -> int:
+def cap(clock: ActorClock, interval: Interval) -> int:
     """Return the cap of a clock: its constant, plus one where a test may find it exceeded."""
     return max(interval.lo, interval.hi or 0) + (clock.sort in STRICT)
 
 
-def compared(clock: Clock, interval: Interval) -> tuple[int, int]:
+def compared(clock: ActorClock, interval: Interval) -> tuple[int, int]:
     """Return the largest constants of a clock's lower and upper bounds."""
     lo, hi = interval.lo or NONE, NONE if interval.hi is None else interval.hi
     match clock.sort:

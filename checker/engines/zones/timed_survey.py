@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.survey import BLOCK, Survey
+from checker.engines.fast.row_survey import BLOCK, RowSurvey
 from checker.engines.timed.answers import Times, shown_in_time
 from checker.engines.zones.timed_automaton_of import Network
 from checker.properties.inspections import InTime
@@ -16,7 +16,7 @@ from semantics.state.configuration import Configuration
 from semantics.successors import Expansion
 
 
-class TimedSurvey(Survey):
+class TimedSurvey(RowSurvey):
     """Asks questions about all configurations that are reachable in time, or about some of them.
 
     Attributes:

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import networkx as nx
 
-from checker.engines.timed.answers import Stop
-from checker.engines.timed.first_runs import Run
-from checker.engines.zones.automaton import Automaton, Constraint
-from checker.engines.zones.dates import (
+from checker.engines.timed.answers import TimelockRun
+from checker.engines.timed.first_runs import TimedRun
+from checker.engines.zones.earliest_dates import (
     Dates,
-    Moment,
+    TimedState,
     Zone,
     before_edge,
     moved,
@@ -25,20 +24,21 @@ from checker.engines.zones.dates import (
     without,
 )
 from checker.engines.zones.first_run import first_run
-from checker.engines.zones.observers import Meter, Observer, Watch
-from checker.engines.zones.search import Search
+from checker.engines.zones.observers import Meter, Observer, ObserverClock
+from checker.engines.zones.timed_automaton import Constraint, TimedAutomaton
 from checker.engines.zones.timed_automaton_of import Network
+from checker.engines.zones.zone_search import Search
 from checker.limits import look
 from semantics.timing.actor_clocks import Sort
 
 
-def first_stop(network: Network) -> Stop | None:
+def first_stop(network: Network) -> TimelockRun | None:
     """Return the first run to a timelock, None if there is none."""
     risky = _risky(network.automaton)
     if not risky:
         return None
     passing = _passing(network.automaton, risky)
-    observer = Observer(network, lambda _, __: Watch.OFF, Meter(), is_exact=True)
+    observer = Observer(network, lambda _, __: ObserverClock.OFF, Meter(), is_exact=True)
     exact = Search(observer.automaton, 0, observer.first_ages())
     exact.finish(look)
     stopped = [_without(place, network, passing) for place, _ in observer.spots]
@@ -46,7 +46,7 @@ def first_stop(network: Network) -> Stop | None:
     return None if run is None else _going_round(network, observer, run)
 
 
-def _risky(automaton: Automaton) -> set[int]:
+def _risky(automaton: TimedAutomaton) -> set[int]:
     """Return the locations that reach, through locations with deadlines, a cycle of such locations."""
     graph = nx.DiGraph()
     ending = {place for place in range(len(automaton)) if automaton.location(place).deadlines}
@@ -61,7 +61,7 @@ def _risky(automaton: Automaton) -> set[int]:
     return rounds.union(*(nx.ancestors(graph, place) for place in rounds))
 
 
-def _passing(automaton: Automaton, risky: set[int]) -> dict[int, list[Zone]]:
+def _passing(automaton: TimedAutomaton, risky: set[int]) -> dict[int, list[Zone]]:
     """Return for each risky location the clock values from which time can pass eventually."""
     found = {place: _passing_at_once(automaton, place) for place in risky}
     sources: dict[int, set[int]] = {place: set() for place in risky}
@@ -86,7 +86,7 @@ def _passing(automaton: Automaton, risky: set[int]) -> dict[int, list[Zone]]:
     return found
 
 
-def _passing_at_once(automaton: Automaton, place: int) -> list[Zone]:
+def _passing_at_once(automaton: TimedAutomaton, place: int) -> list[Zone]:
     location = automaton.location(place)
     if any(most < 0 for _, most in location.deadlines):
         return [whole(len(location.clocks))]  # its successors are unknown
@@ -118,10 +118,10 @@ def _without(place: int, network: Network, passing: dict[int, list[Zone]]) -> li
     return rest
 
 
-def _going_round(network: Network, observer: Observer, dates: Dates) -> Stop:
+def _going_round(network: Network, observer: Observer, dates: Dates) -> TimelockRun:
     """Return the run to the timelock, extended by the first possible steps until a state repeats."""
 
-    def shown(moment: Moment) -> tuple[int, tuple[int, ...]]:
+    def shown(moment: TimedState) -> tuple[int, tuple[int, ...]]:
         """Return a state in the form of `Timeline`."""
         location = observer.spots[moment.location].location
         place = network.place(location)
@@ -129,11 +129,11 @@ def _going_round(network: Network, observer: Observer, dates: Dates) -> Stop:
         clocks = network.situation(place.number).clocks
         return place.number, tuple(next(windows if each.sort is Sort.WINDOW else ages) for each in clocks)
 
-    run: Run = dates.run()
+    run: TimedRun = dates.run()
     state = min(dates.ends, key=shown)
     seen: dict[object, int] = {}
     while shown(state) not in seen:
         seen[shown(state)] = len(run.steps)
         edge = next(each for each in observer.automaton.out(state.location) if passes(each, state.ages))
-        run, state = run.then(edge.step), Moment(edge.target, moved(edge, state.ages))
-    return Stop(run, seen[shown(state)])
+        run, state = run.then(edge.step), TimedState(edge.target, moved(edge, state.ages))
+    return TimelockRun(run, seen[shown(state)])

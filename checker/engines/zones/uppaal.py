@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from xml.sax.saxutils import escape, quoteattr
 
-from checker.engines.zones.interchange import FIRST, WRONG, Model, Place, Step
+from checker.engines.zones.interchange import FIRST, WRONG, ExportedAutomaton, ExportedEdge, ExportedLocation
 
 DOCUMENT_TYPE = (
     "<!DOCTYPE nta PUBLIC '-//Uppaal Team//DTD Flat System 1.2//EN' "
@@ -11,12 +11,12 @@ DOCUMENT_TYPE = (
 )
 
 
-def uppaal_text(model: Model) -> str:
+def uppaal_text(model: ExportedAutomaton) -> str:
     """Return a model as text; with a property, its query is satisfied exactly if the property holds."""
     return "\n".join([*_lines(model), ""])
 
 
-def _lines(model: Model) -> Iterator[str]:
+def _lines(model: ExportedAutomaton) -> Iterator[str]:
     yield '<?xml version="1.0" encoding="utf-8"?>'
     yield DOCUMENT_TYPE
     yield "<nta>"
@@ -39,12 +39,12 @@ def _lines(model: Model) -> Iterator[str]:
     yield "</nta>"
 
 
-def _location(place: Place) -> str:
+def _location(place: ExportedLocation) -> str:
     parts = _element("name", place.name) + _label("invariant", " && ", place.invariant)
     return f'<location id="{place.name}">{parts}{"<urgent/>" if place.is_urgent else ""}</location>'
 
 
-def _transition(step: Step) -> str:
+def _transition(step: ExportedEdge) -> str:
     ends = f'<source ref="{step.source}"/><target ref="{step.target}"/>'
     sets = [f"{clock} = {to}" for clock, to in step.sets]
     words = [step.words] if step.words else []

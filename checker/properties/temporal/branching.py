@@ -9,10 +9,10 @@ import numpy as np
 
 from checker.engines.graph import Bools, Graph
 from checker.properties.temporal.components import Conditions, fair_components
-from checker.properties.temporal.digraph import Rows, reaching, reversed_rows, shortest
+from checker.properties.temporal.digraph import Digraph, reaching, reversed_rows, shortest
 from checker.properties.temporal.lassos import Lasso, component_of, fair_cycle, tightened
 from checker.properties.temporal.shortest import shortest_run
-from checker.properties.temporal.truth import Truth
+from checker.properties.temporal.truth import FormulaTruth
 from semantics.properties.propositions import Always
 from semantics.properties.temporal import (
     Both,
@@ -46,12 +46,12 @@ class Branching:
     """
 
     graph: Graph
-    truth: Truth
+    truth: FormulaTruth
     fairness: Conditions
     known: dict[tuple[Temporal, bool], Bools] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.backwards: Rows = reversed_rows(self.graph)
+        self.backwards: Digraph = reversed_rows(self.graph)
 
     def where(self, formula: Temporal, *, perhaps: bool = False) -> Bools:
         """Return where a formula is surely true, or may be: the same, unless the graph is partial."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from checker.engines.graph import Bools, Numbers
 from checker.properties.temporal.components import Conditions, Streett
-from checker.properties.temporal.digraph import Arrows, Indices, Rows, leaving, rows_of
+from checker.properties.temporal.digraph import Arrows, Digraph, Indices, leaving, rows_of
 from checker.properties.temporal.effort import Effort, Exhausted
 
 MOST_BITS: Final = 12
@@ -69,7 +69,7 @@ def _demands(conditions: Conditions, nodes: int) -> list[Streett]:
     return [*(Streett(everywhere, each) for each in conditions.recurrent), *conditions.strong]
 
 
-def _fair(rows: Rows, depths: Numbers, demands: list[Streett], most: int, effort: Effort) -> Cycle | None:
+def _fair(rows: Digraph, depths: Numbers, demands: list[Streett], most: int, effort: Effort) -> Cycle | None:
     """Return a shortest cycle that meets all demands; only those that a shortest cycle misses are searched for."""
     asked: list[Streett] = []
     while True:
@@ -80,7 +80,7 @@ def _fair(rows: Rows, depths: Numbers, demands: list[Streett], most: int, effort
         asked.append(min(unmet, key=lambda each: np.count_nonzero(each.taken)))
 
 
-def _meets(cycle: Cycle, demand: Streett, rows: Rows) -> bool:
+def _meets(cycle: Cycle, demand: Streett, rows: Digraph) -> bool:
     edges = list(cycle[1])
     return bool(demand.taken[edges].any() or not demand.enabled[rows.targets[edges]].any())
 
@@ -100,7 +100,7 @@ class _Owed:
     enough: Bools
 
     @classmethod
-    def of(cls, demands: list[Streett], rows: Rows) -> "_Owed":
+    def of(cls, demands: list[Streett], rows: Digraph) -> "_Owed":
         sometimes = [each for each in demands if not each.enabled.all()]
         if len(demands) + len(sometimes) > MOST_BITS:
             raise Exhausted
@@ -128,7 +128,7 @@ class _Owed:
 class _Search:
     """Searches from each node, nearest first, through no nearer ones: a cycle is entered at its nearest node."""
 
-    rows: Rows
+    rows: Digraph
     depths: Numbers
     owed: _Owed
     effort: Effort

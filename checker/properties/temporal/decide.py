@@ -10,16 +10,22 @@ import numpy as np
 from checker.engines.contract import Exploration
 from checker.engines.graph import Graph, graph_of
 from checker.limits import BoundMet
-from checker.properties import vacuity
+from checker.properties import invariant_vacuity
 from checker.properties.findings import MOST_VIOLATIONS, Finding
 from checker.properties.inspections import DeadlockFreedom
 from checker.properties.temporal.components import Conditions
 from checker.properties.temporal.deadlock import Deadlocks
-from checker.properties.temporal.decision import Decision, Formulas
+from checker.properties.temporal.decision import Decision, FormulaDecider
 from checker.properties.temporal.fairness import EACH_RULE_AND_REQUEST, classes, conditions_of, optional
 from checker.properties.temporal.lassos import Lasso
-from checker.properties.temporal.progress import Pending, Progress, Starved, owed, pending_requests
-from checker.properties.temporal.truth import Truth, Valuation, valuation
+from checker.properties.temporal.served_requests import (
+    Pending,
+    ProgressSearch,
+    Starved,
+    owed,
+    pending_requests,
+)
+from checker.properties.temporal.truth import FormulaTruth, Valuation, valuation
 from checker.properties.temporal.vacuity import is_judged
 from checker.steps import step_of
 from checker.traces import Trace, replay, to_json
@@ -58,7 +64,7 @@ def is_still(found: Exploration, formula: Temporal) -> bool:
     try:
         if found.survey is not None:
             return found.survey.is_still(parts)
-        return vacuity.is_still(found.configurations, parts)
+        return invariant_vacuity.is_still(found.configurations, parts)
     except BoundMet:
         return False
 
@@ -84,7 +90,7 @@ ENOUGH: Final = {
 """Usual fairness assumptions as they are written, weaker ones first."""
 
 
-class Decider:
+class TemporalDecider:
     """Decides the temporal properties of one exploration, with shared intermediate results."""
 
     def __init__(
@@ -99,8 +105,8 @@ class Decider:
         propositions = [atom.proposition for atom in asked if isinstance(atom, Now)]
         if is_judged(self.graph):  # part by part
             propositions = [atom for each in propositions for atom in atoms_of(each)]
-        truth = Truth(self.graph, where_true(found, propositions))
-        self.formulas = Formulas(truth, found.complete, partial(is_still, found))
+        truth = FormulaTruth(self.graph, where_true(found, propositions))
+        self.formulas = FormulaDecider(truth, found.complete, partial(is_still, found))
 
     def decide(self, asked: Property) -> Verdict:
         """Return the verdict on a property; it holds only after a complete exploration."""
@@ -167,7 +173,7 @@ class Decider:
         arriving = self.setting.arriving
         pending = owed(where_pending(self.found), arriving)
         fairness = self.conditions((*EACH_RULE_AND_REQUEST, *asked.fairness))
-        progress = Progress(self.graph, pending, fairness, arriving)
+        progress = ProgressSearch(self.graph, pending, fairness, arriving)
         starved, count = progress.starved()
         note = self.note(asked.fairness, "weak fairness of each rule and request")
         violations = sorted(map(self.violation, starved), key=lambda violation: len(violation.trace))

@@ -4,13 +4,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from checker.properties.subformulas import STILL
-from checker.properties.temporal.automaton import TooLargeError
 from checker.properties.temporal.branching import Branching
+from checker.properties.temporal.buchi_automaton import AutomatonTooLargeError
 from checker.properties.temporal.components import Conditions
 from checker.properties.temporal.evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso
 from checker.properties.temporal.linear import counterexample
-from checker.properties.temporal.truth import Truth
+from checker.properties.temporal.truth import FormulaTruth
 from checker.properties.temporal.vacuity import Judged, judge_branching, judge_linear
 from checker.verdicts import Outcome
 from semantics.properties.property import Ranges
@@ -37,7 +37,7 @@ class Decision:
 
 
 @dataclass(frozen=True, eq=False)
-class Formulas:
+class FormulaDecider:
     """Decides formulas on one graph.
 
     Attributes:
@@ -46,7 +46,7 @@ class Formulas:
         is_still: Returns whether the values that a formula reads never change.
     """
 
-    truth: Truth
+    truth: FormulaTruth
     complete: bool
     is_still: Callable[[Temporal], bool]
 
@@ -54,7 +54,7 @@ class Formulas:
         """Decide a formula about every fair run."""
         try:
             lasso = counterexample(self.truth.graph, self.truth, formula, fairness)
-        except TooLargeError as error:
+        except AutomatonTooLargeError as error:
             return Decision(Outcome.INCOMPLETE, note=f"not decided: {error}; split the formula")
         if lasso is not None:
             if lasso.loop and is_true_on(lasso, formula, self.truth):
@@ -93,7 +93,7 @@ class Formulas:
         """Return whether all fair runs satisfy a linear formula; False if an automaton is too large."""
         try:
             return counterexample(self.truth.graph, self.truth, formula, fairness) is None
-        except TooLargeError:
+        except AutomatonTooLargeError:
             return False
 
     def is_fairly_true_of_all(self, formula: Temporal, fairness: Conditions) -> bool:

@@ -31,7 +31,7 @@ class Arrows(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
+class Digraph:
     """A graph in compressed sparse rows, its edges sorted by their sources."""
 
     starts: Numbers
@@ -44,13 +44,13 @@ class Rows:
         return np.repeat(nodes, np.diff(self.starts))
 
 
-def rows_of(sources: Numbers, targets: Numbers, nodes: int) -> Rows:
+def rows_of(sources: Numbers, targets: Numbers, nodes: int) -> Digraph:
     """Return the rows of edges that are sorted by their sources."""
     counts = np.bincount(sources, minlength=nodes)
-    return Rows(np.concatenate((np.zeros(1, dtype=np.int64), np.cumsum(counts))), targets)
+    return Digraph(np.concatenate((np.zeros(1, dtype=np.int64), np.cumsum(counts))), targets)
 
 
-def reversed_rows(arrows: Arrows) -> Rows:
+def reversed_rows(arrows: Arrows) -> Digraph:
     """Return the graph with every edge reversed."""
     order = np.argsort(arrows.targets, kind="stable")
     return rows_of(arrows.targets[order], arrows.sources[order], len(arrows.starts) - 1)
@@ -64,7 +64,7 @@ def leaving(arrows: Arrows, nodes: Numbers) -> Indices:
     return np.repeat(first - before, counts) + np.arange(counts.sum(), dtype=np.int64)
 
 
-def reaching(backwards: Rows, goal: Bools, through: Bools) -> Bools:
+def reaching(backwards: Digraph, goal: Bools, through: Bools) -> Bools:
     """Return the nodes from which a path through some nodes leads to the goal, given the reversed graph."""
     found = goal.copy()
     frontier: Numbers = np.flatnonzero(found)

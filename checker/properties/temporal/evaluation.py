@@ -1,7 +1,7 @@
 """Evaluate linear formulas on a lasso: an independent check of every counterexample."""
 
 from checker.properties.temporal.lassos import Lasso
-from checker.properties.temporal.truth import Truth
+from checker.properties.temporal.truth import FormulaTruth
 from semantics.properties.temporal import (
     Both,
     Denied,
@@ -19,13 +19,13 @@ from semantics.properties.temporal import (
 )
 
 
-def is_true_on(lasso: Lasso, formula: Temporal, truth: Truth) -> bool:
+def is_true_on(lasso: Lasso, formula: Temporal, truth: FormulaTruth) -> bool:
     """Return whether a lasso satisfies a formula, by the definitions: O(length) for each operator."""
     return _Word(lasso, truth).truths(formula)[0]
 
 
 class _Word:
-    def __init__(self, lasso: Lasso, truth: Truth) -> None:
+    def __init__(self, lasso: Lasso, truth: FormulaTruth) -> None:
         self.edges = (*lasso.stem, *lasso.loop)
         self.truth = truth
         self.back = len(lasso.stem)

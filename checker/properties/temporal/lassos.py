@@ -8,7 +8,7 @@ import numpy as np
 
 from checker.engines.graph import Bools, Numbers
 from checker.properties.temporal.components import Conditions
-from checker.properties.temporal.digraph import Arrows, Rows, rows_of, shortest
+from checker.properties.temporal.digraph import Arrows, Digraph, rows_of, shortest
 
 MOST_ENTRIES: Final = 16
 MOST_EDGES: Final = 1_000_000
@@ -41,7 +41,7 @@ class Component:
 
     nodes: Numbers
     edges: Numbers
-    rows: Rows
+    rows: Digraph
     conditions: Conditions
 
 

@@ -1,15 +1,17 @@
 """Linear time: a short fair run on which a formula is false, if there is one."""
 
 from checker.engines.graph import Bools, Graph
-from checker.properties.temporal.automaton import automaton_of
+from checker.properties.temporal.buchi_automaton import automaton_of
 from checker.properties.temporal.components import Conditions, fair_components
 from checker.properties.temporal.lassos import Lasso, fair_cycles, tightened
 from checker.properties.temporal.product import Product, product_of
-from checker.properties.temporal.truth import Truth
+from checker.properties.temporal.truth import FormulaTruth
 from semantics.properties.temporal import Both, Globally, Temporal
 
 
-def counterexample(graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions) -> Lasso | None:
+def counterexample(
+    graph: Graph, truth: FormulaTruth, formula: Temporal, fairness: Conditions
+) -> Lasso | None:
     """Return a fair run from configuration 0 on which a formula is false; None if there is none.
 
     Conjuncts are decided separately, since their automata are smaller. A run without a loop comes first: it refutes the
@@ -39,7 +41,9 @@ def conjuncts(formula: Temporal) -> list[Temporal]:
     return [formula]
 
 
-def _counterexample(graph: Graph, truth: Truth, formula: Temporal, fairness: Conditions) -> Lasso | None:
+def _counterexample(
+    graph: Graph, truth: FormulaTruth, formula: Temporal, fairness: Conditions
+) -> Lasso | None:
     automaton = automaton_of(formula, claimed=False)
     if not automaton.moves[0]:
         return None

@@ -22,7 +22,7 @@ from semantics.properties.temporal import (
 )
 
 Number = int
-"""The index of a formula in `Formulas.nodes`, in order of construction: the same in each process."""
+"""The index of a formula in `FormulaFactory.nodes`, in order of construction: the same in each process."""
 
 Literal = tuple[Temporal, bool]
 """A formula without temporal operators, and whether it is claimed or denied."""
@@ -31,7 +31,7 @@ FALSE, TRUE = 0, 1
 
 
 @dataclass(frozen=True, slots=True)
-class Operation:
+class NormalFormula:
     """`lit`, `and`, `or`, `next`, `until` or `release`, with its operands."""
 
     operator: str
@@ -40,13 +40,15 @@ class Operation:
 
 
 @dataclass(slots=True)
-class Formulas:
+class FormulaFactory:
     """A factory of formulas, which simplifies them on construction."""
 
-    nodes: list[Operation] = field(default_factory=lambda: [Operation("false"), Operation("true")])
-    numbers: dict[Operation, Number] = field(default_factory=dict)
+    nodes: list[NormalFormula] = field(
+        default_factory=lambda: [NormalFormula("false"), NormalFormula("true")]
+    )
+    numbers: dict[NormalFormula, Number] = field(default_factory=dict)
 
-    def _number(self, operation: Operation) -> Number:
+    def _number(self, operation: NormalFormula) -> Number:
         if operation not in self.numbers:
             self.numbers[operation] = len(self.nodes)
             self.nodes.append(operation)
@@ -59,7 +61,7 @@ class Formulas:
                 return self.literal(inner, not claimed)
             case Now(Always(value)):
                 return TRUE if value is claimed else FALSE
-        return self._number(Operation("lit", literal=(formula, claimed)))
+        return self._number(NormalFormula("lit", literal=(formula, claimed)))
 
     def both(self, left: Number, right: Number) -> Number:
         """Return a conjunction."""
@@ -96,11 +98,11 @@ class Formulas:
         members = sorted({left, right} - {neutral})
         if len(members) < 2:
             return members[0] if members else neutral
-        return self._number(Operation(operator, tuple(members)))
+        return self._number(NormalFormula(operator, tuple(members)))
 
     def next(self, inner: Number) -> Number:
         """Return `X f`."""
-        return inner if inner in (FALSE, TRUE) else self._number(Operation("next", (inner,)))
+        return inner if inner in (FALSE, TRUE) else self._number(NormalFormula("next", (inner,)))
 
     def until(self, left: Number, right: Number) -> Number:
         """Return `f U g`."""
@@ -109,7 +111,7 @@ class Formulas:
         then = self.nodes[right]
         if left == TRUE and then.operator == "until":  # <> (f U g) is <> g
             return self.until(TRUE, then.operands[1])
-        return self._number(Operation("until", (left, right)))
+        return self._number(NormalFormula("until", (left, right)))
 
     def release(self, left: Number, right: Number) -> Number:
         """Return `f R g`."""
@@ -118,7 +120,7 @@ class Formulas:
         then = self.nodes[right]
         if left == FALSE and then.operator == "release":  # [] (f R g) is [] g
             return self.release(FALSE, then.operands[1])
-        return self._number(Operation("release", (left, right)))
+        return self._number(NormalFormula("release", (left, right)))
 
     def normal(self, formula: Temporal, claimed: bool = True) -> Number:
         """Return the negation normal form of a formula, or of its negation.

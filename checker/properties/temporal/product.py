@@ -7,10 +7,10 @@ import numpy as np
 
 from checker.engines.graph import Bools, Graph, Numbers
 from checker.limits import look
-from checker.properties.temporal.automaton import Automaton, Move
+from checker.properties.temporal.buchi_automaton import BuchiAutomaton, Move
 from checker.properties.temporal.components import Conditions
 from checker.properties.temporal.digraph import leaving
-from checker.properties.temporal.truth import Truth, is_about_steps
+from checker.properties.temporal.truth import FormulaTruth, is_about_steps
 from semantics.properties.temporal import Taken
 
 
@@ -55,7 +55,7 @@ class Product:
         return Conditions((*kept, *fair.recurrent), fair.strong)
 
 
-def product_of(graph: Graph, automaton: Automaton, truth: Truth) -> Product:
+def product_of(graph: Graph, automaton: BuchiAutomaton, truth: FormulaTruth) -> Product:
     """Return the product, breadth-first from configuration 0 and the automaton's first state."""
     return _Search(graph, automaton, truth).run()
 
@@ -83,8 +83,8 @@ class _Search:
     """A node's code is its configuration times the number of states, plus the state."""
 
     graph: Graph
-    automaton: Automaton
-    truth: Truth
+    automaton: BuchiAutomaton
+    truth: FormulaTruth
     found: list[_Found] = field(default_factory=list)
     prefix: tuple[int, ...] | None = None
 

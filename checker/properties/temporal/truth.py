@@ -44,7 +44,7 @@ def _row(number: int, c: Configuration, wanted: Iterable[Proposition]) -> list[b
 
 
 @dataclass(eq=False)
-class Truth:
+class FormulaTruth:
     """The truth of formulas on a graph.
 
     Attributes:

@@ -11,16 +11,16 @@ from typing import Final, cast
 
 from checker.engines.graph import Graph
 from checker.limits import BoundMet
-from checker.properties.subformulas import Formula, Part, at, few, never_needed, unneeded
-from checker.properties.temporal.automaton import TooLargeError
+from checker.properties.subformulas import Formula, Subformula, at, few, never_needed, unneeded
 from checker.properties.temporal.branching import Branching
+from checker.properties.temporal.buchi_automaton import AutomatonTooLargeError
 from checker.properties.temporal.components import Conditions, fair_components
 from checker.properties.temporal.digraph import shortest
 from checker.properties.temporal.effort import Exhausted
 from checker.properties.temporal.evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso, component_of, fair_cycle, tightened
 from checker.properties.temporal.linear import conjuncts, counterexample
-from checker.properties.temporal.truth import Truth
+from checker.properties.temporal.truth import FormulaTruth
 from semantics.properties.property import Ranges
 from semantics.properties.propositions import Always, Not, Or
 from semantics.properties.temporal import Denied, Either, Globally, Now, OnAllPaths, Temporal
@@ -61,7 +61,7 @@ def is_judged(graph: Graph) -> bool:
     return len(graph.targets) <= MOST_EDGES
 
 
-def judge_linear(truth: Truth, formula: Temporal, fairness: Conditions, ranges: Ranges) -> Judged:
+def judge_linear(truth: FormulaTruth, formula: Temporal, fairness: Conditions, ranges: Ranges) -> Judged:
     """Return the judgement on a formula that all fair runs of a complete graph satisfy."""
     graph, held = truth.graph, set(conjuncts(formula))
 
@@ -98,19 +98,19 @@ def judge_branching(tree: Branching, formula: Temporal, ranges: Ranges) -> Judge
 # --- unneeded parts -------------------------------------------------------------------------------------------
 
 
-def _remarks(truth: Truth, formula: Temporal, ranges: Ranges, trials: _Trials) -> tuple[str, ...]:
+def _remarks(truth: FormulaTruth, formula: Temporal, ranges: Ranges, trials: _Trials) -> tuple[str, ...]:
     """Return the remarks on parts, as far as bounds allow."""
     found = list(_never_begun(truth, formula))
     if found:
         return tuple(found)
     try:
         found.extend(_remark(truth, formula, *each) for each in unneeded(formula, ranges, trials.holds))
-    except (Exhausted, TooLargeError, BoundMet):
+    except (Exhausted, AutomatonTooLargeError, BoundMet):
         trials.left = 0
     return few(found)
 
 
-def _never_begun(truth: Truth, formula: Temporal) -> Iterator[str]:
+def _never_begun(truth: FormulaTruth, formula: Temporal) -> Iterator[str]:
     """Yield a remark if the condition of an implication is never true; this needs no decision."""
     match formula:
         case Globally(Either(Denied(condition), conclusion)) | OnAllPaths(
@@ -120,7 +120,7 @@ def _never_begun(truth: Truth, formula: Temporal) -> Iterator[str]:
                 yield f"vacuous: '{condition}' is never true, so that '{conclusion}' is never needed"
 
 
-def _remark(truth: Truth, formula: Temporal, around: Part, part: Part) -> str:
+def _remark(truth: FormulaTruth, formula: Temporal, around: Subformula, part: Subformula) -> str:
     said = never_needed(around, part)
     conditions = [_condition_before(formula, path) for path in part.paths]
     if all(each is not None and _is_never(truth, each) for each in conditions):
@@ -141,7 +141,7 @@ def _condition_before(formula: Temporal, path: tuple[int, ...]) -> Temporal | No
     return None
 
 
-def _is_never(truth: Truth, condition: Temporal) -> bool:
+def _is_never(truth: FormulaTruth, condition: Temporal) -> bool:
     true = truth.everywhere(condition)
     return true is not None and not true.any()
 
@@ -149,20 +149,20 @@ def _is_never(truth: Truth, condition: Temporal) -> bool:
 # --- an interesting witness -----------------------------------------------------------------------------------
 
 
-def _witness(truth: Truth, failed: list[Temporal], fairness: Conditions) -> Lasso | None:
+def _witness(truth: FormulaTruth, failed: list[Temporal], fairness: Conditions) -> Lasso | None:
     """Return a run on which all of some formulas are false; else the shortest one found for a single formula."""
     try:
         wanted = reduce(Either, failed, cast("Temporal", Now(Always(False))))
         found = _run_against(truth, wanted, fairness)
         if found is not None:
             return found
-    except TooLargeError:
+    except AutomatonTooLargeError:
         pass
     runs = (_run_against(truth, each, fairness) for each in failed)
     return min((run for run in runs if run is not None), key=len, default=None)
 
 
-def _run_against(truth: Truth, formula: Temporal, fairness: Conditions) -> Lasso | None:
+def _run_against(truth: FormulaTruth, formula: Temporal, fairness: Conditions) -> Lasso | None:
     found = counterexample(truth.graph, truth, formula, fairness)
     return None if found is None else _continued(truth.graph, found, fairness)
 

@@ -19,7 +19,7 @@ from semantics.state.parcel_serialization import parcel_json
 from semantics.state.parcels import Parcel
 from semantics.state.partition import Parting, parted, station_of
 from semantics.state.physical_model import InTransit
-from semantics.timing.actor_clocks import Clock, Sort
+from semantics.timing.actor_clocks import ActorClock, Sort
 
 TEXT = (
     (
@@ -123,7 +123,7 @@ def test_a_vehicle_is_aloft_from_when_the_other_station_says_that_it_was_sent(do
     run = timed("gcs1", vehicles=())
     run.turn(0.0, seen("uav0", WEST, 0.0, "stations"))
     run.turn(350.0, reports=[Underway("uav0", 350.0, "east0", done)])
-    (since,) = run.state.timers.since[Clock(Sort.ALOFT, "uav0")]
+    (since,) = run.state.timers.since[ActorClock(Sort.ALOFT, "uav0")]
     assert since == done
     run.turn(800.0, seen("uav0", EAST, 800.0, "stations"), reports=[Underway("uav0", 800.0, "", 700.0)])
     assert run.findings == []  # the station that commands it tells of it

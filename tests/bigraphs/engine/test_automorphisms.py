@@ -3,8 +3,8 @@
 import pytest
 
 from bigraphs.engine.automorphisms import symmetries
+from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.patterns import compile_pattern
-from bigraphs.engine.world import World
 from bigraphs.notation import read_system
 
 CONTROLS = "ctrl R = 0; atomic ctrl A = 1; atomic ctrl B = 1; atomic ctrl M = 2;"
@@ -15,7 +15,7 @@ def count(rule):
     text = f"{CONTROLS} big start = {{x}}; react r = {rule}; begin brs init start; rules = [ {{r}} ]; end"
     system = read_system(text)
     (found,) = system.rules()
-    world = World(system.signature, ("x",), 1, sharing=False)
+    world = InternTables(system.signature, ("x",), 1, sharing=False)
     return len(symmetries(found, compile_pattern(world, found.redex)))
 
 

@@ -10,10 +10,10 @@ from bigraphs.algebra import lean
 from bigraphs.bigraph import Node, assemble
 from bigraphs.decomposition import take_apart
 from bigraphs.engine.contexts import ConditionCheck, without_idle
+from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.patterns import compile_pattern
 from bigraphs.engine.search import Matcher
-from bigraphs.engine.state import make_state
-from bigraphs.engine.world import World
+from bigraphs.engine.state_arrays import make_state
 from bigraphs.matching import find_matches
 from bigraphs.notation import read_big
 from bigraphs.signature import Control, Signature
@@ -37,7 +37,7 @@ def with_holes(context):
 
 def checks(redex, target, pattern, where):
     """Yield for each match what the engine says of a condition, and the match."""
-    world = World(SIGNATURE, target.outer_names, target.regions, sharing=False)
+    world = InternTables(SIGNATURE, target.outer_names, target.regions, sharing=False)
     state = make_state(world, target)
     check = ConditionCheck(world, Condition(True, pattern, where))
     found = {each.nodes: each for each in Matcher(world, compile_pattern(world, redex)).find(state)}

@@ -8,14 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bigraphs.algebra import lean
-from bigraphs.canonical import canonical
+from bigraphs.canonical_form import canonical
 from bigraphs.engine.automorphisms import symmetries
 from bigraphs.engine.forms import Forms
+from bigraphs.engine.intern_tables import InternTables, has_sharing
 from bigraphs.engine.machine import Machine
 from bigraphs.engine.patterns import compile_pattern
 from bigraphs.engine.search import Matcher
-from bigraphs.engine.state import make_state
-from bigraphs.engine.world import World, has_sharing
+from bigraphs.engine.state_arrays import make_state
 from bigraphs.notation import read_system
 
 
@@ -26,7 +26,7 @@ def test_what_a_form_knows_is_what_each_of_its_rules_says(rules):
         tidy = forms.tidy(rule)
         assert tidy == replace(rule, redex=canonical(lean(rule.redex)), reactum=canonical(lean(rule.reactum)))
         shared = any(map(has_sharing, (tidy.redex, tidy.reactum)))
-        world = World(SIGNATURE, (), 1, sharing=shared)
+        world = InternTables(SIGNATURE, (), 1, sharing=shared)
         pattern = compile_pattern(world, tidy.redex)
         assert forms.symmetries(tidy, pattern) == symmetries(tidy, pattern)
 
@@ -34,7 +34,7 @@ def test_what_a_form_knows_is_what_each_of_its_rules_says(rules):
 @given(st.lists(solid_rules(), min_size=1, max_size=4), grounds(max_nodes=6, controls=PLAIN))
 def test_plans_of_a_form_find_what_plans_of_ones_own_find(rules, target):
     def world():
-        return World(SIGNATURE, target.outer_names, target.regions, sharing=False)
+        return InternTables(SIGNATURE, target.outer_names, target.regions, sharing=False)
 
     shared = world()
     for rule in rules:

@@ -1,6 +1,6 @@
 """The queue of states that wait: packed ones come back as they were."""
 
-from bigraphs.engine.frontier import BLOCK, Waiting
+from bigraphs.engine.frontier import BLOCK, Frontier
 from bigraphs.engine.machine import Machine
 from bigraphs.engine.occurrences import Spot
 from bigraphs.examples import example_text
@@ -35,7 +35,7 @@ def test_a_spot_is_remade_from_its_parts():
 
 def test_what_waits_comes_out_in_order_packed_or_not():
     machine, (first, *_) = spots(WALK)
-    waiting, lengths = Waiting(first), []
+    waiting, lengths = Frontier(first), []
     for number in range(3 * BLOCK + 7):
         spot = Spot(first.state, machine.index)
         spot.lost = number

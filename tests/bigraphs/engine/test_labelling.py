@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 from bigraphs.algebra import atom, close, ion, lean, merge, nest
 from bigraphs.bigraph import Node, assemble, normal
-from bigraphs.canonical import equal
+from bigraphs.canonical_form import equal
+from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.labelling import Labelling
-from bigraphs.engine.state import make_state
-from bigraphs.engine.world import World
-from bigraphs.relations import from_relations
+from bigraphs.engine.state_arrays import make_state
+from bigraphs.relational_bigraphs import from_relations
 
 SMALL = grounds(max_nodes=5, max_edges=3, controls=("A", "B", "U"), names=("x",), sharing=True)
 
@@ -20,7 +20,7 @@ SMALL = grounds(max_nodes=5, max_edges=3, controls=("A", "B", "U"), names=("x",)
 def keys(*bigraphs):
     """Return the canonical keys of bigraphs with one outer face, in one world."""
     first = bigraphs[0]
-    world = World(first.signature, first.outer_names, first.regions, sharing=True)
+    world = InternTables(first.signature, first.outer_names, first.regions, sharing=True)
     labelling = Labelling(world)
     return [labelling.canonical(make_state(world, each)) for each in bigraphs]
 

@@ -7,14 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bigraphs.algebra import atom, ion, nest
-from bigraphs.canonical import canonical
-from bigraphs.engine.contexts import Surroundings
+from bigraphs.canonical_form import canonical
+from bigraphs.engine.contexts import PlaceContexts
 from bigraphs.engine.decoding import from_key, to_bigraph
+from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.reactions import Reaction
+from bigraphs.engine.reactions import CompiledReaction
 from bigraphs.engine.rule_index import ReactionIndex
-from bigraphs.engine.state import bits, make_state
-from bigraphs.engine.world import World
+from bigraphs.engine.state_arrays import bits, make_state
 from bigraphs.errors import BigraphError
 from bigraphs.matching import find_matches
 from bigraphs.rewriting import rewrite
@@ -23,9 +23,9 @@ from bigraphs.system import Rule
 
 def results(rule, target):
     """Return what the engine makes of a target, canonical."""
-    world = World(SIGNATURE, target.outer_names, target.regions, sharing=False)
-    reaction, state = Reaction(world, rule, 0), make_state(world, target)
-    around = Surroundings(state, passive=True)
+    world = InternTables(SIGNATURE, target.outer_names, target.regions, sharing=False)
+    reaction, state = CompiledReaction(world, rule, 0), make_state(world, target)
+    around = PlaceContexts(state, passive=True)
     return {
         canonical(to_bigraph(reaction.apply(state, found)[0].finish()))
         for found in reaction.matcher.find(state)
@@ -54,8 +54,8 @@ def or_orphan(code, made):
     solid_rules(sharing=True, max_nodes=2, copies=False), grounds(max_nodes=5, controls=PLAIN, sharing=True)
 )
 def test_rules_on_shared_places_make_something_that_the_algebra_makes_too(rule, target):
-    world = World(SIGNATURE, target.outer_names, target.regions, sharing=True)
-    reaction, state = Reaction(world, rule, 0), make_state(world, target)
+    world = InternTables(SIGNATURE, target.outer_names, target.regions, sharing=True)
+    reaction, state = CompiledReaction(world, rule, 0), make_state(world, target)
     rule, algebra = reaction.rule, {}  # in canonical form, as the numbers of its nodes in occurrences
     for match in find_matches(rule.redex, target):
         links = dict(match.links)
@@ -71,8 +71,8 @@ def test_rules_on_shared_places_make_something_that_the_algebra_makes_too(rule, 
 
 @given(st.lists(solid_rules(), min_size=1, max_size=3), grounds(max_nodes=6, controls=PLAIN), st.data())
 def test_occurrences_carried_along_a_run_are_those_found_afresh(rules, target, data):
-    world = World(SIGNATURE, target.outer_names, target.regions, sharing=False)
-    reactions = [Reaction(world, rule, number) for number, rule in enumerate(rules)]
+    world = InternTables(SIGNATURE, target.outer_names, target.regions, sharing=False)
+    reactions = [CompiledReaction(world, rule, number) for number, rule in enumerate(rules)]
     index = ReactionIndex(reactions)
     spot = Spot(make_state(world, target), index)
     for _ in range(4):
@@ -91,8 +91,8 @@ def test_occurrences_carried_along_a_run_are_those_found_afresh(rules, target, d
 
 @given(solid_rules(), grounds(max_nodes=7, controls=PLAIN))
 def test_a_rewritten_state_is_the_one_that_its_key_tells(rule, target):
-    world = World(SIGNATURE, target.outer_names, target.regions, sharing=False)
-    reaction, state = Reaction(world, rule, 0), make_state(world, target)
+    world = InternTables(SIGNATURE, target.outer_names, target.regions, sharing=False)
+    reaction, state = CompiledReaction(world, rule, 0), make_state(world, target)
     for found in reaction.matcher.find(state):
         made = reaction.apply(state, found)[0].finish()
         again = from_key(world, made.key())

@@ -6,13 +6,13 @@ from engine_strategies import solid_rules
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.machine import Machine
 from bigraphs.engine.occurrences import Spot
-from bigraphs.engine.reactions import Reaction
+from bigraphs.engine.reactions import CompiledReaction
 from bigraphs.engine.rule_index import ReactionIndex
 from bigraphs.engine.search import Matcher
-from bigraphs.engine.state import make_state
-from bigraphs.engine.world import World
+from bigraphs.engine.state_arrays import make_state
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system
 
@@ -27,8 +27,8 @@ COUNTERS = """
 
 @given(st.lists(solid_rules(), min_size=1, max_size=6), grounds(max_nodes=6, controls=PLAIN))
 def test_every_rule_that_occurs_is_possible_and_they_keep_their_order(rules, target):
-    world = World(SIGNATURE, target.outer_names, target.regions, sharing=False)
-    reactions = [Reaction(world, rule, number) for number, rule in enumerate(rules)]
+    world = InternTables(SIGNATURE, target.outer_names, target.regions, sharing=False)
+    reactions = [CompiledReaction(world, rule, number) for number, rule in enumerate(rules)]
     state = make_state(world, target)
     index = ReactionIndex(reactions)
     possible = index.possible(state)

@@ -12,11 +12,11 @@ from naive_matching import naive_matches
 
 from bigraphs.algebra import atom, close, ion, merge, nest
 from bigraphs.bigraph import assemble
-from bigraphs.engine.contexts import Surroundings
+from bigraphs.engine.contexts import PlaceContexts
+from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.patterns import check_solid, compile_pattern
 from bigraphs.engine.search import Matcher
-from bigraphs.engine.state import make_state
-from bigraphs.engine.world import World
+from bigraphs.engine.state_arrays import make_state
 from bigraphs.errors import BigraphError
 from bigraphs.matching import find_matches
 
@@ -25,10 +25,10 @@ SLOT, ONE = merge(1), merge(0)
 
 def engine_matches(redex, target, *, sharing=False):
     """Return (nodes, links) of every occurrence, twins in order."""
-    world = World(SIGNATURE, target.outer_names, target.regions, sharing=sharing)
+    world = InternTables(SIGNATURE, target.outer_names, target.regions, sharing=sharing)
     pattern = compile_pattern(world, redex)
     state = make_state(world, target)
-    around = Surroundings(state, passive=True)
+    around = PlaceContexts(state, passive=True)
     names = [*target.outer_names, *range(target.edges)]
     found = Matcher(world, pattern).find(state)
     assert len(set(found)) == len(found)
@@ -93,7 +93,7 @@ def test_occurrences_are_those_of_a_sat_solver(redex, target):
 
 @given(solid_redexes(max_nodes=3), targets(max_nodes=7), st.data())
 def test_what_is_found_at_touched_nodes_is_what_has_one_of_them(redex, target, data):
-    world = World(SIGNATURE, target.outer_names, target.regions, sharing=False)
+    world = InternTables(SIGNATURE, target.outer_names, target.regions, sharing=False)
     matcher = Matcher(world, compile_pattern(world, redex))
     state = make_state(world, target)
     touched = data.draw(st.integers(0, (1 << len(target.nodes)) - 1))

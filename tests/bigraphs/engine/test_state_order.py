@@ -4,19 +4,19 @@ from bigraph_strategies import PLAIN, grounds, shuffled
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bigraphs.canonical import canonical
+from bigraphs.canonical_form import canonical
 from bigraphs.engine import state_order
 from bigraphs.engine.decoding import to_bigraph
+from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.labelling import Labelling
-from bigraphs.engine.state import make_state
+from bigraphs.engine.state_arrays import make_state
 from bigraphs.engine.state_order import Outlines
-from bigraphs.engine.world import World
 from bigraphs.notation import read_system
 
 
 def first_of(bigraphs, names=("x", "y")):
     """Return the state that comes first in a world that sees these in order, canonical."""
-    world = World(bigraphs[0].signature, names, bigraphs[0].regions, sharing=True)
+    world = InternTables(bigraphs[0].signature, names, bigraphs[0].regions, sharing=True)
     states = [make_state(world, each) for each in bigraphs]
     return canonical(to_bigraph(states[Outlines(Labelling(world)).least(states)]))
 

@@ -2,7 +2,7 @@
 
 from collections import deque
 
-from bigraphs.canonical import canonical
+from bigraphs.canonical_form import canonical
 from bigraphs.rewriting import successors
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scale import examples
 
 from bigraphs.algebra import parallel, substitution
-from bigraphs.canonical import canonical
+from bigraphs.canonical_form import canonical
 from bigraphs.examples import example_text
 from bigraphs.notation import read_big, read_system
 

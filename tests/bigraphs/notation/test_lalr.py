@@ -12,9 +12,9 @@ from scale import examples
 from bigraphs.examples import example_names, example_text
 from bigraphs.notation import lalr
 from bigraphs.notation.bgm import parser as bgm
-from bigraphs.notation.big.build import Build
+from bigraphs.notation.big.build_syntax import Build
 from bigraphs.notation.big.parser import GRAMMAR, OPTIONS, make_parser, tables
-from bigraphs.notation.lalr import Span, Unread, kept_tables
+from bigraphs.notation.lalr import ParsingStopped, Span, kept_tables
 
 TEXTS = [example_text(name) for name in example_names()]
 
@@ -44,7 +44,7 @@ def read_by_tables(text, start="model", by=None):
     build = Build(text)
     try:
         return outcome(build, (by or tables()).read(text, start, build))
-    except Unread:
+    except ParsingStopped:
         return None
 
 
@@ -177,7 +177,7 @@ def test_words_of_bigmc_in_any_order_are_read_or_refused_as_by_lark(words, betwe
     try:
         expected = built(bgm._Build(text), bgm.make_parser().parse(text, start="file"))
     except UnexpectedInput:
-        with pytest.raises(Unread):
+        with pytest.raises(ParsingStopped):
             bgm.tables().read(text, "file", bgm._Build(text))
         return
     assert repr(bgm.tables().read(text, "file", bgm._Build(text))) == repr(expected)

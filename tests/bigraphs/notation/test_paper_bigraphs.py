@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bigraphs.algebra import close, placing
-from bigraphs.canonical import equal
+from bigraphs.canonical_form import equal
 from bigraphs.errors import BigraphError, NotationError
 from bigraphs.interface import Interface
 from bigraphs.notation.paper_bigraphs import read_bigraph, read_rule, write_bigraph, write_rule

@@ -8,7 +8,7 @@ import pytest
 
 from checker import Engine, explore
 from checker.engines.contract import Progress
-from checker.engines.estimate import MOST, Estimate, estimate
+from checker.engines.estimate import MOST, SizeEstimate, estimate
 from specs.elaboration import load_mission
 
 MISSIONS = Path(__file__).parents[3] / "specs" / "missions"
@@ -80,10 +80,10 @@ def test_a_range_that_says_nothing_is_not_told():
 
 
 def test_seconds_left_follow_from_rate_and_frontier():
-    progress = Progress(1_000, 3_000, 9, 100, 50.0, Estimate(1_000, 1_400))
+    progress = Progress(1_000, 3_000, 9, 100, 50.0, SizeEstimate(1_000, 1_400))
     assert progress.left == (2.0, 10.0)
     assert Progress(1_000, 3_000, 9, 100, 50.0).left is None
-    assert Progress(1_000, 3_000, 9, 100, 0.0, Estimate(1_000, 1_400)).left is None
+    assert Progress(1_000, 3_000, 9, 100, 0.0, SizeEstimate(1_000, 1_400)).left is None
 
 
 @pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])

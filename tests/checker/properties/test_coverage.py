@@ -7,7 +7,7 @@ from mission_texts import missions
 from scale import examples
 
 from checker import Engine, Limits, check, explore
-from checker.properties.coverage import Tally, coverage
+from checker.properties.coverage import CoverageCount, coverage
 from checker.properties.visited import Visited
 from checker.reports.report import coverage_json, coverage_text
 from semantics.successors import expand
@@ -48,7 +48,11 @@ react {
 
 def test_what_every_run_reaches_has_no_gap():
     found = covered(agent("control(MOVE_HOST_TO gate0)\nobserve(ALL)"))
-    assert (found.statements, found.branches, found.clauses) == (Tally(2, 2), Tally(0, 0), Tally(0, 0))
+    assert (found.statements, found.branches, found.clauses) == (
+        CoverageCount(2, 2),
+        CoverageCount(0, 0),
+        CoverageCount(0, 0),
+    )
     assert (found.lines, found.unreached, found.gaps) == ((FIRST + 1, FIRST + 2), (), ())
 
 
@@ -62,7 +66,7 @@ react {
 @pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
 def test_an_after_branch_is_covered_where_the_wait_may_end(engine):
     found = covered(agent(WAITS), engine=engine)
-    assert (found.branches, found.gaps) == (Tally(2, 2), ())
+    assert (found.branches, found.gaps) == (CoverageCount(2, 2), ())
 
 
 IN_TIME = """BigActor a hosted_at uav0 with_behavior {
@@ -90,7 +94,7 @@ def test_an_after_branch_that_is_never_taken_is_told_at_its_line(engine):
 def test_a_case_that_is_never_taken_is_told_at_its_line_and_what_lies_within_is_not_told_again():
     assert gaps(agent(LOOKS)) == [(4, "this case is never taken"), (6, "this case is never taken")]
     found = covered(agent(LOOKS))
-    assert (found.statements, found.branches) == (Tally(3, 4), Tally(1, 3))
+    assert (found.statements, found.branches) == (CoverageCount(3, 4), CoverageCount(1, 3))
     assert found.unreached == (FIRST + 3, FIRST + 5)
 
 
@@ -130,13 +134,13 @@ def test_what_was_passed_before_a_computation_failed_was_passed():
         (3, "this condition is never false"),
         (6, "this is never reached"),
     ]
-    assert found.statements == Tally(3, 4)
+    assert found.statements == CoverageCount(3, 4)
 
 
 def test_loops_are_reached_with_what_they_begin_with():
     body = "loop {\nloop {\nobserve(ALL)\nreact {\ncase o => skip\n}\n}\n}"
     found = covered(agent(body))
-    assert (found.statements, found.gaps) == (Tally(4, 4), ())
+    assert (found.statements, found.gaps) == (CoverageCount(4, 4), ())
 
 
 RULE = "rule {}(u: UAV, b: Location) {{ u || b.$0 -> b.(u | $0) }}\n"
@@ -144,7 +148,7 @@ RULE = "rule {}(u: UAV, b: Location) {{ u || b.$0 -> b.(u | $0) }}\n"
 
 def test_a_rule_that_no_control_names_is_told():
     text = RULE.format("land") + RULE.format("leave") + agent("control(land(uav0, gate0))")
-    assert covered(text).rules == Tally(1, 2)
+    assert covered(text).rules == CoverageCount(1, 2)
     assert gaps(text) == [(2, "rule 'leave' is never used")]
 
 
@@ -166,7 +170,7 @@ def test_a_clause_of_the_environment_that_never_comes_about_is_told():
         agent("observe(ALL)") + 'environment {\nspill0 vanishes\nuav1 drifts among gate0\nsays "x" to a\n}\n'
     )
     found = covered(text)
-    assert found.clauses == Tally(2, 3)
+    assert found.clauses == CoverageCount(2, 3)
     assert gaps(text) == [(5, "this never happens")]
 
 

@@ -12,7 +12,7 @@ from checker import Engine, Outcome, check
 from checker.check import reductions_of
 from semantics.properties.propositions import Instances
 from specs.diagnostics import MissionError
-from specs.elaboration.formulas import Formulas
+from specs.elaboration.formulas import FormulaElaborator
 
 WORLD = """
 signature {
@@ -84,7 +84,7 @@ def both(properties):
     for patched in ({"_size": lambda *_: None}, {}):
         with pytest.MonkeyPatch.context() as patch:
             for name, instead in patched.items():
-                patch.setattr(Formulas, name, instead)
+                patch.setattr(FormulaElaborator, name, instead)
             found.append(load(f"{WORLD}\ncheck {{ {properties} }}", ""))
     return found
 

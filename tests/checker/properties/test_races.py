@@ -903,12 +903,12 @@ def remembering_everything(c):
         for module, name in (
             (monitor, "heirs"),
             (stepping, "heirs"),
-            (monitor, "told_ever"),
-            (extension, "told_ever"),
+            (monitor, "possible_receivers"),
+            (extension, "possible_receivers"),
         ):
             patch.setattr(module, name, lambda *_: frozenset({ANY}))
         for module in (monitor, stepping):
-            patch.setattr(module, "told_by", lambda *_: ALL)
+            patch.setattr(module, "communicated_variables", lambda *_: ALL)
         patch.setattr(stepping, "uses_host", lambda *_: True)
         return first_races(c)
 

@@ -8,7 +8,7 @@ from checked_missions import load
 from timed_missions import with_timing
 
 from checker import Engine, check
-from checker.properties.schedule import Moments
+from checker.properties.schedule import EventDates
 from checker.reports.times import times_json, times_text
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
@@ -51,14 +51,14 @@ def test_each_flight_has_its_interval_its_beginnings_and_its_ends(known):
         "uav0 flies at 18 m/s to 25 m/s (line 7)",
     )
     assert there.takes == Interval(1, 6)
-    assert there.begins == Moments(0, 2)
-    assert there.ends == Moments(1, 8)
-    assert back.begins == Moments(1, 9)
-    assert back.ends == Moments(2, 15)
+    assert there.begins == EventDates(0, 2)
+    assert there.ends == EventDates(1, 8)
+    assert back.begins == EventDates(1, 9)
+    assert back.ends == EventDates(2, 15)
 
 
 def test_a_time_property_has_its_first_and_its_last_moment(known):
-    assert [(each.name, each.moments) for each in known.milestones] == [("there", Moments(1, 8))]
+    assert [(each.name, each.moments) for each in known.milestones] == [("there", EventDates(1, 8))]
 
 
 def test_the_table_has_a_line_for_each(known):

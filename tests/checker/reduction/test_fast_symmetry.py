@@ -156,6 +156,6 @@ def test_a_paranoid_check_compares_representatives(reductions):
 
 def test_a_paranoid_check_notices_what_does_not_represent(monkeypatch):
     loaded = mission(LOOKS, 3, LATE)
-    monkeypatch.setattr("checker.reduction.symmetry.Symmetry.representative", lambda _, c: c)
+    monkeypatch.setattr("checker.reduction.symmetry.MissionSymmetry.representative", lambda _, c: c)
     with pytest.raises(Disagreement):
         verdicts(loaded, Engine.FAST, keeping=Keeping(doubted=30))

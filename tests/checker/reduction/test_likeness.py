@@ -15,9 +15,9 @@ from test_symmetry import swarm, swarms
 
 from checker import Engine, Limits, explore
 from checker.engines.fast.interchangeable import Likeness
-from checker.engines.fast.recording import Ask
-from checker.engines.fast.rule_cache import Exchange, Lesson, Lessons, NoImage, Stage
-from checker.reduction.renaming import Renaming
+from checker.engines.fast.recording import ColumnQuestion
+from checker.engines.fast.rule_cache import Exchange, Lesson, Lessons, LessonStage, NoImage
+from checker.reduction.configuration_renaming import Renaming
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Nodes, agent_key
 from semantics.state.cells import is_
@@ -116,12 +116,15 @@ SWAP = Exchange(frozenset(), unordered=True).then("b", "d")
     ("ask", "image"),
     [
         (
-            Ask(("parent", "b"), None, is_, ("room0", "d")),
-            Ask(("parent", "d"), None, is_, ("room0", "b")),
+            ColumnQuestion(("parent", "b"), None, is_, ("room0", "d")),
+            ColumnQuestion(("parent", "d"), None, is_, ("room0", "b")),
         ),
-        (Ask(("mailbox", "a"), (0, "b")), Ask(("mailbox", "a"), (0, "d"))),
+        (ColumnQuestion(("mailbox", "a"), (0, "b")), ColumnQuestion(("mailbox", "a"), (0, "d"))),
         # who is hosted somewhere, as an observation says of an agent
-        (Ask(("mailbox", "a"), (0, agent_key("b"))), Ask(("mailbox", "a"), (0, agent_key("d")))),
+        (
+            ColumnQuestion(("mailbox", "a"), (0, agent_key("b"))),
+            ColumnQuestion(("mailbox", "a"), (0, agent_key("d"))),
+        ),
     ],
 )
 def test_a_question_is_renamed_in_all_that_it_is_about(ask, image):
@@ -149,7 +152,7 @@ def test_a_word_that_is_displayed_may_not_be_a_name():
         SWAP.shown("at b")
 
 
-CODE, STORE, LINKS = Ask(("code", "a")), Ask(("store", "a")), ("channels", "a")
+CODE, STORE, LINKS = ColumnQuestion(("code", "a")), ColumnQuestion(("store", "a")), ("channels", "a")
 NOTHING = Lesson(0, (), frozenset(), {}, {}, frozenset())
 
 
@@ -159,15 +162,15 @@ def found(lessons, answers, links=()):
 
 def test_what_follows_from_the_same_answers_is_known():
     lessons = Lessons()
-    lessons.learn([Stage((), CODE, (1,)), Stage((), STORE, ()), Stage(())], NOTHING)
+    lessons.learn([LessonStage((), CODE, (1,)), LessonStage((), STORE, ()), LessonStage(())], NOTHING)
     assert found(lessons, {CODE: (1,), STORE: ()}) is NOTHING
     assert found(lessons, {CODE: (2,)}) is None
 
 
 def test_two_that_differ_in_what_is_never_written_may_ask_differently():
     lessons, other = Lessons(), replace(NOTHING, flags=1)
-    lessons.learn([Stage(((LINKS, ("wifi",)),), CODE, (1,)), Stage(())], NOTHING)
-    lessons.learn([Stage(((LINKS, ()),))], other)
+    lessons.learn([LessonStage(((LINKS, ("wifi",)),), CODE, (1,)), LessonStage(())], NOTHING)
+    lessons.learn([LessonStage(((LINKS, ()),))], other)
     assert found(lessons, {CODE: (1,)}, ("wifi",)) is NOTHING
     assert found(lessons, {}) is other
     assert found(lessons, {}, ("mesh",)) is None
@@ -176,9 +179,9 @@ def test_two_that_differ_in_what_is_never_written_may_ask_differently():
 @pytest.mark.parametrize("stages", [[CODE], [STORE, CODE], [], [CODE, STORE, LINKS]])
 def test_one_that_asks_in_another_order_is_learned_apart(stages):
     lessons, answers = Lessons(), {CODE: (1,), STORE: ()}
-    lessons.learn([Stage((), CODE, (1,)), Stage((), STORE, ()), Stage(())], NOTHING)
-    asked = [Stage((), ask, answers.get(ask)) for ask in stages]
-    lessons.learn([*asked, Stage(())], replace(NOTHING, flags=1))
+    lessons.learn([LessonStage((), CODE, (1,)), LessonStage((), STORE, ()), LessonStage(())], NOTHING)
+    asked = [LessonStage((), ask, answers.get(ask)) for ask in stages]
+    lessons.learn([*asked, LessonStage(())], replace(NOTHING, flags=1))
     assert found(lessons, answers) is NOTHING
 
 

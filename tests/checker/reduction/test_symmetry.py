@@ -16,9 +16,9 @@ from shipped import UNTIMED
 from checker import Keeping, Limits, Outcome, Reduction, RefusedError, check, explore
 from checker.check import reductions_of
 from checker.reduction import Reduced
+from checker.reduction.configuration_renaming import Renaming
 from checker.reduction.footprint_check import Drift
-from checker.reduction.renaming import Renaming
-from checker.reduction.symmetry import Symmetry
+from checker.reduction.symmetry import MissionSymmetry
 from checker.traces import replay, to_json
 from semantics import Scheduler, control
 from semantics.properties.propositions import HasPending, Inside
@@ -85,7 +85,7 @@ def test_reductions_that_are_suggested_are_sound(body, sound):
 
 
 def classes(loaded):
-    return [each.names for each in Symmetry(loaded.initial).classes]
+    return [each.names for each in MissionSymmetry(loaded.initial).classes]
 
 
 def test_robots_that_start_in_one_place_and_run_one_behaviour_are_interchangeable():
@@ -152,14 +152,14 @@ REFUSED = {
 def test_it_is_refused_with_the_reason(why):
     arguments, reason = REFUSED[why]
     with pytest.raises(RefusedError, match="the reduction 'symmetry' is refused") as refused:
-        Symmetry(mission(**arguments).initial)
+        MissionSymmetry(mission(**arguments).initial)
     assert reason in str(refused.value)
 
 
 def test_it_is_refused_where_a_property_names_one_of_them():
     initial = mission(LOOKS).initial
     with pytest.raises(RefusedError, match="a property tells them apart: robot1 in room0"):
-        Symmetry(initial, [Inside("robot1", "room0")])
+        MissionSymmetry(initial, [Inside("robot1", "room0")])
 
 
 def test_it_is_refused_where_what_observations_rest_on_is_remembered():
@@ -170,21 +170,21 @@ def test_it_is_refused_where_what_observations_rest_on_is_remembered():
 def test_a_property_of_all_of_them_tells_nobody_apart():
     asked = 'invariant "a": forall r: Robot . not (r in gcs0) reachable "b": exists r: Robot . r in room0'
     loaded = mission(LOOKS, rest=f"check {{ {asked} }}")
-    assert Symmetry(loaded.initial, [each.formula for each in loaded.properties]).classes
+    assert MissionSymmetry(loaded.initial, [each.formula for each in loaded.properties]).classes
 
 
 def test_containers_are_not_exchanged_since_the_smallest_is_found_by_name():
     text = swarm(LOOKS, robots=1).replace("kind Station\n", "kind Station\n  kind Raft contains Robot\n")
     rafts = "".join(f"  raft{i}: Raft = circle (37.00, -8.70) radius 9 m\n" for i in range(2))
     with pytest.raises((RefusedError, Exception), match=r"may contain others|raft0"):
-        Symmetry(load(text.replace("}\ndef", f"{rafts}}}\ndef"), "").initial)
+        MissionSymmetry(load(text.replace("}\ndef", f"{rafts}}}\ndef"), "").initial)
 
 
 @pytest.mark.parametrize("name", UNTIMED)
 def test_nothing_in_the_missions_that_ship_is_exchanged_without_being_alike(name):
     initial = load_mission(MISSIONS / f"{name}.mission").initial
     with suppress(RefusedError):
-        assert equivariant(initial, Symmetry(initial), most=60)
+        assert equivariant(initial, MissionSymmetry(initial), most=60)
 
 
 # --- what stands for what -------------------------------------------------------------------------------------
@@ -317,7 +317,7 @@ def swarms(draw):
 @examples(12)
 def test_generated_swarms_are_equivariant_and_found_alike(text):
     initial = load(text, "").initial
-    symmetry = Symmetry(initial)
+    symmetry = MissionSymmetry(initial)
     assert equivariant(initial, symmetry, most=80)
     formulas = [HasPending("base"), Inside("gcs0", "room0")]
     full, whole = everything(initial, formulas, most=700)
@@ -395,7 +395,7 @@ def test_both_reductions_together_visit_least(control):
 
 def test_robots_of_a_chain_are_not_interchangeable():
     with pytest.raises(RefusedError, match="nothing in the mission is interchangeable"):
-        Symmetry(load_mission(MISSIONS / "rendezvous.mission").initial)
+        MissionSymmetry(load_mission(MISSIONS / "rendezvous.mission").initial)
 
 
 # --- what is put off ------------------------------------------------------------------------------------------

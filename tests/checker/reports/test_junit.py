@@ -20,7 +20,7 @@ from mission_results import (
 
 from checker import Bound, Report, Stop
 from checker.reports.junit import junit_text
-from checker.reports.results import Result, clean
+from checker.reports.results import CheckResult, clean
 
 
 def suites(*results):
@@ -51,7 +51,7 @@ def test_a_mission_is_a_suite_and_a_property_is_a_case():
 
 
 def test_a_suite_has_the_time_of_its_exploration_and_the_document_that_of_all():
-    given = [Result("a", "a", Report((), 1, 0, 0, seconds=seconds)) for seconds in (1.25, 0.5004)]
+    given = [CheckResult("a", "a", Report((), 1, 0, 0, seconds=seconds)) for seconds in (1.25, 0.5004)]
     root = ET.fromstring(junit_text(given).encode())
     assert [each.get("time") for each in (root, *root)] == ["1.750", "1.250", "0.500"]
 
@@ -82,7 +82,7 @@ def test_what_was_cut_off_is_an_error_and_never_a_pass():
 
 def test_a_bound_that_no_verdict_tells_of_is_an_error_of_its_own():
     report = Report((), 1, 0, 0, (Bound(Stop.INTERRUPTION),))
-    case = cases(Result("m", "m", report, check_line=3))["exploration incomplete"]
+    case = cases(CheckResult("m", "m", report, check_line=3))["exploration incomplete"]
     assert (case[0].tag, case[0].get("type"), case.get("line")) == ("error", "incomplete", "3")
 
 

@@ -6,7 +6,7 @@ import pytest
 from checked_missions import WORLD, load, moves, start, verdict, violation
 
 from checker import Trace
-from checker.reports.comparison import Pair, compare, comparison_text
+from checker.reports.comparison import AlignedSteps, compare, comparison_text
 from checker.reports.lanes import LeftOut, Repetition, bounded, folded, lanes_of_trace, lanes_text, steps_of
 from checker.steps import candidates
 from semantics.state.configuration import Label
@@ -94,7 +94,7 @@ OTHER = ("req_ctr : a", "req_ctr : b", "actuate : CTR(b", "actuate : CTR(a")
 def test_two_traces_part_at_the_first_step_that_differs_and_are_aligned_after_it():
     found = compare(follow(RACE, *ONE), follow(RACE, *OTHER))
     assert found.shared == 2
-    assert found.pairs == (Pair(None, 3), Pair(3, 4), Pair(4, None))
+    assert found.pairs == (AlignedSteps(None, 3), AlignedSteps(3, 4), AlignedSteps(4, None))
     assert [str(each) for each in found.ends] == [
         "L  uav0 : gate0 ↦ south0",
         "P  uav0 : in gate0 ↦ in south0",
@@ -119,13 +119,13 @@ def test_a_trace_is_the_same_as_itself_and_parts_from_a_longer_one_at_its_end():
     one, longer = follow(RACE, *ONE[:3]), follow(RACE, *ONE)
     assert list(comparison_text(one, one, ("x", "y")))[-1] == "they are the same: 3 steps"
     assert compare(one, longer).shared == 3
-    assert compare(one, longer).pairs == (Pair(None, 4),)
+    assert compare(one, longer).pairs == (AlignedSteps(None, 4),)
 
 
 def test_of_long_traces_only_so_many_steps_are_aligned(monkeypatch):
     monkeypatch.setattr("checker.reports.comparison.MOST_ALIGNED", 1)
     found = compare(follow(RACE, *ONE), follow(RACE, *OTHER))
-    assert (found.pairs, found.beyond) == ((Pair(3, None), Pair(None, 3)), (1, 1))
+    assert (found.pairs, found.beyond) == ((AlignedSteps(3, None), AlignedSteps(None, 3)), (1, 1))
 
 
 def test_two_ways_to_one_end_end_alike():

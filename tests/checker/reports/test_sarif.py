@@ -24,7 +24,7 @@ from mission_results import (
 )
 
 from checker import check
-from checker.reports.results import Result, clean
+from checker.reports.results import CheckResult, clean
 from checker.reports.sarif import RULES, artifact, sarif_json
 from checker.reports.source_lines import step_lines, violation_line
 from specs.elaboration import load_mission
@@ -165,7 +165,7 @@ def test_the_schema_refuses_what_is_not_so(changed):
 def test_the_three_steps_of_a_race_are_essential_and_say_what_they_are():
     mission = load_mission(ROOT / "tests" / "corpus" / "violated" / "stale_message.mission")
     report = check(mission.initial, mission.properties, SPARE)
-    said = sarif_json([Result("stale_message", "stale_message.mission", report)], "1")
+    said = sarif_json([CheckResult("stale_message", "stale_message.mission", report)], "1")
     VALIDATOR.validate(said)
     (found,) = (each for each in said["runs"][0]["results"] if "stale" in each["message"]["text"])
     steps = found["codeFlows"][0]["threadFlows"][0]["locations"]
@@ -214,4 +214,4 @@ def test_an_invariant_is_about_no_single_statement():
 
 
 def test_a_property_that_nobody_wrote_belongs_to_the_check_section():
-    assert {Result("m", "m", check_line=9).line_of(each) for each in cut_off().report.verdicts} == {9}
+    assert {CheckResult("m", "m", check_line=9).line_of(each) for each in cut_off().report.verdicts} == {9}

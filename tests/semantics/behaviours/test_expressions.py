@@ -7,12 +7,12 @@ import pytest
 from semantics.behaviours.expressions import (
     OPERATORS,
     Apply,
-    Either,
+    EvaluationScope,
     Fault,
     Literal,
     RouteOf,
-    Scope,
     SetOf,
+    ShortCircuit,
     TupleOf,
     Variable,
     evaluate,
@@ -25,7 +25,7 @@ SEEN = Observation.of(("base", "u0"), ("a",), (Parent("u0", "base"), Linked("w",
 
 
 def value(expression, **store):
-    return evaluate(expression, Scope("me", "u0", store, {}, {"u0": "Uav", "base": "Place"}, {}))
+    return evaluate(expression, EvaluationScope("me", "u0", store, {}, {"u0": "Uav", "base": "Place"}, {}))
 
 
 def of(operator, *values):
@@ -92,10 +92,10 @@ def test_an_operator_gives_a_value_or_a_fault_of_anything(name, wrong):
 
 def test_and_and_or_stop_where_the_first_decides():
     broken = Apply("first", (Literal(frozenset()),))
-    assert value(Either(True, Literal(Truth.TRUE), broken)) is Truth.TRUE
-    assert value(Either(False, Literal(Truth.FALSE), broken)) is Truth.FALSE
+    assert value(ShortCircuit(True, Literal(Truth.TRUE), broken)) is Truth.TRUE
+    assert value(ShortCircuit(False, Literal(Truth.FALSE), broken)) is Truth.FALSE
     with pytest.raises(Fault):
-        value(Either(False, Literal(Truth.TRUE), broken))
+        value(ShortCircuit(False, Literal(Truth.TRUE), broken))
 
 
 def test_numbers_are_bounded():

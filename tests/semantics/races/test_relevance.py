@@ -12,12 +12,12 @@ from semantics.races.relevance import (
     HEARD,
     SLOTS,
     anybodys,
+    communicated_variables,
     heirs,
     meet,
     questions_of,
     relevant,
     slots_of,
-    told_by,
 )
 from semantics.state.requests import CTR
 
@@ -119,7 +119,7 @@ def test_the_slots_of_a_redex_are_among_what_its_agent_may_ask():
 
 
 def told(statements, code):
-    return told_by(Program(tuple(statements), {}, COMMANDS), code)
+    return communicated_variables(Program(tuple(statements), {}, COMMANDS), code)
 
 
 def test_nobody_is_told_of_what_only_decides():

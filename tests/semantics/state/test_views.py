@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from scale import examples
 
-from checker.engines.fast.recording import Recorder
+from checker.engines.fast.recording import CellRecorder
 from semantics import successors
 from semantics.state.cells import Written
 from semantics.state.logical_model import LogicalModel, parent_cell
@@ -53,7 +53,7 @@ def test_a_view_that_says_otherwise_is_another(configuration):
 @examples(5)
 def test_a_view_is_not_compared_within_a_rule(configuration):
     logical = configuration.structure.logical
-    recorder = Recorder(None, configuration.state, lambda _: True, frozenset())
+    recorder = CellRecorder(None, configuration.state, lambda _: True, frozenset())
     for cells in (recorder, Written(configuration, {})):
         within = LogicalModel(cells, logical.sorting)
         with pytest.raises(TypeError, match="compared within a rule"):

@@ -4,14 +4,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bigraphs.canonical import canonical, equal
+from bigraphs.canonical_form import canonical, equal
 from bigraphs.errors import NotationError
 from bigraphs.exploration import explore
 from bigraphs.notation import read_bgm
 from bigraphs.notation.bgm.parser import parse_bgm
 from bigraphs.notation.bgm.syntax import Hole, ModelLine, Prefix
 from bigraphs.notation.codes import CODES
-from bigraphs.properties import Compare, Not, Scope, Situation, Size, Terminal, holds
+from bigraphs.properties import Compare, Not, Size, StateContext, StateScope, TerminalState, holds
 from bigraphs.rewriting import successors
 
 LOCKS = """
@@ -95,12 +95,12 @@ def test_properties_hold_in_situations():
     system = read_bgm(LOCKS)
     small = read_bgm("%active room : 0; room;").initial
     never_empty, shrinks, stuck = (each.formula for each in system.properties)
-    here = Situation(system.initial, successors=tuple(steps(system, system.initial)))
+    here = StateContext(system.initial, successors=tuple(steps(system, system.initial)))
     assert holds(never_empty, here)
-    assert not holds(never_empty, Situation(small))
+    assert not holds(never_empty, StateContext(small))
     assert holds(shrinks, here)
-    assert not holds(shrinks, Situation(system.initial, predecessors=(small,)))
-    assert not holds(stuck, Situation(small))
+    assert not holds(shrinks, StateContext(system.initial, predecessors=(small,)))
+    assert not holds(stuck, StateContext(small))
     assert holds(stuck, here)
 
 
@@ -109,17 +109,17 @@ def test_scopes_speak_of_the_states_around():
     system = read_bgm(text)
     one, two = system.initial, read_bgm("%active a : 0; a.a").initial
     before, after = (each.formula for each in system.properties)
-    assert holds(before, Situation(one))
-    assert not holds(before, Situation(two))
-    assert holds(before, Situation(one, successors=(two,)))
-    assert holds(after, Situation(one, predecessors=(two,)))
+    assert holds(before, StateContext(one))
+    assert not holds(before, StateContext(two))
+    assert holds(before, StateContext(one, successors=(two,)))
+    assert holds(after, StateContext(one, predecessors=(two,)))
 
 
 def test_comparisons_and_negations_are_formulas():
     system = read_bgm("%active a : 0; a; %property p !terminal(); %property q $pred->size() < 3;")
     assert [each.formula for each in system.properties] == [
-        Not(Terminal()),
-        Compare("<", Size(Scope.PREDECESSOR), 3),
+        Not(TerminalState()),
+        Compare("<", Size(StateScope.PREDECESSOR), 3),
     ]
 
 

@@ -6,7 +6,7 @@ from bigraph_strategies import SIGNATURE, bigraphs, grounds, redexes
 from hypothesis import strategies as st
 
 from bigraphs.algebra import lean
-from bigraphs.canonical import canonical
+from bigraphs.canonical_form import canonical
 from bigraphs.interface import Interface
 from bigraphs.notation.big.solidity import faults, pattern_of
 from bigraphs.notation.big.systems import bigraphs_of

@@ -3,11 +3,11 @@ from bigraph_strategies import SIGNATURE, bigraphs
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bigraphs.canonical import equal
+from bigraphs.canonical_form import equal
 from bigraphs.errors import BigraphError, NotationError
 from bigraphs.notation.big.expression_of import write_big
 from bigraphs.notation.big.fragments import read_big, read_theory
-from bigraphs.relations import from_relations
+from bigraphs.relational_bigraphs import from_relations
 from bigraphs.rewriting import successors
 
 THEORY = """

@@ -3,12 +3,12 @@ import math
 import pytest
 from big_files import mistakes, read, rules, system
 
-from bigraphs.canonical import equal
+from bigraphs.canonical_form import equal
 from bigraphs.errors import NotationError
 from bigraphs.exploration import explore
 from bigraphs.matching import find_matches
 from bigraphs.notation import read_big, read_system, write_system
-from bigraphs.system import Action, Position, SystemKind, Where
+from bigraphs.system import Action, SourcePosition, SystemKind, Where
 
 
 def test_a_rule_has_its_sides_map_and_conditions():
@@ -23,7 +23,7 @@ def test_a_rule_has_its_sides_map_and_conditions():
     signature = rule.redex.signature
     assert equal(rule.redex, read_big("A || A", signature))
     assert equal(rule.conditions[0].pattern, read_big("A.Z{x}", signature))
-    assert rule.position == Position(2, 7)
+    assert rule.position == SourcePosition(2, 7)
 
 
 def test_parameters_range_over_sets_ranges_and_single_values():

@@ -7,7 +7,7 @@ from system_strategies import canonical_system, systems
 
 from bigraphs.errors import BigraphError
 from bigraphs.notation import read_system, write_system
-from bigraphs.properties import Property, Terminal
+from bigraphs.properties import SystemProperty, TerminalState
 
 SMALL = """
 ctrl A = 0;
@@ -54,7 +54,7 @@ def test_a_written_system_has_a_line_for_each_rule_with_its_parameters():
 def test_what_cannot_be_written_is_refused():
     system = read_system(SMALL)
     with pytest.raises(BigraphError, match="no way to write properties"):
-        write_system(replace(system, properties=(Property("p", Terminal()),)))
+        write_system(replace(system, properties=(SystemProperty("p", TerminalState()),)))
     ((rule, *_),) = (each.rules for each in system.classes)
     constant = replace(rule, link_constants=frozenset({"x"}))
     with pytest.raises(BigraphError, match="names of a rule that stand for themselves"):

@@ -8,8 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier, BrokenBarrierError
 from typing import Any
 
+from checker.engines.cluster.cluster_worker import Worker
 from checker.engines.cluster.crew import LostError
-from checker.engines.cluster.worker import Worker
 from semantics.state.configuration import Configuration
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from checker import Engine, explore
-from checker.engines.cluster.keys import Keys
+from checker.engines.cluster.row_keys import Keys
 from checker.engines.cluster.shard import Shard
 from specs.elaboration import load_mission
 

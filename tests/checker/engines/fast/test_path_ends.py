@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scale import examples
 
 from checker.engines.fast.loops import njit
-from checker.engines.fast.path_ends import BLOCK, WORD, Paths, begin_row, end_of, lead_on
+from checker.engines.fast.path_ends import BLOCK, WORD, SearchPaths, begin_row, end_of, lead_on
 from checker.engines.fast.path_ends import intern as number_of
 from checker.engines.fast.tree_compression import MOST
 from checker.reduction import cycle_proviso
@@ -52,7 +52,7 @@ def searches(draw):
 
 def compared(search, apart, room):
     """Compare both, with rows that lie so many apart and room for all sets, or for none of paths made shorter."""
-    known, kept = cycle_proviso.Paths(), Paths(3, 2)
+    known, kept = cycle_proviso.Paths(), SearchPaths(3, 2)
     kept.reserve(apart * len(search) + 1)
     if not room:
         for onward, _ in search:
@@ -81,6 +81,6 @@ def test_paths_end_where_those_of_the_reference_end(search, apart, room):
 
 @pytest.mark.parametrize(("agents", "kind"), [(255, np.uint8), (256, np.uint16)])
 def test_who_moved_last_takes_as_many_bytes_as_numbers_of_agents_need(agents, kind):
-    kept = Paths(agents, 1)
+    kept = SearchPaths(agents, 1)
     kept.reserve(10)
     assert kept.trails.movers.dtype == kind

@@ -1,9 +1,9 @@
 """What is noted of a rule's reads, and what is not."""
 
 from checker.engines.fast.columns import packing
-from checker.engines.fast.learner import Actor, CodedSource, Learner
+from checker.engines.fast.learner import CodedSource, Learner, TransitionGroup
 from checker.engines.fast.leaves import PAIR, STEP, WRITES, WRITES_END
-from checker.engines.fast.recording import Ask, Edited, Recorder
+from checker.engines.fast.recording import CellRecorder, ColumnQuestion, Edited
 from checker.engines.fast.trees import UNKNOWN
 from semantics.behaviours.observations import All, Observation
 from semantics.behaviours.program import Program
@@ -31,7 +31,7 @@ class Source:
 
 
 def recorder(*queue):
-    return Recorder(Source(queue), Row.of({}), lambda _: True, frozenset({"uav0"}))
+    return CellRecorder(Source(queue), Row.of({}), lambda _: True, frozenset({"uav0"}))
 
 
 def values(found):
@@ -42,7 +42,7 @@ def values(found):
 def test_the_answer_to_a_question_is_all_that_is_noted():
     found = recorder(B, A)
     assert found.ask(QUEUE, first_of, "a") == ((1, A),)
-    assert found.scopes[0].asked == {Ask(QUEUE, None, first_of, ("a",)): ((1, A),)}
+    assert found.scopes[0].asked == {ColumnQuestion(QUEUE, None, first_of, ("a",)): ((1, A),)}
 
 
 def test_what_is_edited_is_not_read():
@@ -60,13 +60,13 @@ def test_who_looks_at_an_edit_reads_what_was_there():
     assert after.ask(QUEUE, first_of, "b") == ((0, B),)
     assert after.edited(QUEUE, appended, A) == (B, A)
     assert after != found.with_({QUEUE: found.edited(QUEUE, without, 0)})
-    assert values(found) == [Ask(QUEUE)]
+    assert values(found) == [ColumnQuestion(QUEUE)]
 
 
 def test_where_observations_stand_an_edit_reads():
     found = recorder(B)
     assert found.edited(QUEUE, appended, SAID) == (B, SAID)
-    assert values(found) == [Ask(QUEUE)]
+    assert values(found) == [ColumnQuestion(QUEUE)]
 
 
 def test_what_is_written_unread_over_what_was_always_there_is_learned_again_when_that_varies():
@@ -86,7 +86,8 @@ def test_what_is_written_unread_over_what_was_always_there_is_learned_again_when
         return CodedSource(learner.columns, where, words)
 
     keeps, changes = (
-        learner.tree(Actor(writes(value), agent)) for value, agent in (("first", "a"), ("other", "b"))
+        learner.tree(TransitionGroup(writes(value), agent))
+        for value, agent in (("first", "a"), ("other", "b"))
     )
     learner.learn(keeps, source())
     assert int(learner.trees.root.room[keeps]) < 0

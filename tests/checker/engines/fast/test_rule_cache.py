@@ -3,7 +3,7 @@
 import pytest
 
 from checker.engines.fast.rule_cache import Exchange, NoImage
-from checker.reduction.renaming import Renaming
+from checker.reduction.configuration_renaming import Renaming
 from semantics.behaviours.values import Text, show
 from semantics.state.configuration import Label
 

@@ -14,9 +14,9 @@ from timed_missions import with_timing
 from timed_models import ENDURANCE, EQUAL, agree, found_by_tchecker, questions, timed_verdicts, written
 
 from checker import check
-from checker.engines.zones.automaton import Automaton, Constraint, Edge, Location
-from checker.engines.zones.search import Search
+from checker.engines.zones.timed_automaton import Constraint, Edge, Location, TimedAutomaton
 from checker.engines.zones.uppaal import uppaal_text
+from checker.engines.zones.zone_search import Search
 from checker.verdicts import Outcome
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
@@ -42,7 +42,7 @@ def verdict_of(text):
             for each in filter(None, text.split(" && "))
         ]
 
-    automaton, numbers, invariants = Automaton(), {}, {}
+    automaton, numbers, invariants = TimedAutomaton(), {}, {}
     every = tuple(automaton.clock(1 << 20, 1 << 20) for _ in clocks)
     query = nta.findtext("queries/query/formula")
     for location in template.findall("location"):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from checker.engines.graph import Graph
 from checker.properties.temporal.digraph import rows_of
 from checker.properties.temporal.fairness import conditions_of
-from checker.properties.temporal.truth import Truth
+from checker.properties.temporal.truth import FormulaTruth
 from semantics.properties.propositions import Always, Known
 from semantics.properties.temporal import (
     Both,
@@ -69,7 +69,7 @@ def truths(draw, most=4):
 def valued(graph, chance):
     values = {each: [chance.random() < 0.5 for _ in range(graph.size)] for each in (P, Q)}
     values |= {Always(value): [value] * graph.size for value in (False, True)}
-    return Truth(graph, {each: np.array(row, dtype=np.bool_) for each, row in values.items()})
+    return FormulaTruth(graph, {each: np.array(row, dtype=np.bool_) for each, row in values.items()})
 
 
 fairnesses = st.builds(

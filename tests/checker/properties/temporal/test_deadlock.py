@@ -9,9 +9,9 @@ from scale import examples
 
 from checker import Engine, Limits, check, explore
 from checker.properties.temporal.deadlock import Deadlocks
-from checker.properties.temporal.decide import Decider
+from checker.properties.temporal.decide import TemporalDecider
 from checker.properties.temporal.linear import counterexample
-from checker.properties.temporal.truth import Truth
+from checker.properties.temporal.truth import FormulaTruth
 from checker.reduction import Reduction
 from checker.verdicts import Outcome
 from semantics.properties.propositions import Known
@@ -33,12 +33,12 @@ FAIRNESS = st.sampled_from(
 def test_there_is_a_deadlock_where_linear_time_says_that_a_fair_run_stays_for_ever(c, fairness):
     found = explore(c, limits=Limits(configurations=400), edges=True)
     assume(found.complete)
-    decider = Decider(found, [])
+    decider = TemporalDecider(found, [])
     conditions = decider.conditions(fairness)
     deadlocks = Deadlocks(decider.graph, conditions, decider.stuck)
     stuck = np.array([still and decider.stuck(n) is not None for n, still in enumerate(deadlocks.still())])
     here = Known("stuck")
-    truth = Truth(decider.graph, {here: stuck})
+    truth = FormulaTruth(decider.graph, {here: stuck})
     stays = Eventually(Globally(Now(here)))
     run = counterexample(decider.graph, truth, Denied(stays), conditions)
     assert bool(deadlocks.found()) == (run is not None)
@@ -49,7 +49,7 @@ def test_there_is_a_deadlock_where_linear_time_says_that_a_fair_run_stays_for_ev
 def test_without_fairness_there_is_one_wherever_there_is_one_by_definition(c):
     found = explore(c, limits=Limits(configurations=400), edges=True)
     assume(found.complete)
-    decider = Decider(found, [])
+    decider = TemporalDecider(found, [])
     deadlocks = Deadlocks(decider.graph, decider.conditions(()), decider.stuck)
     ends = np.zeros(found.size, np.bool_)
     for each in deadlocks.found():

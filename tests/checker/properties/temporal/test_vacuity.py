@@ -25,7 +25,7 @@ from test_decide import ONCE, THERE_AND_BACK, verdict
 
 from checker import Engine, Outcome, check
 from checker.limits import Bound, BoundMet, Stop
-from checker.properties.subformulas import Part, at, strengthened, unneeded
+from checker.properties.subformulas import Subformula, at, strengthened, unneeded
 from checker.properties.temporal import vacuity
 from checker.properties.temporal.branching import Branching
 from checker.properties.temporal.linear import counterexample
@@ -113,9 +113,9 @@ def body(name):
 
 def test_the_body_of_a_quantifier_is_one_part_in_all_places():
     formula = Both(Both(Both(body("uav0"), body("uav1")), Now(P)), Now(Q))
-    found = {part.formula: part for part in Part(formula).parts(RANGES)}
+    found = {part.formula: part for part in Subformula(formula).parts(RANGES)}
     assert len(found) == 4  # of other operands beside it, it is none
-    (part,) = Part(Both(body("uav0"), body("uav1"))).parts(RANGES)
+    (part,) = Subformula(Both(body("uav0"), body("uav1"))).parts(RANGES)
     assert part.paths == ((0,), (1,))
     (either,) = part.parts(RANGES)
     condition, _ = either.parts(RANGES)

@@ -1,0 +1,340 @@
+"""Partial-order reduction in compiled loops: `checker.reduction.ample` on packed rows and footprints.
+
+Each row first chooses its ample set. The loop makes the successors in that set, and those that the visibility check
+needs. Separate decision trees list the actors of a row. Disturbance between two footprints is computed at its first
+use.
+"""
+
+# mypy: disable-error-code="return-value, assignment, arg-type"
+# numba types these functions; mypy would read their integers as Python's
+
+from typing import Any
+
+import numpy as np
+
+from checker.engines.fast.actor_tables import (
+    AGENTS_OWN,
+    EVERYBODY,
+    FAIR,
+    GOING_ON,
+    KINDS,
+    MEMBER,
+    MOST_HERE,
+    NOBODY_LEFT,
+    RECORD,
+    TRIED,
+    UNKNOWN,
+    Members,
+    meet,
+)
+from checker.engines.fast.bits import WORD, add, has
+from checker.engines.fast.kernel import (
+    AT,
+    EXPANDED,
+    FULL,
+    KEPT,
+    NODE,
+    SIZE,
+    WORDS,
+    LearnedModel,
+    State,
+    SuccessorBatch,
+    add_row,
+    code_at,
+)
+from checker.engines.fast.loops import inner, njit
+from checker.engines.fast.path_ends import Trails, begin_row, end_of, lead_on
+from checker.engines.fast.persistent import find_set
+from checker.engines.fast.row_successors import list_steps, make, make_representative, without_repetitions
+from checker.engines.fast.table import Words, bits_for, entry_of, find
+from checker.engines.fast.tree_compression import NO_ROOM, FoldedTable, intern, unfold
+
+
+@inner(cache=True)
+def is_seen(m: LearnedModel, r: Members, here: Words, target: Words, to: int, width: int) -> bool:
+    """Return whether a proposition may differ between a row and its successor."""
+    asked = False
+    for j in range(width):
+        changed = here[j] ^ target[to + j]
+        if changed & r.seen_whole[j]:
+            return True
+        asked = asked or (changed & r.seen_masks[j]) != np.uint64(0)
+    if asked:
+        for k in range(len(r.seen) // 2):
+            column, begin = r.seen[2 * k], r.seen[2 * k + 1]
+            before = r.answers[begin + code_at(here, 0, m.columns, column)]
+            if before != r.answers[begin + code_at(target, to, m.columns, column)]:
+                return True
+    return False
+
+
+@inner(cache=True)
+def attribute(r: Members, batch: SuccessorBatch, count: int, wide: int) -> None:
+    """Note the actor of each transition of a row, by its position among the row's actors."""
+    for word in range(wide):
+        r.owners[word] = r.inside[word] = r.whole[word] = np.uint64(0)
+    for k in range(count):
+        r.whose[k] = r.place[r.step_actor[batch.steps[k]]]
+        add(r.owners, 0, r.whose[k])
+
+
+@inner(cache=True)
+def is_ample(
+    m: LearnedModel,
+    r: Members,
+    f: FoldedTable | None,
+    here: Words,
+    batch: SuccessorBatch,
+    count: int,
+    at: int,
+    state: State,
+) -> int:
+    """Return 1 if the set is ample: its steps are invisible and one of them is fair; 0 if not, or UNKNOWN."""
+    width, fair = state[WORDS], np.int64(0)
+    for k in range(count):
+        if has(r.sets, at, r.whose[k]):
+            if not make(m, r, f, here, batch, k, state):
+                return UNKNOWN
+            if r.visible[k] == 0:  # visibility concerns the successor, not its representative
+                seen = is_seen(m, r, here, batch.words, k * width, width)
+                r.visible[k] = 2 if seen else 1
+            if r.visible[k] == 2:
+                return 0
+            fair |= r.step_flags[batch.steps[k]] & FAIR
+    return fair
+
+
+@njit(cache=True, inline="always")
+def part_at(r: Members, k: int) -> int:
+    """Return the part to which an actor of a row belongs."""
+    return np.int64(r.part[r.actors[RECORD * r.here[k] + MEMBER]])
+
+
+@inner(cache=True)
+def ignores(r: Members, sets: Words, at: int, wide: int) -> bool:
+    """Return whether a set has an enabled actor that was not chosen and whose part no step of the path takes."""
+    for word in range(wide):
+        left = sets[at + word] & r.owners[word] & ~r.inside[word]
+        for bit in range(WORD if left else 0):
+            if (left >> np.uint64(bit)) & np.uint64(1) and not has(r.taken, 0, part_at(r, WORD * word + bit)):
+                return True
+    return False
+
+
+@inner(cache=True)
+def let_join(r: Members, actors: int, wide: int, at: int) -> None:
+    """Add a set to the chosen actors; mark a part as taken if the set has all its actors."""
+    r.more[:] = np.uint64(0)
+    for j in range(actors):
+        if has(r.sets, at, j):
+            add(r.more, 0, part_at(r, j))
+    for j in range(actors):
+        if not has(r.sets, at, j):
+            part = part_at(r, j)
+            r.more[part >> 6] &= ~(np.uint64(1) << np.uint64(part & 63))
+    for word in range(len(r.taken)):
+        r.taken[word] |= r.more[word]
+    for word in range(wide):
+        r.inside[word] |= r.sets[at + word]
+
+
+@inner(cache=True)
+def join(
+    m: LearnedModel,
+    r: Members,
+    x: Any,
+    d: Any,
+    trails: Trails,
+    f: FoldedTable | None,
+    here: Words,
+    words: Words,
+    table: Any,
+    batch: SuccessorBatch,
+    count: int,
+    actors: int,
+    at: int,
+    state: State,
+) -> int:
+    """Add a set if it is ample and has an ignored actor (cycle proviso).
+
+    Returns:
+        A transition of the set whose successor's path does not return to this row. If there is none: NOBODY_LEFT if no
+        enabled actor is ignored any more, else GOING_ON. UNKNOWN if something is not learned yet.
+    """
+    kept, row, wide = state[KEPT], state[AT], (actors + WORD - 1) // WORD
+    if not ignores(r, r.sets, at, wide):
+        return GOING_ON
+    ample = is_ample(m, r, f, here, batch, count, at, state)
+    if ample <= 0:
+        return UNKNOWN if ample == UNKNOWN else GOING_ON
+    let_join(r, actors, wide, at)
+    bits = np.uint32(bits_for(len(table)))
+    for k in range(count):
+        if has(r.sets, at, r.whose[k]):
+            if x is not None and not make_representative(m, r, x, d, f, here, batch, k, state):
+                return UNKNOWN
+            number = find(words, table, batch.kept, k, batch.hashes[k], kept, bits)
+            if number < 0:
+                return k
+            r.more[:] = np.uint64(0)
+            if end_of(trails, number, r.more) != row:
+                return k
+            if x is None:  # an exchange renames actors along the path
+                for word in range(len(r.taken)):
+                    r.taken[word] |= r.more[word]
+    return GOING_ON if ignores(r, r.owners, 0, wide) else NOBODY_LEFT
+
+
+@inner(cache=True)
+def choose(
+    m: LearnedModel,
+    r: Members,
+    x: Any,
+    d: Any,
+    trails: Trails,
+    f: FoldedTable | None,
+    here: Words,
+    words: Words,
+    table: Any,
+    batch: SuccessorBatch,
+    count: int,
+    state: State,
+) -> int:
+    """Choose the actors to follow, and return a transition on which the path continues (cycle proviso).
+
+    Candidates are the persistent sets around actors of the agent that moved last, then those around the others. Within
+    each group, sets with one step are tried at once, the others by increasing size.
+
+    Returns:
+        The transition, or a code: EVERYBODY, NOBODY_LEFT or UNKNOWN.
+    """
+    if count < 2:
+        return EVERYBODY
+    row = state[AT]
+    actors = meet(m, r, here, state)
+    if actors < 0:
+        return UNKNOWN
+    if actors > MOST_HERE:
+        return EVERYBODY
+    wide = (actors + WORD - 1) // WORD
+    attribute(r, batch, count, wide)
+    r.disturbers[: actors * wide] = np.uint64(0)
+    r.tried[:actors] = 0
+    r.taken[:] = np.uint64(0)
+    mover, found = np.int64(trails.movers[row]) - 1, np.int64(0)
+    for others in range(2):
+        begin = found
+        for k in range(count):
+            seed = np.int64(r.whose[k])
+            agent = np.int64(r.part[r.step_actor[batch.steps[k]]]) // KINDS
+            if (
+                not r.step_flags[batch.steps[k]] & AGENTS_OWN
+                or r.tried[seed]
+                or (agent != mover) != bool(others)
+            ):
+                continue
+            r.tried[seed] = 1
+            size = find_set(r, count, actors, wide, seed, found)
+            if size == TRIED:
+                continue
+            at = found * wide
+            r.sizes[found] = size
+            found += 1
+            if size == 1:
+                r.sizes[found - 1] = TRIED
+                onward = join(m, r, x, d, trails, f, here, words, table, batch, count, actors, at, state)
+                if onward != GOING_ON:
+                    return onward
+        for _ in range(begin, found):
+            least = np.int64(-1)
+            for j in range(begin, found):
+                if r.sizes[j] >= 0 and (least < 0 or r.sizes[j] < r.sizes[least]):
+                    least = j
+            if least < 0:
+                break
+            r.sizes[least] = TRIED
+            onward = join(
+                m, r, x, d, trails, f, here, words, table, batch, count, actors, least * wide, state
+            )
+            if onward != GOING_ON:
+                return onward
+    return EVERYBODY
+
+
+@njit(cache=True)
+def expand_reduced(
+    m: LearnedModel,
+    r: Members,
+    x: Any,
+    d: Any,
+    trails: Trails,
+    words: Words,
+    f: FoldedTable | None,
+    origins: Any,
+    table: Any,
+    batch: SuccessorBatch,
+    until: int,
+    room: int,
+    met: State,
+    counts: State,
+    state: State,
+) -> bool:
+    """Expand rows with ample sets, until row `until` or until `room` rows might be exceeded.
+
+    With symmetry reduction (`x` and `d` of `sorting`, else None), each successor is replaced by its canonical
+    representative. `met` counts every transition, `counts` those that are followed.
+
+    Returns:
+        False if the next row needs something not learned yet, or more room; nothing of that row is then stored.
+    """
+    kept = state[KEPT]
+    bits = np.uint32(bits_for(len(table)))
+    while state[AT] < until and state[SIZE] + len(batch.steps) <= room:
+        row = state[AT]
+        begin_row(trails, row)
+        here = words[row * kept : (row + 1) * kept]
+        if f is not None:
+            unfold(f, words, row)
+            here = f.whole
+        count = list_steps(m, here, batch, state)
+        if count > 0:
+            count = without_repetitions(m, r, f, here, batch, count, state)
+        if count == UNKNOWN:
+            return False
+        onward = np.int64(EVERYBODY)
+        if count:
+            onward = choose(m, r, x, d, trails, f, here, words, table, batch, count, state)
+        known, path = onward != UNKNOWN, np.int64(0)
+        if onward >= 0:
+            path = intern(trails.sets, r.taken, True)
+            if path == NO_ROOM:
+                state[NODE] = FULL
+                known = False
+        for k in range(count if known else 0):
+            if onward == EVERYBODY or has(r.inside, 0, r.whose[k]):
+                if x is None:  # a call would pass all of `Members`
+                    known = known and make(m, r, f, here, batch, k, state)
+                else:
+                    known = known and make_representative(m, r, x, d, f, here, batch, k, state)
+        if not known:
+            return False
+        for k in range(count):
+            step = batch.steps[k]
+            met[step] += 1
+            if onward != EVERYBODY and not has(r.inside, 0, r.whose[k]):
+                continue
+            counts[step] += 1
+            number = find(words, table, batch.kept, k, batch.hashes[k], kept, bits)
+            if number < 0:
+                slot, number = -number - 1, np.int64(state[SIZE])
+                entry = entry_of(batch.hashes[k], number, bits)
+                add_row(words, origins, table, slot, entry, batch.kept, k, row, state)
+                if number == state[SIZE]:  # the limit left it out
+                    continue
+                agent = np.int64(r.part[r.step_actor[step]]) // KINDS
+                trails.movers[number] = agent + 1 if agent < r.agents else 0
+            if k == onward:
+                lead_on(trails, row, number, path)
+        state[AT] += 1
+        state[EXPANDED] = state[AT]
+    return True

@@ -1,0 +1,275 @@
+"""A search through the zones of a timed automaton."""
+
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from checker.engines.fast.arrays import Growing
+from checker.engines.zones import kernel
+from checker.engines.zones.difference_bounds import FREE
+from checker.engines.zones.kernel import (
+    AT,
+    COUNT,
+    COVERED,
+    DEPTH,
+    FOUND,
+    GROUP,
+    GROUPS,
+    LAYER,
+    LONGEST,
+    MISSED,
+    RANK,
+    RANKED,
+    USED,
+)
+from checker.engines.zones.timed_automaton import EDGES, LOCATION, SIZE, UNKNOWN, TimedAutomaton
+
+CHUNK = 1 << 14
+"""Zones kept between two checks of the time."""
+
+
+class Search:
+    """The zones reached from a location and clock values, layer by layer.
+
+    Attributes:
+        automaton: The searched automaton.
+        state: The state of the loops.
+        layers: The first zone of each layer.
+    """
+
+    def __init__(self, automaton: TimedAutomaton, location: int, ages: Sequence[int]) -> None:
+        self.automaton = automaton
+        self.begins, self.sums = Growing(np.int64), Growing(np.int64)
+        self.bounds, self.places, self.following = (Growing(np.int32) for _ in range(3))
+        self.heads, self.groups, self.ranks = (Growing(np.int32) for _ in range(3))
+        self.rows, self.left = Growing(np.int32), Growing(np.int32)
+        self.location, self.ages = location, tuple(ages)
+        self.state = np.zeros(kernel.STATE, np.int64)
+        self._begin()
+
+    def _begin(self) -> None:
+        self.heads.size = self.ranks.size = 0
+        self.state[:] = 0
+        self.state[FOUND], self.state[LONGEST] = -1, FREE
+        self.layers, self._deepest, self._met = [0], 0, 1
+        self._see(1)
+        size = len(self.ages) + 1
+        shown = np.array((0, *self.ages), np.int32)
+        first = np.zeros((self._largest, self._largest), np.int32)
+        first[:size, :size] = shown[:, None] - shown[None, :]
+        kernel.enter(
+            self.model, self.zones, self.state, self.location, first, self._scratch.f, self._scratch.bounds
+        )
+        self._settle()
+
+    # --- searching
+
+    def advance(self, zones: int = CHUNK) -> bool:
+        """Expand zones until so many more are kept; return whether any are left to expand.
+
+        The search ends early after the first layer with the goal.
+        """
+        until = self.count + zones
+        while self._goes_on and self.count < until:
+            why = kernel.advance(self.model, self.zones, self.state, self._largest, until, self._scratch)
+            if why == kernel.FULL:
+                self._see(int(self.state[MISSED]))
+            elif why == kernel.MISS:
+                self.learn()
+                self._see(1)
+            elif self.state[AT] == self.state[LAYER]:
+                self._settle()
+        return self._goes_on
+
+    @property
+    def _goes_on(self) -> bool:
+        return bool(self.state[AT] < self.count) and not 0 <= self.found < len(self.layers) - 1
+
+    def _settle(self) -> None:
+        """Complete the layer under construction, and begin another one."""
+        begin, end = int(self.state[LAYER]), self.count
+        alive = np.flatnonzero(self.following.room[begin:end] != COVERED)
+        rows = self.automaton.rows.room[self.places.room[begin + alive]]
+        order = alive[np.argsort(self.ranks.room[rows], kind="stable")] + begin
+        kernel.arrange(self.model, self.zones, self.state, order)
+        self._deepest, self._met = self.deepest, int(self.state[RANKED])
+        self.state[LAYER] = self.count
+        if self.count > begin:
+            self.state[DEPTH] += 1
+            self.layers.append(self.count)
+
+    def learn(self) -> None:
+        """Work out the edges of reached locations."""
+        raise AssertionError("nobody knows what leads from some location")
+
+    def waiting(self) -> NDArray[np.int64]:
+        """Return the locations of unexpanded zones whose edges are unknown."""
+        reached = np.unique(self.places.room[int(self.state[AT]) : self.count]).astype(np.int64)
+        found: NDArray[np.int64] = reached[self.automaton.locations.used[EDGES::LOCATION][reached] == UNKNOWN]
+        return found
+
+    def again(self) -> None:
+        """Restart the search."""
+        self.automaton.forget()
+        self._begin()
+
+    def finish(self, look: Callable[[], None]) -> None:
+        """Search to the end or to the goal, with periodic checks of the time."""
+        while self.advance():
+            look()
+
+    def _see(self, zones: int) -> None:
+        """Update the loops' view of the automaton, with room for so many more zones."""
+        automaton = self.automaton
+        self._largest = automaton.largest
+        for each in (self.begins, self.sums, self.places, self.following):
+            each.size = self.count
+            each.reserve(zones + CHUNK)
+        self.bounds.size = int(self.state[USED])
+        self.bounds.reserve((zones + 1) * self._largest**2)
+        self.groups.size = GROUP * int(self.state[GROUPS])
+        self.groups.reserve(GROUP * (zones + CHUNK))
+        missing = len(automaton) - len(self.heads)
+        if missing:
+            self.heads.extend(missing, -1)
+            self.left.extend(len(automaton) - len(self.left))
+        rows = int(automaton.rows.used.max(initial=-1)) + 1
+        if rows > len(self.ranks):
+            self.ranks.extend(rows - len(self.ranks), -1)
+            self.rows.reserve(RANK * rows)
+        parts = (
+            automaton.locations,
+            automaton.edges,
+            automaton.tests,
+            automaton.sources,
+            automaton.deadlines,
+        )
+        clocks = (automaton.clocks, automaton.lower, automaton.upper, automaton.rows, self.left)
+        self.model = kernel.CompiledAutomaton._make(each.room for each in (*parts, *clocks))
+        found = (self.bounds, self.begins, self.sums, self.places, self.following, self.heads)
+        self.zones = kernel.Zones(*(each.room for each in (*found, self.ranks, self.rows, self.groups)))
+        shape = (self._largest, self._largest)
+        d, e, f = (np.zeros(shape, np.int32) for _ in range(3))
+        self._scratch = kernel.Scratch(d, e, f, np.zeros((4, 1 + self._largest), np.int32))
+
+    # --- results
+
+    @property
+    def count(self) -> int:
+        """The number of zones."""
+        return int(self.state[COUNT])
+
+    @property
+    def followed(self) -> int:
+        """The number of expanded zones."""
+        return int(self.state[AT])
+
+    @property
+    def found(self) -> int:
+        """The least number of steps to the goal; -1 if it was not found."""
+        return int(self.state[FOUND])
+
+    @property
+    def deepest(self) -> int:
+        """The depth at which the last row was discovered."""
+        return int(self.state[DEPTH]) if self.state[RANKED] > self._met else self._deepest
+
+    @property
+    def order(self) -> NDArray[np.int64]:
+        """The discovered rows: the fewest steps first, then by the rank of the predecessor and the step from there."""
+        return self.rows.room[: RANK * int(self.state[RANKED]) : RANK].astype(np.int64)
+
+    @property
+    def origins(self) -> NDArray[np.int64]:
+        """For each discovered row the rank of its predecessor."""
+        return self.rows.room[1 : RANK * int(self.state[RANKED]) : RANK].astype(np.int64)
+
+    def depth(self, zone: int) -> int:
+        """Return the depth of a zone."""
+        return int(np.searchsorted(self.layers, zone, side="right")) - 1
+
+    def place(self, zone: int) -> int:
+        """Return the location of a zone."""
+        return int(self.places.room[zone])
+
+    def matrix(self, zone: int) -> NDArray[np.int32]:
+        """Return the matrix of a zone."""
+        size = int(self.automaton.locations.room[LOCATION * self.place(zone) + SIZE])
+        begin = int(self.begins.room[zone])
+        return self.bounds.room[begin : begin + size * size].reshape(size, size)
+
+    def by_place(self) -> dict[int, NDArray[np.int64]]:
+        """Return the zones of each location."""
+        places = self.places.room[: self.count]
+        order = np.argsort(places, kind="stable")
+        met, begins = np.unique(places[order], return_index=True)
+        return dict(zip(met.tolist(), np.split(order, begins[1:]), strict=True))
+
+    def __iter__(self) -> Iterator[tuple[int, NDArray[np.int32]]]:
+        return ((self.place(zone), self.matrix(zone)) for zone in range(self.count))
+
+
+class ShortestRun(Search):
+    """The first sequence of a number of steps to a goal that fewer steps don't reach.
+
+    The search proceeds by groups (see `kernel`) and prunes locations from which the remaining steps don't suffice.
+    """
+
+    def __init__(
+        self, automaton: TimedAutomaton, location: int, ages: Sequence[int], length: int, ends: Sequence[int]
+    ) -> None:
+        self.length = length
+        self.ends = list(ends)
+        super().__init__(automaton, location, ages)
+
+    def _begin(self) -> None:
+        self.left.size = 0
+        self.left.extend(len(self.automaton))
+        self.left.used[:] = steps_left(self.automaton, self.ends)
+        super()._begin()
+        self.state[LAYER], self.state[LONGEST] = FREE, self.length
+        self.state[AT], self.state[GROUPS] = 0, 1
+        self.groups.room[:GROUP] = -1, -1, 0
+
+    def groups_at_end(self, look: Callable[[], None]) -> Iterator[int]:
+        """Yield the groups after all steps, in order."""
+        for depth in range(1, self.length + 1):
+            last = int(self.state[GROUPS])
+            self.state[DEPTH] = depth
+            while self.state[AT] < last:
+                look()
+                until = min(last, int(self.state[AT]) + CHUNK)
+                why = kernel.advance_by_groups(
+                    self.model, self.zones, self.state, self._largest, until, self._scratch
+                )
+                if why == kernel.FULL:
+                    self._see(int(self.state[MISSED]))
+        yield from range(int(self.state[AT]), int(self.state[GROUPS]))
+
+    def steps_to(self, group: int) -> tuple[int, ...]:
+        """Return the steps that lead to a group."""
+        steps = []
+        while group > 0:
+            steps.append(int(self.groups.room[GROUP * group + kernel.BY]))
+            group = int(self.groups.room[GROUP * group + kernel.BEFORE])
+        return tuple(reversed(steps))
+
+    def zones_of(self, group: int) -> range:
+        """Return the zones of a group."""
+        begins = self.groups.room[kernel.BEGIN : GROUP * int(self.state[GROUPS]) : GROUP]
+        end = int(begins[group + 1]) if group + 1 < len(begins) else self.count
+        return range(int(begins[group]), end)
+
+
+def steps_left(automaton: TimedAutomaton, ends: Sequence[int]) -> NDArray[np.int32]:
+    """Return for each location the least number of edges to an end, `FREE` if no end is reachable."""
+    sources, targets = automaton.arrows()
+    left = np.full(len(automaton), FREE, np.int32)
+    left[ends] = 0
+    while True:
+        nearer = left.copy()
+        np.minimum.at(nearer, sources, np.minimum(left[targets] + 1, FREE))
+        if np.array_equal(nearer, left):
+            return left
+        left = nearer
