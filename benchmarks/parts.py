@@ -20,7 +20,7 @@ import adapters.mavlink.pilot
 import adapters.transport
 from adapters.ais import AisFeed
 from adapters.live.loop import Inbox, LiveRun
-from adapters.live.turn import Turning
+from adapters.live.turn_in_progress import Turning
 from adapters.mavlink import Autopilot
 from adapters.mavlink.codec import Decoder
 from adapters.naming import NamingService

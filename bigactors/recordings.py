@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from adapters.live.orders import stopping
-from adapters.live.state import Bidden, Finding, Outgoing, is_breach
+from adapters.live.reported import Finding, is_breach
+from adapters.live.state import Bidden
 from adapters.live.timing import Timers, begun, stepped
+from adapters.live.turn import Outgoing
 from adapters.recording.mcap_files import Message, RecordingError
 from adapters.recording.reading import Recording, read_recording
 from bigactors.diagnostics import as_mistake

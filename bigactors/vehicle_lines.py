@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from adapters.live.operator_commands import typed
+from adapters.live.plan import Plan
 from adapters.live.scheduling import in_turn
-from adapters.live.state import LiveState, Plan
+from adapters.live.state import LiveState
 from adapters.live.timing import flying
 from adapters.plugin import Follow, GoTo, Status
 from physical import distance

@@ -13,7 +13,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from adapters.live.state import Finding, Heard, LiveState, LiveStep, Turn
+from adapters.live.batch import Heard
+from adapters.live.reported import Finding
+from adapters.live.state import LiveState
+from adapters.live.turn import LiveStep, Turn
 from adapters.live.watchers import TOLD
 from adapters.mavlink.tlog import entry
 from adapters.plugin import Report, Status

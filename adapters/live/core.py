@@ -6,15 +6,18 @@ loop all call it.
 
 from __future__ import annotations
 
+from adapters.live.batch import Batch
 from adapters.live.fates import tell_again
 from adapters.live.flying import remember
 from adapters.live.ingest import take_in
 from adapters.live.limits import check_limits
 from adapters.live.operator_commands import answer
+from adapters.live.plan import Plan
 from adapters.live.scheduling import in_turn
-from adapters.live.state import Batch, LiveState, Plan, Turn
+from adapters.live.state import LiveState
 from adapters.live.timing import begun
-from adapters.live.turn import Turning
+from adapters.live.turn import Turn
+from adapters.live.turn_in_progress import Turning
 from semantics.environment import Says
 from semantics.state.configuration import Configuration
 from semantics.state.partition import is_parted

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Final
 
 from adapters.live.state import Bidden, Fate
-from adapters.live.turn import Turning
+from adapters.live.turn_in_progress import Turning
 from semantics.state.signature import Name
 
 RETRY: Final = 5.0

@@ -7,7 +7,7 @@ from dataclasses import replace
 from adapters.live.orders import hand_overs, journey, renewed
 from adapters.live.scheduling import in_turn
 from adapters.live.state import Order
-from adapters.live.turn import Turning
+from adapters.live.turn_in_progress import Turning
 from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver
 from physical import leads_straight, standing
 from semantics.control import commits, realisations

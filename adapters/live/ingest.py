@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from typing import assert_never
 
 from adapters.live.assumptions import STRAYED, broken_by_place, clause_of_leaving, relations
+from adapters.live.batch import Batch, Heard
 from adapters.live.fates import confirm, refused, sent
 from adapters.live.flying import arrive, doubt, obey, refuse, renew
 from adapters.live.orders import is_authority
 from adapters.live.other_stations import hear_of
 from adapters.live.sightings import Refusal, placement_seen, sighting_of
-from adapters.live.state import Batch, Heard
 from adapters.live.surroundings import told_apart
-from adapters.live.turn import Turning
+from adapters.live.turn_in_progress import Turning
 from adapters.live.unknown_entities import comes_in, place_strangers, remove_strangers
 from adapters.plugin import (
     Accepted,

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from adapters.live.scheduling import in_turn
 from adapters.live.state import Waiting
-from adapters.live.turn import Turning
+from adapters.live.turn_in_progress import Turning
 from semantics.behaviours.durations import duration_text
 from semantics.live_policy import Fallback, TimeLimit
 from semantics.state.configuration import Configuration

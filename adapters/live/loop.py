@@ -17,8 +17,12 @@ from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from adapters.issue_counter import Troubles
+from adapters.live.batch import Batch, Heard, Said, Saying
 from adapters.live.core import advance, is_over, is_refused, watch
-from adapters.live.state import Answer, Batch, Finding, Heard, LiveState, Plan, Said, Saying, Turn
+from adapters.live.plan import Plan
+from adapters.live.reported import Finding
+from adapters.live.state import LiveState
+from adapters.live.turn import Answer, Turn
 from adapters.live.validation import flaw_of, legible_report
 from adapters.live.watchers import Watcher, Watchers
 from adapters.plugin import (

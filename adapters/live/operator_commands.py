@@ -10,19 +10,12 @@ import re
 from collections.abc import Iterable, Iterator
 from ipaddress import ip_address
 
+from adapters.live.batch import Acknowledging, GivingBack, Ordering, Said, Saying
 from adapters.live.flying import ask_anew
 from adapters.live.orders import is_authority, stopping
-from adapters.live.state import (
-    Acknowledging,
-    Answer,
-    Bidden,
-    GivingBack,
-    Ordering,
-    Said,
-    Saying,
-    operator,
-)
-from adapters.live.turn import Turning
+from adapters.live.state import Bidden, operator
+from adapters.live.turn import Answer
+from adapters.live.turn_in_progress import Turning
 from adapters.plugin import Follow, GiveBack, GoTo, HandOver, Hold, Rebind, Return
 from semantics.behaviours.values import show, spoken
 from semantics.environment import Says

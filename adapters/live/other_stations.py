@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from adapters.live.turn import Turning
+from adapters.live.turn_in_progress import Turning
 from adapters.plugin import Believes, Broken, Delivered, Elsewhere, Hosts, Underway
 from semantics.observed_steps import Sight, happening
 from semantics.state.parcel_serialization import parcel_of

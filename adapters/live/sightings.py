@@ -6,7 +6,9 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 
-from adapters.live.state import Heard, Plan, Sighting
+from adapters.live.batch import Heard
+from adapters.live.plan import Plan
+from adapters.live.state import Sighting
 from adapters.plugin import Aged, Gone
 from physical import Geometry, PhysicalError, PhysicalProperty, translate_to
 from semantics.behaviours.statements import Spawn

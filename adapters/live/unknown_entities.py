@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 
 from adapters.live.flying import renew
 from adapters.live.state import Sighting
-from adapters.live.turn import Turning
+from adapters.live.turn_in_progress import Turning
 from semantics.observed_steps import Sight, happening
 from semantics.state.cells import NAMES, Cell
 from semantics.state.physical_model import Placed, Placement, channels_cell, placement_cell

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from adapters.live.state import Heard, Turn
+from adapters.live.batch import Heard
+from adapters.live.turn import Turn
 from adapters.plugin import Failed, Report
 
 TOLD = frozenset({"env", "say", "command", "commit", "actuate", "migrate", "spawn"})

@@ -7,7 +7,9 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from adapters.live.state import Finding, Heard, Turn
+from adapters.live.batch import Heard
+from adapters.live.reported import Finding
+from adapters.live.turn import Turn
 from adapters.plugin import Report, Seen, entity_of
 from adapters.rate_limit import Ration, Turns
 from adapters.recording.encoding import (

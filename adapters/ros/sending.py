@@ -9,7 +9,9 @@ import threading
 from collections.abc import Iterator
 from typing import Final
 
-from adapters.live.state import Heard, LiveState, Sighting, Turn
+from adapters.live.batch import Heard
+from adapters.live.state import LiveState, Sighting
+from adapters.live.turn import Turn
 from adapters.plugin import Report
 from adapters.ros.link import open_session, read_address
 from adapters.ros.messages import FIX, STRING, WHERE, hash_of, write_fix, write_string, write_where

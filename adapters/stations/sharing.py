@@ -15,8 +15,9 @@ from dataclasses import replace
 from typing import Any, Final
 
 from adapters.issue_counter import Troubles
+from adapters.live.batch import Heard
 from adapters.live.sightings import MOST_AHEAD
-from adapters.live.state import Heard, Turn
+from adapters.live.turn import Turn
 from adapters.plugin import (
     Believes,
     Broken,

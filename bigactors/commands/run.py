@@ -15,7 +15,9 @@ from typing import Any
 from adapters.live.core import obeying, resumed, started
 from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, settle
 from adapters.live.operator_socket import listening
-from adapters.live.state import Finding, LiveState, Plan
+from adapters.live.plan import Plan
+from adapters.live.reported import Finding
+from adapters.live.state import LiveState
 from adapters.live.watchers import Watcher
 from adapters.plugin import Plugin
 from adapters.recording.mcap_files import RecordingError

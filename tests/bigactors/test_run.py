@@ -15,7 +15,9 @@ import pytest
 from processes import begun
 
 from adapters.live.loop import Ending
-from adapters.live.state import Finding, LiveState, Turn
+from adapters.live.reported import Finding
+from adapters.live.state import LiveState
+from adapters.live.turn import Turn
 from adapters.plugin import TakenOver
 from adapters.recording.writing import Recorder
 from bigactors.arguments import parse_arguments

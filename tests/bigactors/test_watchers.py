@@ -6,8 +6,10 @@ import sys
 
 import pytest
 
+from adapters.live.batch import Batch, Heard
 from adapters.live.core import advance, started
-from adapters.live.state import Batch, Bidden, Fate, Heard, LiveState, Order, Plan, Sighting
+from adapters.live.plan import Plan
+from adapters.live.state import Bidden, Fate, LiveState, Order, Sighting
 from adapters.plugin import Accepted, Battery, Follow, GoTo, Hold, Status
 from bigactors.missions import open_mission
 from bigactors.vehicle_lines import vehicle_line, vehicles_line

@@ -5,7 +5,7 @@ from live_missions import boat, mission, seen
 from recorded import BETWEEN, EAST, FLIGHT, WEST, Tape, rules_of_once, uav, written
 
 from adapters.console.history import History
-from adapters.live.state import Acknowledging, GivingBack, Ordering
+from adapters.live.batch import Acknowledging, GivingBack, Ordering
 from adapters.live.timing import flying
 from adapters.plugin import Accepted, GoTo, Hold, LinkLost, LinkRestored, Rejected, Sent, Status, TakenOver
 from bigactors.missions import digest_of

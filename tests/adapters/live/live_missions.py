@@ -2,8 +2,10 @@
 
 from pathlib import Path
 
+from adapters.live.batch import Batch, Heard
 from adapters.live.core import advance, started
-from adapters.live.state import Batch, Heard, LiveState, Plan
+from adapters.live.plan import Plan
+from adapters.live.state import LiveState
 from adapters.plugin import Accepted
 from bigactors.cli import main
 from physical import PhysicalProperty, point

@@ -1,9 +1,10 @@
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, known_of, plan_of, seen
 
+from adapters.live.batch import Batch, GivingBack, Heard, Saying
 from adapters.live.core import is_refused, resumed, watch
-from adapters.live.state import Batch, GivingBack, Heard, Plan, Saying
-from adapters.live.turn import MOST_REPORTED
+from adapters.live.plan import Plan
+from adapters.live.turn_in_progress import MOST_REPORTED
 from adapters.plugin import (
     Accepted,
     Aged,

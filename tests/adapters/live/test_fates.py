@@ -4,10 +4,11 @@ import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 from test_orders import ANA, HOLD, RETURN, flying, ordered, told
 
+from adapters.live.batch import GivingBack
 from adapters.live.core import is_over
 from adapters.live.fates import RETRY
 from adapters.live.loop import Ending
-from adapters.live.state import Fate, GivingBack
+from adapters.live.state import Fate
 from adapters.plugin import Accepted, Arrived, Hold, Rejected, Sent, TakenOver
 from bigactors.commands.run import conclude
 from bigactors.exits import Exit

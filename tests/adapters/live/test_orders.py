@@ -3,16 +3,10 @@
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, known_of, plan_of, seen
 
+from adapters.live.batch import Acknowledging, GivingBack, Heard, Ordering
 from adapters.live.core import is_refused, resumed
-from adapters.live.state import (
-    Acknowledging,
-    Bidden,
-    Fate,
-    GivingBack,
-    Heard,
-    Ordering,
-    Plan,
-)
+from adapters.live.plan import Plan
+from adapters.live.state import Bidden, Fate
 from adapters.plugin import (
     Accepted,
     Arrived,

@@ -8,7 +8,8 @@ import jsonschema
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
-from adapters.live.state import Plan, Saying
+from adapters.live.batch import Saying
+from adapters.live.plan import Plan
 from adapters.plugin import Believes, Broken, Delivered, GoTo, Hold, Hosts, LinkLost, Underway
 from adapters.recording.encoding import report_json, step_json
 from adapters.recording.schemas import REPORT

@@ -20,9 +20,9 @@ from test_loop import GO, Looker, Vehicle
 from worlds import World, flight, until
 
 from adapters.detections import Detections
+from adapters.live.batch import Saying
 from adapters.live.core import started
 from adapters.live.loop import LiveRun
-from adapters.live.state import Saying
 from adapters.mavlink import autopilot
 from adapters.mavlink.codec import Decoder
 from adapters.plugin import Aged, Failed, GoTo, Hold, Return, Trouble

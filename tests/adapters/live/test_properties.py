@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
+from adapters.live.batch import Acknowledging, Batch, GivingBack, Ordering, Saying
 from adapters.live.core import advance, started
-from adapters.live.state import Acknowledging, Batch, GivingBack, Ordering, Saying
 from adapters.plugin import GiveBack, Hold, LinkLost, LinkRestored, Rejected, Return, TakenOver
 from adapters.recording.encoding import step_json
 from checker import replay

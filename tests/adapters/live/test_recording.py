@@ -10,7 +10,7 @@ import jsonschema
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, mission, plan_of, seen
 
-from adapters.live.state import Acknowledging, GivingBack, Heard, Ordering, Saying
+from adapters.live.batch import Acknowledging, GivingBack, Heard, Ordering, Saying
 from adapters.plugin import Accepted, Aged, Battery, Gone, Presence, Status, StatusText
 from adapters.recording.encoding import arrival_json
 from adapters.recording.mcap_files import RecordingError

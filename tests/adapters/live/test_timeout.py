@@ -2,7 +2,7 @@
 
 from live_missions import TOUR, WEST, Run, mission, plan_of, seen
 
-from adapters.live.state import Saying
+from adapters.live.batch import Saying
 from adapters.recording.reading import read_recording
 from adapters.recording.writing import Recorder
 from checker import replay

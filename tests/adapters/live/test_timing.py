@@ -4,8 +4,8 @@ import pytest
 from audited import SHUTTLE, copter, flown_in
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, known_of, mission, plan_of, seen
 
+from adapters.live.batch import Heard, Saying
 from adapters.live.core import resumed
-from adapters.live.state import Heard, Saying
 from adapters.live.timing import OWN, flying
 from adapters.plugin import Gone, LinkLost, LinkRestored
 from adapters.recording.writing import Recorder

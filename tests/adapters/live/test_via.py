@@ -8,9 +8,9 @@ import pytest
 from audited import LOOK, PLACES, flown_in
 from live_missions import EAST, TOUR, WEST, Run, known_of, plan_of, seen
 
+from adapters.live.batch import Heard
 from adapters.live.core import resumed
 from adapters.live.operator_socket import give_back, order
-from adapters.live.state import Heard
 from adapters.mavlink.constants import Cmd, MissionType
 from adapters.mavlink.items import e7
 from adapters.plugin import Arrived, Follow

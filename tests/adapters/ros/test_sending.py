@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from routers import for_real, router, session, tokens
 
-from adapters.live.state import LiveState, Sighting, Turn
+from adapters.live.state import LiveState, Sighting
+from adapters.live.turn import Turn
 from adapters.ros import RosSending
 from adapters.ros.messages import (
     FIX,
