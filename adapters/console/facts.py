@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from adapters.console.view import Json, Section
-from adapters.live.state import Bidden, Waiting
+from adapters.live.due_times import Waiting
+from adapters.live.overrides import StandingOrder
 from semantics.live_policy import Fallback, TimeLimit
 from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name
@@ -140,12 +141,12 @@ class Bid:
     Attributes:
         action: The number of the action.
         since: The time of the order.
-        bidden: The order, in the run's form.
+        order: The order, in the run's form.
     """
 
     action: str
     since: float
-    bidden: Bidden
+    order: StandingOrder
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,11 +212,11 @@ class Facts:
         trails: The past positions of vehicles.
         links: The links to vehicles.
         orders: The vehicles' last orders of movement.
-        handing: The vehicles' last orders of hand-over.
+        hand_overs: The vehicles' last orders of hand-over.
         status: The vehicles' status, in the form of the topic `status`.
         words: The vehicles' last texts, in the form of the cards.
         taken: The vehicles that were taken over, with the reasons.
-        bidden: The operators' orders to vehicles, until a give-back or a take-over.
+        standing_orders: The operators' orders to vehicles, until a give-back or a take-over.
         rebinds: The pending changes of vehicles' addresses: the request, and the number of the action.
         stopped: The agents whose controls are no longer served (the empty name: all agents), with the fallback.
         authority: The controlling stations of vehicles.
@@ -245,11 +246,11 @@ class Facts:
     trails: Mapping[Name, Trail] = field(default_factory=dict)
     links: Mapping[Name, Link] = field(default_factory=dict)
     orders: Mapping[Name, Order] = field(default_factory=dict)
-    handing: Mapping[Name, Order] = field(default_factory=dict)
+    hand_overs: Mapping[Name, Order] = field(default_factory=dict)
     status: Mapping[Name, Json] = field(default_factory=dict)
     words: Mapping[Name, Json] = field(default_factory=dict)
     taken: Mapping[Name, str] = field(default_factory=dict)
-    bidden: Mapping[Name, Bid] = field(default_factory=dict)
+    standing_orders: Mapping[Name, Bid] = field(default_factory=dict)
     rebinds: Mapping[Name, tuple[str, str]] = field(default_factory=dict)
     stopped: Mapping[Name, str] = field(default_factory=dict)
     authority: Mapping[Name, Authority] = field(default_factory=dict)

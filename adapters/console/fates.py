@@ -15,7 +15,7 @@ from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import text
 from adapters.console.view import Json
 from adapters.live.orders import stopping
-from adapters.live.state import Bidden, Fate
+from adapters.live.overrides import Fate, StandingOrder
 from semantics.live_policy import Fallback
 
 MOST_VEHICLES: Final = 1_000
@@ -34,24 +34,24 @@ def take_order(draft: Draft, time: float, data: Any) -> None:
             number = act(draft, time, data, order, text(name) if isinstance(name, str) else "all", "asked")
             for vehicle, request in named:
                 draft.taken.pop(vehicle, None)  # the order overrules the take-over
-                draft.bidden[vehicle] = Bid(
-                    number, time, Bidden(stopping(Fallback(order), request, vehicle), by)
+                draft.standing_orders[vehicle] = Bid(
+                    number, time, StandingOrder(stopping(Fallback(order), request, vehicle), by)
                 )
-                _note(draft, time, vehicle, draft.bidden[vehicle])
-            draft.bidden.bounded(MOST_VEHICLES)
+                _note(draft, time, vehicle, draft.standing_orders[vehicle])
+            draft.standing_orders.bounded(MOST_VEHICLES)
 
 
 def sent(draft: Draft, time: float, vehicle: str, request: str) -> None:
     """Note that an order is sent to a vehicle; a refused order stays refused when it is repeated."""
     for bid in _ordered(draft, vehicle, request):
-        if bid.bidden.fate is Fate.ASKED:
+        if bid.order.fate is Fate.ASKED:
             _becomes(draft, time, vehicle, bid, Fate.SENT)
 
 
 def confirm(draft: Draft, time: float, vehicle: str, request: str) -> None:
     """Note that a vehicle shows that it obeys an order."""
     for bid in _ordered(draft, vehicle, request):
-        if bid.bidden.owed:
+        if bid.order.owed:
             _becomes(draft, time, vehicle, bid, Fate.CONFIRMED)
 
 
@@ -63,21 +63,21 @@ def refuse(draft: Draft, time: float, vehicle: str, request: str, why: str) -> N
 
 def end(draft: Draft, time: float, vehicle: str, why: str) -> None:
     """Note that an order has ended; if it is not confirmed yet, it never will be."""
-    bid: Bid | None = draft.bidden.pop(vehicle, None)
-    if bid is not None and bid.bidden.owed:
+    bid: Bid | None = draft.standing_orders.pop(vehicle, None)
+    if bid is not None and bid.order.owed:
         _note(draft, time, vehicle, bid, why)
 
 
 def _ordered(draft: Draft, vehicle: str, request: str) -> Iterator[Bid]:
     """Yield the vehicle's standing order if it has this request; else nothing."""
-    bid: Bid | None = draft.bidden.get(vehicle)
-    if bid is not None and bid.bidden.command.request == request:
+    bid: Bid | None = draft.standing_orders.get(vehicle)
+    if bid is not None and bid.order.command.request == request:
         yield bid
 
 
 def _becomes(draft: Draft, time: float, vehicle: str, bid: Bid, fate: Fate, why: str = "") -> None:
-    draft.bidden[vehicle] = replace(bid, bidden=replace(bid.bidden, fate=fate, refusal=why))
-    _note(draft, time, vehicle, draft.bidden[vehicle])
+    draft.standing_orders[vehicle] = replace(bid, order=replace(bid.order, fate=fate, refusal=why))
+    _note(draft, time, vehicle, draft.standing_orders[vehicle])
 
 
 def _note(draft: Draft, time: float, vehicle: str, bid: Bid, then: str = "") -> None:
@@ -85,8 +85,8 @@ def _note(draft: Draft, time: float, vehicle: str, bid: Bid, then: str = "") -> 
     action: Json = draft.actions.get(bid.action)
     if action is None:
         return
-    why = "; ".join(filter(None, [bid.bidden.refusal, then]))
-    fates = {**action["fates"], vehicle: {"state": bid.bidden.fate.value, "why": why}}
+    why = "; ".join(filter(None, [bid.order.refusal, then]))
+    fates = {**action["fates"], vehicle: {"state": bid.order.fate.value, "why": why}}
     owed = any(_is_owed(draft, name, bid.action) for name in fates)
     draft.actions[bid.action] = {
         **action,
@@ -98,8 +98,8 @@ def _note(draft: Draft, time: float, vehicle: str, bid: Bid, then: str = "") -> 
 
 
 def _is_owed(draft: Draft, vehicle: str, action: str) -> bool:
-    bid: Bid | None = draft.bidden.get(vehicle)
-    return bid is not None and bid.action == action and bid.bidden.owed
+    bid: Bid | None = draft.standing_orders.get(vehicle)
+    return bid is not None and bid.action == action and bid.order.owed
 
 
 def _state(fates: Collection[str]) -> str:

@@ -42,11 +42,11 @@ def take_command(draft: Draft, time: float, data: Any) -> None:
                 order = replace(order, since=known.since, state=known.state, why=known.why)
             draft.orders[name] = order
             if command in ("Hold", "Return"):
-                draft.handing.pop(name, None)
+                draft.hand_overs.pop(name, None)
             draft.orders.bounded(MOST_VEHICLES)
         case {"command": "HandOver", "request": str(), "entity": str(name)}:
-            draft.handing[name] = _order("HandOver", time, data)
-            draft.handing.bounded(MOST_VEHICLES)
+            draft.hand_overs[name] = _order("HandOver", time, data)
+            draft.hand_overs.bounded(MOST_VEHICLES)
         case {"command": "Rebind", "request": str(request), "entity": str(name)}:
             rebind(draft, name, request)
 
@@ -99,7 +99,7 @@ def _answer(draft: Draft, time: float, name: str, request: str, report: str, why
         sent(draft, time, name, request)
         return
     _becomes(draft.orders, name, request, STATES[report], why)
-    _becomes(draft.handing, name, request, STATES[report], why)
+    _becomes(draft.hand_overs, name, request, STATES[report], why)
     if report == "Rejected":
         refuse(draft, time, name, request, why)
         not_rebound(draft, time, name, request, why)
@@ -134,7 +134,7 @@ def _becomes(orders: Table[Order], name: str, request: str, state: str, why: str
 
 def arrive(draft: Draft, label: Label, c: Configuration) -> None:
     """Mark orders as done by the step that completes them: `commit`, or `actuate` for a hand-over."""
-    table = {"commit": draft.orders, "actuate": draft.handing}.get(label.rule)
+    table = {"commit": draft.orders, "actuate": draft.hand_overs}.get(label.rule)
     if table is not None and isinstance(label.about, CTR | FLY):
         for name in concerned(c, label.about):
             if name in table:

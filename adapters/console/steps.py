@@ -12,8 +12,8 @@ from adapters.console.flights import arrive
 from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import count, text, texts
 from adapters.console.ticks import tick
+from adapters.live.due_times import Waiting
 from adapters.live.limits import heads_of
-from adapters.live.state import Waiting
 from adapters.live.watchers import TOLD
 from semantics.state.brief import cut
 from semantics.state.canonical import written

@@ -264,8 +264,8 @@ class LiveRun:
             ear = Ear(plugin.name, self.inbox)
             self._tasks.append(asyncio.create_task(plugin.run(ear), name=plugin.name))
         self._tasks.append(asyncio.create_task(self._telling(), name="orders"))
-        for bidden in self.state.bidden.values():  # else a vehicle that was held looks taken over
-            self._orders.put_nowait(bidden.command)
+        for order in self.state.overrides.orders.values():  # else a vehicle that was held looks taken over
+            self._orders.put_nowait(order.command)
         return self
 
     async def __aexit__(self, *_: object) -> None:
@@ -300,15 +300,14 @@ class LiveRun:
                 raise PluginFailed(f"{failed.source}: {failed.reason}")
         self._begun = True
         if forced:
-            self.state = self.state.with_(
-                suspended=False, owed={}
-            )  # an unverified run has reported the differences
-        for order in (*self.state.orders.values(), *self.state.handing.values()):
-            if order.command.entity not in self.state.taken:  # a resumed run has compared it
-                self._orders.put_nowait(order.command)
+            overrides = self.state.overrides.lifted()  # an unverified run has reported the differences
+            self.state = replace(self.state, overrides=overrides)
+        for given in self.state.commanded:
+            if given.command.entity not in self.state.overrides.taken:  # a resumed run has compared it
+                self._orders.put_nowait(given.command)
 
     def _unheard(self) -> list[str]:
-        return sorted(set(self.plan.vehicles) - set(self.state.seen))
+        return sorted(set(self.plan.vehicles) - set(self.state.sightings.newest))
 
     def _refuse(self, answers: list[asyncio.Future[Answer]]) -> None:
         for answer in answers:
@@ -350,7 +349,7 @@ class LiveRun:
             if not said.done():  # the sender may have disconnected
                 said.set_result(answer)
         for command in (*turn.commands, *self._unrecorded()):
-            if not (self.state.suspended and isinstance(command, GoTo | Follow | HandOver)):
+            if not (self.state.overrides.suspended and isinstance(command, GoTo | Follow | HandOver)):
                 self._orders.put_nowait(command)
         return turn
 

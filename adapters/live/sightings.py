@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 from adapters.live.batch import Heard
 from adapters.live.plan import Plan
-from adapters.live.state import Sighting
 from adapters.plugin import Aged, Gone
 from physical import Geometry, PhysicalError, PhysicalProperty, translate_to
 from semantics.behaviours.statements import Spawn
+from semantics.state.cells import Cell
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, PhysicalModel, Placed, Placement, encloses
 from semantics.state.setting import Setting
@@ -19,6 +20,79 @@ from semantics.state.signature import NO_ENTITIES, Name
 
 MOST_AHEAD = 5.0
 """Seconds by which a time stamp may lie in the future: clocks differ."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """The newest observation of an entity, and the end of its validity in P."""
+
+    property: PhysicalProperty
+    time: float
+    until: float
+
+
+@dataclass(frozen=True, slots=True)
+class Sightings:
+    """The observations of a run.
+
+    Attributes:
+        newest: The newest sighting of each entity that the mission names or has admitted.
+        expires: Time at which the first sighting becomes too old.
+        lost: Vehicles whose link is lost.
+        missing: Cells of P whose removal broke an assumption, with their values: their return breaks no other.
+        admitted: The number of strangers admitted from each plugin, and of those that are places.
+    """
+
+    newest: Mapping[Name, Sighting] = field(default_factory=dict)
+    expires: float = math.inf
+    lost: frozenset[Name] = frozenset()
+    missing: Mapping[Cell, object] = field(default_factory=dict)
+    admitted: Mapping[str, tuple[int, int]] = field(default_factory=dict)
+
+    def with_newest(self, found: Mapping[Name, Sighting]) -> Sightings:
+        """Return the value with newer sightings of some entities."""
+        if not found:
+            return self
+        expires = min(self.expires, *(each.until for each in found.values()))
+        return replace(self, newest={**self.newest, **found}, expires=expires)
+
+    def expired(self, now: float) -> frozenset[Name]:
+        """Return the entities whose sighting is too old."""
+        return frozenset(name for name, each in self.newest.items() if each.until <= now)
+
+    def without(self, entities: frozenset[Name]) -> Sightings:
+        """Return the value without the sightings of some entities."""
+        newest = {name: each for name, each in self.newest.items() if name not in entities}
+        expires = min((each.until for each in newest.values()), default=math.inf)
+        return replace(self, newest=newest, expires=expires)
+
+    def losing(self, entity: Name) -> Sightings:
+        """Return the value in which the link to a vehicle is lost."""
+        return replace(self, lost=self.lost | {entity})
+
+    def restored(self, entity: Name) -> Sightings:
+        """Return the value in which a vehicle is heard again."""
+        return replace(self, lost=self.lost - {entity})
+
+    def with_missing(self, cell: Cell, value: object) -> Sightings:
+        """Return the value with a cell of P whose removal broke an assumption."""
+        return replace(self, missing={**self.missing, cell: value})
+
+    def found(self, cell: Cell) -> Sightings:
+        """Return the value in which a cell is no longer missing."""
+        if cell not in self.missing:
+            return self
+        return replace(self, missing={each: value for each, value in self.missing.items() if each != cell})
+
+    def admitting(self, plugin: str, *, is_place: bool) -> Sightings:
+        """Return the value after the admission of one more stranger from a plugin."""
+        taken, places = self.admitted.get(plugin, (0, 0))
+        return replace(self, admitted={**self.admitted, plugin: (taken + 1, places + is_place)})
+
+    def later(self, seconds: float) -> Sightings:
+        """Return the value with all ages shifted by a time without listening."""
+        newest = {name: replace(each, until=each.until + seconds) for name, each in self.newest.items()}
+        return replace(self, newest=newest, expires=self.expires + seconds)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,8 @@ from collections.abc import Iterator
 from typing import Final
 
 from adapters.live.batch import Heard
-from adapters.live.state import LiveState, Sighting
+from adapters.live.sightings import Sighting
+from adapters.live.state import LiveState
 from adapters.live.turn import Turn
 from adapters.plugin import Report
 from adapters.ros.link import open_session, read_address
@@ -93,10 +94,10 @@ class RosSending:
                 self._changed.notify()
 
     def _news(self, state: LiveState) -> Iterator[Said]:
-        for entity, sighting in state.seen.items():
+        for entity, sighting in state.sightings.newest.items():
             if self._seen.get(entity) is not sighting and NAME.fullmatch(entity):
                 yield _whereabouts(entity, sighting)
-        self._seen = dict(state.seen)
+        self._seen = dict(state.sightings.newest)
         space = space_json(state.configuration.structure.logical)
         if space != self._space:
             self._space = space

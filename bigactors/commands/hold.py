@@ -5,7 +5,7 @@ from argparse import Namespace
 from collections.abc import Iterable, Iterator
 
 from adapters.live.operator_socket import Fates, fates, order
-from adapters.live.state import Fate
+from adapters.live.overrides import Fate
 from bigactors.commands.say import check_texts, heard_at
 from bigactors.exits import Exit
 from bigactors.mistakes import Mistake

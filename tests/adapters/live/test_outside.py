@@ -164,7 +164,7 @@ def on_a_full_disk(path, fallback):
         "told": told,
         "found": [(each.kind, each.fallback, each.message) for each in looker.findings],
         "broken": terminal.broken,
-        "suspended": ending.state.suspended,
+        "suspended": ending.state.overrides.suspended,
     }
 
 
@@ -207,7 +207,7 @@ def test_a_plugin_that_fails_in_flight_makes_vehicles_do_what_the_mission_says()
 
     vehicle, looker = Vehicle(), Looker()
     ending = fly(TOUR + STAY, [vehicle, Failing()], [looker], _nothing, 0.6, LivePolicy(Fallback.RETURN))
-    assert ending.state.suspended
+    assert ending.state.overrides.suspended
     assert [type(told) for told in vehicle.told] == [Return]
     assert [finding.message for finding in looker.findings] == ["radar fails: no such device"]
 

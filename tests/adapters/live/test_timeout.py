@@ -34,7 +34,7 @@ def test_an_agent_waits_as_long_as_it_says_and_no_longer():
     assert run.labels == ["⟨timeout : a, after 10 s⟩", "⟨fun : a⟩"]
     assert shown(run) == ["nobody came"]
     assert run.again is None
-    assert run.state.due == {}
+    assert run.state.due.timeouts == {}
 
 
 def test_a_message_that_comes_in_time_ends_the_wait():

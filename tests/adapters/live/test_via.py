@@ -164,7 +164,7 @@ def test_a_vehicle_that_comes_through_its_destination_on_its_way_has_not_arrived
     run.turn(2.0, seen("uav0", (37.055, -8.61), 2.0))
     run.turn(3.0, seen("uav0", EAST, 3.0), reports=[came(run, 3.0)])
     assert run.rules[-1] == "commit"
-    assert run.state.orders == {}
+    assert run.state.commanded.flights == {}
 
 
 def test_that_a_way_is_behind_a_vehicle_is_no_arrival_where_it_was_not_seen_in_its_destination():
