@@ -11,14 +11,12 @@ from typing import Any, Final
 
 from adapters.console.actions import MOST_NAMED, act
 from adapters.console.facts import Bid
-from adapters.console.mutable_facts import Draft
+from adapters.console.mutable_facts import MOST_VEHICLES, Draft
 from adapters.console.parsing import text
 from adapters.console.view import Json
 from adapters.live.orders import stopping
 from adapters.live.overrides import Fate, StandingOrder
 from semantics.live_policy import Fallback
-
-MOST_VEHICLES: Final = 1_000
 
 WORST_FIRST: Final = (Fate.REFUSED, Fate.ASKED, Fate.SENT, Fate.CONFIRMED)
 

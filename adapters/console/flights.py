@@ -9,7 +9,7 @@ from typing import Any, Final
 from adapters.console.facts import Link, Order, Position
 from adapters.console.fates import confirm, end, refuse, sent
 from adapters.console.giving_back import not_rebound, rebind, rebound
-from adapters.console.mutable_facts import Draft, Table
+from adapters.console.mutable_facts import MOST_VEHICLES, Draft, Table
 from adapters.console.parsing import count, number, text, texts
 from adapters.console.stations import obeys
 from adapters.console.view import Json
@@ -25,7 +25,6 @@ STATES: Final = {"Accepted": "accepted", "Arrived": "arrived", "Rejected": "refu
 """The state of an order after each report."""
 
 MOST_WAY: Final = 100
-MOST_VEHICLES: Final = 1_000
 
 
 def take_command(draft: Draft, time: float, data: Any) -> None:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, MutableMapping
 from dataclasses import fields
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 from adapters.console.facts import Authority, Bid, Facts, Link, Order, Run, Seen, Shape, Standing, Trail
 from adapters.console.view import Json
 
 Value = TypeVar("Value")
+
+MOST_VEHICLES: Final = 1_000
+"""The most vehicles in a table of facts; the oldest are dropped."""
 
 
 class Table(MutableMapping[str, Value]):
