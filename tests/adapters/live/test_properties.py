@@ -161,7 +161,7 @@ def test_of_an_entity_the_newest_counts_in_whatever_order_it_is_heard(history, r
     ordered, shuffled = list(known.values()), random.sample(list(known.values()), len(known))
     now = 1000.0 + 7.0 * 12
     states = [advance(PLAN, started(PLAN), Batch(tuple(order)), now).state for order in (ordered, shuffled)]
-    assert states[0].seen == states[1].seen
+    assert states[0].sightings.newest == states[1].sightings.newest
 
 
 @given(histories())

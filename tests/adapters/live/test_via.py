@@ -201,6 +201,6 @@ def test_a_way_is_told_again_when_any_of_it_has_moved(name, moved):
 def test_a_way_that_is_resumed_is_told_once_more():
     run = flying()
     again = resumed(run.plan, known_of(run.state), 5.0)
-    (order,) = again.orders.values()
+    (order,) = again.commanded.flights.values()
     assert order.command.path == run.commands[0].path
     assert not order.through
