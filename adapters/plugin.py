@@ -393,7 +393,7 @@ def _reason(error: OSError | ValueError) -> str:
     return str(error)
 
 
-Elsewhere = Delivered | Underway | Hosts | Believes | Broken
+StationReport = Delivered | Underway | Hosts | Believes | Broken
 """Reports about other stations."""
 
 
@@ -476,7 +476,7 @@ Report = (
     | LinkRestored
     | Trouble
     | Failed
-    | Elsewhere
+    | StationReport
     | Seen
 )
 """A report on a request, a vehicle, a part of the run or another station."""
@@ -578,7 +578,6 @@ __all__ = [
     "Command",
     "Delivered",
     "Doubted",
-    "Elsewhere",
     "Failed",
     "Follow",
     "GiveBack",
@@ -599,6 +598,7 @@ __all__ = [
     "Return",
     "Seen",
     "Sent",
+    "StationReport",
     "Status",
     "StatusText",
     "TakenOver",

@@ -115,7 +115,7 @@ def _items(live: LiveRun, before: Preflight, *, checked: bool) -> Iterator[Item]
     what = "no verdict: nothing was verified of this run" if count is None else "the mission is verified"
     yield _item(what, detail="--unverified" if count is None else f"{count} properties hold")
     for vehicle in sorted(live.plan.vehicles):
-        said = live.inbox.said.get(vehicle)
+        said = live.inbox.statuses.get(vehicle)
         heard = vehicle in live.state.sightings.newest
         yield _item(f"{vehicle} is heard", done=heard, detail=_told(said) if said and heard else "")
     yield _item("places and fences fit the vehicles", done=checked)

@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 
 from adapters.console.agents import agents
 from adapters.console.alerts import ALL, fallen_back, grounded
-from adapters.console.facts import Authority, Bid, Facts, Link, Order, Position
+from adapters.console.facts import Bid, ControllingStations, Facts, Link, Position, VehicleCommand
 from adapters.console.flights import concerned
 from adapters.console.parsing import text
 from adapters.console.returns import of_return
@@ -36,7 +36,7 @@ OLD: Final = 5.0
 LOW: Final = 25
 """Percent of charge below which a battery is low."""
 
-UNTOLD: Final = Authority(())
+UNTOLD: Final = ControllingStations(())
 
 
 class Asked(NamedTuple):
@@ -132,13 +132,13 @@ def _request_json(asked: Asked) -> Json:
 # --- orders -------------------------------------------------------------------------------------------
 
 
-def _order(facts: Facts, name: Name) -> Order | None:
+def _order(facts: Facts, name: Name) -> VehicleCommand | None:
     """Return a vehicle's last order: a hand-over until it is done, else the last order of movement."""
     hand_over = facts.hand_overs.get(name)
     return hand_over if hand_over is not None and hand_over.state != "arrived" else facts.orders.get(name)
 
 
-def _is_standing(facts: Facts, name: Name, order: Order) -> bool:
+def _is_standing(facts: Facts, name: Name, order: VehicleCommand) -> bool:
     """Return whether an order is an operator's; the card describes those separately."""
     return (
         name in facts.standing_orders and facts.standing_orders[name].order.command.request == order.request
@@ -171,7 +171,7 @@ def _way(facts: Facts, name: Name) -> tuple[Position, ...]:
     return () if going is None else going.way
 
 
-def _order_json(order: Order, way: tuple[Position, ...]) -> Json:
+def _order_json(order: VehicleCommand, way: tuple[Position, ...]) -> Json:
     return {
         "command": order.command,
         "to": order.to,

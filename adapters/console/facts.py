@@ -70,7 +70,7 @@ class Standing:
     heads: Mapping[str, Waiting] = field(default_factory=dict)
 
 
-class Seen(NamedTuple):
+class Observed(NamedTuple):
     """The newest sighting of an entity that has one position.
 
     Attributes:
@@ -96,7 +96,7 @@ class Seen(NamedTuple):
     altitude: float | None = None
 
 
-class Authority(NamedTuple):
+class ControllingStations(NamedTuple):
     """The controlling stations of a vehicle, and their last change, in the form of the cards."""
 
     stations: tuple[str, ...]
@@ -112,7 +112,7 @@ class Shape(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class VehicleCommand:
     """A command to a vehicle, and its state.
 
     Attributes:
@@ -241,19 +241,19 @@ class Facts:
     broken_off: bool = False
     step: int = 0
     standing: Standing | None = None
-    seen: Mapping[Name, Seen] = field(default_factory=dict)
+    seen: Mapping[Name, Observed] = field(default_factory=dict)
     shapes: Mapping[Name, Shape] = field(default_factory=dict)
     trails: Mapping[Name, Trail] = field(default_factory=dict)
     links: Mapping[Name, Link] = field(default_factory=dict)
-    orders: Mapping[Name, Order] = field(default_factory=dict)
-    hand_overs: Mapping[Name, Order] = field(default_factory=dict)
+    orders: Mapping[Name, VehicleCommand] = field(default_factory=dict)
+    hand_overs: Mapping[Name, VehicleCommand] = field(default_factory=dict)
     status: Mapping[Name, Json] = field(default_factory=dict)
     words: Mapping[Name, Json] = field(default_factory=dict)
     taken: Mapping[Name, str] = field(default_factory=dict)
     standing_orders: Mapping[Name, Bid] = field(default_factory=dict)
     rebinds: Mapping[Name, tuple[str, str]] = field(default_factory=dict)
     stopped: Mapping[Name, str] = field(default_factory=dict)
-    authority: Mapping[Name, Authority] = field(default_factory=dict)
+    authority: Mapping[Name, ControllingStations] = field(default_factory=dict)
     deadlines: Mapping[Name, float] = field(default_factory=dict)
     flights: Mapping[Name, Json] = field(default_factory=dict)
     failed: frozenset[Name] = frozenset()

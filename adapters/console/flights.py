@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any, Final
 
-from adapters.console.facts import Link, Order, Position
+from adapters.console.facts import Link, Position, VehicleCommand
 from adapters.console.fates import confirm, end, refuse, sent
 from adapters.console.giving_back import not_rebound, rebind, rebound
 from adapters.console.mutable_facts import MOST_VEHICLES, Draft, Table
@@ -50,13 +50,13 @@ def take_command(draft: Draft, time: float, data: Any) -> None:
             rebind(draft, name, request)
 
 
-def _order(command: str, time: float, data: Any) -> Order:
+def _order(command: str, time: float, data: Any) -> VehicleCommand:
     places = data.get("path", [data["ring"]] if "ring" in data else [])
     points = [_waypoint(each) for each in places[:MOST_WAY]] if isinstance(places, list) else []
     way = tuple(each for each in points if each is not None)
     to = text(data.get("join") if command == "HandOver" else data.get("name"))
     state = "asked" if command in ("Hold", "Return") else "sent"
-    return Order(text(data["request"]), command, to, way, time, state)
+    return VehicleCommand(text(data["request"]), command, to, way, time, state)
 
 
 def _waypoint(place: Any) -> Position | None:
@@ -92,7 +92,7 @@ def take_report(draft: Draft, time: float, data: Any) -> None:
 def _answer(draft: Draft, time: float, name: str, request: str, report: str, why: str) -> None:
     """Take in a report about a command to a vehicle."""
     if report == "Sent":
-        order: Order | None = draft.orders.get(name)
+        order: VehicleCommand | None = draft.orders.get(name)
         if order is not None and order.state == "asked":  # else it repeats a refused order
             _becomes(draft.orders, name, request, "sent", "")
         sent(draft, time, name, request)
@@ -125,8 +125,8 @@ def _flight(takes: Any) -> Json:
     return None
 
 
-def _becomes(orders: Table[Order], name: str, request: str, state: str, why: str) -> None:
-    order: Order | None = orders.get(name)
+def _becomes(orders: Table[VehicleCommand], name: str, request: str, state: str, why: str) -> None:
+    order: VehicleCommand | None = orders.get(name)
     if order is not None and order.request == request:
         orders[name] = replace(order, state=state, why=why)
 

@@ -6,7 +6,18 @@ from collections.abc import Iterator, Mapping, MutableMapping
 from dataclasses import fields
 from typing import Any, Final, TypeVar
 
-from adapters.console.facts import Authority, Bid, Facts, Link, Order, Run, Seen, Shape, Standing, Trail
+from adapters.console.facts import (
+    Bid,
+    ControllingStations,
+    Facts,
+    Link,
+    Observed,
+    Run,
+    Shape,
+    Standing,
+    Trail,
+    VehicleCommand,
+)
 from adapters.console.view import Json
 
 Value = TypeVar("Value")
@@ -73,19 +84,19 @@ class Draft:
     broken_off: bool
     step: int
     standing: Standing | None
-    seen: Table[Seen]
+    seen: Table[Observed]
     shapes: Table[Shape]
     trails: Table[Trail]
     links: Table[Link]
-    orders: Table[Order]
-    hand_overs: Table[Order]
+    orders: Table[VehicleCommand]
+    hand_overs: Table[VehicleCommand]
     status: Table[Json]
     words: Table[Json]
     taken: Table[str]
     standing_orders: Table[Bid]
     rebinds: Table[tuple[str, str]]
     stopped: Table[str]
-    authority: Table[Authority]
+    authority: Table[ControllingStations]
     deadlines: Table[float]
     flights: Table[Json]
     failed: frozenset[str]

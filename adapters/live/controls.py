@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from adapters.live.commanded import GivenCommand
-from adapters.live.orders import hand_overs, is_done, journey, unshown
+from adapters.live.orders import is_done, journey, needed_hand_overs, unshown
 from adapters.live.scheduling import served, to_serve
 from adapters.live.step_taking import take
 from adapters.live.turn_in_progress import Turning
@@ -87,7 +87,7 @@ def _set_out(turning: Turning, request: CTR, way: Realisation) -> bool:
 
 def _hand_over(turning: Turning, request: CTR, way: Realisation) -> bool:
     """Command the hand-overs of a control; return whether all are confirmed."""
-    needed = hand_overs(turning.c, request, way, frozenset(turning.plan.vehicles))
+    needed = needed_hand_overs(turning.c, request, way, frozenset(turning.plan.vehicles))
     waiting = [each for each in needed if not _confirmed(turning, each)]
     for each in waiting:
         _command_hand_over(turning, each, request.agent)

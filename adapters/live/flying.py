@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from adapters.live.commanded import GivenCommand
-from adapters.live.orders import hand_overs, journey, renewed
+from adapters.live.orders import journey, needed_hand_overs, renewed
 from adapters.live.scheduling import in_turn
 from adapters.live.step_taking import observe
 from adapters.live.turn_in_progress import Turning
@@ -25,23 +25,24 @@ def arrive(turning: Turning, entity: Name) -> bool:
     its command. A vehicle on a path must have reported the end of the path. The remaining way to its waypoint must be
     straight: after the arrival it crosses no border.
     """
-    transit, order = turning.c.structure.physical.transit(entity), turning.commanded.flights.get(entity)
+    transit, given = turning.c.structure.physical.transit(entity), turning.commanded.flights.get(entity)
     at = turning.where_seen(entity)
-    if transit is None or order is None or at is None:
+    if transit is None or given is None or at is None:
         return False
-    if not order.obeyed or (isinstance(order.command, Follow) and not order.through):
+    if not given.obeyed or (isinstance(given.command, Follow) and not given.through):
         return False
     if transit.to not in turning.around(entity, turning.c.setting.kind(entity), at):
         return False  # most positions are of vehicles on their way: don't check their companions
-    together = sorted(other for other, told in turning.commanded.flights.items() if told.agent == order.agent)
-    if not all(flies(turning, other) and turning.commanded.flights[other].obeyed for other in together):
+    flights = turning.commanded.flights
+    together = sorted(name for name, each in flights.items() if each.agent == given.agent)
+    if not all(flies(turning, other) and flights[other].obeyed for other in together):
         return False
     if not all(_is_there(turning, other) for other in together):
         return False
     sight = Sight(
         f"{entity} arrives", {placement_cell(other): turning.where_seen(other) for other in together}
     )
-    if not observe(turning, sight, arriving(turning.c, order.agent, sight)):
+    if not observe(turning, sight, arriving(turning.c, given.agent, sight)):
         return False
     turning.commanded = turning.commanded.arrived(together)
     return True
@@ -57,13 +58,13 @@ def flies(turning: Turning, entity: Name) -> bool:
 
 def _is_there(turning: Turning, entity: Name) -> bool:
     """Return whether the straight way from a vehicle's last position to its waypoint keeps to its surroundings."""
-    order, at = turning.commanded.flights[entity], turning.where_seen(entity)
-    if not isinstance(at, Placed) or not isinstance(order.command, GoTo | Follow):
+    given, at = turning.commanded.flights[entity], turning.where_seen(entity)
+    if not isinstance(at, Placed) or not isinstance(given.command, GoTo | Follow):
         return True
-    assert order.goal is not None
-    around = replace(order.command.around, inside=(order.goal, *order.command.around.inside))
-    to = order.waypoint or standing(at.geometry, order.goal, around, 0.0)
-    return order.goal.is_point or (to is not None and leads_straight(at.geometry, at.geometry, to, around))
+    assert given.goal is not None
+    around = replace(given.command.around, inside=(given.goal, *given.command.around.inside))
+    to = given.waypoint or standing(at.geometry, given.goal, around, 0.0)
+    return given.goal.is_point or (to is not None and leads_straight(at.geometry, at.geometry, to, around))
 
 
 def obey(turning: Turning, entity: Name, report: Accepted | Arrived) -> None:
@@ -87,18 +88,15 @@ def refuse(turning: Turning, entity: Name, request: str) -> None:
 def ask_anew(turning: Turning, entity: Name) -> None:
     """Command a vehicle again after it was given back, if its request is still pending."""
     turning.commanded = turning.commanded.handed_over(entity)  # the hand-over is ordered again in its turn
-    order = turning.commanded.flights.get(entity)
-    fly = None if order is None else _flight(turning, order)
-    if (
-        order is None
-        or fly is None
-        or isinstance(order.command, HandOver)
-        or turning.overrides.stops(order.agent)
-    ):
+    given = turning.commanded.flights.get(entity)
+    if given is None or turning.overrides.stops(given.agent):
         return
-    told = renewed(turning.c, fly, order.command, turning.plan.first) or order.command
-    command = replace(told, request=turning.request_of(order.agent))
-    turning.commanded = turning.commanded.flying(entity, GivenCommand(command, order.agent, order.since))
+    fly = _flight(turning, given)
+    if fly is None or isinstance(given.command, HandOver):
+        return
+    going = renewed(turning.c, fly, given.command, turning.plan.first) or given.command
+    command = replace(going, request=turning.request_of(given.agent))
+    turning.commanded = turning.commanded.flying(entity, GivenCommand(command, given.agent, given.since))
     turning.command(command)
 
 
@@ -107,25 +105,25 @@ def renew(turning: Turning, place: Name) -> None:
 
     If a place has moved over a vehicle, the vehicle arrives once it shows that it goes to the place's new position.
     """
-    for entity, order in sorted(turning.commanded.flights.items()):
+    for entity, given in sorted(turning.commanded.flights.items()):
         if turning.c.structure.physical.transit(entity) is not None and flies(turning, entity):
-            _send_on(turning, entity, order, place)
+            _send_on(turning, entity, given, place)
 
 
-def _send_on(turning: Turning, entity: Name, order: GivenCommand, place: Name) -> None:
-    fly, transit = _flight(turning, order), turning.c.structure.physical.transit(entity)
-    if fly is None or transit is None or isinstance(order.command, HandOver):
+def _send_on(turning: Turning, entity: Name, given: GivenCommand, place: Name) -> None:
+    fly, transit = _flight(turning, given), turning.c.structure.physical.transit(entity)
+    if fly is None or transit is None or isinstance(given.command, HandOver):
         return
-    if place not in (transit.to, *fly.reaction.via) and isinstance(order.command, Follow):
+    if place not in (transit.to, *fly.reaction.via) and isinstance(given.command, Follow):
         return  # it would fly its whole way again
-    command = renewed(turning.c, fly, order.command, turning.plan.first)
+    command = renewed(turning.c, fly, given.command, turning.plan.first)
     if command is not None:
-        turning.commanded = turning.commanded.flying(entity, GivenCommand(command, order.agent, order.since))
+        turning.commanded = turning.commanded.flying(entity, GivenCommand(command, given.agent, given.since))
         turning.command(command)
 
 
-def _flight(turning: Turning, order: GivenCommand) -> FLY | None:
-    fly = next((p.request for p in in_turn(turning.c) if p.request.agent == order.agent), None)
+def _flight(turning: Turning, given: GivenCommand) -> FLY | None:
+    fly = next((p.request for p in in_turn(turning.c) if p.request.agent == given.agent), None)
     return fly if isinstance(fly, FLY) else None
 
 
@@ -136,10 +134,11 @@ def remember(turning: Turning, request: Request) -> None:
     elif isinstance(request, CTR):
         way = next(realisations(turning.c, request), None)
         vehicles = frozenset(turning.plan.vehicles)
-        for told in hand_overs(turning.c, request, way, vehicles) if way is not None else ():
-            command = replace(told, request=turning.request_of(request.agent))
-            given = GivenCommand(command, request.agent, turning.now)
-            turning.commanded = turning.commanded.handing_over(told.entity, given)
+        for each in needed_hand_overs(turning.c, request, way, vehicles) if way is not None else ():
+            command = replace(each, request=turning.request_of(request.agent))
+            turning.commanded = turning.commanded.handing_over(
+                each.entity, GivenCommand(command, request.agent, turning.now)
+            )
 
 
 def _remember_flight(turning: Turning, fly: FLY) -> None:

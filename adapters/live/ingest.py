@@ -11,10 +11,10 @@ from adapters.live.fallbacks import answers_for, breaks, flies_home
 from adapters.live.flying import arrive, doubt, flies, obey, refuse, renew
 from adapters.live.order_progress import confirm, refused, sent
 from adapters.live.orders import is_authority
-from adapters.live.other_stations import hear_of
+from adapters.live.other_stations import take_station_report
 from adapters.live.sightings import Refusal, Sighting, placement_seen, sighting_of
 from adapters.live.step_taking import observe, take
-from adapters.live.surroundings import told_apart
+from adapters.live.surroundings import separating_place
 from adapters.live.turn_in_progress import Turning
 from adapters.live.unknown_entities import comes_in, place_strangers, remove_strangers
 from adapters.plugin import (
@@ -118,7 +118,7 @@ def _check_covered(turning: Turning, entity: Name, here: Placement | None, seen:
     """Report a vehicle if a place, at a listed position, holds either its seen point or its point in P, not both."""
     if turning.overrides.suspended or not isinstance(here, Placed) or not isinstance(seen, Placed):
         return
-    place = told_apart(turning.c, entity, here, seen, turning.plan.first)
+    place = separating_place(turning.c, entity, here, seen, turning.plan.first)
     if place:
         only = f"{place}, where the mission lists it, holds {entity} at one of the two points only"
         breaks(
@@ -272,7 +272,7 @@ def note(turning: Turning, report: Report) -> None:
         case Sent(request, entity):
             sent(turning, entity, request)
         case Delivered() | Underway() | Hosts() | Believes() | Broken():
-            hear_of(turning, report)
+            take_station_report(turning, report)
         case Rejected():
             _refuse(turning, report)
         case Doubted(entity):

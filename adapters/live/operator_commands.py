@@ -42,10 +42,8 @@ def answer(turning: Turning, said: Said) -> None:
         case GivingBack():
             turning.answer(_take_back(turning, said))
         case Acknowledging(number):
-            known = 0 < number <= turning.before.reported.count
-            refusal = (
-                "" if known else f"there is no finding {number}; there are {turning.before.reported.count}"
-            )
+            count = turning.before.reported.count
+            refusal = "" if 0 < number <= count else f"there is no finding {number}; there are {count}"
             turning.answer(Answer(said, refusal))
 
 
@@ -56,21 +54,21 @@ def order(turning: Turning, said: Ordering) -> Answer:
     """Order a vehicle, or all, to hold or to return: from now on the mission does not command it."""
     named = sorted(turning.plan.vehicles) if said.vehicle is None else [said.vehicle]
     left_out = {entity: why for entity in named if (why := _objection(turning, entity, said))}
-    told = [entity for entity in named if entity not in left_out]
-    if not told:
+    ordered = [entity for entity in named if entity not in left_out]
+    if not ordered:
         return Answer(said, "; ".join(left_out.values()) or "there is no vehicle")
-    notes = tuple(note for entity in told for note in _notes(turning, entity, said.fallback))
-    requests = {entity: _bid(turning, entity, said) for entity in told}
-    who, are = ", ".join(told), "is" if len(told) == 1 else "are"
+    notes = tuple(note for entity in ordered for note in _notes(turning, entity, said.fallback))
+    requests = {entity: _order_one(turning, entity, said) for entity in ordered}
+    who, are = ", ".join(ordered), "is" if len(ordered) == 1 else "are"
     message = f"{who} {are} told to {said.fallback.value} by {operator(said.by)}"
     back = f"until `bigactors give-back {said.vehicle or 'VEHICLE'}`"
-    rest = "; ".join([*notes, *left_out.values(), f"the mission does not command {_it(told)} {back}"])
+    rest = "; ".join([*notes, *left_out.values(), f"the mission does not command {_it(ordered)} {back}"])
     turning.find("ordered", said.vehicle or "", f"{message}; {rest}")
     return Answer(said, "", requests, left_out, notes)
 
 
-def _it(told: list[Name]) -> str:
-    return "it" if len(told) == 1 else "them"
+def _it(ordered: list[Name]) -> str:
+    return "it" if len(ordered) == 1 else "them"
 
 
 def _objection(turning: Turning, entity: Name, said: Ordering) -> str:
@@ -113,12 +111,9 @@ def _notes(turning: Turning, entity: Name, what: Fallback) -> Iterator[str]:
 def _of_leaving(turning: Turning, entity: Name) -> Iterator[str]:
     """Yield the consequence if a vehicle flies home although the mission assumes that it stays."""
     physical, then = turning.c.structure.physical, turning.plan.precautions.on_broken
-    if (
-        turning.overrides.suspended
-        or then is Fallback.CONTINUE
-        or entity not in physical
-        or physical.transit(entity)
-    ):
+    if turning.overrides.suspended or then is Fallback.CONTINUE:
+        return
+    if entity not in physical or physical.transit(entity):
         return
     place = physical.abstract_parent(entity)
     if place != turning.plan.first.structure.physical.abstract_parent(entity):
@@ -126,12 +121,11 @@ def _of_leaving(turning: Turning, entity: Name) -> Iterator[str]:
         yield f"{stays}: when it leaves, all vehicles are told to {then.value}"
 
 
-def _bid(turning: Turning, entity: Name, said: Ordering) -> str:
+def _order_one(turning: Turning, entity: Name, said: Ordering) -> str:
     """Take a vehicle over and order it, in place of this turn's other commands; return the request."""
     flies = (GoTo, Follow, HandOver, Hold, Return)
-    turning.results.commands = [
-        c for c in turning.results.commands if c.entity != entity or not isinstance(c, flies)
-    ]
+    commands = turning.results.commands
+    turning.results.commands = [c for c in commands if c.entity != entity or not isinstance(c, flies)]
     if turning.overrides.is_foreign(entity):
         turning.command(GiveBack(turning.request_of("operator"), entity))
     command = stopping(said.fallback, turning.request_of("operator"), entity)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from adapters.live.fallbacks import answers_for, breaks
 from adapters.live.step_taking import check_times, observe, take
 from adapters.live.turn_in_progress import Turning
-from adapters.plugin import Believes, Broken, Delivered, Elsewhere, Hosts, Underway
+from adapters.plugin import Believes, Broken, Delivered, Hosts, StationReport, Underway
 from semantics.observed_steps import Sight, happening
 from semantics.state.parcel_serialization import parcel_of
 from semantics.state.partition import (
@@ -24,7 +24,7 @@ from semantics.state.physical_model import InTransit, Placed, placement_cell
 from semantics.state.signature import REGION, Name
 
 
-def hear_of(turning: Turning, report: Elsewhere) -> None:
+def take_station_report(turning: Turning, report: StationReport) -> None:
     """Take in a report of another station; its steps carry the other station's times."""
     turning.done = report.done if isinstance(report, Delivered | Underway) else None
     match report:

@@ -106,32 +106,37 @@ class Refusal:
 def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) -> Sighting | Refusal | None:
     """Return the sighting in a message, a Refusal if it is rejected, None if a newer sighting is known."""
     published = heard.published
-    said = published.property if isinstance(published, Aged) else published
-    owner = plan.vehicles.get(said.entity)
+    observed = published.property if isinstance(published, Aged) else published
+    owner = plan.vehicles.get(observed.entity)
     if owner is not None and heard.plugin not in (owner, plan.peers):
         return Refusal(
-            said.entity, f"'{heard.plugin}' speaks of {said.entity}, which is the vehicle of '{owner}'"
+            observed.entity,
+            f"'{heard.plugin}' speaks of {observed.entity}, which is the vehicle of '{owner}'",
         )
-    if said.entity in plan.first.alpha or said.entity in _no_entities(plan.first.setting):
+    if observed.entity in plan.first.alpha or observed.entity in _no_entities(plan.first.setting):
         return Refusal(
-            said.entity, f"'{heard.plugin}' speaks of {said.entity}, which the mission has as no entity"
+            observed.entity,
+            f"'{heard.plugin}' speaks of {observed.entity}, which the mission has as no entity",
         )
-    kind = plan.first.setting.kinds.get(said.entity) or (known.property.kind if known is not None else None)
-    if kind is not None and not isinstance(said, Gone) and said.kind != kind:
+    kind = plan.first.setting.kinds.get(observed.entity) or (
+        known.property.kind if known is not None else None
+    )
+    if kind is not None and not isinstance(observed, Gone) and observed.kind != kind:
         return Refusal(
-            said.entity, f"'{heard.plugin}' speaks of {said.entity} as {said.kind}, and it is of kind {kind}"
+            observed.entity,
+            f"'{heard.plugin}' speaks of {observed.entity} as {observed.kind}, and it is of kind {kind}",
         )
-    time = now if said.time is None else said.time
+    time = now if observed.time is None else observed.time
     if not math.isfinite(time) or time > now + MOST_AHEAD:
         ahead = f"gives times more than {MOST_AHEAD:g} s ahead"
-        return Refusal(said.entity, f"'{heard.plugin}' {ahead} for {said.entity}: set its clock")
+        return Refusal(observed.entity, f"'{heard.plugin}' {ahead} for {observed.entity}: set its clock")
     if known is not None and time < known.time:
         return None
-    if isinstance(said, Gone):
-        before = _declared(plan, said.entity) if known is None else known.property
+    if isinstance(observed, Gone):
+        before = _declared(plan, observed.entity) if known is None else known.property
         return None if before is None else Sighting(before, time, -math.inf)
     until = time + published.time_to_live if isinstance(published, Aged) else math.inf
-    return Sighting(said, time, until) if until > now else None
+    return Sighting(observed, time, until) if until > now else None
 
 
 @lru_cache(maxsize=1 << 4)
@@ -157,17 +162,17 @@ def placement_seen(c: Configuration, shape: Placed | None, sighting: Sighting) -
     If the mission gives the entity an extent, an observed point is its centre. An altitude band counts only if the
     mission gives one.
     """
-    said = sighting.property
-    geometry = said.geometry
+    observed = sighting.property
+    geometry = observed.geometry
     if shape is not None and geometry.is_point and not shape.geometry.is_point:
         try:
             geometry = _moved(shape.geometry, geometry)
         except PhysicalError:
             return None
     banded = shape is not None and shape.altitude is not None
-    placed = Placed(geometry, (said.altitude or shape.altitude) if shape is not None and banded else None)
-    by = said.carried_by
-    return Carried(by, placed) if by is not None and _may_carry(c, by, said.entity) else placed
+    placed = Placed(geometry, (observed.altitude or shape.altitude) if shape is not None and banded else None)
+    by = observed.carried_by
+    return Carried(by, placed) if by is not None and _may_carry(c, by, observed.entity) else placed
 
 
 def _may_carry(c: Configuration, by: Name, entity: Name) -> bool:

@@ -10,7 +10,15 @@ from adapters.live.turn import LiveStep, Outgoing
 from adapters.live.turn_in_progress import Turning
 from semantics.observed_steps import Sight
 from semantics.state.configuration import Transition
-from semantics.state.partition import Elsewhere, Passage, is_parted, leave, parcel_of, sent_cell, station_of
+from semantics.state.partition import (
+    Elsewhere,
+    Passage,
+    is_parted,
+    leave,
+    parcel_of,
+    sent_cell,
+    station_of,
+)
 from semantics.state.requests import SND
 from semantics.state.signature import Name
 

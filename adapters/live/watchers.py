@@ -9,7 +9,7 @@ from adapters.live.batch import Heard
 from adapters.live.turn import Turn
 from adapters.plugin import Failed, Report
 
-TOLD = frozenset({"env", "say", "command", "commit", "actuate", "migrate", "spawn"})
+SHOWN_RULES = frozenset({"env", "say", "command", "commit", "actuate", "migrate", "spawn"})
 """The rules whose steps are shown to the operator; the recording has the others too."""
 
 

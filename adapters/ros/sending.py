@@ -29,7 +29,7 @@ SPACE: Final = f"/{OURS}/logical_space"
 NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 """The names that ROS allows in a topic."""
 
-Said = tuple[Topic, bytes]
+TopicMessage = tuple[Topic, bytes]
 
 
 class RosSending:
@@ -93,7 +93,7 @@ class RosSending:
                 self._waiting.update(said)
                 self._changed.notify()
 
-    def _news(self, state: LiveState) -> Iterator[Said]:
+    def _news(self, state: LiveState) -> Iterator[TopicMessage]:
         for entity, sighting in state.sightings.newest.items():
             if self._seen.get(entity) is not sighting and NAME.fullmatch(entity):
                 yield _whereabouts(entity, sighting)
@@ -137,7 +137,7 @@ def space_json(logical: LogicalModel) -> str:
     return json.dumps({"nodes": nodes}, ensure_ascii=False, sort_keys=True)
 
 
-def _whereabouts(entity: str, sighting: Sighting) -> Said:
+def _whereabouts(entity: str, sighting: Sighting) -> TopicMessage:
     """Return the position of an entity: a point as a fix; for an area, the centre."""
     geometry = sighting.property.geometry
     stamp = sighting.time if sighting.property.time is None else sighting.property.time

@@ -303,7 +303,7 @@ async def fly(
         live = await stack.enter_async_context(LiveRun(flight.plan, flight.state, flight.plugins, watchers))
 
         def describe() -> str:
-            return situation(flight.plan, live.state, live.inbox.said, live.clock())
+            return situation(flight.plan, live.state, live.inbox.statuses, live.clock())
 
         path = socket_of(flight.mission.name, options.socket)
         try:
