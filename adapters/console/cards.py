@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 
 from adapters.console.agents import agents
 from adapters.console.alerts import ALL, fallen_back, grounded
-from adapters.console.facts import Bid, ControllingStations, Facts, Link, Position, VehicleCommand
+from adapters.console.facts import ControllingStations, Facts, Link, OrderState, Position, VehicleCommand
 from adapters.console.flights import concerned
 from adapters.console.parsing import text
 from adapters.console.returns import of_return
@@ -152,15 +152,15 @@ def _away(facts: Facts, name: Name) -> str | None:
     return facts.standing_orders[name].order.reason if name in facts.standing_orders else None
 
 
-def _ordered_json(bid: Bid | None) -> Json:
+def _ordered_json(standing: OrderState | None) -> Json:
     """Return an operator's order to a vehicle, and its state."""
-    if bid is None:
+    if standing is None:
         return None
-    order = bid.order
+    order = standing.order
     return {
         "order": order.action,
         "by": order.by,
-        "since": bid.since,
+        "since": standing.since,
         "state": order.fate.value,
         "why": order.refusal,
     }

@@ -135,7 +135,7 @@ class VehicleCommand:
 
 
 @dataclass(frozen=True, slots=True)
-class Bid:
+class OrderState:
     """An operator's order to a vehicle to hold or to return, and its state.
 
     Attributes:
@@ -250,7 +250,7 @@ class Facts:
     status: Mapping[Name, Json] = field(default_factory=dict)
     words: Mapping[Name, Json] = field(default_factory=dict)
     taken: Mapping[Name, str] = field(default_factory=dict)
-    standing_orders: Mapping[Name, Bid] = field(default_factory=dict)
+    standing_orders: Mapping[Name, OrderState] = field(default_factory=dict)
     rebinds: Mapping[Name, tuple[str, str]] = field(default_factory=dict)
     stopped: Mapping[Name, str] = field(default_factory=dict)
     authority: Mapping[Name, ControllingStations] = field(default_factory=dict)

@@ -7,11 +7,11 @@ from dataclasses import fields
 from typing import Any, Final, TypeVar
 
 from adapters.console.facts import (
-    Bid,
     ControllingStations,
     Facts,
     Link,
     Observed,
+    OrderState,
     Run,
     Shape,
     Standing,
@@ -93,7 +93,7 @@ class Draft:
     status: Table[Json]
     words: Table[Json]
     taken: Table[str]
-    standing_orders: Table[Bid]
+    standing_orders: Table[OrderState]
     rebinds: Table[tuple[str, str]]
     stopped: Table[str]
     authority: Table[ControllingStations]

@@ -242,7 +242,7 @@ class Sharing:
     def commanded(self, command: Command) -> None:
         """Record a hand-over command to one of our vehicles."""
         if isinstance(command, HandOver):
-            self._authority.handing[command.entity] = command
+            self._authority.hand_overs[command.entity] = command
 
     def _add(self, contents: Sequence[Content]) -> list[Entry]:
         """Share contents as entries; a failure of the log ends sharing, since unlogged entries must not be sent."""
