@@ -229,7 +229,7 @@ def test_a_bug_of_a_plugin_is_told_and_makes_vehicles_do_what_the_mission_says(w
     async def tell(run):
         await asyncio.sleep(0.2)
         if where == "command":
-            run._orders.put_nowait(Hold("x", "boat0"))
+            run._commands.put_nowait(Hold("x", "boat0"))
 
     vehicle, looker = Vehicle(), Looker()
     fly(TOUR + STAY, [vehicle, Wrong()], [looker], tell, 0.8, LivePolicy(Fallback.RETURN))
