@@ -399,7 +399,7 @@ def _reason(error: OSError | ValueError) -> str:
     return str(error)
 
 
-Elsewhere = Delivered | Underway | Hosts | Believes | Broken
+StationReport = Delivered | Underway | Hosts | Believes | Broken
 """Reports about other stations."""
 
 
@@ -496,7 +496,7 @@ Report = (
     | LinkRestored
     | Trouble
     | Failed
-    | Elsewhere
+    | StationReport
     | Seen
 )
 """A report on a request, a vehicle, a part of the run or another station."""
@@ -598,7 +598,6 @@ __all__ = [
     "Command",
     "Delivered",
     "Doubted",
-    "Elsewhere",
     "Failed",
     "Follow",
     "GiveBack",
@@ -619,6 +618,7 @@ __all__ = [
     "Return",
     "Seen",
     "Sent",
+    "StationReport",
     "Status",
     "StatusText",
     "TakenOver",

@@ -20,7 +20,6 @@ import adapters.mavlink.pilot
 import adapters.transport
 from adapters.ais import AisFeed
 from adapters.live.loop import Inbox, LiveRun
-from adapters.live.turn import Turning
 from adapters.mavlink import Autopilot
 from adapters.mavlink.codec import Decoder
 from adapters.naming import NamingService
@@ -40,7 +39,7 @@ PARTS: Final = (
     ("record a property", Recorder, "arrival"),
     ("record a report", Recorder, "report"),
     ("a turn: take in positions", adapters.live.core, "take_in"),
-    ("a turn: agents and rules", Turning, "go_on"),
+    ("a turn: agents and rules", adapters.live.core, "go_on"),
     ("a turn: record", Recorder, "turn"),
     ("a turn: the rest", LiveRun, "_turn"),
 )

@@ -25,9 +25,11 @@ from typing import Any, Final
 from pyais.encode import encode_dict
 
 from adapters.ais import AisFeed
+from adapters.live.batch import Heard
 from adapters.live.core import started
 from adapters.live.loop import LiveRun, settle
-from adapters.live.state import Heard, Plan, Turn
+from adapters.live.plan import Plan
+from adapters.live.turn import Turn
 from adapters.mavlink import Autopilot, Craft
 from adapters.mavlink.message import Message
 from adapters.naming import NamingService

@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from adapters.live.orders import stopping
-from adapters.live.state import Bidden, Finding, Outgoing, is_breach
+from adapters.live.overrides import StandingOrder
+from adapters.live.reported import Finding, is_breach
 from adapters.live.timing import Timers, begun, stepped
+from adapters.live.turn import Outgoing
 from adapters.recording.mcap_files import Message, RecordingError
 from adapters.recording.reading import Recording, read_recording
 from bigactors.diagnostics import as_mistake
@@ -84,7 +86,7 @@ class Resumed:
         taken: The reason for each vehicle that is still taken over.
         station: The part of the mission that it flew, None for the whole.
         left: The parcels sent to other stations, in order.
-        bidden: The operator's standing order for each vehicle that one took over.
+        standing_orders: The operator's standing order for each vehicle that one took over.
         timers: The start times of all timed activities; None if the recording has no start time.
         until: The time of its last message.
     """
@@ -97,7 +99,7 @@ class Resumed:
     taken: Mapping[str, str]
     station: Parting | None = None
     left: tuple[Outgoing, ...] = ()
-    bidden: Mapping[str, Bidden] = field(default_factory=dict)
+    standing_orders: Mapping[str, StandingOrder] = field(default_factory=dict)
     timers: Timers | None = None
     until: float = 0.0
 
@@ -125,7 +127,7 @@ def resume(path: str, mission: ElaboratedMission) -> Resumed:
         {name: each if isinstance(each, str) else each.reason for name, each in taken.items()},
         parting_of(recording),
         tuple(_left(trace)),
-        {name: each for name, each in taken.items() if isinstance(each, Bidden)},
+        {name: each for name, each in taken.items() if isinstance(each, StandingOrder)},
         None if mission.setting.timing is None else _timers(trace, kept),
         recording.until,
     )
@@ -172,26 +174,28 @@ def _finding(message: Message) -> Finding:
     return Finding(kind, about, told, message.time, fallback)
 
 
-def _still_taken(messages: Iterable[Message]) -> dict[str, str | Bidden]:
+def _still_taken(messages: Iterable[Message]) -> dict[str, str | StandingOrder]:
     """Return the vehicles that are still taken over, each with the reason or the operator's order."""
-    taken: dict[str, str | Bidden] = {}
+    taken: dict[str, str | StandingOrder] = {}
     for message in messages:
         if message.topic == "reports":
             taken[str(message.data.get("entity"))] = str(message.data.get("reason"))
         elif message.topic == "orders":
-            taken |= _bidden(message)
+            taken |= _ordered(message)
         else:
             taken.pop(str(message.data.get("vehicle")), None)
     return taken
 
 
-def _bidden(message: Message) -> dict[str, Bidden]:
+def _ordered(message: Message) -> dict[str, StandingOrder]:
     """Return the standing order for each vehicle that an operator's order addressed."""
     match message.data:
         case {"order": "hold" | "return" as order, "requests": dict(requests), **more}:
             by, fallback = str(more.get("by") or ""), Fallback(order)
             told = {str(name): str(request) for name, request in requests.items()}
-            return {name: Bidden(stopping(fallback, request, name), by) for name, request in told.items()}
+            return {
+                name: StandingOrder(stopping(fallback, request, name), by) for name, request in told.items()
+            }
     return {}
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from adapters.live.operator_commands import typed
+from adapters.live.plan import Plan
 from adapters.live.scheduling import in_turn
-from adapters.live.state import LiveState, Plan
+from adapters.live.state import LiveState
 from adapters.live.timing import flying
 from adapters.plugin import Follow, GoTo, Status
 from physical import distance
@@ -25,7 +26,8 @@ MOST = 4
 
 def vehicles_line(vehicles: Iterable[Name], state: LiveState, said: Mapping[Name, Status], now: float) -> str:
     """Return one line about all vehicles: the first few in words, those that need attention first."""
-    names = sorted(vehicles, key=lambda name: (name not in state.lost, name not in state.taken, name))
+    lost, taken = state.sightings.lost, state.overrides.taken
+    names = sorted(vehicles, key=lambda name: (name not in lost, name not in taken, name))
     lines = [vehicle_line(name, state, said.get(name), now) for name in names[:MOST]]
     more = [f"and {len(names) - MOST} more"] if len(names) > MOST else []
     return " | ".join([*lines, *more])
@@ -38,8 +40,9 @@ def vehicle_line(name: Name, state: LiveState, said: Status | None, now: float) 
 
 def standing(state: LiveState) -> str:
     """Return the vehicles outside the mission's command, or still to be stopped, as a suffix to the end of a run."""
-    words = {name: f"was taken over: {how}" for name, how in state.taken.items() if name not in state.bidden}
-    words |= {name: each.reason for name, each in (*state.owing.items(), *state.bidden.items())}
+    found = state.overrides
+    words = {name: f"was taken over: {how}" for name, how in found.taken.items() if found.is_foreign(name)}
+    words |= {name: each.reason for name, each in (*found.owing.items(), *found.orders.items())}
     return "".join(f"; {name} {each}" for name, each in sorted(words.items()))
 
 
@@ -56,7 +59,7 @@ def situation(plan: Plan, state: LiveState, said: Mapping[Name, Status], now: fl
         for each, times in left
         if times
     ]
-    served = ["no more controls are served: an assumption broke"] if state.suspended else []
+    served = ["no more controls are served: an assumption broke"] if state.overrides.suspended else []
     parts = {"vehicles": vehicles, "requests": requests, "may be said": may, "suspended": served}
     return "\n".join(
         line for title, lines in parts.items() if lines for line in (title, *(f"  {each}" for each in lines))
@@ -65,23 +68,24 @@ def situation(plan: Plan, state: LiveState, said: Mapping[Name, Status], now: fl
 
 def _request(request: Request, state: LiveState, now: float) -> str:
     """Return a pending request, and its waiting time if there is a limit on it."""
-    waiting = state.heads.get(request.agent)
+    waiting = state.due.heads.get(request.agent)
     known = waiting is not None and waiting.request == request
     return f"{request}, for {now - waiting.since:.0f} s" if waiting is not None and known else str(request)
 
 
 def _does(name: Name, state: LiveState, said: Status | None, now: float) -> Iterator[str]:
-    if name in state.taken:
-        yield state.taken[name]
-    elif name in state.owing:
-        yield state.owing[name].reason
-    order, seen = state.orders.get(name), state.seen.get(name)
+    overrides = state.overrides
+    if name in overrides.taken:
+        yield overrides.taken[name]
+    elif name in overrides.owing:
+        yield overrides.owing[name].reason
+    order, seen = state.commanded.flights.get(name), state.sightings.newest.get(name)
     if order is None or not isinstance(order.command, GoTo | Follow):
         yield f"is in {_place(name, state)}"
         return
-    if name in state.taken:
+    if name in overrides.taken:
         yield f"has not arrived in {order.command.name}"
-    elif state.suspended or order.agent in state.grounded:
+    elif overrides.stops(order.agent):
         yield f"has given up its flight to {order.command.name}"
     else:
         to = order.command.path[-1] if isinstance(order.command, Follow) else order.command.place
@@ -101,7 +105,7 @@ def _place(name: Name, state: LiveState) -> str:
 
 def _lasts(name: Name, state: LiveState, now: float) -> Iterator[str]:
     """Yield the elapsed and the remaining time of a flight, if the mission has times."""
-    flights = () if state.timers is None else flying(state.timers)
+    flights = () if state.due.timers is None else flying(state.due.timers)
     for flight in (each for each in flights if each.vehicle == name):
         elapsed = now - flight.since
         least = _lapse(flight.least - elapsed)
@@ -128,9 +132,13 @@ def _tells(said: Status | None) -> Iterator[str]:
 
 
 def _heard(name: Name, state: LiveState, said: Status | None, now: float) -> Iterator[str]:
-    if said is not None and said.heard is not None and (name in state.lost or now - said.heard > OLD):
+    if (
+        said is not None
+        and said.heard is not None
+        and (name in state.sightings.lost or now - said.heard > OLD)
+    ):
         yield f"not heard for {now - said.heard:.0f} s"
-    elif name in state.lost:
+    elif name in state.sightings.lost:
         yield "not heard"
 
 

@@ -13,8 +13,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from adapters.live.state import Finding, Heard, LiveState, LiveStep, Turn
-from adapters.live.watchers import TOLD
+from adapters.live.batch import Heard
+from adapters.live.reported import Finding
+from adapters.live.state import LiveState
+from adapters.live.turn import LiveStep, Turn
+from adapters.live.watchers import SHOWN_RULES
 from adapters.mavlink.tlog import entry
 from adapters.plugin import Report, Status
 from adapters.recording.writing import Recorder
@@ -113,7 +116,7 @@ class Terminal:
     def _told(self, step: LiveStep) -> Iterator[str]:
         """Yield the lines of a step."""
         label, at = step.transition.label, self._at(step.time)
-        if label.rule in TOLD:
+        if label.rule in SHOWN_RULES:
             yield f"{at} {label}"
         yield from (f"{at} {label.agent}: {text}" for text in step.transition.shown)
 

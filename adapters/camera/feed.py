@@ -79,7 +79,7 @@ class Camera:
 
 
 @dataclass(frozen=True, slots=True)
-class Sighting:
+class PublishedRegion:
     """One region: its last published outline, and the time of that."""
 
     geometry: Geometry
@@ -115,7 +115,7 @@ class CameraFeed(Feed):
         self._time_to_live = time_to_live
         self._waiting: deque[Shot] = deque(maxlen=MOST_WAITING)
         self._looked = Looked()
-        self._known: dict[str, Sighting] = {}
+        self._known: dict[str, PublishedRegion] = {}
         self._newest = float("-inf")
         self._troubles = Troubles(name)
         self.in_thread = True
@@ -202,7 +202,7 @@ class CameraFeed(Feed):
             except NameClash as problem:
                 self._troubles.note("detection refused", str(problem))
                 continue
-            self._known[name] = Sighting(geometry, now)
+            self._known[name] = PublishedRegion(geometry, now)
             seen_at = PhysicalProperty(entity, self._camera.kind, geometry, time=now, source=self.name)
             world.publish(Aged(seen_at, self._time_to_live))
 

@@ -9,13 +9,13 @@ from typing import Final, NamedTuple
 
 from adapters.console.agents import agents
 from adapters.console.alerts import ALL, fallen_back, grounded
-from adapters.console.facts import Authority, Bid, Facts, Link, Order, Position
+from adapters.console.facts import ControllingStations, Facts, Link, OrderState, Position, VehicleCommand
 from adapters.console.flights import concerned
 from adapters.console.parsing import text
 from adapters.console.returns import of_return
 from adapters.console.view import Json
 from adapters.console.whereabouts import UNKNOWN, Whereabouts, destination, known_whereabouts
-from adapters.live.state import Waiting
+from adapters.live.due_times import Waiting
 from semantics.behaviours.durations import duration_text
 from semantics.live_policy import Fallback, TimeLimit
 from semantics.state.requests import CTR, FLY, Request
@@ -36,7 +36,7 @@ OLD: Final = 5.0
 LOW: Final = 25
 """Percent of charge below which a battery is low."""
 
-UNTOLD: Final = Authority(())
+UNTOLD: Final = ControllingStations(())
 
 
 class Asked(NamedTuple):
@@ -103,7 +103,7 @@ def _card(facts: Facts, name: Name, asked: Asked | None, where: Whereabouts, sai
         "handed": authority.handed,
         "said": facts.words.get(name),
         "taken": _away(facts, name),
-        "ordered": _ordered_json(facts.bidden.get(name)),
+        "ordered": _ordered_json(facts.standing_orders.get(name)),
         "on_return": of_return(facts, name),
         "level": worst.level,
         "word": worst.word or WORDS[worst.level],
@@ -132,33 +132,35 @@ def _request_json(asked: Asked) -> Json:
 # --- orders -------------------------------------------------------------------------------------------
 
 
-def _order(facts: Facts, name: Name) -> Order | None:
+def _order(facts: Facts, name: Name) -> VehicleCommand | None:
     """Return a vehicle's last order: a hand-over until it is done, else the last order of movement."""
-    handing = facts.handing.get(name)
-    return handing if handing is not None and handing.state != "arrived" else facts.orders.get(name)
+    hand_over = facts.hand_overs.get(name)
+    return hand_over if hand_over is not None and hand_over.state != "arrived" else facts.orders.get(name)
 
 
-def _is_bidden(facts: Facts, name: Name, order: Order) -> bool:
+def _is_standing(facts: Facts, name: Name, order: VehicleCommand) -> bool:
     """Return whether an order is an operator's; the card describes those separately."""
-    return name in facts.bidden and facts.bidden[name].bidden.command.request == order.request
+    return (
+        name in facts.standing_orders and facts.standing_orders[name].order.command.request == order.request
+    )
 
 
 def _away(facts: Facts, name: Name) -> str | None:
     """Return why the mission does not command a vehicle, None while it does."""
     if name in facts.taken:
         return facts.taken[name]
-    return facts.bidden[name].bidden.reason if name in facts.bidden else None
+    return facts.standing_orders[name].order.reason if name in facts.standing_orders else None
 
 
-def _ordered_json(bid: Bid | None) -> Json:
+def _ordered_json(standing: OrderState | None) -> Json:
     """Return an operator's order to a vehicle, and its state."""
-    if bid is None:
+    if standing is None:
         return None
-    order = bid.bidden
+    order = standing.order
     return {
-        "order": order.what,
+        "order": order.action,
         "by": order.by,
-        "since": bid.since,
+        "since": standing.since,
         "state": order.fate.value,
         "why": order.refusal,
     }
@@ -169,7 +171,7 @@ def _way(facts: Facts, name: Name) -> tuple[Position, ...]:
     return () if going is None else going.way
 
 
-def _order_json(order: Order, way: tuple[Position, ...]) -> Json:
+def _order_json(order: VehicleCommand, way: tuple[Position, ...]) -> Json:
     return {
         "command": order.command,
         "to": order.to,
@@ -220,20 +222,20 @@ def _reasons(
     yield from _of_link(facts.links.get(name, Link()), now)
     if name in facts.taken:
         yield Reason(LOST, f"taken over: {facts.taken[name]}", "taken over")
-    elif name in facts.bidden:
-        bidden = facts.bidden[name].bidden
-        yield Reason(WRONG if bidden.refusal else WATCHED, bidden.reason)
+    elif name in facts.standing_orders:
+        standing = facts.standing_orders[name].order
+        yield Reason(WRONG if standing.refusal else WATCHED, standing.reason)
     yield from _of_assumptions(facts, name)
     for station in facts.authority.get(name, UNTOLD).stations:
         if facts.stations.get(station, {}).get("reached") is False:
             yield Reason(WRONG, f"{station}, which it obeys, is not reached")
-    away = name in facts.taken or name in facts.bidden
+    away = name in facts.taken or name in facts.standing_orders
     yield from _of_request(asked, now, idle=away)
     yield from _of_falling_back(facts, asked)
     if asked is None and not away and facts.status.get(name, {}).get("armed"):
         yield from _of_idleness(facts)
-    for order in (facts.orders.get(name), facts.handing.get(name)):
-        if order is not None and order.state == "refused" and not _is_bidden(facts, name, order):
+    for order in (facts.orders.get(name), facts.hand_overs.get(name)):
+        if order is not None and order.state == "refused" and not _is_standing(facts, name, order):
             yield Reason(WRONG, f"it refuses {order.command}{f': {order.why}' if order.why else ''}")
     battery = facts.status.get(name, {}).get("battery")
     if battery is not None and battery["percent"] is not None and battery["percent"] < LOW:

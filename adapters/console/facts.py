@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from adapters.console.view import Json, Section
-from adapters.live.state import Bidden, Waiting
+from adapters.live.due_times import Waiting
+from adapters.live.overrides import StandingOrder
 from semantics.live_policy import Fallback, TimeLimit
 from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name
@@ -69,7 +70,7 @@ class Standing:
     heads: Mapping[str, Waiting] = field(default_factory=dict)
 
 
-class Seen(NamedTuple):
+class Observed(NamedTuple):
     """The newest sighting of an entity that has one position.
 
     Attributes:
@@ -95,7 +96,7 @@ class Seen(NamedTuple):
     altitude: float | None = None
 
 
-class Authority(NamedTuple):
+class ControllingStations(NamedTuple):
     """The controlling stations of a vehicle, and their last change, in the form of the cards."""
 
     stations: tuple[str, ...]
@@ -111,7 +112,7 @@ class Shape(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class VehicleCommand:
     """A command to a vehicle, and its state.
 
     Attributes:
@@ -134,18 +135,18 @@ class Order:
 
 
 @dataclass(frozen=True, slots=True)
-class Bid:
+class OrderState:
     """An operator's order to a vehicle to hold or to return, and its state.
 
     Attributes:
         action: The number of the action.
         since: The time of the order.
-        bidden: The order, in the run's form.
+        order: The order, in the run's form.
     """
 
     action: str
     since: float
-    bidden: Bidden
+    order: StandingOrder
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,11 +212,11 @@ class Facts:
         trails: The past positions of vehicles.
         links: The links to vehicles.
         orders: The vehicles' last orders of movement.
-        handing: The vehicles' last orders of hand-over.
+        hand_overs: The vehicles' last orders of hand-over.
         status: The vehicles' status, in the form of the topic `status`.
         words: The vehicles' last texts, in the form of the cards.
         taken: The vehicles that were taken over, with the reasons.
-        bidden: The operators' orders to vehicles, until a give-back or a take-over.
+        standing_orders: The operators' orders to vehicles, until a give-back or a take-over.
         rebinds: The pending changes of vehicles' addresses: the request, and the number of the action.
         stopped: The agents whose controls are no longer served (the empty name: all agents), with the fallback.
         authority: The controlling stations of vehicles.
@@ -240,19 +241,19 @@ class Facts:
     broken_off: bool = False
     step: int = 0
     standing: Standing | None = None
-    seen: Mapping[Name, Seen] = field(default_factory=dict)
+    seen: Mapping[Name, Observed] = field(default_factory=dict)
     shapes: Mapping[Name, Shape] = field(default_factory=dict)
     trails: Mapping[Name, Trail] = field(default_factory=dict)
     links: Mapping[Name, Link] = field(default_factory=dict)
-    orders: Mapping[Name, Order] = field(default_factory=dict)
-    handing: Mapping[Name, Order] = field(default_factory=dict)
+    orders: Mapping[Name, VehicleCommand] = field(default_factory=dict)
+    hand_overs: Mapping[Name, VehicleCommand] = field(default_factory=dict)
     status: Mapping[Name, Json] = field(default_factory=dict)
     words: Mapping[Name, Json] = field(default_factory=dict)
     taken: Mapping[Name, str] = field(default_factory=dict)
-    bidden: Mapping[Name, Bid] = field(default_factory=dict)
+    standing_orders: Mapping[Name, OrderState] = field(default_factory=dict)
     rebinds: Mapping[Name, tuple[str, str]] = field(default_factory=dict)
     stopped: Mapping[Name, str] = field(default_factory=dict)
-    authority: Mapping[Name, Authority] = field(default_factory=dict)
+    authority: Mapping[Name, ControllingStations] = field(default_factory=dict)
     deadlines: Mapping[Name, float] = field(default_factory=dict)
     flights: Mapping[Name, Json] = field(default_factory=dict)
     failed: frozenset[Name] = frozenset()

@@ -10,15 +10,13 @@ from dataclasses import replace
 from typing import Any, Final
 
 from adapters.console.actions import MOST_NAMED, act
-from adapters.console.facts import Bid
-from adapters.console.mutable_facts import Draft
+from adapters.console.facts import OrderState
+from adapters.console.mutable_facts import MOST_VEHICLES, Draft
 from adapters.console.parsing import text
 from adapters.console.view import Json
 from adapters.live.orders import stopping
-from adapters.live.state import Bidden, Fate
+from adapters.live.overrides import Fate, StandingOrder
 from semantics.live_policy import Fallback
-
-MOST_VEHICLES: Final = 1_000
 
 WORST_FIRST: Final = (Fate.REFUSED, Fate.ASKED, Fate.SENT, Fate.CONFIRMED)
 
@@ -34,61 +32,63 @@ def take_order(draft: Draft, time: float, data: Any) -> None:
             number = act(draft, time, data, order, text(name) if isinstance(name, str) else "all", "asked")
             for vehicle, request in named:
                 draft.taken.pop(vehicle, None)  # the order overrules the take-over
-                draft.bidden[vehicle] = Bid(
-                    number, time, Bidden(stopping(Fallback(order), request, vehicle), by)
+                draft.standing_orders[vehicle] = OrderState(
+                    number, time, StandingOrder(stopping(Fallback(order), request, vehicle), by)
                 )
-                _note(draft, time, vehicle, draft.bidden[vehicle])
-            draft.bidden.bounded(MOST_VEHICLES)
+                _note(draft, time, vehicle, draft.standing_orders[vehicle])
+            draft.standing_orders.bounded(MOST_VEHICLES)
 
 
 def sent(draft: Draft, time: float, vehicle: str, request: str) -> None:
     """Note that an order is sent to a vehicle; a refused order stays refused when it is repeated."""
-    for bid in _ordered(draft, vehicle, request):
-        if bid.bidden.fate is Fate.ASKED:
-            _becomes(draft, time, vehicle, bid, Fate.SENT)
+    for standing in _ordered(draft, vehicle, request):
+        if standing.order.fate is Fate.ASKED:
+            _becomes(draft, time, vehicle, standing, Fate.SENT)
 
 
 def confirm(draft: Draft, time: float, vehicle: str, request: str) -> None:
     """Note that a vehicle shows that it obeys an order."""
-    for bid in _ordered(draft, vehicle, request):
-        if bid.bidden.owed:
-            _becomes(draft, time, vehicle, bid, Fate.CONFIRMED)
+    for standing in _ordered(draft, vehicle, request):
+        if standing.order.owed:
+            _becomes(draft, time, vehicle, standing, Fate.CONFIRMED)
 
 
 def refuse(draft: Draft, time: float, vehicle: str, request: str, why: str) -> None:
     """Note that a vehicle refuses an order, and why."""
-    for bid in _ordered(draft, vehicle, request):
-        _becomes(draft, time, vehicle, bid, Fate.REFUSED, why)
+    for standing in _ordered(draft, vehicle, request):
+        _becomes(draft, time, vehicle, standing, Fate.REFUSED, why)
 
 
 def end(draft: Draft, time: float, vehicle: str, why: str) -> None:
     """Note that an order has ended; if it is not confirmed yet, it never will be."""
-    bid: Bid | None = draft.bidden.pop(vehicle, None)
-    if bid is not None and bid.bidden.owed:
-        _note(draft, time, vehicle, bid, why)
+    standing: OrderState | None = draft.standing_orders.pop(vehicle, None)
+    if standing is not None and standing.order.owed:
+        _note(draft, time, vehicle, standing, why)
 
 
-def _ordered(draft: Draft, vehicle: str, request: str) -> Iterator[Bid]:
+def _ordered(draft: Draft, vehicle: str, request: str) -> Iterator[OrderState]:
     """Yield the vehicle's standing order if it has this request; else nothing."""
-    bid: Bid | None = draft.bidden.get(vehicle)
-    if bid is not None and bid.bidden.command.request == request:
-        yield bid
+    standing: OrderState | None = draft.standing_orders.get(vehicle)
+    if standing is not None and standing.order.command.request == request:
+        yield standing
 
 
-def _becomes(draft: Draft, time: float, vehicle: str, bid: Bid, fate: Fate, why: str = "") -> None:
-    draft.bidden[vehicle] = replace(bid, bidden=replace(bid.bidden, fate=fate, refusal=why))
-    _note(draft, time, vehicle, draft.bidden[vehicle])
+def _becomes(
+    draft: Draft, time: float, vehicle: str, standing: OrderState, fate: Fate, why: str = ""
+) -> None:
+    draft.standing_orders[vehicle] = replace(standing, order=replace(standing.order, fate=fate, refusal=why))
+    _note(draft, time, vehicle, draft.standing_orders[vehicle])
 
 
-def _note(draft: Draft, time: float, vehicle: str, bid: Bid, then: str = "") -> None:
+def _note(draft: Draft, time: float, vehicle: str, standing: OrderState, then: str = "") -> None:
     """Update an order's action with the fate for a vehicle; `then` is the event that ended the order."""
-    action: Json = draft.actions.get(bid.action)
+    action: Json = draft.actions.get(standing.action)
     if action is None:
         return
-    why = "; ".join(filter(None, [bid.bidden.refusal, then]))
-    fates = {**action["fates"], vehicle: {"state": bid.bidden.fate.value, "why": why}}
-    owed = any(_is_owed(draft, name, bid.action) for name in fates)
-    draft.actions[bid.action] = {
+    why = "; ".join(filter(None, [standing.order.refusal, then]))
+    fates = {**action["fates"], vehicle: {"state": standing.order.fate.value, "why": why}}
+    owed = any(_is_owed(draft, name, standing.action) for name in fates)
+    draft.actions[standing.action] = {
         **action,
         "state": _state([each["state"] for each in fates.values()]),
         "why": _why(fates),
@@ -98,8 +98,8 @@ def _note(draft: Draft, time: float, vehicle: str, bid: Bid, then: str = "") -> 
 
 
 def _is_owed(draft: Draft, vehicle: str, action: str) -> bool:
-    bid: Bid | None = draft.bidden.get(vehicle)
-    return bid is not None and bid.action == action and bid.bidden.owed
+    standing: OrderState | None = draft.standing_orders.get(vehicle)
+    return standing is not None and standing.action == action and standing.order.owed
 
 
 def _state(fates: Collection[str]) -> str:

@@ -6,10 +6,10 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any, Final
 
-from adapters.console.facts import Link, Order, Position
+from adapters.console.facts import Link, Position, VehicleCommand
 from adapters.console.fates import confirm, end, refuse, sent
 from adapters.console.giving_back import not_rebound, rebind, rebound
-from adapters.console.mutable_facts import Draft, Table
+from adapters.console.mutable_facts import MOST_VEHICLES, Draft, Table
 from adapters.console.parsing import count, number, text, texts
 from adapters.console.stations import obeys
 from adapters.console.view import Json
@@ -25,7 +25,6 @@ STATES: Final = {"Accepted": "accepted", "Arrived": "arrived", "Rejected": "refu
 """The state of an order after each report."""
 
 MOST_WAY: Final = 100
-MOST_VEHICLES: Final = 1_000
 
 
 def take_command(draft: Draft, time: float, data: Any) -> None:
@@ -42,22 +41,22 @@ def take_command(draft: Draft, time: float, data: Any) -> None:
                 order = replace(order, since=known.since, state=known.state, why=known.why)
             draft.orders[name] = order
             if command in ("Hold", "Return"):
-                draft.handing.pop(name, None)
+                draft.hand_overs.pop(name, None)
             draft.orders.bounded(MOST_VEHICLES)
         case {"command": "HandOver", "request": str(), "entity": str(name)}:
-            draft.handing[name] = _order("HandOver", time, data)
-            draft.handing.bounded(MOST_VEHICLES)
+            draft.hand_overs[name] = _order("HandOver", time, data)
+            draft.hand_overs.bounded(MOST_VEHICLES)
         case {"command": "Rebind", "request": str(request), "entity": str(name)}:
             rebind(draft, name, request)
 
 
-def _order(command: str, time: float, data: Any) -> Order:
+def _order(command: str, time: float, data: Any) -> VehicleCommand:
     places = data.get("path", [data["ring"]] if "ring" in data else [])
     points = [_waypoint(each) for each in places[:MOST_WAY]] if isinstance(places, list) else []
     way = tuple(each for each in points if each is not None)
     to = text(data.get("join") if command == "HandOver" else data.get("name"))
     state = "asked" if command in ("Hold", "Return") else "sent"
-    return Order(text(data["request"]), command, to, way, time, state)
+    return VehicleCommand(text(data["request"]), command, to, way, time, state)
 
 
 def _waypoint(place: Any) -> Position | None:
@@ -93,13 +92,13 @@ def take_report(draft: Draft, time: float, data: Any) -> None:
 def _answer(draft: Draft, time: float, name: str, request: str, report: str, why: str) -> None:
     """Take in a report about a command to a vehicle."""
     if report == "Sent":
-        order: Order | None = draft.orders.get(name)
+        order: VehicleCommand | None = draft.orders.get(name)
         if order is not None and order.state == "asked":  # else it repeats a refused order
             _becomes(draft.orders, name, request, "sent", "")
         sent(draft, time, name, request)
         return
     _becomes(draft.orders, name, request, STATES[report], why)
-    _becomes(draft.handing, name, request, STATES[report], why)
+    _becomes(draft.hand_overs, name, request, STATES[report], why)
     if report == "Rejected":
         refuse(draft, time, name, request, why)
         not_rebound(draft, time, name, request, why)
@@ -126,15 +125,15 @@ def _flight(takes: Any) -> Json:
     return None
 
 
-def _becomes(orders: Table[Order], name: str, request: str, state: str, why: str) -> None:
-    order: Order | None = orders.get(name)
+def _becomes(orders: Table[VehicleCommand], name: str, request: str, state: str, why: str) -> None:
+    order: VehicleCommand | None = orders.get(name)
     if order is not None and order.request == request:
         orders[name] = replace(order, state=state, why=why)
 
 
 def arrive(draft: Draft, label: Label, c: Configuration) -> None:
     """Mark orders as done by the step that completes them: `commit`, or `actuate` for a hand-over."""
-    table = {"commit": draft.orders, "actuate": draft.handing}.get(label.rule)
+    table = {"commit": draft.orders, "actuate": draft.hand_overs}.get(label.rule)
     if table is not None and isinstance(label.about, CTR | FLY):
         for name in concerned(c, label.about):
             if name in table:

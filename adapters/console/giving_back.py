@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Any
 
 from adapters.console.actions import act, settle
 from adapters.console.fates import end
-from adapters.console.mutable_facts import Draft
+from adapters.console.mutable_facts import MOST_VEHICLES, Draft
 from adapters.console.parsing import text
-
-MOST_VEHICLES: Final = 1_000
 
 
 def take_giving_back(draft: Draft, time: float, data: Any) -> None:

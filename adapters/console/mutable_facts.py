@@ -4,12 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, MutableMapping
 from dataclasses import fields
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
-from adapters.console.facts import Authority, Bid, Facts, Link, Order, Run, Seen, Shape, Standing, Trail
+from adapters.console.facts import (
+    ControllingStations,
+    Facts,
+    Link,
+    Observed,
+    OrderState,
+    Run,
+    Shape,
+    Standing,
+    Trail,
+    VehicleCommand,
+)
 from adapters.console.view import Json
 
 Value = TypeVar("Value")
+
+MOST_VEHICLES: Final = 1_000
+"""The most vehicles in a table of facts; the oldest are dropped."""
 
 
 class Table(MutableMapping[str, Value]):
@@ -70,19 +84,19 @@ class Draft:
     broken_off: bool
     step: int
     standing: Standing | None
-    seen: Table[Seen]
+    seen: Table[Observed]
     shapes: Table[Shape]
     trails: Table[Trail]
     links: Table[Link]
-    orders: Table[Order]
-    handing: Table[Order]
+    orders: Table[VehicleCommand]
+    hand_overs: Table[VehicleCommand]
     status: Table[Json]
     words: Table[Json]
     taken: Table[str]
-    bidden: Table[Bid]
+    standing_orders: Table[OrderState]
     rebinds: Table[tuple[str, str]]
     stopped: Table[str]
-    authority: Table[Authority]
+    authority: Table[ControllingStations]
     deadlines: Table[float]
     flights: Table[Json]
     failed: frozenset[str]

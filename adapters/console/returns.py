@@ -13,8 +13,8 @@ from typing import Final
 from adapters.console.alerts import STOPPING, fallen_back
 from adapters.console.facts import Facts, Position, Rules
 from adapters.live.assumptions import broken_by_place
+from adapters.live.plan import Plan
 from adapters.live.sightings import Fences
-from adapters.live.state import Plan
 from physical import Geometry, point
 from physical.frame import E7
 from semantics.live_policy import Fallback

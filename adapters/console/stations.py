@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from adapters.console.facts import Authority, Facts
+from adapters.console.facts import ControllingStations, Facts
 from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import number, text
 from adapters.console.view import Json
@@ -31,7 +31,7 @@ def obeys(draft: Draft, time: float, name: Name, stations: tuple[str, ...]) -> N
     if not stations or (known is not None and known.stations == stations):
         return
     handed = None if known is None else {"time": time, "from": [*known.stations], "to": [*stations]}
-    draft.authority[name] = Authority(stations, handed)
+    draft.authority[name] = ControllingStations(stations, handed)
     draft.authority.bounded(MOST)
 
 

@@ -12,9 +12,9 @@ from adapters.console.flights import arrive
 from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import count, text, texts
 from adapters.console.ticks import tick
+from adapters.live.due_times import Waiting
 from adapters.live.limits import heads_of
-from adapters.live.state import Waiting
-from adapters.live.watchers import TOLD
+from adapters.live.watchers import SHOWN_RULES
 from semantics.state.brief import cut
 from semantics.state.canonical import written
 from semantics.state.configuration import Configuration, Label
@@ -27,7 +27,7 @@ MOST: Final = 200
 MOST_CHANGES: Final = 40
 
 SORTS: Final = {"env": "world", "commit": "world", "say": "say"}
-"""The sort of a tick, by its rule; `control` for the other rules of `TOLD`."""
+"""The sort of a tick, by its rule; `control` for the other rules of `SHOWN_RULES`."""
 
 STRUCTURE: Final = frozenset({"parent", "links", "placement", "channels", "down", "names"})
 """The cells of L and P."""
@@ -42,7 +42,7 @@ def take_step(draft: Draft, time: float, data: Any) -> None:
     found = None if before is None else _followed(draft, before, number, time, data)
     rule = label.removeprefix("⟨").partition(" ")[0] if found is None else found.rule
     shown = texts(data.get("shown"))
-    told = rule in TOLD or bool(shown)
+    told = rule in SHOWN_RULES or bool(shown)
     changed: tuple[str, ...] = ()
     if before is not None and draft.standing is not None:
         changed = changes(before.configuration, draft.standing.configuration)
@@ -58,7 +58,7 @@ def take_step(draft: Draft, time: float, data: Any) -> None:
         "told": told,
     }
     draft.steps.bounded(MOST)
-    if rule in TOLD:
+    if rule in SHOWN_RULES:
         tick(draft, time, SORTS.get(rule, "control"))
 
 

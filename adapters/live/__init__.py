@@ -4,10 +4,14 @@
 to vehicles. `LiveRun` is the loop around it. Neither knows MAVLink, AIS or a file format.
 """
 
+from adapters.live.batch import Batch, Heard, Saying
 from adapters.live.core import advance, is_over, resumed, started, watch
 from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, settle
 from adapters.live.operator_socket import NobodyListens, listening, say
-from adapters.live.state import Batch, Finding, Heard, LiveState, LiveStep, Plan, Saying, Turn
+from adapters.live.plan import Plan
+from adapters.live.reported import Finding
+from adapters.live.state import LiveState
+from adapters.live.turn import LiveStep, Turn
 
 __all__ = [
     "Batch",

@@ -6,15 +6,22 @@ loop all call it.
 
 from __future__ import annotations
 
-from adapters.live.fates import tell_again
+from dataclasses import replace
+
+from adapters.live.agent_rounds import go_on
+from adapters.live.batch import Batch
+from adapters.live.fallbacks import answers_for
 from adapters.live.flying import remember
 from adapters.live.ingest import take_in
 from adapters.live.limits import check_limits
 from adapters.live.operator_commands import answer
+from adapters.live.order_progress import repeat_refused
+from adapters.live.plan import Plan
 from adapters.live.scheduling import in_turn
-from adapters.live.state import Batch, LiveState, Plan, Turn
-from adapters.live.timing import begun
-from adapters.live.turn import Turning
+from adapters.live.state import LiveState
+from adapters.live.step_taking import check_times
+from adapters.live.turn import Turn
+from adapters.live.turn_in_progress import Turning
 from semantics.environment import Says
 from semantics.state.configuration import Configuration
 from semantics.state.partition import is_parted
@@ -31,24 +38,15 @@ LONG = 5.0
 def advance(plan: Plan, state: LiveState, batch: Batch, now: float, most: int = MOST_STEPS) -> Turn:
     """Make one turn: take the world in, then let agents continue until nothing more can be done now."""
     if plan.first.setting.timing is not None:
-        state = _timed(state, now)
+        state = replace(state, due=state.due.running(state.configuration, now))
     turning = _taken_in(plan, state, batch, now)
     for said in batch.sayings:
         answer(turning, said)
-    tell_again(turning)
-    turning.go_on(most)
+    repeat_refused(turning)
+    go_on(turning, most)
     check_limits(turning)
-    turning.check_times()
+    check_times(turning)
     return turning.turn()
-
-
-def _timed(state: LiveState, now: float) -> LiveState:
-    """Return a state with running timers: begun now, or resumed."""
-    if state.timers is None:
-        return state.with_(timers=begun(state.configuration, now), stopped=None)
-    if state.stopped is None:
-        return state
-    return state.with_(timers=state.timers.resting(state.stopped, now), stopped=None)
 
 
 def watch(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turn:
@@ -68,7 +66,7 @@ def _taken_in(plan: Plan, state: LiveState, batch: Batch, now: float) -> Turning
 def obeying(plan: Plan, state: LiveState) -> frozenset[Name]:
     """Return the vehicles that this station commands: those of other stations never answer it."""
     turning = Turning(plan, state, 0.0)
-    return frozenset(filter(turning.answers_for, plan.vehicles))
+    return frozenset(vehicle for vehicle in plan.vehicles if answers_for(turning, vehicle))
 
 
 def is_over(state: LiveState) -> bool:
@@ -77,7 +75,7 @@ def is_over(state: LiveState) -> bool:
     With several stations this is never known: the others may still send something.
     """
     c = state.configuration
-    if is_parted(c) or state.owing:
+    if is_parted(c) or state.overrides.owing:
         return False
     if any(map(c.alpha.code, c.alpha.names())):
         return False
@@ -90,12 +88,14 @@ def is_refused(state: LiveState) -> bool:
     An operator may give a vehicle back, or send a message that the mission allows.
     """
     c = state.configuration
-    told = (*state.orders.values(), *state.handing.values())
-    refusing = {order.agent for order in told if order.refused}
-    if not refusing or is_parted(c) or state.taken or state.suspended or state.grounded or _may_be_said(c):
+    refusing = {given.agent for given in state.commanded if given.refused}
+    overrides = state.overrides
+    if not refusing or is_parted(c) or _may_be_said(c):
+        return False
+    if overrides.taken or overrides.suspended or overrides.grounded:
         return False
     pending = [each.request for each in c.eta.all() if not isinstance(each.request, READY)]
-    rest = state.idle | state.failed
+    rest = state.agents.idle | state.agents.failed
     at_rest = all(a in rest or not c.alpha.code(a) for a in c.alpha.names())
     return at_rest and bool(pending) and all(request.agent in refusing for request in pending)
 

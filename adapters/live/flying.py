@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from adapters.live.orders import hand_overs, journey, renewed
+from adapters.live.commanded import GivenCommand
+from adapters.live.orders import journey, needed_hand_overs, renewed
 from adapters.live.scheduling import in_turn
-from adapters.live.state import Order
-from adapters.live.turn import Turning
+from adapters.live.step_taking import observe
+from adapters.live.turn_in_progress import Turning
 from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver
 from physical import leads_straight, standing
 from semantics.control import commits, realisations
@@ -24,82 +25,79 @@ def arrive(turning: Turning, entity: Name) -> bool:
     its command. A vehicle on a path must have reported the end of the path. The remaining way to its waypoint must be
     straight: after the arrival it crosses no border.
     """
-    transit, order = turning.c.structure.physical.transit(entity), turning.orders.get(entity)
+    transit, given = turning.c.structure.physical.transit(entity), turning.commanded.flights.get(entity)
     at = turning.where_seen(entity)
-    if transit is None or order is None or at is None:
+    if transit is None or given is None or at is None:
         return False
-    if not order.obeyed or (isinstance(order.command, Follow) and not order.through):
+    if not given.obeyed or (isinstance(given.command, Follow) and not given.through):
         return False
     if transit.to not in turning.around(entity, turning.c.setting.kind(entity), at):
         return False  # most positions are of vehicles on their way: don't check their companions
-    together = sorted(other for other, told in turning.orders.items() if told.agent == order.agent)
-    if not all(turning.flies(other) and turning.orders[other].obeyed for other in together):
+    flights = turning.commanded.flights
+    together = sorted(name for name, each in flights.items() if each.agent == given.agent)
+    if not all(flies(turning, other) and flights[other].obeyed for other in together):
         return False
     if not all(_is_there(turning, other) for other in together):
         return False
     sight = Sight(
         f"{entity} arrives", {placement_cell(other): turning.where_seen(other) for other in together}
     )
-    if not turning.observe(sight, arriving(turning.c, order.agent, sight)):
+    if not observe(turning, sight, arriving(turning.c, given.agent, sight)):
         return False
-    for other in together:
-        del turning.orders[other]
+    turning.commanded = turning.commanded.arrived(together)
     return True
+
+
+def flies(turning: Turning, entity: Name) -> bool:
+    """Return whether the command of a vehicle in flight is still valid."""
+    given = turning.commanded.flights.get(entity)
+    if given is None or given.refused or entity in turning.overrides.taken:
+        return False
+    return not turning.overrides.stops(given.agent)
 
 
 def _is_there(turning: Turning, entity: Name) -> bool:
     """Return whether the straight way from a vehicle's last position to its waypoint keeps to its surroundings."""
-    order, at = turning.orders[entity], turning.where_seen(entity)
-    if not isinstance(at, Placed) or not isinstance(order.command, GoTo | Follow):
+    given, at = turning.commanded.flights[entity], turning.where_seen(entity)
+    if not isinstance(at, Placed) or not isinstance(given.command, GoTo | Follow):
         return True
-    assert order.goal is not None
-    around = replace(order.command.around, inside=(order.goal, *order.command.around.inside))
-    to = order.waypoint or standing(at.geometry, order.goal, around, 0.0)
-    return order.goal.is_point or (to is not None and leads_straight(at.geometry, at.geometry, to, around))
+    assert given.goal is not None
+    around = replace(given.command.around, inside=(given.goal, *given.command.around.inside))
+    to = given.waypoint or standing(at.geometry, given.goal, around, 0.0)
+    return given.goal.is_point or (to is not None and leads_straight(at.geometry, at.geometry, to, around))
 
 
 def obey(turning: Turning, entity: Name, report: Accepted | Arrived) -> None:
-    """Record that a vehicle follows the command of a request, or has completed it.
-
-    A report about a place that has moved since is ignored: the vehicle gets a new command.
-    """
-    order = turning.orders.get(entity)
-    if order is None or order.command.request != report.request:
-        return
-    if report.place is not None and report.place != order.goal:
-        return
-    through = order.through or isinstance(report, Arrived)
-    waypoint = report.waypoint or order.waypoint
-    turning.orders[entity] = replace(order, obeyed=True, through=through, waypoint=waypoint)
-    arrive(turning, entity)
+    """Record that a vehicle follows the command of a request, or has completed it."""
+    before = turning.commanded
+    turning.commanded = before.obeyed(entity, report)
+    if turning.commanded is not before:
+        arrive(turning, entity)
 
 
 def doubt(turning: Turning, entity: Name) -> None:
     """Record that it is unknown whether a vehicle still follows its command."""
-    order = turning.orders.get(entity)
-    if order is not None:
-        turning.orders[entity] = replace(order, obeyed=False)
+    turning.commanded = turning.commanded.doubted(entity)
 
 
 def refuse(turning: Turning, entity: Name, request: str) -> None:
     """Record that the command of a request was refused."""
-    for orders in (turning.orders, turning.handing):
-        order = orders.get(entity)
-        if order is not None and order.command.request == request:
-            orders[entity] = replace(order, obeyed=False, refused=True)
+    turning.commanded = turning.commanded.refused(entity, request)
 
 
 def ask_anew(turning: Turning, entity: Name) -> None:
     """Command a vehicle again after it was given back, if its request is still pending."""
-    turning.handing.pop(entity, None)  # the hand-over is ordered again in its turn
-    order = turning.orders.get(entity)
-    fly = None if order is None else _flight(turning, order)
-    if order is None or fly is None or isinstance(order.command, HandOver) or turning.stops(order.agent):
+    turning.commanded = turning.commanded.handed_over(entity)  # the hand-over is ordered again in its turn
+    given = turning.commanded.flights.get(entity)
+    if given is None or turning.overrides.stops(given.agent):
         return
-    told = renewed(turning.c, fly, order.command, turning.plan.first) or order.command
-    command = replace(told, request=turning.request_of(order.agent))
-    turning.orders[entity] = Order(command, order.agent, order.since)
-    turning.commands.append(command)
+    fly = _flight(turning, given)
+    if fly is None or isinstance(given.command, HandOver):
+        return
+    going = renewed(turning.c, fly, given.command, turning.plan.first) or given.command
+    command = replace(going, request=turning.request_of(given.agent))
+    turning.commanded = turning.commanded.flying(entity, GivenCommand(command, given.agent, given.since))
+    turning.command(command)
 
 
 def renew(turning: Turning, place: Name) -> None:
@@ -107,25 +105,25 @@ def renew(turning: Turning, place: Name) -> None:
 
     If a place has moved over a vehicle, the vehicle arrives once it shows that it goes to the place's new position.
     """
-    for entity, order in sorted(turning.orders.items()):
-        if turning.c.structure.physical.transit(entity) is not None and turning.flies(entity):
-            _send_on(turning, entity, order, place)
+    for entity, given in sorted(turning.commanded.flights.items()):
+        if turning.c.structure.physical.transit(entity) is not None and flies(turning, entity):
+            _send_on(turning, entity, given, place)
 
 
-def _send_on(turning: Turning, entity: Name, order: Order, place: Name) -> None:
-    fly, transit = _flight(turning, order), turning.c.structure.physical.transit(entity)
-    if fly is None or transit is None or isinstance(order.command, HandOver):
+def _send_on(turning: Turning, entity: Name, given: GivenCommand, place: Name) -> None:
+    fly, transit = _flight(turning, given), turning.c.structure.physical.transit(entity)
+    if fly is None or transit is None or isinstance(given.command, HandOver):
         return
-    if place not in (transit.to, *fly.reaction.via) and isinstance(order.command, Follow):
+    if place not in (transit.to, *fly.reaction.via) and isinstance(given.command, Follow):
         return  # it would fly its whole way again
-    command = renewed(turning.c, fly, order.command, turning.plan.first)
+    command = renewed(turning.c, fly, given.command, turning.plan.first)
     if command is not None:
-        turning.orders[entity] = Order(command, order.agent, order.since)
-        turning.commands.append(command)
+        turning.commanded = turning.commanded.flying(entity, GivenCommand(command, given.agent, given.since))
+        turning.command(command)
 
 
-def _flight(turning: Turning, order: Order) -> FLY | None:
-    fly = next((p.request for p in in_turn(turning.c) if p.request.agent == order.agent), None)
+def _flight(turning: Turning, given: GivenCommand) -> FLY | None:
+    fly = next((p.request for p in in_turn(turning.c) if p.request.agent == given.agent), None)
     return fly if isinstance(fly, FLY) else None
 
 
@@ -136,9 +134,11 @@ def remember(turning: Turning, request: Request) -> None:
     elif isinstance(request, CTR):
         way = next(realisations(turning.c, request), None)
         vehicles = frozenset(turning.plan.vehicles)
-        for told in hand_overs(turning.c, request, way, vehicles) if way is not None else ():
-            command = replace(told, request=turning.request_of(request.agent))
-            turning.handing[told.entity] = Order(command, request.agent, turning.now)
+        for each in needed_hand_overs(turning.c, request, way, vehicles) if way is not None else ():
+            command = replace(each, request=turning.request_of(request.agent))
+            turning.commanded = turning.commanded.handing_over(
+                each.entity, GivenCommand(command, request.agent, turning.now)
+            )
 
 
 def _remember_flight(turning: Turning, fly: FLY) -> None:
@@ -147,4 +147,4 @@ def _remember_flight(turning: Turning, fly: FLY) -> None:
         assert found is not None
         going = journey(turning.c, found, node, place, turning.request_of(fly.agent), turning.plan.first)
         if going is not None:
-            turning.orders[node] = Order(going, fly.agent, turning.now)
+            turning.commanded = turning.commanded.flying(node, GivenCommand(going, fly.agent, turning.now))

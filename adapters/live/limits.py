@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
+from adapters.live.due_times import Waiting
+from adapters.live.fallbacks import fall_back, vehicles_of
 from adapters.live.scheduling import in_turn
-from adapters.live.state import Waiting
-from adapters.live.turn import Turning
+from adapters.live.turn_in_progress import Turning
 from semantics.behaviours.durations import duration_text
 from semantics.live_policy import Fallback, TimeLimit
 from semantics.state.configuration import Configuration
@@ -19,8 +19,8 @@ def check_limits(turning: Turning) -> None:
     limits = turning.plan.precautions.limits
     if not limits:
         return
-    turning.heads = heads_of(turning.c, turning.heads, turning.now)
-    for agent, waiting in sorted(turning.heads.items()):
+    turning.due = turning.due.with_heads(heads_of(turning.c, turning.due.heads, turning.now))
+    for agent, waiting in sorted(turning.due.heads.items()):
         kind = type(waiting.request).__name__
         for limit in (each for each in limits if each.covers(kind, waiting.request.agent)):
             _check(turning, agent, waiting, limit)
@@ -51,7 +51,7 @@ def _check(turning: Turning, key: str, waiting: Waiting, limit: TimeLimit) -> No
         f"longer than {duration_text(limit.seconds)}"
     )
     turning.find("late", agent, message, limit.fallback.value)
-    turning.heads[key] = replace(turning.heads[key], late=(*turning.heads[key].late, limit.seconds))
+    turning.due = turning.due.late(key, limit.seconds)
     if limit.fallback is not Fallback.CONTINUE:
-        turning.fall_back(limit.fallback, turning.vehicles_of(agent))
-        turning.grounded.add(agent)
+        fall_back(turning, limit.fallback, vehicles_of(turning, agent))
+        turning.overrides = turning.overrides.grounding(agent)

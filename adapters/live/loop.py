@@ -17,8 +17,12 @@ from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from adapters.issue_counter import Troubles
+from adapters.live.batch import Batch, Heard, Said, Saying
 from adapters.live.core import advance, is_over, is_refused, watch
-from adapters.live.state import Answer, Batch, Finding, Heard, LiveState, Plan, Said, Saying, Turn
+from adapters.live.plan import Plan
+from adapters.live.reported import Finding
+from adapters.live.state import LiveState
+from adapters.live.turn import Answer, Turn
 from adapters.live.validation import flaw_of, legible_report
 from adapters.live.watchers import Watcher, Watchers
 from adapters.plugin import (
@@ -92,8 +96,8 @@ class NotHeard(Exception):
         heard: Whether all of them were heard at all.
     """
 
-    def __init__(self, vehicles: Sequence[str], said: Mapping[str, Status] | None = None) -> None:
-        lacking = {name: said[name].lacks for name in vehicles if name in said} if said else {}
+    def __init__(self, vehicles: Sequence[str], statuses: Mapping[str, Status] | None = None) -> None:
+        lacking = {name: statuses[name].lacks for name in vehicles if name in statuses} if statuses else {}
         silent = [name for name in vehicles if name not in lacking]
         words = [f"nothing was heard of {', '.join(silent)}"] if silent else []
         words += [
@@ -114,13 +118,13 @@ class Inbox:
 
     Attributes:
         named: The entities of the mission; a turn takes all of their positions, and a slice of the strangers'.
-        said: Each vehicle's last status.
+        statuses: Each vehicle's last status.
     """
 
     watchers: Watchers
     now: Callable[[], float]
     named: Container[str] = ()
-    said: dict[str, Status] = field(default_factory=dict)
+    statuses: dict[str, Status] = field(default_factory=dict)
     awake: asyncio.Event = field(default_factory=asyncio.Event)
     heard: dict[tuple[str, str], Heard] = field(default_factory=dict)
     strangers: OrderedDict[tuple[str, str], Heard] = field(default_factory=OrderedDict)
@@ -150,7 +154,7 @@ class Inbox:
         report = legible_report(report)
         self.watchers.reported(report, self.now())
         if isinstance(report, Status):
-            self.said[report.entity] = report
+            self.statuses[report.entity] = report
         if isinstance(report, Seen):
             return  # it causes no turn
         self.reports.append(report)
@@ -249,9 +253,9 @@ class LiveRun:
         self._watchers = Watchers(watchers)
         self.inbox = Inbox(self._watchers, self.clock, plan.first.setting.kinds)
         self._listening = Listening(self.clock())
-        self._told = 0.0
+        self._missed_before = 0.0
         self._plugins = tuple(plugins)
-        self._orders: asyncio.Queue[Command] = asyncio.Queue()
+        self._commands: asyncio.Queue[Command] = asyncio.Queue()
         self._tasks: list[asyncio.Task[None]] = []
         self._begun = False
 
@@ -259,9 +263,9 @@ class LiveRun:
         for plugin in self._plugins:
             ear = Ear(plugin.name, self.inbox)
             self._tasks.append(asyncio.create_task(plugin.run(ear), name=plugin.name))
-        self._tasks.append(asyncio.create_task(self._telling(), name="orders"))
-        for bidden in self.state.bidden.values():  # else a vehicle that was held looks taken over
-            self._orders.put_nowait(bidden.command)
+        self._tasks.append(asyncio.create_task(self._send_commands(), name="orders"))
+        for order in self.state.overrides.orders.values():  # else a vehicle that was held looks taken over
+            self._commands.put_nowait(order.command)
         return self
 
     async def __aexit__(self, *_: object) -> None:
@@ -283,7 +287,7 @@ class LiveRun:
         until = self._listening.look(self.clock()) + patience
         while (missing := self._unheard()) or not (start is None or start.is_set()):
             if missing and self._listening.look(self.clock()) >= until:
-                raise NotHeard(missing, self.inbox.said)
+                raise NotHeard(missing, self.inbox.statuses)
             await self._next(0.1)
             batch, answers = self.inbox.take(self._missed())
             turn = watch(self.plan, self.state, batch, self.clock())
@@ -296,15 +300,14 @@ class LiveRun:
                 raise PluginFailed(f"{failed.source}: {failed.reason}")
         self._begun = True
         if forced:
-            self.state = self.state.with_(
-                suspended=False, owed={}
-            )  # an unverified run has reported the differences
-        for order in (*self.state.orders.values(), *self.state.handing.values()):
-            if order.command.entity not in self.state.taken:  # a resumed run has compared it
-                self._orders.put_nowait(order.command)
+            overrides = self.state.overrides.lifted()  # an unverified run has reported the differences
+            self.state = replace(self.state, overrides=overrides)
+        for given in self.state.commanded:
+            if given.command.entity not in self.state.overrides.taken:  # a resumed run has compared it
+                self._commands.put_nowait(given.command)
 
     def _unheard(self) -> list[str]:
-        return sorted(set(self.plan.vehicles) - set(self.state.seen))
+        return sorted(set(self.plan.vehicles) - set(self.state.sightings.newest))
 
     def _refuse(self, answers: list[asyncio.Future[Answer]]) -> None:
         for answer in answers:
@@ -346,8 +349,8 @@ class LiveRun:
             if not said.done():  # the sender may have disconnected
                 said.set_result(answer)
         for command in (*turn.commands, *self._unrecorded()):
-            if not (self.state.suspended and isinstance(command, GoTo | Follow | HandOver)):
-                self._orders.put_nowait(command)
+            if not (self.state.overrides.suspended and isinstance(command, GoTo | Follow | HandOver)):
+                self._commands.put_nowait(command)
         return turn
 
     def _unrecorded(self) -> tuple[Command, ...]:
@@ -380,8 +383,8 @@ class LiveRun:
     def _missed(self) -> float:
         """Return the seconds without listening since the last call."""
         self._listening.look(self.clock())
-        before, self._told = self._told, self._listening.missed
-        return self._told - before
+        before, self._missed_before = self._missed_before, self._listening.missed
+        return self._missed_before - before
 
     def _check_plugins(self) -> None:
         """Report plugins that have failed; a run that has not begun ends with the first."""
@@ -409,10 +412,10 @@ class LiveRun:
 
     # --- commands
 
-    async def _telling(self) -> None:
+    async def _send_commands(self) -> None:
         """Send commands to vehicles, one after the other, and report refusals."""
         while True:
-            command = await self._orders.get()
+            command = await self._commands.get()
             owner = next((plugin for plugin in self._plugins if plugin.owns(command.entity)), None)
             try:
                 if owner is None:

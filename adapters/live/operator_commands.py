@@ -10,19 +10,14 @@ import re
 from collections.abc import Iterable, Iterator
 from ipaddress import ip_address
 
+from adapters.live.batch import Acknowledging, GivingBack, Ordering, Said, Saying
+from adapters.live.fallbacks import answers_for, due_fallback, fall_back
 from adapters.live.flying import ask_anew
 from adapters.live.orders import is_authority, stopping
-from adapters.live.state import (
-    Acknowledging,
-    Answer,
-    Bidden,
-    GivingBack,
-    Ordering,
-    Said,
-    Saying,
-    operator,
-)
-from adapters.live.turn import Turning
+from adapters.live.overrides import StandingOrder, operator
+from adapters.live.step_taking import take
+from adapters.live.turn import Answer
+from adapters.live.turn_in_progress import Turning
 from adapters.plugin import Follow, GiveBack, GoTo, HandOver, Hold, Rebind, Return
 from semantics.behaviours.values import show, spoken
 from semantics.environment import Says
@@ -43,13 +38,13 @@ def answer(turning: Turning, said: Said) -> None:
         case Saying():
             say_to(turning, said)
         case Ordering():
-            turning.answers.append(order(turning, said))
+            turning.answer(order(turning, said))
         case GivingBack():
-            turning.answers.append(_take_back(turning, said))
+            turning.answer(_take_back(turning, said))
         case Acknowledging(number):
-            known = 0 < number <= turning.before.findings
-            refusal = "" if known else f"there is no finding {number}; there are {turning.before.findings}"
-            turning.answers.append(Answer(said, refusal))
+            count = turning.before.reported.count
+            refusal = "" if 0 < number <= count else f"there is no finding {number}; there are {count}"
+            turning.answer(Answer(said, refusal))
 
 
 # --- orders
@@ -59,21 +54,21 @@ def order(turning: Turning, said: Ordering) -> Answer:
     """Order a vehicle, or all, to hold or to return: from now on the mission does not command it."""
     named = sorted(turning.plan.vehicles) if said.vehicle is None else [said.vehicle]
     left_out = {entity: why for entity in named if (why := _objection(turning, entity, said))}
-    told = [entity for entity in named if entity not in left_out]
-    if not told:
+    ordered = [entity for entity in named if entity not in left_out]
+    if not ordered:
         return Answer(said, "; ".join(left_out.values()) or "there is no vehicle")
-    notes = tuple(note for entity in told for note in _notes(turning, entity, said.fallback))
-    requests = {entity: _bid(turning, entity, said) for entity in told}
-    who, are = ", ".join(told), "is" if len(told) == 1 else "are"
+    notes = tuple(note for entity in ordered for note in _notes(turning, entity, said.fallback))
+    requests = {entity: _order_one(turning, entity, said) for entity in ordered}
+    who, are = ", ".join(ordered), "is" if len(ordered) == 1 else "are"
     message = f"{who} {are} told to {said.fallback.value} by {operator(said.by)}"
     back = f"until `bigactors give-back {said.vehicle or 'VEHICLE'}`"
-    rest = "; ".join([*notes, *left_out.values(), f"the mission does not command {_it(told)} {back}"])
+    rest = "; ".join([*notes, *left_out.values(), f"the mission does not command {_it(ordered)} {back}"])
     turning.find("ordered", said.vehicle or "", f"{message}; {rest}")
     return Answer(said, "", requests, left_out, notes)
 
 
-def _it(told: list[Name]) -> str:
-    return "it" if len(told) == 1 else "them"
+def _it(ordered: list[Name]) -> str:
+    return "it" if len(ordered) == 1 else "them"
 
 
 def _objection(turning: Turning, entity: Name, said: Ordering) -> str:
@@ -84,21 +79,16 @@ def _objection(turning: Turning, entity: Name, said: Ordering) -> str:
     """
     if entity not in turning.plan.vehicles:
         return _no_vehicle(turning, entity)
-    if not turning.answers_for(entity):
+    if not answers_for(turning, entity):
         return f"{entity} is under the authority of {_authority(turning, entity)}: order it there"
-    if not _is_foreign(turning, entity):
+    if not turning.overrides.is_foreign(entity):
         return ""
-    why = turning.taken[entity]
+    why = turning.overrides.taken[entity]
     if said.vehicle is None:
         return f"{entity} was taken over, and is not overruled: {why}"
-    if turning.before.taken.get(entity) != why:
+    if turning.before.overrides.taken.get(entity) != why:
         return f"{entity} was taken over just now: {why}; order it again to overrule that"
     return ""
-
-
-def _is_foreign(turning: Turning, entity: Name) -> bool:
-    """Return whether a pilot, another station or a fail-safe has taken a vehicle over."""
-    return entity in turning.taken and entity not in turning.bidden
 
 
 def _authority(turning: Turning, entity: Name) -> str:
@@ -110,9 +100,9 @@ def _authority(turning: Turning, entity: Name) -> str:
 
 def _notes(turning: Turning, entity: Name, what: Fallback) -> Iterator[str]:
     """Yield remarks to the operator on a vehicle that gets an order."""
-    if _is_foreign(turning, entity):
-        yield f"that overrules who took {entity} over: {turning.taken[entity]}"
-    if entity in turning.lost or entity not in turning.seen:
+    if turning.overrides.is_foreign(entity):
+        yield f"that overrules who took {entity} over: {turning.overrides.taken[entity]}"
+    if entity in turning.sightings.lost or entity not in turning.sightings.newest:
         yield f"{entity} is not heard: it is told as soon as it is, unless it was taken over by then"
     if what is Fallback.RETURN:
         yield from _of_leaving(turning, entity)
@@ -121,7 +111,9 @@ def _notes(turning: Turning, entity: Name, what: Fallback) -> Iterator[str]:
 def _of_leaving(turning: Turning, entity: Name) -> Iterator[str]:
     """Yield the consequence if a vehicle flies home although the mission assumes that it stays."""
     physical, then = turning.c.structure.physical, turning.plan.precautions.on_broken
-    if turning.suspended or then is Fallback.CONTINUE or entity not in physical or physical.transit(entity):
+    if turning.overrides.suspended or then is Fallback.CONTINUE:
+        return
+    if entity not in physical or physical.transit(entity):
         return
     place = physical.abstract_parent(entity)
     if place != turning.plan.first.structure.physical.abstract_parent(entity):
@@ -129,17 +121,16 @@ def _of_leaving(turning: Turning, entity: Name) -> Iterator[str]:
         yield f"{stays}: when it leaves, all vehicles are told to {then.value}"
 
 
-def _bid(turning: Turning, entity: Name, said: Ordering) -> str:
+def _order_one(turning: Turning, entity: Name, said: Ordering) -> str:
     """Take a vehicle over and order it, in place of this turn's other commands; return the request."""
     flies = (GoTo, Follow, HandOver, Hold, Return)
-    turning.commands[:] = (c for c in turning.commands if c.entity != entity or not isinstance(c, flies))
-    if _is_foreign(turning, entity):
-        turning.commands.append(GiveBack(turning.request_of("operator"), entity))
+    commands = turning.results.commands
+    turning.results.commands = [c for c in commands if c.entity != entity or not isinstance(c, flies)]
+    if turning.overrides.is_foreign(entity):
+        turning.command(GiveBack(turning.request_of("operator"), entity))
     command = stopping(said.fallback, turning.request_of("operator"), entity)
-    turning.owed.pop(entity, None)
-    turning.bidden[entity] = Bidden(command, said.by)
-    turning.taken[entity] = turning.bidden[entity].reason
-    turning.commands.append(command)
+    turning.overrides = turning.overrides.ordered(entity, StandingOrder(command, said.by))
+    turning.command(command)
     return command.request
 
 
@@ -161,24 +152,24 @@ def _no_vehicle(turning: Turning, name: str) -> str:
 def _give_back(turning: Turning, said: GivingBack) -> Answer:
     """Command a vehicle again that was taken over or has refused."""
     entity = said.vehicle
-    told = (turning.orders.get(entity), turning.handing.get(entity))
-    owed = turning.owed.pop(entity, None)
-    refused = any(order.refused for order in told if order is not None) or (owed is not None and owed.owed)
-    if entity not in turning.taken and not refused:
+    fallback = turning.overrides.fallbacks.get(entity)
+    owed = fallback is not None and fallback.owed
+    refused = owed or any(given.refused for given in turning.commanded.of(entity))
+    turning.overrides = turning.overrides.without_fallback(entity)
+    if entity not in turning.overrides.taken and not refused:
         return Answer(said, f"{entity} was not taken over here, and has refused nothing")
-    turning.taken.pop(entity, None)
-    turning.bidden.pop(entity, None)
-    turning.quiet = None
-    turning.commands.append(GiveBack(turning.request_of("give-back"), entity))
+    turning.overrides = turning.overrides.given_back(entity)
+    turning.agents = turning.agents.looking_again()
+    turning.command(GiveBack(turning.request_of("give-back"), entity))
     ask_anew(turning, entity)
     given = f"{entity} was given back{f' by {said.by}' if said.by else ''}"
-    fallback = turning.due_fallback(entity)
-    if fallback is Fallback.CONTINUE:
+    then = due_fallback(turning, entity)
+    if then is Fallback.CONTINUE:
         turning.find("given back", entity, f"{given}, and is commanded again")
         return Answer(said)
-    note = f"what it was to do was given up: it is told to {fallback.value}"  # no one else flies it
+    note = f"what it was to do was given up: it is told to {then.value}"  # no one else flies it
     turning.find("given back", entity, f"{given}; {note}")
-    turning.fall_back(fallback, (entity,))
+    fall_back(turning, then, (entity,))
     return Answer(said, notes=(note,))
 
 
@@ -187,24 +178,22 @@ def say_to(turning: Turning, saying: Saying) -> None:
     agents = turning.c.alpha
     if saying.agent in agents and not is_here(turning.c, saying.agent):
         there = station_of(turning.c, saying.agent)
-        turning.answers.append(
-            Answer(saying, f"{saying.agent} runs at {there or 'no station'}: say it there")
-        )
+        turning.answer(Answer(saying, f"{saying.agent} runs at {there or 'no station'}: say it there"))
         return
     clauses = [each for each in turning.c.setting.environment if isinstance(each, Says)]
     for clause in _meant(saying, clauses):
         found = tuple(say(turning.c, clause))
         if found:
-            turning.take(found[0], found)
-            turning.idle.discard(clause.agent)
-            turning.answers.append(Answer(saying))
+            take(turning, found[0], found)
+            turning.agents = turning.agents.woken([clause.agent])
+            turning.answer(Answer(saying))
             return
     left = [f"{typed(each, clauses)} to {each.agent}" for each in clauses if turning.c.read(each.counter)]
     is_vehicle = saying.agent in turning.plan.vehicles
     nobody = f"there is no bigActor '{saying.agent:.60}'{', which is a vehicle' if is_vehicle else ''}; "
     who = "" if saying.agent in agents else nobody
     what = f"what may be said now: {', '.join(left)}" if left else "nothing may be said any more"
-    turning.answers.append(Answer(saying, f"{who}the mission does not say that this is said; {what}"))
+    turning.answer(Answer(saying, f"{who}the mission does not say that this is said; {what}"))
 
 
 def _meant(saying: Saying, clauses: Iterable[Says]) -> Iterator[Says]:
@@ -229,11 +218,11 @@ def _rebind(turning: Turning, entity: Name, at: str) -> str:
         return (
             f"'{at:.60}' is no HOST:PORT with HOST as a number, such as 192.168.1.7:14555 or [fd00::7]:14555"
         )
-    if entity not in turning.lost:
+    if entity not in turning.sightings.lost:
         return (
             f"the link to {entity} is not lost; it can be believed elsewhere once it is silent where it was"
         )
-    turning.commands.append(Rebind(turning.request_of("operator"), entity, at))
+    turning.command(Rebind(turning.request_of("operator"), entity, at))
     return ""
 
 

@@ -11,8 +11,9 @@ from socket import socket
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
+from adapters.live.batch import Acknowledging, GivingBack, Ordering, Said, Saying
 from adapters.live.socket_file import Reserve, bound
-from adapters.live.state import Acknowledging, Answer, GivingBack, Ordering, Said, Saying
+from adapters.live.turn import Answer
 from physical import PhysicalError, is_text, is_word, read_json
 from semantics.live_policy import Fallback
 

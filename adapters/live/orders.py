@@ -45,14 +45,14 @@ def destination(
     return GoTo(request, node, target.geometry, spot.altitude, place, around, shape)
 
 
-def renewed(c: Configuration, fly: FLY, told: GoTo | Follow, first: Configuration) -> GoTo | Follow | None:
+def renewed(c: Configuration, fly: FLY, given: GoTo | Follow, first: Configuration) -> GoTo | Follow | None:
     """Return the command with its places' current positions, None if it is the same or they are unknown."""
     found = commits(c, fly)
-    transit = c.structure.physical.placement(told.entity)
+    transit = c.structure.physical.placement(given.entity)
     if found is None or not isinstance(transit, InTransit):
         return None
-    command = journey(c, found, told.entity, transit.to, told.request, first)
-    return command if command != told else None
+    command = journey(c, found, given.entity, transit.to, given.request, first)
+    return command if command != given else None
 
 
 def stopping(fallback: Fallback, request: str, entity: Name) -> Hold | Return:
@@ -60,16 +60,16 @@ def stopping(fallback: Fallback, request: str, entity: Name) -> Hold | Return:
     return Hold(request, entity) if fallback is Fallback.HOLD else Return(request, entity)
 
 
-def hand_overs(
+def needed_hand_overs(
     c: Configuration, request: CTR, found: Realisation, vehicles: frozenset[Name]
 ) -> tuple[HandOver, ...]:
     """Return the link changes that vehicles must confirm: changes of control authority."""
-    told = []
+    needed = []
     for node, lost, gained in relinked(request.reaction, found.match, c.structure.logical):
         leave, join = _authority(lost), _authority(gained)
         if node in vehicles and leave and join:
-            told.append(HandOver("", node, leave, join))
-    return tuple(told)
+            needed.append(HandOver("", node, leave, join))
+    return tuple(needed)
 
 
 def unshown(c: Configuration, request: CTR, found: Realisation, vehicles: frozenset[Name]) -> str:
@@ -103,6 +103,6 @@ def is_authority(channel: Name) -> bool:
     return channel.partition(":")[0] == CONTROL_AUTHORITY
 
 
-def is_done(told: HandOver, channels: tuple[Name, ...]) -> bool:
+def is_done(hand_over: HandOver, channels: tuple[Name, ...]) -> bool:
     """Return whether a vehicle was seen on the channels of a completed hand-over."""
-    return told.join in channels and told.leave not in channels
+    return hand_over.join in channels and hand_over.leave not in channels

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from adapters.live.turn import Turning
-from adapters.plugin import Believes, Broken, Delivered, Elsewhere, Hosts, Underway
+from adapters.live.fallbacks import answers_for, breaks
+from adapters.live.step_taking import check_times, observe, take
+from adapters.live.turn_in_progress import Turning
+from adapters.plugin import Believes, Broken, Delivered, Hosts, StationReport, Underway
 from semantics.observed_steps import Sight, happening
 from semantics.state.parcel_serialization import parcel_of
 from semantics.state.partition import (
@@ -22,7 +24,7 @@ from semantics.state.physical_model import InTransit, Placed, placement_cell
 from semantics.state.signature import REGION, Name
 
 
-def hear_of(turning: Turning, report: Elsewhere) -> None:
+def take_station_report(turning: Turning, report: StationReport) -> None:
     """Take in a report of another station; its steps carry the other station's times."""
     turning.done = report.done if isinstance(report, Delivered | Underway) else None
     match report:
@@ -32,17 +34,19 @@ def hear_of(turning: Turning, report: Elsewhere) -> None:
             _fly(turning, entity, to)
         case Hosts(agent, _, host):
             for found in learn(turning.c, agent, host):
-                turning.take(found, (found,), HostReport(agent, host))
+                take(turning, found, (found,), HostReport(agent, host))
         case Believes(node, _, slot, names):
             belief = Belief(node, slot, names)
             for found in believe(turning.c, belief):
-                turning.take(found, (found,), belief)
+                take(turning, found, (found,), belief)
         case Broken(station, _, assumption):
-            count = len(turning.findings)
-            turning.breaks(f"at {station}: {assumption}", station)
-            turning.findings[count:] = [replace(each, elsewhere=True) for each in turning.findings[count:]]
+            count = len(turning.results.findings)
+            breaks(turning, f"at {station}: {assumption}", station)
+            turning.results.findings[count:] = [
+                replace(each, elsewhere=True) for each in turning.results.findings[count:]
+            ]
     if turning.done is not None:
-        turning.check_times()  # delayed reports may be late: check at once
+        check_times(turning)  # delayed reports may be late: check at once
     turning.done = None
 
 
@@ -58,8 +62,8 @@ def _take_in(turning: Turning, delivered: Delivered) -> None:
         return
     found = tuple(enter(turning.c, station, number, parcel))
     if found:
-        turning.idle.discard(parcel.agent)
-        turning.take(found[0], found, Passage(parcel.agent, station, number, parcel))
+        turning.agents = turning.agents.woken([parcel.agent])
+        take(turning, found[0], found, Passage(parcel.agent, station, number, parcel))
     else:
         _refuse(turning, station, number, objection(turning.c, parcel))
 
@@ -75,9 +79,9 @@ def _fly(turning: Turning, entity: Name, to: Name) -> None:
     In between it is in transit here too, so no agent observes it on its way.
     """
     here = turning.c.structure.physical.placement(entity)
-    if entity in turning.orders or entity not in turning.plan.vehicles:
+    if entity in turning.commanded.flights or entity not in turning.plan.vehicles:
         return
-    if to and turning.answers_for(entity):
+    if to and answers_for(turning, entity):
         message = f"another station says that it has sent {entity} to {to}, but {entity} obeys this one"
         turning.find("trouble", entity, message, once=True)
         return
@@ -90,7 +94,7 @@ def _fly(turning: Turning, entity: Name, to: Name) -> None:
         sight = Sight(f"{entity} is seen in {', '.join(around) or REGION}", {placement_cell(entity): at})
     else:
         return
-    turning.observe(sight, happening(turning.c, sight))
+    observe(turning, sight, happening(turning.c, sight))
 
 
 def _may_hold(turning: Turning, place: Name, entity: Name) -> bool:

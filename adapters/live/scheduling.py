@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
-from adapters.live.state import Pace
 from semantics.extension import migrate, rcv_msg, req_mgr, req_snd, snd, spawn
 from semantics.rules import Rule, actuate, command, fun, rcv_obs, req_ctr, req_obs, sense
 from semantics.state.configuration import Configuration, Transition
@@ -32,6 +32,73 @@ PATIENCE = 0.02
 
 BURST = 100.0
 """The most own steps of an agent at once."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """The number of own steps that an agent may take at once, as of a time."""
+
+    tokens: float
+    at: float
+
+    def spent(self) -> Pace:
+        """Return the pace after one step."""
+        return replace(self, tokens=self.tokens - 1)
+
+
+@dataclass(frozen=True, slots=True)
+class AgentProgress:
+    """How far the agents of a run have come.
+
+    Attributes:
+        idle: Agents without own steps: they wait for an observation, a message, or for ever.
+        failed: Agents whose computation failed.
+        paces: The pace of each agent.
+        last: The agent that took the last step: the next turn begins with the one after it.
+        quiet: The configuration in which no more requests could be served, None if that is not known.
+    """
+
+    idle: frozenset[Name] = frozenset()
+    failed: frozenset[Name] = frozenset()
+    paces: Mapping[Name, Pace] = field(default_factory=dict)
+    last: Name = ""
+    quiet: Configuration | None = None
+
+    def pace(self, agent: Name, now: float) -> Pace:
+        """Return an agent's pace as of now."""
+        known = self.paces.get(agent)
+        if known is None:
+            return Pace(BURST, now)
+        return Pace(min(BURST, known.tokens + max(0.0, now - known.at) * STEPS_PER_SECOND), now)
+
+    def paced(self, agent: Name, pace: Pace) -> AgentProgress:
+        """Return the value with an agent's pace."""
+        return replace(self, paces={**self.paces, agent: pace})
+
+    def woken(self, agents: Iterable[Name]) -> AgentProgress:
+        """Return the value in which some agents may have steps again."""
+        idle = self.idle.difference(agents)
+        return self if len(idle) == len(self.idle) else replace(self, idle=idle)
+
+    def resting(self, agent: Name) -> AgentProgress:
+        """Return the value in which an agent has no own steps."""
+        return replace(self, idle=self.idle | {agent})
+
+    def failing(self, agent: Name) -> AgentProgress:
+        """Return the value in which an agent's computation has failed."""
+        return replace(self, failed=self.failed | {agent})
+
+    def after(self, agent: Name) -> AgentProgress:
+        """Return the value after an agent's turn."""
+        return self if agent == self.last else replace(self, last=agent)
+
+    def quiet_in(self, c: Configuration) -> AgentProgress:
+        """Return the value in which no more requests can be served in a configuration."""
+        return self if self.quiet is c else replace(self, quiet=c)
+
+    def looking_again(self) -> AgentProgress:
+        """Return the value in which pending requests may be served again."""
+        return self if self.quiet is None else replace(self, quiet=None)
 
 
 def own_steps(c: Configuration, a: Name) -> tuple[Transition, ...]:
@@ -77,10 +144,3 @@ def flights(c: Configuration) -> Iterator[FLY]:
     for pending in in_turn(c):
         if isinstance(pending.request, FLY):
             yield pending.request
-
-
-def refilled(pace: Pace | None, now: float) -> Pace:
-    """Return an agent's pace as of now."""
-    if pace is None:
-        return Pace(BURST, now)
-    return Pace(min(BURST, pace.tokens + max(0.0, now - pace.at) * STEPS_PER_SECOND), now)

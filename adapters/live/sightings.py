@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
-from adapters.live.state import Heard, Plan, Sighting
+from adapters.live.batch import Heard
+from adapters.live.plan import Plan
 from adapters.plugin import Aged, Gone
 from physical import Geometry, PhysicalError, PhysicalProperty, translate_to
 from semantics.behaviours.statements import Spawn
+from semantics.state.cells import Cell
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, PhysicalModel, Placed, Placement, encloses
 from semantics.state.setting import Setting
@@ -17,6 +20,79 @@ from semantics.state.signature import NO_ENTITIES, Name
 
 MOST_AHEAD = 5.0
 """Seconds by which a time stamp may lie in the future: clocks differ."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """The newest observation of an entity, and the end of its validity in P."""
+
+    property: PhysicalProperty
+    time: float
+    until: float
+
+
+@dataclass(frozen=True, slots=True)
+class Sightings:
+    """The observations of a run.
+
+    Attributes:
+        newest: The newest sighting of each entity that the mission names or has admitted.
+        expires: Time at which the first sighting becomes too old.
+        lost: Vehicles whose link is lost.
+        missing: Cells of P whose removal broke an assumption, with their values: their return breaks no other.
+        admitted: The number of strangers admitted from each plugin, and of those that are places.
+    """
+
+    newest: Mapping[Name, Sighting] = field(default_factory=dict)
+    expires: float = math.inf
+    lost: frozenset[Name] = frozenset()
+    missing: Mapping[Cell, object] = field(default_factory=dict)
+    admitted: Mapping[str, tuple[int, int]] = field(default_factory=dict)
+
+    def with_newest(self, found: Mapping[Name, Sighting]) -> Sightings:
+        """Return the value with newer sightings of some entities."""
+        if not found:
+            return self
+        expires = min(self.expires, *(each.until for each in found.values()))
+        return replace(self, newest={**self.newest, **found}, expires=expires)
+
+    def expired(self, now: float) -> frozenset[Name]:
+        """Return the entities whose sighting is too old."""
+        return frozenset(name for name, each in self.newest.items() if each.until <= now)
+
+    def without(self, entities: frozenset[Name]) -> Sightings:
+        """Return the value without the sightings of some entities."""
+        newest = {name: each for name, each in self.newest.items() if name not in entities}
+        expires = min((each.until for each in newest.values()), default=math.inf)
+        return replace(self, newest=newest, expires=expires)
+
+    def losing(self, entity: Name) -> Sightings:
+        """Return the value in which the link to a vehicle is lost."""
+        return replace(self, lost=self.lost | {entity})
+
+    def restored(self, entity: Name) -> Sightings:
+        """Return the value in which a vehicle is heard again."""
+        return replace(self, lost=self.lost - {entity})
+
+    def with_missing(self, cell: Cell, value: object) -> Sightings:
+        """Return the value with a cell of P whose removal broke an assumption."""
+        return replace(self, missing={**self.missing, cell: value})
+
+    def found(self, cell: Cell) -> Sightings:
+        """Return the value in which a cell is no longer missing."""
+        if cell not in self.missing:
+            return self
+        return replace(self, missing={each: value for each, value in self.missing.items() if each != cell})
+
+    def admitting(self, plugin: str, *, is_place: bool) -> Sightings:
+        """Return the value after the admission of one more stranger from a plugin."""
+        taken, places = self.admitted.get(plugin, (0, 0))
+        return replace(self, admitted={**self.admitted, plugin: (taken + 1, places + is_place)})
+
+    def later(self, seconds: float) -> Sightings:
+        """Return the value with all ages shifted by a time without listening."""
+        newest = {name: replace(each, until=each.until + seconds) for name, each in self.newest.items()}
+        return replace(self, newest=newest, expires=self.expires + seconds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,32 +106,37 @@ class Refusal:
 def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) -> Sighting | Refusal | None:
     """Return the sighting in a message, a Refusal if it is rejected, None if a newer sighting is known."""
     published = heard.published
-    said = published.property if isinstance(published, Aged) else published
-    owner = plan.vehicles.get(said.entity)
+    observed = published.property if isinstance(published, Aged) else published
+    owner = plan.vehicles.get(observed.entity)
     if owner is not None and heard.plugin not in (owner, plan.peers):
         return Refusal(
-            said.entity, f"'{heard.plugin}' speaks of {said.entity}, which is the vehicle of '{owner}'"
+            observed.entity,
+            f"'{heard.plugin}' speaks of {observed.entity}, which is the vehicle of '{owner}'",
         )
-    if said.entity in plan.first.alpha or said.entity in _no_entities(plan.first.setting):
+    if observed.entity in plan.first.alpha or observed.entity in _no_entities(plan.first.setting):
         return Refusal(
-            said.entity, f"'{heard.plugin}' speaks of {said.entity}, which the mission has as no entity"
+            observed.entity,
+            f"'{heard.plugin}' speaks of {observed.entity}, which the mission has as no entity",
         )
-    kind = plan.first.setting.kinds.get(said.entity) or (known.property.kind if known is not None else None)
-    if kind is not None and not isinstance(said, Gone) and said.kind != kind:
+    kind = plan.first.setting.kinds.get(observed.entity) or (
+        known.property.kind if known is not None else None
+    )
+    if kind is not None and not isinstance(observed, Gone) and observed.kind != kind:
         return Refusal(
-            said.entity, f"'{heard.plugin}' speaks of {said.entity} as {said.kind}, and it is of kind {kind}"
+            observed.entity,
+            f"'{heard.plugin}' speaks of {observed.entity} as {observed.kind}, and it is of kind {kind}",
         )
-    time = now if said.time is None else said.time
+    time = now if observed.time is None else observed.time
     if not math.isfinite(time) or time > now + MOST_AHEAD:
         ahead = f"gives times more than {MOST_AHEAD:g} s ahead"
-        return Refusal(said.entity, f"'{heard.plugin}' {ahead} for {said.entity}: set its clock")
+        return Refusal(observed.entity, f"'{heard.plugin}' {ahead} for {observed.entity}: set its clock")
     if known is not None and time < known.time:
         return None
-    if isinstance(said, Gone):
-        before = _declared(plan, said.entity) if known is None else known.property
+    if isinstance(observed, Gone):
+        before = _declared(plan, observed.entity) if known is None else known.property
         return None if before is None else Sighting(before, time, -math.inf)
     until = time + published.time_to_live if isinstance(published, Aged) else math.inf
-    return Sighting(said, time, until) if until > now else None
+    return Sighting(observed, time, until) if until > now else None
 
 
 @lru_cache(maxsize=1 << 4)
@@ -81,17 +162,17 @@ def placement_seen(c: Configuration, shape: Placed | None, sighting: Sighting) -
     If the mission gives the entity an extent, an observed point is its centre. An altitude band counts only if the
     mission gives one.
     """
-    said = sighting.property
-    geometry = said.geometry
+    observed = sighting.property
+    geometry = observed.geometry
     if shape is not None and geometry.is_point and not shape.geometry.is_point:
         try:
             geometry = _moved(shape.geometry, geometry)
         except PhysicalError:
             return None
     banded = shape is not None and shape.altitude is not None
-    placed = Placed(geometry, (said.altitude or shape.altitude) if shape is not None and banded else None)
-    by = said.carried_by
-    return Carried(by, placed) if by is not None and _may_carry(c, by, said.entity) else placed
+    placed = Placed(geometry, (observed.altitude or shape.altitude) if shape is not None and banded else None)
+    by = observed.carried_by
+    return Carried(by, placed) if by is not None and _may_carry(c, by, observed.entity) else placed
 
 
 def _may_carry(c: Configuration, by: Name, entity: Name) -> bool:

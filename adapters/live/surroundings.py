@@ -60,7 +60,7 @@ def _movers(setting: Setting, kind: str) -> tuple[Name, ...]:
     return tuple(name for name in sorted(setting.containers(kind)) if _placements(setting, name))
 
 
-def told_apart(c: Configuration, node: Name, here: Placed, seen: Placed, first: Configuration) -> str:
+def separating_place(c: Configuration, node: Name, here: Placed, seen: Placed, first: Configuration) -> str:
     """Return a place that holds a vehicle at only one of two points, at a listed position; or an empty text."""
     for place in _movers(c.setting, c.setting.kind(node)):
         for at in _listed(c, first, place):

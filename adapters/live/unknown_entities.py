@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from adapters.live.fallbacks import breaks
 from adapters.live.flying import renew
-from adapters.live.state import Sighting
-from adapters.live.turn import Turning
+from adapters.live.sightings import Sighting
+from adapters.live.step_taking import observe
+from adapters.live.turn_in_progress import Turning
 from semantics.observed_steps import Sight, happening
 from semantics.state.cells import NAMES, Cell
 from semantics.state.physical_model import Placed, Placement, channels_cell, placement_cell
@@ -29,21 +31,18 @@ MOST_PLACES = 60
 def comes_in(turning: Turning, plugin: str, found: Sighting) -> bool:
     """Return whether an entity is of a kind of the mission and in one of its places, and there is room for it."""
     entity, kind, c = found.property.entity, found.property.kind, turning.c
-    if entity in turning.coming:
-        return True
     at = _placed(found)
     if kind not in c.setting.signature.kinds or not turning.around(entity, kind, at):
         return False
     is_place = not at.geometry.is_point and bool(c.setting.signature[kind].contains)
-    taken, places = turning.shares.get(plugin, (0, 0))
-    full = taken >= SHARE or sum(share for share, _ in turning.shares.values()) >= MOST_STRANGERS
+    taken, places = turning.sightings.admitted.get(plugin, (0, 0))
+    full = taken >= SHARE or sum(share for share, _ in turning.sightings.admitted.values()) >= MOST_STRANGERS
     if full or (is_place and places >= MOST_PLACES):
         what = f"{taken:,} entities" if full else f"{places} places"
         message = f"'{plugin}': {what} that the mission does not name are taken in; more are ignored"
         turning.find("trouble", plugin, message, once=True)
         return False
-    turning.shares[plugin] = taken + 1, places + is_place
-    turning.coming.add(entity)
+    turning.sightings = turning.sightings.admitting(plugin, is_place=is_place)
     return True
 
 
@@ -55,7 +54,7 @@ def place_strangers(turning: Turning, entities: Iterable[Name]) -> None:
     broken: list[str] = []
     placed: list[tuple[Name, str]] = []
     for entity in entities:
-        sighting = turning.seen[entity]
+        sighting = turning.sightings.newest[entity]
         here, seen = physical.placement(entity), _placed(sighting)
         if sighting.until <= turning.now or here == seen or _grows(here, seen):
             continue
@@ -81,9 +80,9 @@ def place_strangers(turning: Turning, entities: Iterable[Name]) -> None:
             broken.append(f"{entity} ({kind}) is in {where or 'none of the places'}")
     _happen(turning, Sight(_together([words for _, words in placed]), writes, admits))
     if broken:
-        turning.breaks(f"{_together(broken)}; the mission names no such entity", placed[0][0])
+        breaks(turning, f"{_together(broken)}; the mission names no such entity", placed[0][0])
     for entity, _ in placed:
-        if not turning.seen[entity].property.geometry.is_point:
+        if not turning.sightings.newest[entity].property.geometry.is_point:
             renew(turning, entity)
 
 
@@ -114,7 +113,7 @@ def _grows(here: Placement | None, seen: Placed) -> bool:
 
 def _happen(turning: Turning, sight: Sight) -> None:
     if sight.writes:
-        turning.observe(sight, happening(turning.c, sight))
+        observe(turning, sight, happening(turning.c, sight))
 
 
 def _together(words: Sequence[str]) -> str:

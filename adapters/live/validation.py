@@ -12,17 +12,21 @@ from physical import is_word, legible
 
 def flaw_of(published: Published) -> str:
     """Return the flaw of a publication, or an empty text."""
-    said = published.property if isinstance(published, Aged) else published
-    words, numbers = [said.entity], [said.time or 0.0]
+    observed = published.property if isinstance(published, Aged) else published
+    words, numbers = [observed.entity], [observed.time or 0.0]
     if isinstance(published, Aged):
         numbers.append(published.time_to_live)
-    if not isinstance(said, Gone):
-        words += [said.kind, *said.channels, *([] if said.carried_by is None else [said.carried_by])]
-        numbers += [] if said.velocity is None else [said.velocity.speed, said.velocity.course]
+    if not isinstance(observed, Gone):
+        words += [
+            observed.kind,
+            *observed.channels,
+            *([] if observed.carried_by is None else [observed.carried_by]),
+        ]
+        numbers += [] if observed.velocity is None else [observed.velocity.speed, observed.velocity.course]
     spoilt = next((word for word in words if not is_word(word)), None)
     if spoilt is not None:
         return f"{spoilt!r:.60} is no word of 1 to 200 characters"
-    return "" if all(map(math.isfinite, numbers)) else f"a time or velocity of {said.entity} is no number"
+    return "" if all(map(math.isfinite, numbers)) else f"a time or velocity of {observed.entity} is no number"
 
 
 def legible_report(report: Report) -> Report:

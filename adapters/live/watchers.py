@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from adapters.live.state import Heard, Turn
+from adapters.live.batch import Heard
+from adapters.live.turn import Turn
 from adapters.plugin import Failed, Report
 
-TOLD = frozenset({"env", "say", "command", "commit", "actuate", "migrate", "spawn"})
+SHOWN_RULES = frozenset({"env", "say", "command", "commit", "actuate", "migrate", "spawn"})
 """The rules whose steps are shown to the operator; the recording has the others too."""
 
 

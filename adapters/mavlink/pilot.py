@@ -73,7 +73,7 @@ _ANSWERS: Final = frozenset(
     }
 )
 
-_SLOTS: Final = ("handing", "moving")
+_SLOTS: Final = ("hand_over", "moving")
 
 Shown = tuple[Position | None, int | None, bool]
 """The basis of the last publication: position, authority, whether the link was lost."""
@@ -94,7 +94,7 @@ class Pilot:
         on_board: The missions, fences and rally points read back since anybody may have changed them.
         survey: The reading of the items on board.
         moving: The command that it carries out.
-        handing: The hand-over in progress.
+        hand_over: The hand-over in progress.
         helm: Whether it follows its orders.
         asked: Time of the last request for its authority.
         unanswered: The number of requests for it since the last answer.
@@ -115,7 +115,7 @@ class Pilot:
     on_board: OnBoard = field(default_factory=dict)
     survey: Survey = field(default_factory=Survey)
     moving: Task | None = None
-    handing: Task | None = None
+    hand_over: Task | None = None
     helm: Helm = field(default_factory=Helm)
     asked: float | None = None
     unanswered: int = 0
@@ -154,10 +154,10 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
     if isinstance(told, HandOver):
         station = pilot.stations.ids[told.join.removeprefix(CONTROL)]
         task = Task(told, station, since=now, boots=pilot.known.boots, checked=checked, surveyed=True)
-        return Outcome(changed(pilot, handing=task))
+        return Outcome(changed(pilot, hand_over=task))
     outside = () if not isinstance(told, Return) else inventory.out_of_fence(pilot, now)
     if isinstance(told, Hold | Return):
-        pilot = changed(pilot, handing=None)  # a vehicle that stops stays ours
+        pilot = changed(pilot, hand_over=None)  # a vehicle that stops stays ours
     elif not _continues(pilot.moving, told):
         pilot = inventory.read_again(pilot, told, now)
     surveyed = inventory.is_surveyed(pilot) or isinstance(told, Hold | Return)
@@ -169,7 +169,7 @@ def _stops_in_vain(pilot: Pilot, told: Hold | Return, reason: str, now: float) -
     """Reject an order to stop; the command that it was to end does not resume if the vehicle obeys us again."""
     ended = tasks.rejected(Task(told, since=now, boots=pilot.known.boots), reason, now)
     reports = () if ended.report is None else (ended.report,)
-    return Outcome(changed(pilot, moving=ended.task, handing=None), reports=reports)
+    return Outcome(changed(pilot, moving=ended.task, hand_over=None), reports=reports)
 
 
 def _check_not_rejected(before: Task | None, told: Command) -> None:
@@ -306,7 +306,7 @@ def _asked(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
     wanted = REGULAR if profile is None else profile.dialect.streams
     flow, missing = streams.tick(pilot.streams, pilot.system, now, (*wanted, *pilot.craft.streams))
     pilot = changed(pilot, streams=flow)
-    unsure = _authority(pilot) is None or (pilot.handing is not None and not pilot.handing.over)
+    unsure = _authority(pilot) is None or (pilot.hand_over is not None and not pilot.hand_over.over)
     more = () if _authority(pilot) is None else tuple(_untold(pilot))
     every = ASK_AUTHORITY if unsure or more else CHECK_AUTHORITY
     if pilot.asked is not None and now - pilot.asked < every:
@@ -437,7 +437,7 @@ def _is_ours(pilot: Pilot) -> bool:
 
 
 def _onwards(pilot: Pilot, slot: str, task: Task) -> Pilot:
-    return changed(pilot, handing=task) if slot == "handing" else changed(pilot, moving=task)
+    return changed(pilot, hand_over=task) if slot == "hand_over" else changed(pilot, moving=task)
 
 
 def _progress(pilot: Pilot, task: Task, now: float) -> Progress:

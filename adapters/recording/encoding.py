@@ -5,17 +5,10 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from adapters.live.state import (
-    Acknowledging,
-    Answer,
-    Finding,
-    GivingBack,
-    Heard,
-    LiveStep,
-    Ordering,
-    Saying,
-)
+from adapters.live.batch import Acknowledging, GivingBack, Heard, Ordering, Saying
+from adapters.live.reported import Finding
 from adapters.live.timing import Timers, flying
+from adapters.live.turn import Answer, LiveStep
 from adapters.plugin import Aged, Battery, Command, Gone, Presence, Report, Seen, Status, StatusText
 from physical import Band, Geometry, PhysicalProperty
 from semantics.state.canonical import digest_of_step

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any, Final, get_args
 
-from adapters.live.state import Finding
+from adapters.live.reported import Finding
 from adapters.plugin import Command, Presence, Report, Seen, Status, StatusText
 from adapters.recording.reading import VERSION
 from adapters.recording.type_schemas import BAND, RING, members_of

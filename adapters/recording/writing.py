@@ -7,7 +7,9 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from adapters.live.state import Finding, Heard, Turn
+from adapters.live.batch import Heard
+from adapters.live.reported import Finding
+from adapters.live.turn import Turn
 from adapters.plugin import Report, Seen, entity_of
 from adapters.rate_limit import Ration, Turns
 from adapters.recording.encoding import (
@@ -84,14 +86,14 @@ class Recorder:
     def turn(self, turn: Turn, now: float, verdicts: Callable[[Finding], tuple[str, ...]]) -> None:
         """Write the results of a turn, and flush if there are any."""
         self._account(now, self._ration.left_out(now))
-        clocks = clocks_json(turn.state.timers)
+        clocks = clocks_json(turn.state.due.timers)
         if clocks != self._clocks:
             self._clocks = clocks
             self._put("clocks", now, clocks)
         for step in turn.steps:
             self._put("steps", step.time, step_json(step))
-        self._stands("deadlines", "agent", "until", turn.state.due, now)
-        self._stands("flights", "vehicle", "takes", flights_json(turn.state.timers), now)
+        self._stands("deadlines", "agent", "until", turn.state.due.timeouts, now)
+        self._stands("flights", "vehicle", "takes", flights_json(turn.state.due.timers), now)
         for command in turn.commands:
             self._put("commands", now, command_json(command))
         for finding in turn.findings:

@@ -9,7 +9,10 @@ import threading
 from collections.abc import Iterator
 from typing import Final
 
-from adapters.live.state import Heard, LiveState, Sighting, Turn
+from adapters.live.batch import Heard
+from adapters.live.sightings import Sighting
+from adapters.live.state import LiveState
+from adapters.live.turn import Turn
 from adapters.plugin import Report
 from adapters.ros.link import open_session, read_address
 from adapters.ros.messages import FIX, STRING, WHERE, hash_of, write_fix, write_string, write_where
@@ -26,7 +29,7 @@ SPACE: Final = f"/{OURS}/logical_space"
 NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 """The names that ROS allows in a topic."""
 
-Said = tuple[Topic, bytes]
+TopicMessage = tuple[Topic, bytes]
 
 
 class RosSending:
@@ -90,11 +93,11 @@ class RosSending:
                 self._waiting.update(said)
                 self._changed.notify()
 
-    def _news(self, state: LiveState) -> Iterator[Said]:
-        for entity, sighting in state.seen.items():
+    def _news(self, state: LiveState) -> Iterator[TopicMessage]:
+        for entity, sighting in state.sightings.newest.items():
             if self._seen.get(entity) is not sighting and NAME.fullmatch(entity):
                 yield _whereabouts(entity, sighting)
-        self._seen = dict(state.seen)
+        self._seen = dict(state.sightings.newest)
         space = space_json(state.configuration.structure.logical)
         if space != self._space:
             self._space = space
@@ -134,7 +137,7 @@ def space_json(logical: LogicalModel) -> str:
     return json.dumps({"nodes": nodes}, ensure_ascii=False, sort_keys=True)
 
 
-def _whereabouts(entity: str, sighting: Sighting) -> Said:
+def _whereabouts(entity: str, sighting: Sighting) -> TopicMessage:
     """Return the position of an entity: a point as a fix; for an area, the centre."""
     geometry = sighting.property.geometry
     stamp = sighting.time if sighting.property.time is None else sighting.property.time

@@ -36,13 +36,13 @@ class Authority:
 
     Attributes:
         station: The station.
-        handing: The hand-over that each vehicle was commanded, and has not shown yet.
+        hand_overs: The hand-over that each vehicle was commanded, and has not shown yet.
         shown: The last channels that each link has shown.
         doubts: For each vehicle with contradicting channels: the time of its link's channels, and that of the others.
     """
 
     station: str
-    handing: dict[str, HandOver] = field(default_factory=dict)
+    hand_overs: dict[str, HandOver] = field(default_factory=dict)
     shown: dict[str, tuple[str, ...]] = field(default_factory=dict)
     doubts: dict[str, tuple[float, float]] = field(default_factory=dict)
 
@@ -74,7 +74,7 @@ class Authority:
         Then no other station's entry on it counts: a take-over by another station shows on our link, too.
         """
         ours = f"{CONTROL_AUTHORITY}:{self.station}"
-        return ours in self.shown.get(entity, ()) and entity not in self.handing
+        return ours in self.shown.get(entity, ()) and entity not in self.hand_overs
 
     def lags(self, entity: str, known: Said | None) -> bool:
         """Return whether a vehicle obeys us and our link has not read it yet: the link would refuse commands."""
@@ -87,9 +87,9 @@ class Authority:
     def _counts(
         self, entity: str, shown: tuple[str, ...], believed: Channels, listened: float, *, lost: bool
     ) -> bool:
-        told = self.handing.get(entity)
-        if told is not None and is_done(told, shown):
-            del self.handing[entity]
+        commanded = self.hand_overs.get(entity)
+        if commanded is not None and is_done(commanded, shown):
+            del self.hand_overs[entity]
             return True
         if is_silent(shown) and f"{CONTROL_AUTHORITY}:{self.station}" not in believed[0]:
             return False

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 
-from adapters.live.state import LiveStep, Turn
+from adapters.live.turn import LiveStep, Turn
 from adapters.stations.entries import Believed, Broke, Content, Hosted, Posted, Sent, Took
 from adapters.stations.merge import Merge
 from semantics.state.canonical import written

@@ -17,8 +17,9 @@ from msgspec import UNSET, Raw
 from msgspec.json import encode
 
 from adapters.issue_counter import Troubles
+from adapters.live.batch import Heard
 from adapters.live.sightings import MOST_AHEAD
-from adapters.live.state import Heard, Turn
+from adapters.live.turn import Turn
 from adapters.plugin import (
     Believes,
     Broken,
@@ -243,7 +244,7 @@ class Sharing:
     def commanded(self, command: Command) -> None:
         """Record a hand-over command to one of our vehicles."""
         if isinstance(command, HandOver):
-            self._authority.handing[command.entity] = command
+            self._authority.hand_overs[command.entity] = command
 
     def _add(self, contents: Sequence[Content]) -> list[Entry]:
         """Share contents as entries; a failure of the log ends sharing, since unlogged entries must not be sent."""

@@ -86,14 +86,14 @@ def _awaited(socket: str | None, vehicle: str | None, left_out: Iterable[str]) -
 
 
 def _is_settled(fate: str) -> bool:
-    from adapters.live.state import Fate
+    from adapters.live.overrides import Fate
 
     return fate in (Fate.CONFIRMED, Fate.REFUSED)
 
 
 def _concluded(found: Fates) -> Exit:
     """Print the outcomes of an order, and return the exit code."""
-    from adapters.live.state import Fate
+    from adapters.live.overrides import Fate
 
     for line in _lines(found):
         say(line)
@@ -104,7 +104,7 @@ def _concluded(found: Fates) -> Exit:
 
 
 def _lines(found: Fates) -> Iterator[str]:
-    from adapters.live.state import Fate
+    from adapters.live.overrides import Fate
 
     for name, (fate, words) in sorted(found.items()):
         again = "; it is told again until it does" if fate == Fate.REFUSED else ""

@@ -319,8 +319,8 @@ def test_a_real_plane_that_flies_home_unasked_arrives_nowhere_and_is_not_called_
     ending, known, seen = flown_by_run(ROUND, "plane", tmp_path, foe, 700)
     assert ending.reason == "the time is over"
     assert seen.rules.count("commit") == legs
-    assert "it is in RTL, by itself or told by someone else" in ending.state.taken["uav0"]
-    assert words in ending.state.taken["uav0"]
+    assert "it is in RTL, by itself or told by someone else" in ending.state.overrides.taken["uav0"]
+    assert words in ending.state.overrides.taken["uav0"]
     assert known.mode == PLANE.home
     home = circle((37.0, -8.6), 300.0)
     assert contains(home, point(known.position.latitude, known.position.longitude))
@@ -352,7 +352,7 @@ def test_a_real_vehicle_holds_and_returns_as_an_operator_orders(model, modes, tm
     monkeypatch.chdir(tmp_path)
     ending, _, seen = flown_by_run(ROUND, model, tmp_path, operator, 300)
     assert ending.reason == "the time is over"
-    assert ending.state.taken == {"uav0": "sent home by the operator (Ana)"}
+    assert ending.state.overrides.taken == {"uav0": "sent home by the operator (Ana)"}
     assert seen.kinds() - {"trouble"} == {"ordered", "confirmed"}
     recording = open_recording("r.mcap")
     states = [message.data for message in recording.of("status")]
@@ -382,4 +382,4 @@ def test_a_real_plane_that_boots_anew_on_the_ground_where_it_was_to_go_has_not_a
     assert ending.reason == "the time is over"
     assert seen.rules.count("commit") == 3
     assert known.armed is False
-    assert ending.state.taken["uav0"].startswith("it has booted anew and is disarmed")
+    assert ending.state.overrides.taken["uav0"].startswith("it has booted anew and is disarmed")

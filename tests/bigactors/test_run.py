@@ -15,7 +15,10 @@ import pytest
 from processes import begun
 
 from adapters.live.loop import Ending
-from adapters.live.state import Finding, LiveState, Turn
+from adapters.live.overrides import Overrides
+from adapters.live.reported import Finding
+from adapters.live.state import LiveState
+from adapters.live.turn import Turn
 from adapters.plugin import TakenOver
 from adapters.recording.writing import Recorder
 from bigactors.arguments import parse_arguments
@@ -316,7 +319,7 @@ TAKEN = {"uav0": "it is in RTL"}
     ],
 )
 def test_the_last_line_and_the_exit_code_say_how_a_run_ended(capsys, reason, taken, broken, code, last):
-    state = LiveState(open_mission("oil_spill", Variation()).initial, number=7, taken=taken)
+    state = LiveState(open_mission("oil_spill", Variation()).initial, 7, overrides=Overrides(taken))
     assert conclude(Ending(reason, state), broken=broken) == code
     assert capsys.readouterr().out == f"{last}\n"
 

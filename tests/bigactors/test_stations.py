@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from adapters.live.state import Outgoing
+from adapters.live.turn import Outgoing
 from adapters.recording.mcap_files import Message
 from adapters.recording.reading import Recording
 from adapters.stations.entries import Broke, Posted, Sent, Took

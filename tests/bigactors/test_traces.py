@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from adapters.live.state import Heard
+from adapters.live.batch import Heard
 from adapters.recording.writing import Recorder
 from physical import Band, PhysicalProperty, point
 

@@ -3,11 +3,17 @@
 import io
 import itertools
 import sys
+from dataclasses import replace
 
 import pytest
 
+from adapters.live.batch import Batch, Heard
+from adapters.live.commanded import Commanded, GivenCommand
 from adapters.live.core import advance, started
-from adapters.live.state import Batch, Bidden, Fate, Heard, LiveState, Order, Plan, Sighting
+from adapters.live.overrides import Fate, Overrides, StandingOrder
+from adapters.live.plan import Plan
+from adapters.live.sightings import Sighting, Sightings
+from adapters.live.state import LiveState
 from adapters.plugin import Accepted, Battery, Follow, GoTo, Hold, Status
 from bigactors.missions import open_mission
 from bigactors.vehicle_lines import vehicle_line, vehicles_line
@@ -31,42 +37,49 @@ def seen(at, time=0.0):
 
 
 def going(**more):
-    return {UAV: Order(GoTo("a-1", UAV, box((37.02, -8.60), (37.00, -8.62)), name="east0"), "a", 0.0, **more)}
+    east = box((37.02, -8.60), (37.00, -8.62))
+    return Commanded({UAV: GivenCommand(GoTo("a-1", UAV, east, name="east0"), "a", 0.0, **more)})
+
+
+def near():
+    return Sightings({UAV: seen((37.01, -8.65))})
 
 
 def test_a_line_says_where_a_vehicle_is_going_how_far_it_is_and_what_it_says_of_itself(first):
     said = Status(UAV, 9.0, "autopilot", 9.5, "GUIDED", True, Battery(81, 12.2))
-    state = LiveState(first, seen={UAV: seen((37.01, -8.65))}, orders=going())
+    state = LiveState(first, sightings=near(), commanded=going())
     assert vehicle_line(UAV, state, said, 10.0) == (
         "uav0 is on its way to east0, 2.7 km away, GUIDED, battery 81 %"
     )
     way = Follow("a-1", UAV, (point(37.0, -8.0), point(37.01, -8.65)), name="west0")
-    followed = state.with_(orders={UAV: Order(way, "a", 0.0, refused=True)})
+    followed = replace(state, commanded=Commanded({UAV: GivenCommand(way, "a", 0.0, refused=True)}))
     assert vehicle_line(UAV, followed, None, 10.0) == "uav0 has refused to go to west0, 0 m away"
 
 
 def test_a_line_says_who_holds_a_vehicle_and_since_when_it_is_silent(first):
-    bidden = Bidden(Hold("operator-1", UAV), "Ana", Fate.CONFIRMED)
-    state = LiveState(first, orders=going(), taken={UAV: bidden.reason}, lost=frozenset({UAV}))
+    order = StandingOrder(Hold("operator-1", UAV), "Ana", Fate.CONFIRMED)
+    lost = Sightings(lost=frozenset({UAV}))
+    state = LiveState(first, sightings=lost, commanded=going(), overrides=Overrides({UAV: order.reason}))
     parent = first.structure.logical.parent(UAV)
     said = Status(UAV, 2.0, "autopilot", 2.0, "LOITER", False, Battery(None, 11.9))
     assert vehicle_line(UAV, state, said, 14.2) == (
         "uav0 held by the operator (Ana), has not arrived in east0, "
         "LOITER, disarmed, battery 11.9 V, not heard for 12 s"
     )
-    landed = state.with_(orders={})
+    landed = replace(state, commanded=Commanded())
     assert vehicle_line(UAV, landed, None, 14.2).endswith(f"(Ana), is in {parent}, not heard")
 
 
 @pytest.mark.parametrize("fallen", [{"suspended": True}, {"grounded": frozenset({"a"})}])
 def test_a_line_says_of_a_flight_that_was_given_up_nothing_of_its_way(first, fallen):
-    state = LiveState(first, seen={UAV: seen((37.01, -8.65))}, orders=going(), **fallen)
+    state = LiveState(first, sightings=near(), commanded=going(), overrides=Overrides(**fallen))
     assert vehicle_line(UAV, state, None, 10.0) == "uav0 has given up its flight to east0"
 
 
 def test_one_line_tells_of_few_vehicles_and_first_of_those_that_need_it(first):
     names = [f"uav{n}" for n in range(9)]
-    state = LiveState(first, lost=frozenset({"uav7"}), taken={"uav5": "it is in RTL"})
+    taken = Overrides({"uav5": "it is in RTL"})
+    state = LiveState(first, sightings=Sightings(lost=frozenset({"uav7"})), overrides=taken)
     line = vehicles_line(names, state, {}, 0.0)
     assert [each.split()[0] for each in line.split(" | ")] == ["uav7", "uav5", "uav0", "uav1", "and"]
     assert line.endswith(" | and 5 more")

@@ -7,8 +7,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from adapters.live.batch import Batch, Heard
 from adapters.live.core import started, watch
-from adapters.live.state import Batch, Finding, Heard, Plan
+from adapters.live.plan import Plan
+from adapters.live.reported import Finding
 from adapters.mavlink.fleet import Craft
 from adapters.mavlink.tlog import THINGS, positions_of, read_tlog
 from adapters.naming import NamingService

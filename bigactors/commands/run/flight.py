@@ -12,10 +12,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from adapters.live.commanded import Commanded
 from adapters.live.core import obeying, resumed, started
+from adapters.live.due_times import DueTimes
 from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, settle
 from adapters.live.operator_socket import listening
-from adapters.live.state import Finding, LiveState, Plan
+from adapters.live.overrides import Overrides
+from adapters.live.plan import Plan
+from adapters.live.reported import Finding, Reported
+from adapters.live.state import LiveState
 from adapters.live.watchers import Watcher
 from adapters.plugin import Plugin
 from adapters.recording.mcap_files import RecordingError
@@ -119,8 +124,8 @@ def conclude(ending: Ending, *, broken: bool) -> Exit:
     say(f"{ending.reason} after {ending.state.number} steps{breach}{standing(ending.state)}")
     if broken:
         return Exit.VIOLATED
-    state = ending.state
-    done = ending.reason == "the mission has ended" and not state.taken and not state.owing
+    overrides = ending.state.overrides
+    done = ending.reason == "the mission has ended" and not (overrides.taken or overrides.owing)
     return Exit.HOLDS if done else Exit.INCOMPLETE
 
 
@@ -143,13 +148,11 @@ def prepare(options: Namespace) -> Flight:
     if before is not None:
         known = LiveState(
             before.configuration,
-            taken=before.taken,
-            bidden=before.bidden,
-            number=before.steps,
-            told=before.orders,
-            findings=len(before.broken),
-            timers=before.timers,
-            stopped=before.until,
+            before.steps,
+            commanded=Commanded(count=before.orders),
+            overrides=Overrides(before.taken, before.standing_orders),
+            due=DueTimes(timers=before.timers, stopped=before.until),
+            reported=Reported(count=len(before.broken)),
         )
         state = resumed(plan, known, time.time())
     start = Start(waits=options.console is not None and not options.at_once)
@@ -300,12 +303,14 @@ async def fly(
         live = await stack.enter_async_context(LiveRun(flight.plan, flight.state, flight.plugins, watchers))
 
         def describe() -> str:
-            return situation(flight.plan, live.state, live.inbox.said, live.clock())
+            return situation(flight.plan, live.state, live.inbox.statuses, live.clock())
 
         path = socket_of(flight.mission.name, options.socket)
         try:
             await stack.enter_async_context(
-                listening(path, live.inbox.say, describe, lambda: live.state.fates, flight.start.press)
+                listening(
+                    path, live.inbox.say, describe, lambda: live.state.overrides.fates, flight.start.press
+                )
             )
         except OSError as error:
             raise Mistake(error.strerror or str(error), "give another with --socket", str(path)) from error

@@ -41,7 +41,7 @@ def check_idle(live: LiveRun, *, takes_over: bool) -> None:
     """Refuse to command vehicles that fly a mission of another operator; raises Mistake."""
     if takes_over:
         return
-    said = live.inbox.said
+    said = live.inbox.statuses
     for name in sorted(obeying(live.plan, live.state)):
         if name in said and said[name].follows:
             found = f"{name} is under way already, in {said[name].mode}"

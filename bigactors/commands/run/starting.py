@@ -99,7 +99,7 @@ async def stand_by(live: LiveRun, start: Start, before: Preflight, tell: Telling
 
 
 async def _check(live: LiveRun, before: Preflight) -> None:
-    while not live.state.seen.keys() >= live.plan.vehicles.keys():
+    while not live.state.sightings.newest.keys() >= live.plan.vehicles.keys():
         await asyncio.sleep(EVERY)
     check_idle(live, takes_over=before.takes_over)
     await get_to_know(before.plugins, obeying(live.plan, live.state))
@@ -115,8 +115,8 @@ def _items(live: LiveRun, before: Preflight, *, checked: bool) -> Iterator[Item]
     what = "no verdict: nothing was verified of this run" if count is None else "the mission is verified"
     yield _item(what, detail="--unverified" if count is None else f"{count} properties hold")
     for vehicle in sorted(live.plan.vehicles):
-        said = live.inbox.said.get(vehicle)
-        heard = vehicle in live.state.seen
+        said = live.inbox.statuses.get(vehicle)
+        heard = vehicle in live.state.sightings.newest
         yield _item(f"{vehicle} is heard", done=heard, detail=_told(said) if said and heard else "")
     yield _item("places and fences fit the vehicles", done=checked)
 

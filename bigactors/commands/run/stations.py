@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from adapters.live.orders import is_authority
-from adapters.live.state import Plan
+from adapters.live.plan import Plan
 from adapters.plugin import Plugin
 from adapters.stations.entries import Believed, Broke, Content, Posted, Sent, Took
 from adapters.stations.journal import Journal, JournalError

@@ -10,7 +10,7 @@ from adapters.console.history import History
 from adapters.console.mutable_facts import Draft
 from adapters.console.sections import view_of
 from adapters.console.view import NOTHING
-from adapters.live.state import Saying
+from adapters.live.batch import Saying
 from adapters.plugin import LinkLost, LinkRestored, TakenOver
 from adapters.recording.foxglove import OTHERS
 from adapters.recording.mcap_files import McapReader, McapWriter

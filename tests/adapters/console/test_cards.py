@@ -5,7 +5,7 @@ from live_missions import boat, mission, seen
 from recorded import BETWEEN, EAST, FLIGHT, WEST, Tape, rules_of_once, uav, written
 
 from adapters.console.history import History
-from adapters.live.state import Acknowledging, GivingBack, Ordering
+from adapters.live.batch import Acknowledging, GivingBack, Ordering
 from adapters.live.timing import flying
 from adapters.plugin import Accepted, GoTo, Hold, LinkLost, LinkRestored, Rejected, Sent, Status, TakenOver
 from bigactors.missions import digest_of
@@ -273,7 +273,7 @@ def test_a_refused_order_never_reads_as_done_until_the_vehicle_obeys_after_all(t
     assert actions(tape)[0].items() >= {**confirmed, "answered": 1009.0}.items()
     card = tape.card()
     assert (card["level"], card["taken"], card["ordered"]) == (1, "held by the operator (Ana)", ordered)
-    assert card["taken"] == tape.run.state.taken["uav0"]  # the run's own words
+    assert card["taken"] == tape.run.state.overrides.taken["uav0"]  # the run's own words
 
 
 def ended(order):
@@ -386,7 +386,7 @@ def test_while_a_vehicle_is_held_its_request_runs_out_and_its_agent_is_grounded(
             "told to hold by the operator (Ana), not confirmed yet"
         )
         tape.turn(102, sayings=[GivingBack("uav0")])
-        assert tape.run.state.grounded == {"a"}
+        assert tape.run.state.overrides.grounded == {"a"}
         assert not any(isinstance(each, GoTo) for each in tape.turn(103, uav(WEST, 103)).commands)
         assert tape.card()["request"]["given_up"]
         assert [each["notes"] for each in actions(tape) if each["what"] == "give back"] == [
@@ -403,7 +403,7 @@ def test_after_a_fallback_the_cards_say_that_nothing_is_commanded_any_more(tmp_p
         tape.turn(0, uav(WEST, 0))
         assert not tape.card()["request"]["given_up"]
         tape.turn(1, uav(BETWEEN, 1), boat(EAST, 1001.0))
-        assert tape.run.state.suspended
+        assert tape.run.state.overrides.suspended
         card = tape.card()
         assert (card["level"], card["why"], card["request"]["given_up"]) == (2, STOPPED, True)
         tape.turn(2, sayings=[Ordering(Fallback.HOLD, "uav0", "Ana")])
@@ -510,7 +510,7 @@ def test_a_card_has_the_times_of_the_flight_that_the_run_watches(tmp_path):
         tape.turn(0, uav(WEST, 0))
         tape.turn(30, uav(BETWEEN, 30))
         assert tape.card()["flight"] == {"to": "east0", "since": 1000.0, "least": 71.0, "most": 255.0}
-        (watched,) = flying(tape.run.state.timers)
+        (watched,) = flying(tape.run.state.due.timers)
         assert tape.card()["flight"]["least"] == watched.least
         tape.turn(100, uav(EAST, 100))
         assert tape.card()["flight"] is None
@@ -635,8 +635,8 @@ def test_what_is_told_of_a_return_is_what_the_run_does(tmp_path):
             said = tape.card()["on_return"]
             tape.turn(2, sayings=[Ordering(Fallback.RETURN, "uav0", "Ana")])
             tape.turn(9, uav(home, 9))
-            assert tape.run.state.suspended == (said is not None)
-            assert tape.card()["on_return"] is None or not tape.run.state.suspended
+            assert tape.run.state.overrides.suspended == (said is not None)
+            assert tape.card()["on_return"] is None or not tape.run.state.overrides.suspended
 
 
 def test_a_vehicle_in_flight_leaves_no_place_when_it_is_sent_home(tmp_path):

@@ -5,7 +5,8 @@ from live_missions import LIVE, Run, seen
 from recorded import written
 
 from adapters.console.history import History
-from adapters.live.state import Plan, Saying
+from adapters.live.batch import Saying
+from adapters.live.plan import Plan
 from adapters.plugin import Underway
 from adapters.recording.schemas import VERSION
 from adapters.recording.writing import Recorder

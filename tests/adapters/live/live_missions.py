@@ -2,8 +2,11 @@
 
 from pathlib import Path
 
+from adapters.live.batch import Batch, Heard
+from adapters.live.commanded import Commanded
 from adapters.live.core import advance, started
-from adapters.live.state import Batch, Heard, LiveState, Plan
+from adapters.live.plan import Plan
+from adapters.live.state import LiveState
 from adapters.plugin import Accepted
 from bigactors.cli import main
 from physical import PhysicalProperty, point
@@ -70,7 +73,9 @@ def boat(at, time, name="boat0"):
 
 def known_of(state, **more):
     """What a recording of a run knows of its state."""
-    return LiveState(state.configuration, number=state.number, told=state.told, **more)
+    return LiveState(
+        state.configuration, state.number, commanded=Commanded(count=state.commanded.count), **more
+    )
 
 
 class Run:
@@ -93,7 +98,11 @@ class Run:
 
     def accepted(self, now):
         """What vehicles report of what they are to do."""
-        told = [order.command for order in self.state.orders.values() if not (order.obeyed or order.refused)]
+        told = [
+            order.command
+            for order in self.state.commanded.flights.values()
+            if not (order.obeyed or order.refused)
+        ]
         return [Accepted(command.request, command.entity, now) for command in told if self.willing]
 
     @property

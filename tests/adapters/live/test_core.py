@@ -1,9 +1,11 @@
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, known_of, plan_of, seen
 
+from adapters.live.batch import Batch, GivingBack, Heard, Saying
 from adapters.live.core import is_refused, resumed, watch
-from adapters.live.state import Batch, GivingBack, Heard, Plan, Saying
-from adapters.live.turn import MOST_REPORTED
+from adapters.live.overrides import Overrides
+from adapters.live.plan import Plan
+from adapters.live.reported import MOST_REPORTED
 from adapters.plugin import (
     Accepted,
     Aged,
@@ -57,7 +59,7 @@ def test_a_flight_is_committed_where_it_was_seen_to_end_and_not_before():
     assert isinstance(placement, Placed)
     assert placement.geometry.vertices == ((37.011, -8.611),)
     assert run.state.configuration.structure.logical.parent("uav0") == "east0"
-    assert run.state.orders == {}
+    assert run.state.commanded.flights == {}
 
 
 def test_what_is_displayed_is_what_was_seen():
@@ -89,13 +91,13 @@ def test_of_two_positions_the_newer_wins_in_either_order():
     for first, second in ((1.0, 2.0), (2.0, 1.0)):
         run = Run(plan_of(TOUR))
         run.turn(3.0, seen("uav0", WEST, first), seen("uav0", (37.012, -8.652), second))
-        assert run.state.seen["uav0"].time == 2.0
+        assert run.state.sightings.newest["uav0"].time == 2.0
 
 
 def test_a_time_stamp_far_in_the_future_is_refused():
     run = Run(plan_of(TOUR + GO))
     run.turn(0.0, seen("uav0", WEST, 3600.0))
-    assert run.state.seen == {}
+    assert run.state.sightings.newest == {}
     assert run.kinds() == ["trouble"]
 
 
@@ -110,7 +112,7 @@ def test_strangers_with_ever_new_names_fill_no_memory():
     run = Run(plan_of(TOUR + GO))
     run.turn(0.0, *(boat(EAST, 3600.0, f"stranger{number}") for number in range(MOST_REPORTED + 500)))
     assert run.kinds() == ["trouble"] * MOST_REPORTED
-    assert len(run.state.reported) == MOST_REPORTED
+    assert len(run.state.reported.messages) == MOST_REPORTED
     run.turn(1.0, seen("uav0", WEST, 1.0), boat(EAST, 1.0))
     assert "broken assumption" in run.kinds()
 
@@ -133,7 +135,7 @@ def test_a_boat_that_the_mission_lets_stand_still_breaks_an_assumption_when_it_d
     assert run.labels == ["⟨env : boat0 is seen in east0⟩"]
     assert run.kinds() == ["broken assumption"]
     assert [type(told) for told in run.commands] == [Hold]
-    assert run.state.suspended
+    assert run.state.overrides.suspended
 
 
 def test_a_drift_that_the_mission_allows_breaks_nothing():
@@ -171,7 +173,7 @@ def test_an_entity_that_nobody_announced_is_seen_and_reported():
 def test_what_is_in_none_of_the_places_is_nobodys_business():
     run = Run(plan_of(TOUR))
     run.turn(0.0, boat((40.0, -8.0), 0.0, "mmsi123"))
-    assert (run.steps, run.findings, run.state.seen) == ([], [], {})
+    assert (run.steps, run.findings, run.state.sightings.newest) == ([], [], {})
 
 
 def test_a_spill_takes_its_shape_along():
@@ -209,7 +211,7 @@ def test_a_hand_over_is_true_once_the_vehicle_shows_it():
     assert run.rules[-2:] == ["actuate", "sense"]
     assert run.findings == []
     assert run.state.configuration.structure.logical.links("uav0") == ("control:gcs1",)
-    assert run.state.handing == {}
+    assert run.state.commanded.hand_overs == {}
 
 
 def test_while_a_vehicle_confirms_a_hand_over_others_are_served_unless_the_verdict_is_one_under_fcfs():
@@ -355,7 +357,7 @@ def test_nothing_is_told_to_a_vehicle_that_was_taken_over_before_it_is_given_bac
     run.turn(2.0, sayings=[GivingBack("uav0")])
     assert told(run) == ["GiveBack", "GoTo"]
     assert [answer.refusal for answer in run.answers] == [""]
-    assert run.state.taken == {}
+    assert run.state.overrides.taken == {}
 
 
 def test_a_vehicle_that_is_given_back_is_told_anew_what_it_was_to_do():
@@ -396,7 +398,7 @@ def test_a_run_that_is_resumed_gives_no_vehicle_back_by_itself():
     run = Run(plan_of(TOUR + GO))
     run.turn(0.0, seen("uav0", WEST, 0.0))
     again = Run(run.plan)
-    again.state = resumed(run.plan, known_of(run.state, taken={"uav0": "it is in RTL"}), 100.0)
+    again.state = resumed(run.plan, known_of(run.state, overrides=Overrides({"uav0": "it is in RTL"})), 100.0)
     again.turn(101.0, seen("uav0", EAST, 101.0))
     assert again.rules == []
 
@@ -589,7 +591,7 @@ def test_a_rule_that_moves_two_is_committed_when_both_are_there():
     assert "commit" not in run.rules
     run.turn(3.0, seen("uav1", (37.012, -8.612), 3.0, channels=other))
     assert run.rules[-1] == "commit"
-    assert run.state.orders == {}
+    assert run.state.commanded.flights == {}
     assert run.findings == []
 
 
@@ -618,7 +620,10 @@ def test_a_flight_that_goes_on_is_still_ordered_after_a_crash():
     run = Run(plan_of(TOUR + GO))
     run.turn(0.0, seen("uav0", WEST, 0.0))
     again = after_a_crash(run)
-    assert again.state.orders["uav0"].command.place == run.state.orders["uav0"].command.place
+    assert (
+        again.state.commanded.flights["uav0"].command.place
+        == run.state.commanded.flights["uav0"].command.place
+    )
     again.turn(101.0, seen("uav0", BETWEEN, 101.0))
     assert again.commands == []
 
@@ -665,7 +670,7 @@ def test_who_was_taken_over_stays_so_though_an_operator_says_where_it_is():
     run = Run(plan_of(TOUR, LivePolicy(Fallback.CONTINUE)))
     run.turn(0.0, reports=[TakenOver("uav0", 0.0, "it is in RTL"), LinkLost("uav0", 0.0, -5.0)])
     run.turn(1.0, sayings=[GivingBack("uav0", "127.0.0.1:5555")])
-    assert run.state.taken == {"uav0": "it is in RTL"}
+    assert run.state.overrides.taken == {"uav0": "it is in RTL"}
     assert run.commands == [Rebind("operator-1", "uav0", "127.0.0.1:5555")]
 
 

@@ -179,7 +179,7 @@ def test_a_vessel_in_the_way_is_said_and_the_vehicles_hold(tmp_path, monkeypatch
     told = capsys.readouterr().err
     assert "mmsi244999001 (Vessel) is in east0; the mission names no such entity" in told
     assert "these verdicts rest on it: local_consistency, deadlock_freedom" in told
-    assert ending.state.suspended
+    assert ending.state.overrides.suspended
     finding = open_recording("run.mcap").of("findings")[0].data
     assert finding["verdicts"] == ["local_consistency", "deadlock_freedom", "computation"]
 

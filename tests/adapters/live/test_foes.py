@@ -314,7 +314,7 @@ def test_positions_from_the_past_and_the_future_neither_move_a_drifter_nor_silen
     told = flown.witness.told()
     assert "time stamp too old" in told
     assert "time stamp in the future" in told
-    seen = flown.ending.state.seen["drifter0"].property.geometry.vertices[0]
+    seen = flown.ending.state.sightings.newest["drifter0"].property.geometry.vertices[0]
     assert seen == pytest.approx((37.0112, -8.6512), abs=1e-5)
 
 

@@ -12,7 +12,7 @@ from google.protobuf.json_format import ParseDict
 from live_missions import EAST, WEST, mission
 from test_recording import FLIGHT, HEADER, fly
 
-from adapters.live.state import GivingBack, Ordering, Saying
+from adapters.live.batch import GivingBack, Ordering, Saying
 from adapters.plugin import StatusText
 from adapters.recording.foxglove import FIX, GEOJSON, LOG, MOST_ENTITIES, Showing
 from adapters.recording.reading import read_recording

@@ -6,10 +6,11 @@ import time
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, plan_of
 
+from adapters.live.batch import Acknowledging, GivingBack, Ordering, Saying
 from adapters.live.core import started
 from adapters.live.loop import LiveRun, NotAsAssumed, NotHeard, PluginFailed
 from adapters.live.operator_socket import NobodyListens, acknowledge, listening, order, say, status
-from adapters.live.state import Acknowledging, Answer, GivingBack, Ordering, Saying
+from adapters.live.turn import Answer
 from adapters.plugin import Accepted, Aged, GoTo, HandOver, LinkLost, Refused
 from physical import PhysicalProperty, centroid, point
 from semantics.live_policy import Fallback

@@ -15,7 +15,7 @@ from test_resuming import MISSION, SIMULATOR, free_port, rules, started, until
 from worlds import ROUND
 
 from adapters.live.operator_socket import acknowledge, fates, give_back, order, say
-from adapters.live.state import Bidden
+from adapters.live.overrides import StandingOrder
 from adapters.plugin import Hold
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.reading import read_recording
@@ -128,10 +128,10 @@ def test_a_run_that_is_not_given_back_ends_held_and_is_resumed_so(flying):
     flown = flying(Vehicle(Kind.PLANE, (37.0, -8.6, 20.0)), foe=operator, seconds=300)
     assert not flown.ended
     found = resume("r.mcap", open_mission("flown.mission", LIVE))
-    assert flown.ending.state.taken == {"uav0": "held by the operator (Ana)"}
+    assert flown.ending.state.overrides.taken == {"uav0": "held by the operator (Ana)"}
     assert found.taken == {"uav0": "told to hold by the operator (Ana), not confirmed yet"}
-    (_request,) = found.bidden
-    assert found.bidden == {"uav0": Bidden(Hold("operator-2", "uav0"), "Ana")}
+    (_request,) = found.standing_orders
+    assert found.standing_orders == {"uav0": StandingOrder(Hold("operator-2", "uav0"), "Ana")}
 
 
 def test_what_is_ordered_while_nothing_is_heard_is_told_as_soon_as_it_is(flying):
@@ -147,7 +147,7 @@ def test_what_is_ordered_while_nothing_is_heard_is_told_as_soon_as_it_is(flying)
 
     flown = flying(Vehicle(Kind.COPTER, (37.0, -8.6, 20.0)), foe=operator, seconds=400)
     assert not flown.ended
-    assert flown.ending.state.taken == {"uav0": "sent home by the operator (Ana)"}
+    assert flown.ending.state.overrides.taken == {"uav0": "sent home by the operator (Ana)"}
     assert {"lost link", "ordered", "link restored", "confirmed"} <= flown.witness.kinds()
     assert mode(flown.vehicle) == "RTL"
 
@@ -208,5 +208,5 @@ def test_what_a_vehicle_under_a_foreign_authority_refuses_it_does_once_it_obeys_
     copter = Vehicle(Kind.COPTER, (37.0, -8.6, 20.0), enforce=False)
     flown = flying(copter, foe=operator, seconds=300)
     assert came == [refused, ("confirmed", "held by the operator (Ana)")]
-    assert flown.ending.state.taken == {"uav0": "held by the operator (Ana)"}
+    assert flown.ending.state.overrides.taken == {"uav0": "held by the operator (Ana)"}
     assert mode(flown.vehicle) == "BRAKE"

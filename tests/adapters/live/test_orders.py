@@ -3,16 +3,10 @@
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, known_of, plan_of, seen
 
+from adapters.live.batch import Acknowledging, GivingBack, Heard, Ordering
 from adapters.live.core import is_refused, resumed
-from adapters.live.state import (
-    Acknowledging,
-    Bidden,
-    Fate,
-    GivingBack,
-    Heard,
-    Ordering,
-    Plan,
-)
+from adapters.live.overrides import Fate, StandingOrder
+from adapters.live.plan import Plan
 from adapters.plugin import (
     Accepted,
     Arrived,
@@ -60,7 +54,7 @@ def test_a_vehicle_that_an_operator_orders_is_told_at_once_and_its_request_stand
     assert turn.commands == (kind("operator-2", "uav0"),)
     assert turn.answers[0].refusal == ""
     assert turn.answers[0].requests == {"uav0": "operator-2"}
-    assert run.state.taken == {"uav0": f"told to {what.value} by {ANA}, not confirmed yet"}
+    assert run.state.overrides.taken == {"uav0": f"told to {what.value} by {ANA}, not confirmed yet"}
     assert [f.message for f in turn.findings] == [
         f"uav0 is told to {what.value} by {ANA}; the mission does not command it until `bigactors give-back uav0`"
     ]
@@ -114,7 +108,7 @@ def test_an_order_to_a_vehicle_that_was_taken_over_overrules_that_and_says_so():
     turn = run.turn(2.0, sayings=[ordered()])
     assert [type(each).__name__ for each in turn.commands] == ["GiveBack", "Hold"]
     assert "that overrules who took uav0 over: it is in RTL" in turn.findings[0].message
-    assert run.state.taken == {"uav0": f"told to hold by {ANA}, not confirmed yet"}
+    assert run.state.overrides.taken == {"uav0": f"told to hold by {ANA}, not confirmed yet"}
 
 
 def test_an_order_does_not_overrule_what_its_operator_cannot_know_of_yet():
@@ -147,7 +141,7 @@ def test_what_was_ordered_is_confirmed_once_by_the_vehicle():
     run.turn(2.0, reports=[Accepted("operator-2", "uav0", 2.0)])
     run.turn(3.0, reports=[Accepted("operator-2", "uav0", 3.0), Arrived("operator-2", "uav0", 3.0)])
     assert [f.message for f in run.findings[1:]] == [f"uav0 returns, as {ANA} ordered"]
-    assert run.state.taken == {"uav0": f"sent home by {ANA}"}
+    assert run.state.overrides.taken == {"uav0": f"sent home by {ANA}"}
 
 
 def test_a_vehicle_that_refuses_an_order_is_not_commanded_by_the_mission_all_the_same():
@@ -165,7 +159,7 @@ def test_an_order_may_be_given_twice_and_another_after_it():
     for number, what in enumerate((HOLD, HOLD, RETURN), 1):
         run.turn(float(number), sayings=[ordered(what=what)])
     assert told(run) == ["GoTo", "Hold", "Hold", "Return"]
-    assert run.state.taken == {"uav0": f"told to return by {ANA}, not confirmed yet"}
+    assert run.state.overrides.taken == {"uav0": f"told to return by {ANA}, not confirmed yet"}
 
 
 def test_a_vehicle_that_was_ordered_does_anew_what_the_mission_asks_once_it_is_given_back():
@@ -173,7 +167,7 @@ def test_a_vehicle_that_was_ordered_does_anew_what_the_mission_asks_once_it_is_g
     run.turn(1.0, sayings=[ordered()])
     run.turn(2.0, sayings=[GivingBack("uav0", by="Ben")])
     assert told(run) == ["GoTo", "Hold", "GiveBack", "GoTo"]
-    assert (run.state.taken, run.state.bidden) == ({}, {})
+    assert (run.state.overrides.taken, run.state.overrides.orders) == ({}, {})
     assert run.findings[-1].message == "uav0 was given back by Ben, and is commanded again"
     run.turn(3.0, seen("uav0", EAST, 3.0))
     assert "commit" in run.rules
@@ -183,7 +177,7 @@ def test_what_is_said_at_once_counts_in_its_order():
     run = flying()
     run.turn(1.0, sayings=[ordered(), GivingBack("uav0"), ordered(what=RETURN)])
     assert told(run)[-1] == "Return"
-    assert run.state.taken == {"uav0": f"told to return by {ANA}, not confirmed yet"}
+    assert run.state.overrides.taken == {"uav0": f"told to return by {ANA}, not confirmed yet"}
 
 
 def test_a_vehicle_that_was_taken_over_is_given_back_and_held_by_two_words_at_once():
@@ -229,7 +223,7 @@ def test_what_the_mission_falls_back_on_does_not_overrule_an_operator(fallback):
 def test_an_operator_is_obeyed_while_the_mission_is_suspended():
     run = flying(precautions=LivePolicy(HOLD))
     run.turn(1.0, boat(WEST, 1.0))
-    assert run.state.suspended
+    assert run.state.overrides.suspended
     run.turn(2.0, sayings=[ordered(what=RETURN)])
     assert told(run) == ["GoTo", "Hold", "Return"]
 
@@ -257,20 +251,22 @@ def test_a_pilot_who_takes_over_a_held_vehicle_ends_the_order():
     run = flying()
     run.turn(1.0, sayings=[ordered()])
     run.turn(2.0, reports=[TakenOver("uav0", 2.0, "it is in FBWA")])
-    assert run.state.taken == {"uav0": "it is in FBWA"}
-    assert run.state.bidden == {}
+    assert run.state.overrides.taken == {"uav0": "it is in FBWA"}
+    assert run.state.overrides.orders == {}
 
 
 def test_a_resumed_run_keeps_the_operators_order():
     run = flying()
     run.turn(1.0, sayings=[ordered()])
-    known = known_of(run.state, taken=run.state.taken, bidden=run.state.bidden)
+    known = known_of(run.state, overrides=run.state.overrides)
     again = Run(run.plan)
     again.state = resumed(run.plan, known, 100.0)
     again.turn(101.0, seen("uav0", EAST, 101.0), reports=[Arrived("operator-2", "uav0", 101.0)])
     assert again.rules == []
     assert again.kinds() == ["confirmed"]
-    assert again.state.bidden == {"uav0": Bidden(Hold("operator-2", "uav0"), "Ana", Fate.CONFIRMED)}
+    assert again.state.overrides.orders == {
+        "uav0": StandingOrder(Hold("operator-2", "uav0"), "Ana", Fate.CONFIRMED)
+    }
 
 
 def test_a_finding_is_acknowledged_by_its_number_if_there_is_one():
@@ -283,7 +279,7 @@ def test_a_finding_is_acknowledged_by_its_number_if_there_is_one():
     run.turn(2.0, reports=[TakenOver("uav0", 2.0, "x")])
     run.turn(3.0, sayings=[Acknowledging(1), Acknowledging(2)])
     assert [answer.refusal for answer in run.answers[3:]] == ["", "there is no finding 2; there are 1"]
-    assert run.state.findings == len(run.findings) == 1
+    assert run.state.reported.count == len(run.findings) == 1
 
 
 def test_what_vehicles_and_stations_say_for_people_alone_changes_nothing():

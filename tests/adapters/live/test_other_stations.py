@@ -8,7 +8,8 @@ import jsonschema
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
-from adapters.live.state import Plan, Saying
+from adapters.live.batch import Saying
+from adapters.live.plan import Plan
 from adapters.plugin import Believes, Broken, Delivered, GoTo, Hold, Hosts, LinkLost, Underway
 from adapters.recording.encoding import report_json, step_json
 from adapters.recording.schemas import REPORT
@@ -123,7 +124,7 @@ def test_a_vehicle_is_aloft_from_when_the_other_station_says_that_it_was_sent(do
     run = timed("gcs1", vehicles=())
     run.turn(0.0, seen("uav0", WEST, 0.0, "stations"))
     run.turn(350.0, reports=[Underway("uav0", 350.0, "east0", done)])
-    (since,) = run.state.timers.since[ActorClock(Sort.ALOFT, "uav0")]
+    (since,) = run.state.due.timers.since[ActorClock(Sort.ALOFT, "uav0")]
     assert since == done
     run.turn(800.0, seen("uav0", EAST, 800.0, "stations"), reports=[Underway("uav0", 800.0, "", 700.0)])
     assert run.findings == []  # the station that commands it tells of it

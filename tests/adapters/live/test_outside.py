@@ -20,9 +20,9 @@ from test_loop import GO, Looker, Vehicle
 from worlds import World, flight, until
 
 from adapters.detections import Detections
+from adapters.live.batch import Saying
 from adapters.live.core import started
 from adapters.live.loop import LiveRun
-from adapters.live.state import Saying
 from adapters.mavlink import autopilot
 from adapters.mavlink.codec import Decoder
 from adapters.plugin import Aged, Failed, GoTo, Hold, Return, Trouble
@@ -164,7 +164,7 @@ def on_a_full_disk(path, fallback):
         "told": told,
         "found": [(each.kind, each.fallback, each.message) for each in looker.findings],
         "broken": terminal.broken,
-        "suspended": ending.state.suspended,
+        "suspended": ending.state.overrides.suspended,
     }
 
 
@@ -207,7 +207,7 @@ def test_a_plugin_that_fails_in_flight_makes_vehicles_do_what_the_mission_says()
 
     vehicle, looker = Vehicle(), Looker()
     ending = fly(TOUR + STAY, [vehicle, Failing()], [looker], _nothing, 0.6, LivePolicy(Fallback.RETURN))
-    assert ending.state.suspended
+    assert ending.state.overrides.suspended
     assert [type(told) for told in vehicle.told] == [Return]
     assert [finding.message for finding in looker.findings] == ["radar fails: no such device"]
 
@@ -229,7 +229,7 @@ def test_a_bug_of_a_plugin_is_told_and_makes_vehicles_do_what_the_mission_says(w
     async def tell(run):
         await asyncio.sleep(0.2)
         if where == "command":
-            run._orders.put_nowait(Hold("x", "boat0"))
+            run._commands.put_nowait(Hold("x", "boat0"))
 
     vehicle, looker = Vehicle(), Looker()
     fly(TOUR + STAY, [vehicle, Wrong()], [looker], tell, 0.8, LivePolicy(Fallback.RETURN))

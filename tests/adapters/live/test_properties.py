@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 
+from adapters.live.batch import Acknowledging, Batch, GivingBack, Ordering, Saying
 from adapters.live.core import advance, started
-from adapters.live.state import Acknowledging, Batch, GivingBack, Ordering, Saying
 from adapters.plugin import GiveBack, Hold, LinkLost, LinkRestored, Rejected, Return, TakenOver
 from adapters.recording.encoding import step_json
 from checker import replay
@@ -117,7 +117,7 @@ def test_what_is_committed_was_seen_where_it_was_to_be(history):
                 before, after = step.source.structure.physical, step.transition.target.structure.physical
                 placed, to = after.placement("uav0"), before.transit("uav0").to
                 assert isinstance(placed, Placed)
-                assert placed.geometry is run.state.seen["uav0"].property.geometry
+                assert placed.geometry is run.state.sightings.newest["uav0"].property.geometry
                 assert after.abstract_parent("uav0") == to
                 assert step.transition.target.structure.logical.parent("uav0") == to
 
@@ -127,11 +127,11 @@ def test_who_was_taken_over_is_told_nothing_and_arrives_nowhere_until_it_is_give
     run = Run(PLAN)
     for now, batch in history:
         turn = run.turn(now, *batch.heard, reports=batch.reports, sayings=batch.sayings)
-        if run.state.taken and GivingBack("uav0") not in batch.sayings:
+        if run.state.overrides.taken and GivingBack("uav0") not in batch.sayings:
             ordered = any(isinstance(each, Ordering) for each in batch.sayings)
             allowed = (Hold, Return, GiveBack) if ordered else ()
             assert all(isinstance(each, allowed) for each in turn.commands)
-            assert turn.state.bidden.keys() <= turn.state.taken.keys()
+            assert turn.state.overrides.orders.keys() <= turn.state.overrides.taken.keys()
             assert "commit" not in [step.transition.label.rule for step in turn.steps]
 
 
@@ -161,7 +161,7 @@ def test_of_an_entity_the_newest_counts_in_whatever_order_it_is_heard(history, r
     ordered, shuffled = list(known.values()), random.sample(list(known.values()), len(known))
     now = 1000.0 + 7.0 * 12
     states = [advance(PLAN, started(PLAN), Batch(tuple(order)), now).state for order in (ordered, shuffled)]
-    assert states[0].seen == states[1].seen
+    assert states[0].sightings.newest == states[1].sightings.newest
 
 
 @given(histories())

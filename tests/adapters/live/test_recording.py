@@ -17,7 +17,8 @@ from json_mutations import mutated
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, mission, plan_of, seen
 from scale import examples
 
-from adapters.live.state import Acknowledging, Finding, GivingBack, Heard, Ordering, Saying
+from adapters.live.batch import Acknowledging, GivingBack, Heard, Ordering, Saying
+from adapters.live.reported import Finding
 from adapters.plugin import (
     Accepted,
     Aged,
@@ -333,7 +334,7 @@ def test_a_torn_recording_is_read_up_to_its_end(recorded, cut):
 
 KILLED = """
 import os, signal, sys
-sys.path[:0] = ["tests/adapters/live"]
+sys.path[:0] = ["tests", "tests/adapters/live"]
 from pathlib import Path
 from test_recording import HEADER, Recorder, fly
 recorder = Recorder(Path(sys.argv[1]), HEADER, 0.0)

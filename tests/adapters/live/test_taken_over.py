@@ -84,7 +84,7 @@ def test_a_vehicle_that_flies_home_unasked_arrives_nowhere_and_is_not_called_bac
     assert not flown.ended
     assert home(flown.vehicle)
     assert flown.inside("home0")
-    assert flown.ending.state.taken == resumed_from("r.mcap").taken == {"uav0": reason}
+    assert flown.ending.state.overrides.taken == resumed_from("r.mcap").taken == {"uav0": reason}
     assert flown.witness.kinds() == {"taken over"}
 
 
@@ -95,7 +95,7 @@ def test_a_vehicle_that_boots_anew_on_the_ground_where_it_was_to_go_has_not_arri
     assert flown.witness.rules.count("commit") == 3
     assert not flown.ended
     assert not flown.vehicle.armed
-    (reason,) = flown.ending.state.taken.values()
+    (reason,) = flown.ending.state.overrides.taken.values()
     assert reason.startswith("it has booted anew and is disarmed")
 
 
@@ -114,7 +114,7 @@ def test_a_vehicle_that_an_operator_gives_back_flies_its_mission_to_the_end(flyi
     flown = flying(plane(), foe=operator, seconds=1500)
     assert flown.ended
     assert answers == ["there is no vehicle 'uav1'; there are uav0", ""]
-    assert flown.ending.state.taken == resumed_from("r.mcap").taken == {}
+    assert flown.ending.state.overrides.taken == resumed_from("r.mcap").taken == {}
     assert flown.witness.kinds() == {"taken over", "given back"}
     recording = open_recording("r.mcap")
     assert [message.data for message in recording.of("given_back")] == [

@@ -2,7 +2,7 @@
 
 from live_missions import TOUR, WEST, Run, mission, plan_of, seen
 
-from adapters.live.state import Saying
+from adapters.live.batch import Saying
 from adapters.recording.reading import read_recording
 from adapters.recording.writing import Recorder
 from checker import replay
@@ -34,7 +34,7 @@ def test_an_agent_waits_as_long_as_it_says_and_no_longer():
     assert run.labels == ["⟨timeout : a, after 10 s⟩", "⟨fun : a⟩"]
     assert shown(run) == ["nobody came"]
     assert run.again is None
-    assert run.state.due == {}
+    assert run.state.due.timeouts == {}
 
 
 def test_a_message_that_comes_in_time_ends_the_wait():

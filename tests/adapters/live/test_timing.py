@@ -1,11 +1,15 @@
 """The section `timing` in live runs: what takes longer than it says, or is over sooner, breaks an assumption."""
 
+from dataclasses import replace
+
 import pytest
 from audited import SHUTTLE, copter, flown_in
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, known_of, mission, plan_of, seen
 
+from adapters.live.batch import Heard, Saying
 from adapters.live.core import resumed
-from adapters.live.state import Heard, Saying
+from adapters.live.due_times import DueTimes
+from adapters.live.overrides import Overrides
 from adapters.live.timing import OWN, flying
 from adapters.plugin import Gone, LinkLost, LinkRestored
 from adapters.recording.writing import Recorder
@@ -42,7 +46,7 @@ def broken(run):
 
 def test_a_flight_has_its_interval_while_it_is_under_way():
     run = airborne()
-    (flight,) = flying(run.state.timers)
+    (flight,) = flying(run.state.due.timers)
     assert (flight.vehicle, flight.destination, flight.since) == ("uav0", "east0", 0.0)
     assert (flight.least, flight.most) == (71.0, 255.0)
 
@@ -193,7 +197,7 @@ def test_time_without_listening_does_not_count():
 def test_a_mission_without_times_keeps_no_timers():
     run = Run(plan_of(TOUR + "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) }"))
     run.turn(0.0, seen("uav0", WEST, 0.0))
-    assert run.state.timers is None
+    assert run.state.due.timers is None
 
 
 # --- a run that goes on after it was killed
@@ -247,10 +251,9 @@ class Recorded(Run):
         OPEN.append(self)
         if before is not None:
             self.recorder.copy(before.messages)
-            known = known_of(self.state, timers=before.timers, stopped=before.until)
-            self.state = resumed(
-                self.plan, known.with_(configuration=before.configuration, number=before.steps), before.until
-            )
+            known = known_of(self.state, due=DueTimes(timers=before.timers, stopped=before.until))
+            killed = replace(known, configuration=before.configuration, number=before.steps)
+            self.state = resumed(self.plan, killed, before.until)
 
     def turn(self, now, *heard, **more):
         turn = super().turn(now, *heard, **more)
@@ -286,8 +289,8 @@ def test_the_clocks_of_a_recording_are_those_of_its_run_after_every_turn(tmp_pat
     sorts = set()
     for now, heard, more in TURNS:
         run.turn(now, *heard, **more)
-        assert clocks(run.killed().timers) == clocks(run.state.timers)
-        sorts |= {clock.sort for clock in run.state.timers.since}
+        assert clocks(run.killed().timers) == clocks(run.state.due.timers)
+        sorts |= {clock.sort for clock in run.state.due.timers.since}
     assert run.rules.count("commit") == 1
     assert sorts >= {Sort.MISSION, Sort.EVERY, Sort.ALOFT, Sort.AFTER, Sort.FLIGHT, Sort.AIM}
 
@@ -303,10 +306,10 @@ def test_a_run_that_goes_on_at_once_has_the_clocks_of_one_that_was_never_killed(
     for now, heard, more in TURNS[left:]:
         whole.turn(now, *heard, **more)
         run.turn(now, *heard, **more)
-    agree = [clock for clock in whole.state.timers.since if clock.sort is not Sort.AFTER]
+    agree = [clock for clock in whole.state.due.timers.since if clock.sort is not Sort.AFTER]
     assert agree
-    assert [run.state.timers.since[each] for each in agree] == [
-        whole.state.timers.since[each] for each in agree
+    assert [run.state.due.timers.since[each] for each in agree] == [
+        whole.state.due.timers.since[each] for each in agree
     ]
     assert broken(run) == broken(whole)[len(broken(whole)) - len(broken(run)) :]
 
@@ -315,10 +318,10 @@ def test_a_flight_goes_on_while_the_run_does_not_and_is_held_to_its_whole_time(t
     run = Recorded(tmp_path / "first.mcap")
     for now, heard, more in TURNS[:2]:
         run.turn(now, *heard, **more)
-    (before,) = flying(run.state.timers)
+    (before,) = flying(run.state.due.timers)
     again = run.goes_on(tmp_path / "second.mcap")
     again.turn(200.0, seen("uav0", BETWEEN, 200.0))
-    assert list(flying(again.state.timers)) == [before]
+    assert list(flying(again.state.due.timers)) == [before]
     assert broken(again) == []
     again.turn(256.0, seen("uav0", BETWEEN, 256.0))
     assert [each[:46] for each in broken(again)] == ["the flight of uav0 to east0 takes longer than "]
@@ -329,26 +332,26 @@ def test_a_flight_goes_on_while_the_run_does_not_and_is_held_to_its_whole_time(t
 
 def test_what_a_run_does_itself_stands_still_while_it_does(tmp_path):
     run = Recorded(tmp_path / "first.mcap")
-    run.state = run.state.with_(suspended=True)  # controls wait
+    run.state = replace(run.state, overrides=Overrides(suspended=True))  # controls wait
     run.turn(0.0, seen("uav0", WEST, 0.0), boat(WEST, 0.0))
     run.turn(0.5)
-    assert {clock.sort for clock in run.state.timers.since} & OWN == {Sort.REQUEST}
+    assert {clock.sort for clock in run.state.due.timers.since} & OWN == {Sort.REQUEST}
     again = run.goes_on(tmp_path / "second.mcap")
     again.turn(100.5)
-    assert again.state.timers.rested == 100.5  # nothing was recorded after the first turn
+    assert again.state.due.timers.rested == 100.5  # nothing was recorded after the first turn
     assert broken(again) == []
-    assert clocks(again.killed().timers) == clocks(again.state.timers)
+    assert clocks(again.killed().timers) == clocks(again.state.due.timers)
 
 
 def test_who_waits_for_some_time_waits_anew(tmp_path):
     run = Recorded(tmp_path / "first.mcap")
     for now, heard, more in TURNS[:-1]:
         run.turn(now, *heard, **more)
-    (waits,) = (clock for clock in run.state.timers.since if clock.sort is Sort.AFTER)
-    assert run.state.timers.since[waits][0] < 151.0
+    (waits,) = (clock for clock in run.state.due.timers.since if clock.sort is Sort.AFTER)
+    assert run.state.due.timers.since[waits][0] < 151.0
     again = run.goes_on(tmp_path / "second.mcap")
     again.turn(300.0, seen("uav0", EAST, 300.0))
-    assert again.state.timers.since[waits] == (300.0,)
+    assert again.state.due.timers.since[waits] == (300.0,)
     again.turn(320.5, seen("uav0", EAST, 320.5))
     assert again.rules[-1] == "timeout"
     assert not any("timeout" in each for each in broken(again))
@@ -364,8 +367,8 @@ def test_a_recording_that_does_not_say_when_its_mission_began_has_no_clocks(tmp_
     assert (before.steps, before.timers) == (len(run.steps), None)
     again = Recorded(tmp_path / "second.mcap", before=before)
     again.turn(100.0, seen("uav0", BETWEEN, 100.0))
-    (flight,) = flying(again.state.timers)
-    assert flight.since == again.state.timers.began == 100.0
+    (flight,) = flying(again.state.due.timers)
+    assert flight.since == again.state.due.timers.began == 100.0
 
 
 # --- flown

@@ -7,9 +7,9 @@ from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 from test_loop import Looker, Vehicle
 
 from adapters.detections import Detections
+from adapters.live.batch import Heard
 from adapters.live.core import started
 from adapters.live.loop import AT_ONCE, MOST_WAITING, Inbox, LiveRun
-from adapters.live.state import Heard
 from adapters.live.unknown_entities import MOST_PLACES, MOST_STRANGERS, SHARE
 from adapters.live.watchers import Watchers
 from adapters.plugin import Aged, Gone
@@ -80,7 +80,7 @@ def test_a_flood_of_one_plugin_leaves_room_for_the_others_and_there_is_an_end_to
     run.turn(1.0, *(vessel(number) for number in range(MOST_STRANGERS)))
     run.turn(1.1, *(vessel(number, plugin="radar") for number in range(5_000, 6_000)))
     run.turn(1.2, *(vessel(number, plugin="camera") for number in range(7_000, 7_010)))
-    assert run.state.shares == {"ais": (SHARE, 0), "radar": (SHARE, 0)}
+    assert run.state.sightings.admitted == {"ais": (SHARE, 0), "radar": (SHARE, 0)}
     strangers = run.state.configuration.setting.kinds.keys() - run.plan.first.setting.kinds.keys()
     assert len(strangers) == MOST_STRANGERS
     left_out = [finding.about for finding in run.findings if finding.kind == "trouble"]
@@ -91,7 +91,7 @@ def test_what_no_mission_could_use_is_not_kept():
     run = quiet_run()
     nowhere = [vessel(number, BETWEEN) for number in range(10)]
     run.turn(1.0, *nowhere, seen("ghost", WEST, 1.0, "ais", "Submarine", ()))
-    assert run.state.seen.keys() == {"uav0"}
+    assert run.state.sightings.newest.keys() == {"uav0"}
     assert run.steps == []
 
 
@@ -112,7 +112,7 @@ def test_of_places_that_nobody_announced_there_are_few_and_a_point_does_not_beco
         *(spill(number, (37.005, -8.659 + number * 2e-4)) for number in range(MOST_PLACES + 5)),
         vessel(0),
     )
-    assert run.state.shares == {"camera": (MOST_PLACES, MOST_PLACES), "ais": (1, 0)}
+    assert run.state.sightings.admitted == {"camera": (MOST_PLACES, MOST_PLACES), "ais": (1, 0)}
     assert run.findings[0].message == (
         "'camera': 60 places that the mission does not name are taken in; more are ignored"
     )
@@ -181,14 +181,14 @@ def test_nothing_that_is_seen_is_called_as_the_region_a_bigactor_or_a_kind_is():
     assert [finding.message for finding in run.findings if finding.kind == "trouble"] == [
         f"'ais' speaks of {name}, which the mission has as no entity" for name in names
     ]
-    assert not run.state.seen.keys() & set(names)
+    assert not run.state.sightings.newest.keys() & set(names)
 
 
 def test_a_stranger_that_is_withdrawn_at_once_was_never_there():
     run = quiet_run()
     run.turn(1.0, vessel(0), Heard("ais", Gone("mmsi0", 1.0, "ais")))
     assert run.steps == []
-    assert run.state.seen.keys() == {"uav0"}
+    assert run.state.sightings.newest.keys() == {"uav0"}
 
 
 # --- what comes in ----------------------------------------------------------------------------------------
@@ -234,7 +234,9 @@ def test_thousands_of_detections_in_one_post_keep_nobody_waiting():
         looker.turned = lambda turn, _now: turns.append(turn)
         async with LiveRun(plan, started(plan), [Vehicle(), camera], [looker]) as run:
             await run.begin(2.0)
-            going = asyncio.create_task(run.go(lambda state: state.shares.get("camera") == (SHARE, 0)))
+            going = asyncio.create_task(
+                run.go(lambda state: state.sightings.admitted.get("camera") == (SHARE, 0))
+            )
 
             async def post():
                 async with aiohttp.ClientSession() as session:

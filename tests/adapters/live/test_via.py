@@ -8,9 +8,9 @@ import pytest
 from audited import LOOK, PLACES, flown_in
 from live_missions import EAST, TOUR, WEST, Run, known_of, plan_of, seen
 
+from adapters.live.batch import Heard
 from adapters.live.core import resumed
 from adapters.live.operator_socket import give_back, order
-from adapters.live.state import Heard
 from adapters.mavlink.constants import Cmd, MissionType
 from adapters.mavlink.items import e7
 from adapters.plugin import Arrived, Follow
@@ -164,7 +164,7 @@ def test_a_vehicle_that_comes_through_its_destination_on_its_way_has_not_arrived
     run.turn(2.0, seen("uav0", (37.055, -8.61), 2.0))
     run.turn(3.0, seen("uav0", EAST, 3.0), reports=[came(run, 3.0)])
     assert run.rules[-1] == "commit"
-    assert run.state.orders == {}
+    assert run.state.commanded.flights == {}
 
 
 def test_that_a_way_is_behind_a_vehicle_is_no_arrival_where_it_was_not_seen_in_its_destination():
@@ -201,6 +201,6 @@ def test_a_way_is_told_again_when_any_of_it_has_moved(name, moved):
 def test_a_way_that_is_resumed_is_told_once_more():
     run = flying()
     again = resumed(run.plan, known_of(run.state), 5.0)
-    (order,) = again.orders.values()
+    (order,) = again.commanded.flights.values()
     assert order.command.path == run.commands[0].path
     assert not order.through

@@ -13,7 +13,9 @@ from hypothesis import strategies as st
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from routers import for_real, router, session, tokens
 
-from adapters.live.state import LiveState, Sighting, Turn
+from adapters.live.sightings import Sighting, Sightings
+from adapters.live.state import LiveState
+from adapters.live.turn import Turn
 from adapters.ros import RosSending
 from adapters.ros.messages import (
     FIX,
@@ -66,7 +68,7 @@ def state_of(configuration):
         "uav0": seen("uav0", point(37.01, -8.65)),
         "spill0": seen("spill0", box((37.2, -8.8), (37.0, -8.6))),
     }
-    return LiveState(configuration, seen=far)
+    return LiveState(configuration, sightings=Sightings(far))
 
 
 def test_a_ros_node_hears_where_things_are_and_one_that_comes_late_hears_the_logical_space():

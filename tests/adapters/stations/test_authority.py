@@ -28,11 +28,11 @@ def test_the_first_who_tells_is_believed():
 
 def test_a_hand_over_that_was_commanded_counts_at_once_and_after_all_that_was_known():
     authority = Authority("gcs0")
-    authority.handing["uav0"] = HandOver("op0-1", "uav0", *GCS0, *GCS1)
+    authority.hand_overs["uav0"] = HandOver("op0-1", "uav0", *GCS0, *GCS1)
     assert believed(authority, GCS0, known(GCS0)) == (GCS0, 5.0)
     channels, since = believed(authority, GCS1, known(GCS0, since=99.0))  # another's clock is ahead
     assert (channels, since > 99.0) == (GCS1, True)
-    assert authority.handing == {}
+    assert authority.hand_overs == {}
 
 
 def test_a_link_that_lags_behind_is_not_believed():
@@ -70,7 +70,7 @@ def test_a_vehicle_is_kept_while_our_link_shows_that_it_obeys_us_and_we_have_not
     assert not authority.keeps("uav0")
     believed(authority, GCS0, None)
     assert authority.keeps("uav0")
-    authority.handing["uav0"] = HandOver("op0-1", "uav0", *GCS0, *GCS1)
+    authority.hand_overs["uav0"] = HandOver("op0-1", "uav0", *GCS0, *GCS1)
     assert not authority.keeps("uav0")
     believed(authority, GCS1, known(GCS0))
     assert not authority.keeps("uav0")

@@ -15,7 +15,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from live_missions import EAST, TOUR, WEST, Run, boat, plan_of
 
-from adapters.live.state import Finding, LiveState, LiveStep, Plan, Turn
+from adapters.live.plan import Plan
+from adapters.live.reported import Finding
+from adapters.live.state import LiveState
+from adapters.live.turn import LiveStep, Turn
 from adapters.plugin import (
     Aged,
     Believes,

@@ -4,10 +4,11 @@ import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
 from test_orders import ANA, HOLD, RETURN, flying, ordered, told
 
+from adapters.live.batch import GivingBack
 from adapters.live.core import is_over
-from adapters.live.fates import RETRY
 from adapters.live.loop import Ending
-from adapters.live.state import Fate, GivingBack
+from adapters.live.order_progress import RETRY
+from adapters.live.overrides import Fate
 from adapters.plugin import Accepted, Arrived, Hold, Rejected, Sent, TakenOver
 from bigactors.commands.run.flight import conclude
 from bigactors.exits import Exit
@@ -31,10 +32,10 @@ def held():
 
 def test_an_order_is_asked_then_sent_then_confirmed():
     run = held()
-    fates = [run.state.fates["uav0"]]
+    fates = [run.state.overrides.fates["uav0"]]
     for report in (Sent("operator-2", "uav0", 2.0), Accepted("operator-2", "uav0", 3.0)):
         run.turn(report.time, reports=[report])
-        fates.append(run.state.fates["uav0"])
+        fates.append(run.state.overrides.fates["uav0"])
     assert fates == [
         ("asked", f"told to hold by {ANA}, not confirmed yet"),
         ("sent", f"told to hold by {ANA}, not confirmed yet"),
@@ -45,7 +46,7 @@ def test_an_order_is_asked_then_sent_then_confirmed():
 def test_a_refused_order_is_shown_as_refused_and_not_as_done():
     run = refused(held())
     run.turn(2.1, reports=[Sent("operator-2", "uav0", 2.1)])  # it was taken on before it was refused
-    assert run.state.fates == {"uav0": ("refused", REFUSES)}
+    assert run.state.overrides.fates == {"uav0": ("refused", REFUSES)}
     assert vehicle_line("uav0", run.state, None, 3.0) == f"uav0 {REFUSES}, has not arrived in east0"
     assert standing(run.state) == f"; uav0 {REFUSES}"
 
@@ -53,12 +54,12 @@ def test_a_refused_order_is_shown_as_refused_and_not_as_done():
 def test_while_a_refused_order_is_told_again_who_asks_hears_that_it_is_refused():
     run = refused(held())
     run.turn(2.0 + RETRY)  # it is told again
-    assert run.state.bidden["uav0"].fate is Fate.ASKED
-    assert run.state.fates == {"uav0": ("refused", REFUSES)}
+    assert run.state.overrides.orders["uav0"].fate is Fate.ASKED
+    assert run.state.overrides.fates == {"uav0": ("refused", REFUSES)}
     run.turn(2.5 + RETRY, reports=[Sent("operator-2", "uav0", 2.5 + RETRY)])
-    assert run.state.fates == {"uav0": ("refused", REFUSES)}
+    assert run.state.overrides.fates == {"uav0": ("refused", REFUSES)}
     run.turn(3.0 + RETRY, reports=[Accepted("operator-2", "uav0", 3.0 + RETRY)])
-    assert run.state.fates == {"uav0": ("confirmed", f"held by {ANA}")}
+    assert run.state.overrides.fates == {"uav0": ("confirmed", f"held by {ANA}")}
 
 
 def test_a_refused_order_is_told_again_until_it_is_confirmed():
@@ -69,9 +70,11 @@ def test_a_refused_order_is_told_again_until_it_is_confirmed():
     refused(run, now=3.0 + RETRY)
     run.turn(3.0 + 2 * RETRY)
     assert told(run) == ["GoTo", "Hold", "Hold", "Hold"]
-    assert "refuses to hold" in run.state.taken["uav0"]  # also while it is not known what comes of it now
+    assert (
+        "refuses to hold" in run.state.overrides.taken["uav0"]
+    )  # also while it is not known what comes of it now
     run.turn(4.0 + 2 * RETRY, reports=[Arrived("operator-2", "uav0", 4.0 + 2 * RETRY)])
-    assert run.state.taken == {"uav0": f"held by {ANA}"}
+    assert run.state.overrides.taken == {"uav0": f"held by {ANA}"}
     run.turn(100.0)
     assert told(run) == ["GoTo", "Hold", "Hold", "Hold"]
     assert run.kinds() == ["ordered", "refused", "confirmed"]  # one reason is said once
@@ -93,7 +96,7 @@ def test_a_refused_fall_back_is_owed_until_it_is_confirmed():
     )
     run.turn(100.0)
     assert told(run) == ["GoTo", "Hold", "Hold"]
-    assert run.state.owing == {}
+    assert run.state.overrides.owing == {}
 
 
 def test_a_fall_back_that_is_not_confirmed_is_in_the_last_line():
@@ -109,13 +112,13 @@ def test_what_replaces_a_refused_fall_back_ends_it(ends):
     refused(run, "fallback-2", 62.0)
     if ends == "taken over":
         run.turn(63.0, reports=[TakenOver("uav0", 63.0, "it is in RTL")])
-        assert run.state.owing == {}
+        assert run.state.overrides.owing == {}
     elif ends == "ordered":
         run.turn(63.0, sayings=[ordered(what=RETURN)])
-        assert [each.what for each in run.state.owing.values()] == ["return"]
+        assert [each.action for each in run.state.overrides.owing.values()] == ["return"]
     else:
         run.turn(63.0, sayings=[GivingBack("uav0")])
-        assert run.state.owed["uav0"].fate is Fate.ASKED
+        assert run.state.overrides.fallbacks["uav0"].fate is Fate.ASKED
     before = len(run.commands)
     run.turn(63.0 + RETRY, seen("uav0", BETWEEN, 63.0 + RETRY))
     assert len(run.commands) == before
