@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from math import inf, sqrt
-from statistics import fmean, stdev
+from math import cos, inf, pi, sin, sqrt, tan
+from statistics import NormalDist, fmean, stdev
 from typing import Final, NamedTuple
 
 from bigraphs.engine.machine import Machine
@@ -23,6 +23,10 @@ MOST_REMEMBERED: Final = 50_000
 """The largest number of cached states."""
 
 CONFIDENCE: Final = 0.95
+NORMAL: Final = NormalDist()
+
+MANY: Final = 200
+"""The greatest number of degrees of freedom for which Student's distribution is summed."""
 
 
 class End(Enum):
@@ -171,10 +175,12 @@ def share(times: int, runs: int) -> SampleEstimate:
     >>> round(share(0, 100).high, 4)
     0.037
     """
-    from scipy.stats import binomtest  # noqa: PLC0415 - slow to import
-
-    interval = binomtest(times, runs).proportion_ci(CONFIDENCE, method="wilson")
-    return SampleEstimate(times / runs, float(interval.low), float(interval.high))
+    z, rate = NORMAL.inv_cdf((1 + CONFIDENCE) / 2), times / runs
+    shrink = 1 + z * z / runs
+    centre = (rate + z * z / (2 * runs)) / shrink
+    half = z * sqrt(rate * (1 - rate) / runs + (z / (2 * runs)) ** 2) / shrink
+    low, high = 0.0 if times == 0 else centre - half, 1.0 if times == runs else centre + half
+    return SampleEstimate(rate, low, high)
 
 
 def mean(values: Sequence[float]) -> SampleEstimate:
@@ -183,14 +189,43 @@ def mean(values: Sequence[float]) -> SampleEstimate:
     >>> round(mean([1.0, 2.0, 3.0]).high, 4)
     4.4841
     """
-    from scipy.stats import t  # noqa: PLC0415 - slow to import
-
     centre = fmean(values)
     if len(values) == 1:
         return SampleEstimate(centre, -inf, inf)
-    quantile = float(t.ppf((1 + CONFIDENCE) / 2, len(values) - 1))
-    half = quantile * stdev(values, centre) / sqrt(len(values))
+    half = student_quantile(CONFIDENCE, len(values) - 1) * stdev(values, centre) / sqrt(len(values))
     return SampleEstimate(centre, centre - half, centre + half)
+
+
+def student_quantile(confidence: float, freedom: int) -> float:
+    """Return the bound within which a variable of Student's distribution lies with this confidence, on both sides of 0.
+
+    The formulas are 26.7.3 to 26.7.5 of Abramowitz and Stegun (1964): sums for the distribution of few degrees of
+    freedom, which bisection inverts, and an expansion about the normal distribution for many.
+
+    >>> round(student_quantile(0.95, 2), 4)
+    4.3027
+    """
+    if freedom > MANY:
+        z = NORMAL.inv_cdf((1 + confidence) / 2)
+        first, second = (z**3 + z) / 4, (5 * z**5 + 16 * z**3 + 3 * z) / 96
+        third = (3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z) / 384
+        return z + first / freedom + second / freedom**2 + third / freedom**3
+    low, high = 0.0, pi / 2
+    while low < (angle := (low + high) / 2) < high:
+        low, high = (angle, high) if _within(angle, freedom) < confidence else (low, angle)
+    return sqrt(freedom) * tan(angle)
+
+
+def _within(angle: float, freedom: int) -> float:
+    """Return the probability that a variable of Student's distribution is within `sqrt(freedom) * tan(angle)` of 0."""
+    odd = freedom % 2
+    term, total = (cos(angle), 0.0) if odd else (1.0, 0.0)
+    for number in range(
+        1 + odd, freedom, 2
+    ):  # the powers of the cosine, each with the product of its fractions
+        total += term
+        term *= cos(angle) ** 2 * number / (number + 1)
+    return 2 / pi * (angle + sin(angle) * total) if odd else sin(angle) * total
 
 
 def shares_until(samples: Sequence[Sample], predicate: int) -> Iterable[tuple[float, int]]:

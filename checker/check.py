@@ -324,7 +324,7 @@ class _Check:
         return self.inspections[kind].collected
 
     def decide_temporal(self, asked: Property) -> Verdict:
-        from checker.properties.temporal.decide import TemporalDecider  # noqa: PLC0415 - numpy and scipy take their time to load
+        from checker.properties.temporal.decide import TemporalDecider  # noqa: PLC0415 - numpy takes its time to load
 
         try:
             if self.decider is None:

@@ -50,7 +50,6 @@ LIBRARIES = {
     "numba": ("checker/",),
     "llvmlite": ("checker/engines/fast/prefetch.py",),  # what numba has no name for
     "ray": ("checker/engines/cluster/ray_crew.py",),
-    "scipy": ("checker/properties/temporal/components.py", "bigraphs/sampling.py"),
     "stormpy": ("bigactors/commands/big/storm_worker.py",),
     "pytest": ("bigactors/pytest_plugin.py",),
     "jsonschema": ("bigactors/testing.py",),

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Any, Final
 
-from adapters.console.facts import Facts, Link, Observed, Position, Shape, Trail
+from adapters.console.facts import Facts, Link, Position, SeenEntity, Shape, Trail
 from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import band, number, position, ring, text, texts
 from adapters.console.stations import obeys
@@ -61,7 +61,7 @@ def _see(draft: Draft, entity: str, time: float, data: Any) -> None:
     source = text(data.get("plugin"))
     said = band(data.get("altitude"))
     altitude = None if said is None else sum(said) / 2
-    draft.seen[entity] = Observed(
+    draft.seen[entity] = SeenEntity(
         text(data.get("kind")), at, course, speed, stamp, until, source, channels, altitude
     )
     if draft.run is not None and entity in draft.run.vehicles:

@@ -70,7 +70,7 @@ class Standing:
     heads: Mapping[str, Waiting] = field(default_factory=dict)
 
 
-class Observed(NamedTuple):
+class SeenEntity(NamedTuple):
     """The newest sighting of an entity that has one position.
 
     Attributes:
@@ -241,7 +241,7 @@ class Facts:
     broken_off: bool = False
     step: int = 0
     standing: Standing | None = None
-    seen: Mapping[Name, Observed] = field(default_factory=dict)
+    seen: Mapping[Name, SeenEntity] = field(default_factory=dict)
     shapes: Mapping[Name, Shape] = field(default_factory=dict)
     trails: Mapping[Name, Trail] = field(default_factory=dict)
     links: Mapping[Name, Link] = field(default_factory=dict)

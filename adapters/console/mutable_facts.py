@@ -10,9 +10,9 @@ from adapters.console.facts import (
     ControllingStations,
     Facts,
     Link,
-    Observed,
     OrderState,
     Run,
+    SeenEntity,
     Shape,
     Standing,
     Trail,
@@ -84,7 +84,7 @@ class Draft:
     broken_off: bool
     step: int
     standing: Standing | None
-    seen: Table[Observed]
+    seen: Table[SeenEntity]
     shapes: Table[Shape]
     trails: Table[Trail]
     links: Table[Link]

@@ -77,7 +77,7 @@ class Acknowledge(Struct, frozen=True):
     alert: Annotated[str, Meta(pattern=r"\A[0-9]{1,9}\Z")]
 
 
-class Action(Struct, frozen=True, forbid_unknown_fields=True):
+class RequestedAction(Struct, frozen=True, forbid_unknown_fields=True):
     """One action: start the run that waits for its operator, or another."""
 
     say: Say | UnsetType = UNSET
@@ -97,7 +97,7 @@ class Act(Struct, frozen=True, tag_field="type", tag="act"):
     """An action, and the identifier of its answer."""
 
     id: Annotated[str, Meta(max_length=MOST_ID)]
-    action: Action
+    action: RequestedAction
 
 
 Request = Hello | Seek | Play | Pause | Live | Act

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
-from adapters.console.requests import Acknowledge, Action, GiveBack, Order, Say
+from adapters.console.requests import Acknowledge, GiveBack, Order, RequestedAction, Say
 from adapters.live.operator_socket import NobodyListens, Outcome, acknowledge, give_back, order, say, start
 
-Performing = Callable[[Action, str], Awaitable[Outcome]]
+Performing = Callable[[RequestedAction, str], Awaitable[Outcome]]
 """Performs an action for a named operator, and returns its outcome."""
 
 
 def performing(socket: Path) -> Performing:
     """Return a function that has the run at a socket perform actions."""
 
-    async def perform(action: Action, by: str) -> Outcome:
+    async def perform(action: RequestedAction, by: str) -> Outcome:
         try:
             return await _perform(socket, action, by)
         except NobodyListens as nobody:
@@ -24,14 +24,14 @@ def performing(socket: Path) -> Performing:
     return perform
 
 
-async def _perform(socket: Path, action: Action, by: str) -> Outcome:
+async def _perform(socket: Path, action: RequestedAction, by: str) -> Outcome:
     match action:
-        case Action(say=Say(agent, message)):
+        case RequestedAction(say=Say(agent, message)):
             return Outcome(await say(socket, agent, message, by))
-        case Action(order=Order(what, vehicle)):
+        case RequestedAction(order=Order(what, vehicle)):
             return await order(socket, what, vehicle, by)
-        case Action(give_back=GiveBack(vehicle)):
+        case RequestedAction(give_back=GiveBack(vehicle)):
             return await give_back(socket, vehicle, by=by)
-        case Action(acknowledge=Acknowledge(alert)):
+        case RequestedAction(acknowledge=Acknowledge(alert)):
             return Outcome(await acknowledge(socket, int(alert), by))
     return Outcome(await start(socket, by))

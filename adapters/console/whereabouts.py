@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
-from adapters.console.facts import Facts, Observed, Position, Shape
+from adapters.console.facts import Facts, Position, SeenEntity, Shape
 from adapters.console.view import Json
 from physical import Geometry
 from physical.frame import E7
@@ -172,14 +172,14 @@ def entities(facts: Facts, now: float, shown: Mapping[str, Json]) -> dict[str, J
     }
     for name, (kind, at) in _unheard(facts):
         if name not in shown and name not in found:
-            silent = Observed(kind, at, None, None, 0.0, 0.0, "", ())
+            silent = SeenEntity(kind, at, None, None, 0.0, 0.0, "", ())
             entity = _entity(silent, where.get(name, UNKNOWN), name in named, name in vehicles)
             found[name] = {**entity, "seen": None, "source": None}
     return found
 
 
 @lru_cache(maxsize=1 << 13)  # most entities have not moved since the last view
-def _entity(seen: Observed, where: Whereabouts, named: bool, vehicle: bool) -> dict[str, Json]:
+def _entity(seen: SeenEntity, where: Whereabouts, named: bool, vehicle: bool) -> dict[str, Json]:
     return {
         "kind": seen.kind,
         "at": seen.at,

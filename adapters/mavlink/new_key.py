@@ -1,4 +1,4 @@
-"""Make a signing key from a passphrase, as ground stations do: `python -m adapters.mavlink.new_key FILE`."""
+"""Make a signing key from a passphrase, as ground stations do: `python -m bigactors.adapters.mavlink.new_key FILE`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from adapters.mavlink.signing import Signing
 
 def main() -> int:
     """Make a key file; return the exit code."""
-    parser = argparse.ArgumentParser(prog="python -m adapters.mavlink.new_key", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m bigactors.adapters.mavlink.new_key", description=__doc__)
     parser.add_argument("file", type=Path)
     path: Path = parser.parse_args().file
     if path.exists():

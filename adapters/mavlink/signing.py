@@ -117,7 +117,7 @@ def load(path: Path) -> Signing:
 
     Raises PhysicalError if the file is not such a state, or others may read it.
     """
-    hint = "make one: python -m adapters.mavlink.new_key FILE"
+    hint = "make one: python -m bigactors.adapters.mavlink.new_key FILE"
     try:
         exposed = others_may_read(path)
         with open_file(path) as file:

@@ -111,7 +111,7 @@ def _simplified(schema: Json) -> dict[str, Any]:
     return {}
 
 
-class Shown(NamedTuple):
+class FoxgloveMessage(NamedTuple):
     """A Foxglove message: its topic, its schema and its data."""
 
     topic: str
@@ -131,7 +131,9 @@ class Showing:
         self._names = names if len(names) <= MOST_ENTITIES else frozenset(sorted(names)[:MOST_ENTITIES])
         self._last: dict[str, tuple[float, Ring]] = {}
 
-    def places(self, fixed: Iterable[PhysicalProperty], fences: Mapping[str, Any]) -> Iterator[Shown]:
+    def places(
+        self, fixed: Iterable[PhysicalProperty], fences: Mapping[str, Any]
+    ) -> Iterator[FoxgloveMessage]:
         """Show the static places, and the vehicles' fences."""
         named = sorted((_pairs(ring), name) for name, ring in fences.items())
         around = [
@@ -139,18 +141,18 @@ class Showing:
             for ring, group in groupby(named, key=itemgetter(0))
         ]
         if everything := [*fixed, *around]:
-            yield Shown("/places", GEOJSON, {"geojson": write_geojson(everything)})
+            yield FoxgloveMessage("/places", GEOJSON, {"geojson": write_geojson(everything)})
 
-    def of(self, topic: str, time: float, data: Mapping[str, Any]) -> Iterator[Shown]:
+    def of(self, topic: str, time: float, data: Mapping[str, Any]) -> Iterator[FoxgloveMessage]:
         """Show a message, if these schemas have a form for it."""
         if topic == "arrivals":
             yield from self._arrival(time, data)
         elif topic in LINES:
             level, name, message = LINES[topic](data)
             said = {"timestamp": _stamp(time), "level": level, "message": message, "name": name}
-            yield Shown("/log", LOG, {**said, "file": "", "line": 0})
+            yield FoxgloveMessage("/log", LOG, {**said, "file": "", "line": 0})
 
-    def _arrival(self, time: float, data: Mapping[str, Any]) -> Iterator[Shown]:
+    def _arrival(self, time: float, data: Mapping[str, Any]) -> Iterator[FoxgloveMessage]:
         """Show the position of an entity, at most once in a while, and a place only if it has changed."""
         entity, ring = data["entity"], _pairs(data.get("ring") or ())
         before, known = self._last.get(entity, (-math.inf, ()))
@@ -161,10 +163,10 @@ class Showing:
         self._last[entity] = time, ring
         topic = entity if entity in self._names else f"{data['plugin']}/others"
         if len(ring) == 1:
-            yield Shown(f"/{topic}/fix", FIX, _fix(time, data))
+            yield FoxgloveMessage(f"/{topic}/fix", FIX, _fix(time, data))
         elif len(ring) > 1 or len(known) > 1:
             place = [PhysicalProperty(entity, str(data.get("kind")), _polygon(ring))] if ring else []
-            yield Shown(f"/{topic}/area", GEOJSON, {"geojson": write_geojson(place)})
+            yield FoxgloveMessage(f"/{topic}/area", GEOJSON, {"geojson": write_geojson(place)})
 
 
 def _pairs(ring: Any) -> Ring:

@@ -23,7 +23,7 @@ from adapters.recording.encoding import (
     seen_json,
     step_json,
 )
-from adapters.recording.foxglove import Showing, Shown, simplified
+from adapters.recording.foxglove import FoxgloveMessage, Showing, simplified
 from adapters.recording.mcap_files import McapWriter, Message
 from adapters.recording.schemas import RUN, SCHEMAS
 from physical import PhysicalProperty
@@ -139,7 +139,7 @@ class Recorder:
         self._file.write(topic, time, data)
         self._show(time, self._showing.of(topic, time, data))
 
-    def _show(self, time: float, shown: Iterable[Shown]) -> None:
+    def _show(self, time: float, shown: Iterable[FoxgloveMessage]) -> None:
         for topic, schema, data in shown:
             self._file.declare(topic, schema)
             self._file.write(topic, time, data)

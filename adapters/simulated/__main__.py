@@ -1,4 +1,4 @@
-"""Fly a simulated vehicle: `python -m adapters.simulated --to udpout:127.0.0.1:14550 --kind plane`."""
+"""Fly a simulated vehicle: `python -m bigactors.adapters.simulated --to udpout:127.0.0.1:14550 --kind plane`."""
 
 import argparse
 import time
@@ -25,7 +25,7 @@ def home(text: str) -> tuple[float, float, float]:
 
 def arguments() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    parser = argparse.ArgumentParser(prog="python -m adapters.simulated", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m bigactors.adapters.simulated", description=__doc__)
     parser.add_argument(
         "--to", default="udpout:127.0.0.1:14550", help="the ground station (default %(default)s)"
     )

@@ -5,11 +5,12 @@ from math import isinf
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from bigraphs import sampling
 from bigraphs.examples import example_names, example_text
 from bigraphs.notation import read_system
-from bigraphs.sampling import End, Sampler, first_times, mean, share, shares_until
+from bigraphs.sampling import End, Sampler, first_times, mean, share, shares_until, student_quantile
 from bigraphs.simulation import Bounds, chances, simulate
 from bigraphs.system import SystemKind
 
@@ -115,3 +116,18 @@ def test_intervals_of_textbooks():
     assert (share(0, 20).low, share(0, 20).high) == pytest.approx((0.0, 0.1611), abs=5e-5)
     assert isinf(mean([2.0]).high)
     assert mean([1.0, 3.0]).low == pytest.approx(2 - 12.7062)
+
+
+@pytest.mark.parametrize("freedom", [*range(1, 30), 100, 199, 200, 201, 1_000, 10**6])
+def test_quantiles_are_those_of_scipy(freedom):
+    for confidence in (0.5, 0.9, 0.95, 0.999):
+        expected = stats.t.ppf((1 + confidence) / 2, freedom)
+        assert student_quantile(confidence, freedom) == pytest.approx(expected, rel=1e-7)
+
+
+@pytest.mark.parametrize("runs", [1, 2, 10, 999, 10**6])
+def test_intervals_of_probabilities_are_those_of_scipy(runs):
+    for times in {0, 1, runs // 3, runs - 1, runs}:
+        expected = stats.binomtest(times, runs).proportion_ci(0.95, method="wilson")
+        found = share(times, runs)
+        assert (found.low, found.high) == pytest.approx((expected.low, expected.high), abs=1e-12)

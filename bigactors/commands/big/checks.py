@@ -67,7 +67,7 @@ def verdicts_on(options: Namespace, found: TransitionSystem) -> Iterator[Decided
 
         yield from answers(found, options.storm)
     if asked := asked_formulas(options):
-        from bigactors.commands.big.temporal import decided_formulas  # scipy is slow to import
+        from bigactors.commands.big.temporal import decided_formulas  # numpy is slow to import
 
         yield from decided_formulas(found, asked)
 

@@ -28,7 +28,7 @@ TELEMETRY = ".tlog"
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class ForeignRecording:
     """A recording's view of a mission's world.
 
     Attributes:
@@ -46,7 +46,7 @@ class Shown:
     tallies: tuple[FileAccount, ...] = ()
 
 
-def watched(path: str, mission: ElaboratedMission, names: dict[str, str]) -> Shown:
+def watched(path: str, mission: ElaboratedMission, names: dict[str, str]) -> ForeignRecording:
     """Return a recording's view of a mission's world; raises Mistake if it can't be read or has no position."""
     plan = Plan(mission.initial, precautions=LivePolicy(Fallback.CONTINUE))
     state, steps, times, findings, count = started(plan), list[Step](), list[float](), list[Finding](), 0
@@ -65,7 +65,9 @@ def watched(path: str, mission: ElaboratedMission, names: dict[str, str]) -> Sho
         raise Mistake(error.strerror or str(error), place=path) from error
     if not count:
         raise _nothing_shown(path, accounts)
-    return Shown(Trace(mission.initial, tuple(steps)), tuple(times), tuple(findings), count, tuple(accounts))
+    return ForeignRecording(
+        Trace(mission.initial, tuple(steps)), tuple(times), tuple(findings), count, tuple(accounts)
+    )
 
 
 def _nothing_shown(path: str, accounts: Iterable[FileAccount]) -> Mistake:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from adapters.recording.reading import Recording, is_recording
-from bigactors.commands.replay.foreign_recordings import TELEMETRY, Shown, watched
+from bigactors.commands.replay.foreign_recordings import TELEMETRY, ForeignRecording, watched
 from bigactors.files import read_bytes, read_json
 from bigactors.missions import digest_of
 from bigactors.mistakes import Mistake
@@ -47,7 +47,7 @@ def is_foreign(path: str) -> bool:
     )
 
 
-def account_for(path: str, shown: Shown, write: Callable[[str], None]) -> None:
+def account_for(path: str, shown: ForeignRecording, write: Callable[[str], None]) -> None:
     """Print the counts of a foreign recording: the data used, and the data left out."""
     for tally in shown.tallies:
         for row in tally.summary():
@@ -56,7 +56,7 @@ def account_for(path: str, shown: Shown, write: Callable[[str], None]) -> None:
 
 def watched_in(
     path: str, mission_file: str | None, open_mission: Open, names: dict[str, str]
-) -> tuple[ElaboratedMission, Shown]:
+) -> tuple[ElaboratedMission, ForeignRecording]:
     """Return a foreign recording in the places of a mission; raises Mistake without a mission."""
     if mission_file is None:
         hint = "say in which mission's places it is to be seen: replay --mission FILE, show FILE"

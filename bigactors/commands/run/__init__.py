@@ -152,7 +152,7 @@ def _safety(parser: Parser) -> None:
         metavar="FILE",
         type=named,
         help="sign messages with the MAVLink 2 key in FILE, and accept only signed ones; FILE also keeps the "
-        "newest time stamps (python -m adapters.mavlink.new_key FILE makes one; default: no signing)",
+        "newest time stamps (python -m bigactors.adapters.mavlink.new_key FILE makes one; default: no signing)",
     )
     group.add_argument(
         "--take-over",

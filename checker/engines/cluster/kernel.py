@@ -42,7 +42,7 @@ class Owning(NamedTuple):
     workers: int
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def _key_in(words: Words, at: np.uint64, own: Owning, column: np.uint64) -> np.uint64:
     """Return the key of a column's value in the row that begins at `at`."""
     where = _PLACE * column
@@ -59,7 +59,7 @@ def key_of(words: Words, at: np.uint64, own: Owning) -> np.uint64:
     return key
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def _owner(
     words: Words, at: np.uint64, rows: Words, to: np.uint64, width: int, base: np.uint64, own: Owning
 ) -> int:

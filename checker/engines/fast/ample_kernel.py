@@ -104,7 +104,7 @@ def is_ample(
     return fair
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def part_at(r: Members, k: int) -> int:
     """Return the part to which an actor of a row belongs."""
     return np.int64(r.part[r.actors[RECORD * r.here[k] + MEMBER]])

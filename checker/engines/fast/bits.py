@@ -18,7 +18,7 @@ _PAIRS, _FOURS, _BYTES, _SUM = (
 )
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def ones_in(word: np.uint64) -> int:
     """Return the number of set bits in a word."""
     word -= (word >> _ONE) & _PAIRS
@@ -27,25 +27,25 @@ def ones_in(word: np.uint64) -> int:
     return np.int64((word * _SUM) >> np.uint64(56))
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def lowest(word: np.uint64) -> int:
     """Return the position of the lowest set bit of a word."""
     return ones_in((word & (~word + _ONE)) - _ONE)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def has(words: Words, begin: int, bit: int) -> bool:
     """Return whether a bit is set in the bit set that begins at `begin`."""
     return bool((words[begin + (bit >> 6)] >> np.uint64(bit & 63)) & _ONE)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def add(words: Words, begin: int, bit: int) -> None:
     """Set a bit in the bit set that begins at `begin`."""
     words[begin + (bit >> 6)] |= _ONE << np.uint64(bit & 63)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def remove(words: Words, begin: int, bit: int) -> None:
     """Clear a bit in the bit set that begins at `begin`."""
     words[begin + (bit >> 6)] &= ~(_ONE << np.uint64(bit & 63))

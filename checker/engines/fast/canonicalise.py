@@ -93,7 +93,7 @@ class RowScratch(NamedTuple):
     unknown: Ints
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def mix(one: np.uint64, other: np.uint64) -> np.uint64:
     """Return the same as `items.mix`."""
     mixed = (one ^ (one >> np.uint64(32))) * MULTIPLIER + other
@@ -101,7 +101,7 @@ def mix(one: np.uint64, other: np.uint64) -> np.uint64:
     return mixed ^ (mixed >> np.uint64(32))
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def slot_for(keys: Words, key: np.uint64) -> np.uint64:
     """Return the slot of a key in an open-addressing table whose size is a power of two, or the slot for it."""
     last = np.uint64(len(keys) - 1)
@@ -111,7 +111,7 @@ def slot_for(keys: Words, key: np.uint64) -> np.uint64:
     return slot
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def led(keys: Words, values: Ints, node: int, number: int) -> int:
     """Return the target of an edge from a node, 0 if there is none."""
     slot = slot_for(keys, (np.uint64(node) << np.uint64(32)) | np.uint64(number))
@@ -266,7 +266,7 @@ def orders_left(x: Exchanges, d: RowScratch) -> int:
     return found
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def move(x: Exchanges, d: RowScratch, entry: int) -> int:
     """Return the move of an entry under the present order, UNKNOWN if it is not learned yet."""
     node = np.int64(x.shapes[entry])
@@ -380,7 +380,7 @@ def note_places(d: RowScratch) -> bool:
     return moved
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def copy(source: Ints, target: Ints) -> None:
     """Copy numbers one by one: a slice assignment would allocate an array."""
     for k in range(len(source)):
@@ -410,7 +410,7 @@ def choose_order(x: Exchanges, d: RowScratch, count: int) -> bool:
     return True
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def put(words: Words, at: int, columns: Words, column: int, code: int) -> None:
     """Write the code of a column into bits that are zero."""
     where = PLACE * column

@@ -135,14 +135,14 @@ _RECORD, _LOW, _WIDTH, _BASE, _WORD, _SHIFT, _MASK = map(
 )
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def code_at(words: Words, at: int, columns: Words, column: int) -> int:
     """Return the code of a column in the row that begins at `at`."""
     where = PLACE * column
     return np.int64((words[at + np.int64(columns[where])] >> columns[where + 1]) & columns[where + 2])
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def walk(words: Words, at: int, start: int, nodes: Words, leads: Ints, state: State) -> int:
     """Return the reference to the leaf of a row in a tree, from some node on; 0 if the tree ends before."""
     begin = np.uint64(at)
@@ -161,7 +161,7 @@ def walk(words: Words, at: int, start: int, nodes: Words, leads: Ints, state: St
     return reference
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def conclude(words: Words, at: int, masks: Words, step: int, target: Words, to: int, width: int) -> None:
     """Write a row with a transition's writes to the target."""
     wide, source, goal = np.uint64(width), np.uint64(at), np.uint64(to)
@@ -171,7 +171,7 @@ def conclude(words: Words, at: int, masks: Words, step: int, target: Words, to: 
         target[goal + j] = (words[source + j] & masks[keep + j]) | masks[put + j]
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def copy_columns(
     words: Words, at: int, columns: Words, copies: Ints, begin: int, end: int, target: Words, to: int
 ) -> None:
@@ -183,7 +183,7 @@ def copy_columns(
         target[word] = (target[word] & ~(mask << shift)) | (code << shift)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def write_part(columns: Words, writes: Ints, steps: Ints, step: int, target: Words, to: int) -> None:
     """Apply the writes of a part of a transition column by column: they are few compared with a row."""
     record = STEP * step
@@ -193,7 +193,7 @@ def write_part(columns: Words, writes: Ints, steps: Ints, step: int, target: Wor
         target[word] = (target[word] & ~(mask << shift)) | (np.uint64(writes[PAIR * k + 1]) << shift)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def write_piece(columns: Words, writes: Ints, steps: Ints, step: int, f: FoldedTable, piece: int) -> None:
     """Apply the writes of a transition, or of a part, to a piece in `sought`."""
     record = STEP * step
@@ -215,7 +215,7 @@ def change_piece(
     return np.int64(intern(f.pieces, f.sought, adding))
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def change_pieces(
     columns: Words,
     writes: Ints,
@@ -290,7 +290,7 @@ def is_repeated(target: Words, taken: Ints, steps: Ints, began: int, end: int, s
     return False
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def find_leaves(
     m: LearnedModel, source: Words, at: int, first: int, last: int, leaves: Ints, state: State
 ) -> int:
@@ -308,7 +308,7 @@ def find_leaves(
     return flags
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def part_step(m: LearnedModel, source: Words, at: int, part: int, state: State) -> int:
     """Return the transition that holds the writes of a part; less than 0 if it is not learned yet."""
     tree = m.part[part]
@@ -319,7 +319,7 @@ def part_step(m: LearnedModel, source: Words, at: int, part: int, state: State) 
     return np.int64(m.leaves[LEAF * (-reference - 1) + FIRST])
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def make_plain(
     m: LearnedModel, source: Words, at: int, step: int, target: Words, to: int, width: int, state: State
 ) -> int:
@@ -337,7 +337,7 @@ def make_plain(
     return own
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def make_folded(
     m: LearnedModel, f: FoldedTable, step: int, adding: bool, kept: Words, to: int, state: State
 ) -> int:
@@ -465,13 +465,13 @@ def gather(
     return known
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def room_for(words: Words, origins: Any, table: Any, width: int) -> int:
     """Return the number of rows for which all arrays have room."""
     return min(len(words) // width, most_origins(origins), most_in(len(table)))
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def add_row(
     words: Words,
     origins: Any,
@@ -548,7 +548,7 @@ def count(steps: Ints, begin: int, end: int, counts: State) -> None:
         counts[steps[k]] += 1
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def keep(batch: SuccessorBatch, k: int, left: int, width: int) -> None:
     """Move a successor behind those that remain."""
     for j in range(width):
@@ -556,7 +556,7 @@ def keep(batch: SuccessorBatch, k: int, left: int, width: int) -> None:
     batch.hashes[left], batch.origins[left] = batch.hashes[k], batch.origins[k]
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def note_later(later: State, put_off: int, k: int, left: int) -> int:
     """Update the number of successors before each deferred row up to a successor; return the number of rows updated."""
     while LATER * put_off < len(later) and later[LATER * put_off + 2] <= k:

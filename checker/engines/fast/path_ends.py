@@ -49,14 +49,14 @@ class Trails(NamedTuple):
     sought: Words
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def begin_row(trails: Trails, row: int) -> None:
     """Note the number of leads before a row that begins a block; rows must begin in order."""
     if row % (BLOCK * WORD) == 0:
         trails.before[row // (BLOCK * WORD)] = trails.count[0]
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def lead_on(trails: Trails, row: int, to: int, taken: int) -> None:
     """Let the path of the last begun row continue at row `to`, taking set number `taken`."""
     add(trails.led, 0, row)
@@ -64,7 +64,7 @@ def lead_on(trails: Trails, row: int, to: int, taken: int) -> None:
     trails.count[0] += 1
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def lead_of(trails: Trails, row: int) -> int:
     """Return the index of a row's lead, -1 if its path ends there."""
     if not has(trails.led, 0, row):

@@ -41,7 +41,7 @@ def compare(footprints: Words, disturbed: Any, count: int, one: int, other: int)
     return found
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def note_disturbers(r: Members, actors: int, wide: int, k: int) -> None:
     """Note the actors that may ever disturb the current steps of actor `k`; add `k` itself to mark them as computed."""
     disturbed, ever = r.disturbed, r.ever
@@ -76,7 +76,7 @@ def note_disturbers(r: Members, actors: int, wide: int, k: int) -> None:
     add(r.disturbers, k * wide, k)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def persistent(r: Members, actors: int, wide: int, seed: int, at: int) -> bool:
     """Write the least set around an actor whose current steps no actor outside ever disturbs.
 
@@ -111,7 +111,7 @@ def persistent(r: Members, actors: int, wide: int, seed: int, at: int) -> bool:
     return True
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def find_set(r: Members, count: int, actors: int, wide: int, seed: int, found: int) -> int:
     """Note the persistent set around an actor, after the sets found before; return its number of transitions.
 

@@ -33,7 +33,7 @@ _HALF, _ONE = np.uint64(32), np.uint64(1)
 _PART, _SIXTY_FOUR = np.uint64(60), np.uint64(64)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def hashed(words: Words, at: int, count: int) -> np.uint64:
     """Return the hash of a row."""
     mixed, begin = np.uint64(count), np.uint64(at)
@@ -43,7 +43,7 @@ def hashed(words: Words, at: int, count: int) -> np.uint64:
     return mixed * _MULTIPLIER
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def slot_of(mixed: np.uint64, slots: int) -> np.uint64:
     """Return the home slot of a hash in a table of `slots` slots."""
     return ((mixed >> _HALF) * np.uint64(slots)) >> _HALF
@@ -89,13 +89,13 @@ def slots_within(left: float, rows: int, row: float, entry: int) -> float:
     return 3 * (left + rows * row) / (3 * entry + 2 * row)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def entry_of(mixed: np.uint64, row: int, bits: np.uint32) -> np.uint32:
     """Return the table entry of a row: bits of its hash, and its number plus 1; 0 marks a free slot."""
     return ((np.uint32(mixed) >> bits) << bits) | np.uint32(row + 1)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def find(
     words: Words, table: Any, target: Words, k: int, mixed: np.uint64, width: int, bits: np.uint32
 ) -> int:
@@ -124,7 +124,7 @@ def find(
     return found
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def fetch(words: Words, table: Any, hashes: Words, k: int, end: int, width: int, bits: np.uint32) -> None:
     """Prefetch the slots and rows with which later successors will be compared."""
     far, near = k + 2 * AHEAD, k + AHEAD

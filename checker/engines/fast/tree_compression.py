@@ -108,7 +108,7 @@ class FoldedTable(NamedTuple):
     results: Numbers
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def intern(i: Interned, words: Words, adding: bool) -> np.int64:
     """Return the number of a piece or node, adding a new one if `adding`; a code below 0 on failure (see `UNMET`)."""
     width = i.counts[WIDE]
@@ -127,14 +127,14 @@ def intern(i: Interned, words: Words, adding: bool) -> np.int64:
     return found
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def number_in(words: Words, at: int, k: int) -> np.int64:
     """Return number `k` of the four in the two words that begin at `at`."""
     word = words[at + (k >> 1)]
     return np.int64(word & _LOW) if k & 1 else np.int64(word >> _HALF)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def put_numbers(numbers: Numbers, begin: int, words: Words, at: int) -> None:
     """Pack four numbers, from `begin` on, into two words."""
     for k in range(PAIR):
@@ -142,7 +142,7 @@ def put_numbers(numbers: Numbers, begin: int, words: Words, at: int) -> None:
         words[at + k] = (high << _HALF) | low
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def unfold_piece(f: FoldedTable, piece: int, number: int) -> None:
     """Write the words of a piece, unless they are there already."""
     if f.below[piece] != number:
@@ -165,7 +165,7 @@ def unfold(f: FoldedTable, rows: Words, row: int) -> None:
                 unfold_piece(f, FOUR * k + j, number_in(f.nodes.words, PAIR * number, j))
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def put_piece(f: FoldedTable, piece: int, number: int, touched: int) -> int:
     """Set a piece of the successor; return the set of pieces that it does not share with the row, as bits."""
     if not (touched >> piece) & 1:
@@ -174,7 +174,7 @@ def put_piece(f: FoldedTable, piece: int, number: int, touched: int) -> int:
     return touched | (1 << piece)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def fold(f: FoldedTable, touched: int, adding: bool, kept: Words, at: int) -> int:
     """Write the compressed successor and restore the row's pieces; return less than 0 if a piece or node is unknown."""
     least = np.int64(0)
@@ -196,13 +196,13 @@ def fold(f: FoldedTable, touched: int, adding: bool, kept: Words, at: int) -> in
     return least
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def leave_open(kept: Words, at: int, row: int, step: int) -> None:
     """Mark a successor as incomplete: store its row and transition instead of its pieces."""
     kept[at], kept[at + 1] = NOWHERE, (np.uint64(step) << _HALF) | np.uint64(row)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def step_left_open(kept: Words, at: int) -> int:
     """Return the transition of an incomplete successor; less than 0 for a complete one."""
     if kept[at] != NOWHERE or kept[at + 1] == NOWHERE:
@@ -224,7 +224,7 @@ def take(f: FoldedTable, words: Words, begin: int, width: int, adding: bool) -> 
     return touched
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def seek_piece(f: FoldedTable, piece: int) -> None:
     """Copy the words of a piece of the successor to `sought`."""
     wide = f.pieces.counts[WIDE]
@@ -233,7 +233,7 @@ def seek_piece(f: FoldedTable, piece: int) -> None:
         f.sought[k] = f.pieces.words[begin + k]
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def seek_piece_of_row(f: FoldedTable, piece: int) -> None:
     """Copy the words of a piece of the unfolded row to `sought`."""
     begin = f.begins[piece]
@@ -241,7 +241,7 @@ def seek_piece_of_row(f: FoldedTable, piece: int) -> None:
         f.sought[k] = f.whole[begin + k]
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def put_sought(f: FoldedTable, piece: int, touched: int) -> int:
     """Set a piece of the successor to `sought` unless it is the row's; return the successor's own pieces."""
     differs, begin = False, f.begins[piece]

@@ -107,7 +107,7 @@ DONE, MISS, FULL = range(3)
 """Why the loops return; at a MISS the edges of the next location are unknown."""
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, forceinline=True)
 def load(z: Zones, zone: int, size: int, d: Matrix) -> None:
     """Copy a zone into a matrix."""
     at = z.begins[zone]

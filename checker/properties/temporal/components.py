@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import connected_components
 
 from checker.engines.graph import Bools, Numbers
+from checker.engines.strong_components import strong_components
 from checker.limits import look
 from checker.properties.temporal.digraph import Arrows, Indices, rows_of
 
@@ -119,11 +118,9 @@ def _components(arrows: Arrows, nodes: Numbers, edges: Numbers) -> _Part:
     kept = (sources >= 0) & (targets >= 0)
     edges, sources, targets = edges[kept], sources[kept], targets[kept]
     rows = rows_of(sources, targets, len(nodes))
-    there = np.ones(len(targets), dtype=np.int8)
-    matrix = csr_matrix((there, targets, rows.starts), shape=(len(nodes), len(nodes)))
-    count, of = connected_components(matrix, directed=True, connection="strong")
+    count, of = strong_components(rows.starts, targets)
     inner = of[sources] == of[targets]
-    return _Part(nodes, edges[inner], of, of[sources[inner]], int(count))
+    return _Part(nodes, edges[inner], of, of[sources[inner]], count)
 
 
 def _judge(part: _Part, conditions: Conditions) -> _Judged:

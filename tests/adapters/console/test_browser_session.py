@@ -8,7 +8,7 @@ from clients import HELLO, PROTOCOL, client, console, play, raw
 from live_missions import EAST
 from recorded import uav
 
-from adapters.console.requests import Action, Order
+from adapters.console.requests import Order, RequestedAction
 from adapters.live.operator_socket import Outcome
 
 
@@ -132,7 +132,7 @@ async def test_an_action_is_performed_for_who_asks_and_answered(taped, tmp_path)
         for name, answer in (("1", told), ("2", {"refusal": "not twice", "left_out": {}, "notes": []})):
             await looker.say(type="act", id=name, action={"order": {"order": "hold", "vehicle": None}})
             assert await looker.answer() == {"type": "answer", "id": name, **answer}
-        assert done == [(Action(order=Order("hold", None)), "Ana")] * 2
+        assert done == [(RequestedAction(order=Order("hold", None)), "Ana")] * 2
 
 
 @pytest.mark.parametrize(
