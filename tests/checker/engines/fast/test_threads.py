@@ -9,7 +9,7 @@ import pytest
 from checked_missions import interrupted_at, load
 from hypothesis import given
 from hypothesis import strategies as st
-from scale import examples
+from scale import crossed, examples
 from shipped import UNTIMED
 
 import checker.limits
@@ -63,10 +63,9 @@ def seen(initial, threads, **options):
 
 
 @pytest.mark.usefixtures("kept")
-@pytest.mark.parametrize("threads", SEVERAL)
-@pytest.mark.parametrize("name", UNTIMED)
-def test_a_mission_is_explored_alike_by_any_number_of_threads(name, threads):
-    assert seen(start(name), threads) == seen(start(name), 1)
+@crossed(UNTIMED, {threads: threads for threads in SEVERAL})
+def test_a_mission_is_explored_alike_by_any_number_of_threads(name, variation):
+    assert seen(start(name), variation) == seen(start(name), 1)
 
 
 @pytest.mark.usefixtures("kept")
