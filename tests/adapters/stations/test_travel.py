@@ -8,6 +8,7 @@ from company import EAST, WEST, WORLD, Cable, Station, free_port, peers_toml, ru
 
 from bigactors.cli import main
 from checker.reports.lanes import lanes_of
+from semantics.behaviours.values import Text
 
 pytestmark = pytest.mark.long
 
@@ -144,7 +145,7 @@ def test_a_bigactor_goes_to_another_station_with_what_it_carries_and_comes_home(
     assert gcs1.steps().count("⟨leave : nomad, gcs0⟩") == gcs0.steps().count("⟨enter : nomad, gcs1⟩") == 1
     trace = gcs1.trace()
     assert "nomad" in lanes_of(trace.configurations, [step.label for step in trace.steps]).names
-    assert gcs0.trace().configurations[-1].alpha.mailbox("op0") == (("from gcs1", "luggage"),)
+    assert gcs0.trace().configurations[-1].alpha.mailbox("op0") == ((Text("from gcs1"), Text("luggage")),)
     capsys.readouterr()
     assert main(["show", "--trace", str(gcs1.recording), "--lanes"]) == 0
     assert "enter" in capsys.readouterr().out

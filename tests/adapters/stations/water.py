@@ -26,8 +26,8 @@ DRIFTERS = {263999001: (37.02, -8.63, 2e-6), 263999002: (37.0, -8.69, 8e-6)}
 AGROUND = 1_000
 """Seconds after which they drift no further."""
 
-SPEED = 80
-"""Of the sea's seconds in one of the stations': the flight of half an hour takes less than half a minute."""
+SPEED = 40
+"""Of the sea's seconds in one of the stations': half an hour takes less than a minute, and all packets are logged."""
 
 
 @dataclass(frozen=True, slots=True)
