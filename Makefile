@@ -41,7 +41,7 @@ test: lint types $(STAMP) $(PARTS)  ## what must hold at each change; of generat
 	$(BIN)/python -m pytest -n 3 --dist worksteal -q -m "not long"
 
 test-long: $(STAMP) $(PARTS)  ## whole flights, killed processes, workers, compilations (some 10 minutes)
-	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m long --timeout 1500 $(LONG)
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m long --timeout 1500
 
 lint: $(STAMP)
 	$(BIN)/ruff check .

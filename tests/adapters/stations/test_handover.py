@@ -55,7 +55,7 @@ run(Simulator(address, [Vehicle(Kind.COPTER, (37.01, -8.65, 20.0), enforce=False
 
 
 @contextmanager
-def flying(address, speed=60):
+def flying(address, speed=30):
     environment = {**os.environ, "PYTHONPATH": os.getcwd()}
     process = subprocess.Popen([sys.executable, "-c", SIMULATOR, address, str(speed)], env=environment)
     try:
