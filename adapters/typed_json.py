@@ -36,9 +36,8 @@ def typed(data: object, kind: type[T]) -> T:
     Raises:
         PhysicalError: The data do not fit the type: `$.a[2].b` is the place of the fault.
 
-    >>> typed([1, True], list[int])
-    Traceback (most recent call last):
-    physical.errors.PhysicalError: `$[1]`: expected `int`, got `bool`
+    >>> typed({"a": [1, 2]}, dict[str, tuple[int, int]])
+    {'a': (1, 2)}
     """
     try:
         return msgspec.convert(data, kind)
