@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from typing import Final, Protocol, TypeVar
 
 from adapters.mavlink import survey as surveys
 from adapters.mavlink.changed import changed
 from adapters.mavlink.constants import MissionType
 from adapters.mavlink.fleet import Craft
-from adapters.mavlink.merging import OnBoard
+from adapters.mavlink.items import Items
+from adapters.mavlink.merging import OnBoard, Unconfirmed, before_upload
 from adapters.mavlink.message import Message
+from adapters.mavlink.next_step import Load, Step
 from adapters.mavlink.refuges import beyond_fence
 from adapters.mavlink.survey import Survey, changed_by
 from adapters.mavlink.sync import Sync
@@ -43,6 +45,11 @@ class Believer(Protocol):
         ...
 
     @property
+    def uploads(self) -> Mapping[MissionType, Unconfirmed]:
+        """The uploads that were begun and are not confirmed."""
+        ...
+
+    @property
     def survey(self) -> Survey:
         """The reading of it."""
         ...
@@ -54,6 +61,9 @@ class Believer(Protocol):
 
 
 Pilot = TypeVar("Pilot", bound=Believer)
+
+MOST_ATTEMPTS: Final = 8
+"""Uploads that are remembered of those begun one after the other, none of them confirmed."""
 
 JUST_NOW: Final = 5.0
 """Seconds for which an order relies on earlier readings, unless a change shows."""
@@ -120,7 +130,8 @@ def with_known(pilot: Pilot, known: Telemetry) -> Pilot:
         pilot = _flies_it(pilot)
     if (known.total, known.numbers) == (before.total, before.numbers):
         return pilot
-    return unsure(pilot, tuple(_renumbered(pilot, before)), quiet=True)
+    own = _uploaded(pilot)  # an upload shows in the vehicle's numbers, too; it is read back at its end
+    return unsure(pilot, tuple(kind for kind in _renumbered(pilot, before) if kind is not own), quiet=True)
 
 
 def _flies_it(pilot: Pilot) -> Pilot:
@@ -160,13 +171,44 @@ def read_on(pilot: Pilot, message: Message, now: float) -> tuple[Pilot, tuple[Me
     survey, sent, kind = surveys.hear(pilot.survey, message, now)
     pilot = changed(pilot, survey=survey)
     if kind is not None:
-        pilot = changed(pilot, on_board={**pilot.on_board, kind: survey.found[kind]})
+        pilot = found(pilot, kind, survey.found[kind])
     return pilot, sent
 
 
+def begun(pilot: Pilot, step: Step | None) -> Pilot:
+    """Remember an upload, and what was there before it."""
+    if not isinstance(step, Load):
+        return pilot
+    known = pilot.uploads.get(step.kind, Unconfirmed(step.before))
+    if step.items in known.attempts:
+        return pilot
+    attempts = (*known.attempts, step.items)[-MOST_ATTEMPTS:]
+    return changed(pilot, uploads={**pilot.uploads, step.kind: Unconfirmed(known.before, attempts)})
+
+
+def found(pilot: Pilot, kind: MissionType, items: Items) -> Pilot:
+    """Take the items read back; an upload is over once they are its own, or somebody else's."""
+    upload = pilot.uploads.get(kind)
+    if upload is not None and (items in upload.attempts[-1:] or not upload.explains(items)):
+        pilot = changed(pilot, uploads={each: of for each, of in pilot.uploads.items() if each is not kind})
+    return changed(pilot, on_board={**pilot.on_board, kind: items})
+
+
+def kept(pilot: Believer) -> OnBoard:
+    """Return the items on board, as they were before an upload of ours that was broken off."""
+    return {kind: before_upload(items, pilot.uploads.get(kind)) for kind, items in pilot.on_board.items()}
+
+
 def _uploads(pilot: Believer) -> bool:
+    return _uploaded(pilot) is not None
+
+
+def _uploaded(pilot: Believer) -> MissionType | None:
+    """Return the kind of the items that we are uploading, or None."""
     task = pilot.moving
-    return task is not None and not task.over and isinstance(task.doing, Sync)
+    if task is None or task.over or not isinstance(task.doing, Sync):
+        return None
+    return task.doing.kind
 
 
 def surveyed(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:

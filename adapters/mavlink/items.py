@@ -91,7 +91,7 @@ def fence(polygon: Geometry) -> Items:
 def same(ours: Items, theirs: Items, kind: MissionType) -> bool:
     """Return whether the items on board are the wanted ones: all of a fence, all but home of a mission."""
     first = int(kind is MissionType.MISSION and bool(ours) and _is_home(ours[0]))
-    return len(ours) == len(theirs) and all(map(_alike, ours[first:], theirs[first:]))
+    return len(ours) == len(theirs) and all(map(alike, ours[first:], theirs[first:]))
 
 
 def _is_home(item: Item) -> bool:
@@ -99,7 +99,8 @@ def _is_home(item: Item) -> bool:
     return (item.command, item.z, item.frame) == (Cmd.WAYPOINT, 0.0, Frame.SEA_LEVEL)
 
 
-def _alike(a: Item, b: Item) -> bool:
+def alike(a: Item, b: Item) -> bool:
+    """Return whether an item on board is the wanted one."""
     here, there = ((each.command, _SAME_FRAME.get(each.frame, each.frame), each.x, each.y) for each in (a, b))
     counts = a.command == Cmd.DO_JUMP and a.parameters[0] != b.parameters[0]
     return here == there and abs(a.z - b.z) <= HEIGHT_TOLERANCE and not counts

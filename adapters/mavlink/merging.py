@@ -7,12 +7,12 @@ are uploaded again.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 from adapters.mavlink.constants import Cmd, MissionType
 from adapters.mavlink.download import MAX_ITEMS
-from adapters.mavlink.items import Item, Items, same
+from adapters.mavlink.items import Item, Items, alike, same
 from adapters.mavlink.profiles import ARDUPILOT_DIALECT, Dialect
 from adapters.mavlink.telemetry import Telemetry
 from adapters.mavlink.zones import Zone, zones
@@ -28,6 +28,31 @@ OnBoard = Mapping[MissionType, Items]
 
 _LANDINGS: Final = (Cmd.LAND, Cmd.VTOL_LAND)
 _STARTS: Final = (Cmd.DO_LAND_START, Cmd.DO_RETURN_PATH_START)
+
+
+@dataclass(frozen=True, slots=True)
+class Unconfirmed:
+    """An upload that is not confirmed: it may have replaced a part of the items that were there.
+
+    ArduPilot replaces item by item. Then an upload that is broken off leaves the first items of the new mission and
+    the rest of the one before: what was to be kept of that one must not be looked for in the mixture.
+    """
+
+    before: Items
+    attempts: tuple[Items, ...] = ()
+
+    def explains(self, found: Items) -> bool:
+        """Return whether each item found is of the mission before, or of an upload that was begun."""
+        lists = (self.before, *self.attempts)
+        return len(found) <= max(map(len, lists)) and all(
+            any(index < len(items) and alike(items[index], item) for items in lists)
+            for index, item in enumerate(found)
+        )
+
+
+def before_upload(found: Items, begun: Unconfirmed | None) -> Items:
+    """Return the items that were on board before our upload was broken off, else the items found."""
+    return begun.before if begun is not None and begun.explains(found) else found
 
 
 def merged(ours: Items, found: Items, kind: MissionType, known: Telemetry) -> Items:
@@ -72,14 +97,26 @@ def landing(found: Items, known: Telemetry) -> Items:
     return () if marked is None else found[marked:]
 
 
-def landing_now(known: Telemetry, on_board: OnBoard) -> bool:
-    """Return whether a vehicle returns by its landing sequence, in the mode of a mission."""
+def may_be_landing(known: Telemetry, on_board: OnBoard) -> bool:
+    """Return whether a vehicle that was told to return may fly its landing sequence, in the mode of a mission.
+
+    It may as long as its mission was not read again: a second order to return would end its approach.
+    """
     profile, found = known.profile, on_board.get(MissionType.MISSION)
     asked = known.parameters.get("RTL_AUTOLAND") in RETURNS_BY_LANDING
-    if profile is None or not asked or known.mode != profile.auto or known.current is None or found is None:
+    if profile is None or not asked or known.mode != profile.auto:
         return False
+    if found is None or known.current is None:
+        return True
     tail = landing(found, known)
     return bool(tail) and known.current >= len(found) - len(tail)
+
+
+def is_cut(found: Items, known: Telemetry) -> bool:
+    """Return whether the landing sequence on board has a start and no landing: an upload was broken off."""
+    tail = landing(found, known)
+    starts = any(item.command == Cmd.DO_LAND_START for item in tail)
+    return starts and not any(item.command in _LANDINGS for item in tail)
 
 
 def jumps_out(found: Items, known: Telemetry) -> int | None:

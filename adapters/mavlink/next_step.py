@@ -6,13 +6,14 @@ the next action is the first whose effect the state does not show.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from adapters.mavlink import command as to
 from adapters.mavlink.constants import AUTHORITY_PARAMETERS, Cmd, Fence, Frame, MissionType
 from adapters.mavlink.items import Items, e7, fence, route
 from adapters.mavlink.loiter_radius import goal, stay
-from adapters.mavlink.merging import OnBoard, is_on_board, landing_now, merged
+from adapters.mavlink.merging import OnBoard, Unconfirmed, before_upload, is_on_board, may_be_landing, merged
 from adapters.mavlink.message import Message
 from adapters.mavlink.passing import acceptance
 from adapters.mavlink.profiles import Profile, TakeOff
@@ -46,10 +47,14 @@ class Tell:
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """A mission or fence that must be on board."""
+    """A mission or fence that must be on board.
+
+    `before` are the items on board before any upload of ours, a part of which is kept.
+    """
 
     items: Items
     kind: MissionType
+    before: Items = field(default=(), compare=False)
 
     @property
     def what(self) -> str:
@@ -82,6 +87,7 @@ class Vehicle:
         known: Its state according to its messages.
         profile: The profile of its kind.
         on_board: The missions, fences and rally points that were read back and have not changed since.
+        uploads: The uploads that were begun and are not confirmed.
         fence: The polygon that it must stay in.
         circle: The radius in metres at which it circles where it stays.
         room: The radius in metres that contains its circles, in wind too.
@@ -105,6 +111,7 @@ class Vehicle:
     circle: float
     height: float
     begun: bool
+    uploads: Mapping[MissionType, Unconfirmed] = field(default_factory=dict)
     resumes: bool = False
     above: float | None = None
     passed: int = 0
@@ -128,7 +135,7 @@ def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
         case Hold():
             return _in_mode(vehicle, vehicle.profile.hold) or _stopped(vehicle) or Underway(done=True)
         case Return():
-            lands = landing_now(vehicle.known, vehicle.on_board)
+            lands = may_be_landing(vehicle.known, vehicle.on_board)
             return (None if lands else _in_mode(vehicle, vehicle.profile.home)) or Underway(
                 done=_is_home(vehicle)
             )
@@ -172,8 +179,9 @@ def _loaded(vehicle: Vehicle, ours: Items, kind: MissionType) -> Step | None:
     found = vehicle.on_board.get(kind)
     if found is None:
         return Wait(f"its {kind.name.lower()} is not read yet")
-    wanted = merged(ours, found, kind, vehicle.known)
-    return None if is_on_board(wanted, found, kind) else Load(wanted, kind)
+    before = before_upload(found, vehicle.uploads.get(kind))
+    wanted = merged(ours, before, kind, vehicle.known)
+    return None if is_on_board(wanted, found, kind) else Load(wanted, kind, before)
 
 
 def _go(command: GoTo, vehicle: Vehicle) -> Step:

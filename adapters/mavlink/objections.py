@@ -20,7 +20,7 @@ from adapters.mavlink.fencing import (
 from adapters.mavlink.fleet import Craft, Stations
 from adapters.mavlink.items import route
 from adapters.mavlink.loiter_radius import cramped, goal, home_circle, room, stay
-from adapters.mavlink.merging import OnBoard, jumps_out, merged
+from adapters.mavlink.merging import OnBoard, is_cut, jumps_out, merged
 from adapters.mavlink.next_step import height_of
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.refuges import beyond_fence, missing_items
@@ -239,6 +239,11 @@ def _of_items(command: GoTo | Follow, profile: Profile, known: Telemetry, on_boa
     found = on_board.get(MissionType.MISSION)
     if found is None:
         return
+    if is_cut(found, known):
+        yield (
+            "the landing sequence on board has a start and no landing, as after an upload that was broken off: load it "
+            "again with a ground station"
+        )
     outside = jumps_out(found, known)
     if outside is not None:
         yield (

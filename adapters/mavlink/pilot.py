@@ -5,7 +5,7 @@ A pure state machine: no socket, no clock, no randomness.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Final
@@ -16,11 +16,11 @@ from adapters.mavlink import task as tasks
 from adapters.mavlink.changed import changed
 from adapters.mavlink.command import long, read_parameter
 from adapters.mavlink.condition import Condition, look
-from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, REGULAR, Cmd
+from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, REGULAR, Cmd, MissionType
 from adapters.mavlink.fleet import CONTROL, Craft, Stations
 from adapters.mavlink.link import Link, watch
 from adapters.mavlink.loiter_radius import circle, home_circle, room
-from adapters.mavlink.merging import OnBoard
+from adapters.mavlink.merging import OnBoard, Unconfirmed
 from adapters.mavlink.message import Message
 from adapters.mavlink.objections import not_ours, objection
 from adapters.mavlink.profiles import Profile, TakeOff, unknown_kind
@@ -93,6 +93,7 @@ class Pilot:
         streams: The messages requested of it.
         on_board: The missions, fences and rally points read back since anybody may have changed them.
         survey: The reading of the items on board.
+        uploads: The uploads that were begun and are not confirmed.
         moving: The command that it carries out.
         hand_over: The hand-over in progress.
         helm: Whether it follows its orders.
@@ -114,6 +115,7 @@ class Pilot:
     streams: Streams = field(default_factory=Streams)
     on_board: OnBoard = field(default_factory=dict)
     survey: Survey = field(default_factory=Survey)
+    uploads: Mapping[MissionType, Unconfirmed] = field(default_factory=dict)
     moving: Task | None = None
     hand_over: Task | None = None
     helm: Helm = field(default_factory=Helm)
@@ -144,7 +146,7 @@ def command(pilot: Pilot, told: Command, now: float) -> Outcome:
         return Outcome(changed(pilot, helm=takeover.given_back(pilot.known), moving=None))
     if pilot.helm.taken:
         raise Refused(f"it was taken over: {pilot.helm.taken}", "an operator may give it back")
-    reason = objection(told, pilot.craft, pilot.stations, pilot.known, pilot.on_board)
+    reason = objection(told, pilot.craft, pilot.stations, pilot.known, inventory.kept(pilot))
     if reason and isinstance(told, Hold | Return):
         return _stops_in_vain(pilot, told, reason, now)
     if reason:
@@ -361,9 +363,10 @@ def _advance(pilot: Pilot, now: float) -> Outcome:
         if task is None or task.over:
             continue
         progress = _progress(pilot, task, now)
+        pilot = inventory.begun(pilot, progress.task.step)
         for kind, items in (progress.on_board or {}).items():
             survey = surveys.settle(pilot.survey, kind, items, now)
-            pilot = changed(pilot, on_board={**pilot.on_board, kind: items}, survey=survey)
+            pilot = inventory.found(changed(pilot, survey=survey), kind, items)
         pilot = _onwards(pilot, slot, progress.task)
         if progress.task.begun and not task.begun:
             pilot = inventory.about_to_fly(pilot)
@@ -445,7 +448,9 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
     if profile is None or pilot.known.mode is None:  # not heard yet, or of a kind that can't be commanded
         return _unknown(pilot, task, now)
     if not (task.checked and task.surveyed):
-        judge = partial(objection, task.command, pilot.craft, pilot.stations, pilot.known, pilot.on_board)
+        judge = partial(
+            objection, task.command, pilot.craft, pilot.stations, pilot.known, inventory.kept(pilot)
+        )
         reason = judge(again=task.checked)
         if reason:
             return tasks.rejected(task, reason, now)
@@ -465,6 +470,7 @@ def _vehicle(pilot: Pilot, task: Task, profile: Profile, now: float) -> next_ste
         known=pilot.known,
         profile=profile,
         on_board=pilot.on_board,
+        uploads=pilot.uploads,
         fence=pilot.craft.fence,
         circle=circle(pilot.craft, profile, pilot.known),
         home_circle=home_circle(pilot.craft, profile, pilot.known),

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Final
 
-from adapters.mavlink.merging import OnBoard, landing_now
+from adapters.mavlink.merging import OnBoard, may_be_landing
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.telemetry import Telemetry
 from adapters.plugin import Command, Follow, GoTo, Hold, Return
@@ -58,7 +58,7 @@ def watch(
         return helm
     if isinstance(command, Return) and known.armed is False:
         return Helm(boots=known.boots)  # it has landed, and nothing is ordered
-    lands = isinstance(command, Return) and landing_now(known, on_board)
+    lands = isinstance(command, Return) and may_be_landing(known, on_board)
     why = ("" if lands else _otherwise(helm, known, profile, command)) or undone
     if not why:
         return _as_ordered(helm, known, profile, command)

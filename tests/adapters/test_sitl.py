@@ -1,22 +1,17 @@
 """The same flights with ArduPilot's own code: where BIGACTORS_SITL names the folder of its simulators."""
 
 import asyncio
-import os
 import re
-import socket
-import subprocess
-import time
-from contextlib import asynccontextmanager, contextmanager
 from itertools import groupby
 from pathlib import Path
 
 import pytest
-from worlds import AREA, HOME, ROUND, World, running, until
+from sitl import CRAFT, PROGRAMS, SPEED, autopilot, linked, needs_simulators, tell
+from worlds import AREA, HOME, ROUND, until
 
 from adapters.camera.poses import PoseLog
 from adapters.live.operator_socket import give_back, order
-from adapters.mavlink import Autopilot, Craft, Stations
-from adapters.mavlink.codec import Encoder
+from adapters.mavlink import Craft
 from adapters.mavlink.command import long, set_parameter
 from adapters.mavlink.constants import Cmd
 from adapters.mavlink.profiles import PLANE
@@ -29,66 +24,7 @@ from bigactors.commands.run.flight import fly, prepare, record
 from bigactors.recordings import open_recording
 from physical import box, circle, contains, distance, point
 
-FOLDER = os.environ.get("BIGACTORS_SITL", "")
-SPEED = 10
-STATIONS = Stations({"gcs0": 255, "gcs1": 254}, ("gcs0", "gcs1"))
-CRAFT = Craft("uav0", system=1)
-PROGRAMS = {"plane": "arduplane", "quad": "arducopter", "rover": "ardurover"}
-
-pytestmark = pytest.mark.skipif(
-    not FOLDER, reason="BIGACTORS_SITL names no folder with ArduPilot's simulators"
-)
-
-
-INSTANCE = os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")
-"""Simulators that run at once listen to ports of their own."""
-
-
-@contextmanager
-def autopilot(model, port, tmp_path, parameters=()):
-    """Start ArduPilot's simulator, talking to a port of ours."""
-    program = Path(FOLDER) / PROGRAMS[model]
-    if not program.exists():
-        pytest.skip(f"{program} is not there")
-    given, defaults = Path(FOLDER) / f"{model}.parm", tmp_path / f"{model}.parm"
-    lines = [given.read_text()] if given.exists() else []
-    defaults.write_text("\n".join([*lines, *(f"{name} {value}" for name, value in parameters), ""]))
-    where = ",".join(map(str, (*HOME, 0)))
-    command = [
-        program,
-        "-w",
-        "-I",
-        INSTANCE,
-        "--model",
-        model,
-        "--speedup",
-        str(SPEED),
-        "--home",
-        where,
-        "--sysid",
-        "1",
-    ]
-    command += ["--serial0", f"udpclient:127.0.0.1:{port}"]
-    command += ["--defaults", defaults]
-    with subprocess.Popen(
-        command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    ) as process:
-        try:
-            yield process
-        finally:
-            process.kill()
-
-
-@asynccontextmanager
-async def linked(model, tmp_path, craft=CRAFT, parameters=(), **more):
-    """Start a vehicle and its plugin, and wait until it has told where it is and what it may do."""
-    world, plugin = World(), Autopilot("autopilot", "udp:127.0.0.1:0", [craft], STATIONS, **more)
-    async with running(plugin.run(world)):
-        await until(lambda: plugin.local)
-        with autopilot(model, plugin.local[1], tmp_path, parameters):
-            await until(lambda: world.property("uav0"))
-            await until(plugin.is_known)
-            yield world, plugin
+pytestmark = needs_simulators
 
 
 async def flown(model, tmp_path, *told, craft=CRAFT):
@@ -269,15 +205,6 @@ class Seen:
         return {finding.kind for finding in self.findings}
 
 
-def tell(system, *messages):
-    """Speak to the autopilot over another link than the run's, as another ground station does."""
-    encoder = Encoder(system, 190)
-    with socket.create_connection(("127.0.0.1", 5762 + 10 * int(INSTANCE)), timeout=5.0) as link:
-        for message in messages:
-            link.sendall(encoder.pack(message))
-        time.sleep(0.2)  # it reads what has come only while it is connected
-
-
 @pytest.mark.parametrize("model", PROGRAMS)
 def test_a_verified_mission_flies_the_real_autopilot(model, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -316,7 +243,7 @@ def test_a_real_plane_that_flies_home_unasked_arrives_nowhere_and_is_not_called_
     foe, legs, words, tmp_path, monkeypatch
 ):
     monkeypatch.chdir(tmp_path)
-    ending, known, seen = flown_by_run(ROUND, "plane", tmp_path, foe, 700)
+    ending, known, seen = flown_by_run(ROUND, "plane", tmp_path, foe, 1_200)
     assert ending.reason == "the time is over"
     assert seen.rules.count("commit") == legs
     assert "it is in RTL, by itself or told by someone else" in ending.state.overrides.taken["uav0"]
