@@ -10,6 +10,7 @@ modules: the first use of a name loads its module.
 """
 
 import ast
+import sys
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Final
@@ -40,3 +41,13 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
+
+
+def _register_in_notebook() -> None:
+    """In a running IPython, show configurations, traces and reports as pictures and tables."""
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
+    if shell is not None:
+        import_module("bigactors.notebook").register(shell.display_formatter)
+
+
+_register_in_notebook()

@@ -1,11 +1,11 @@
 """Pictures and tables of values in notebooks: self-contained, and readable on light and on dark pages.
 
-The methods `_repr_svg_` and `_repr_html_` of values call this module. Each element has its own colours: notebooks are
-also shown on sites that remove style sheets and scripts.
+`import bigactors` registers these formatters in a running IPython. Each element has its own colours: notebooks are also
+shown on sites that remove style sheets and scripts.
 """
 
 from collections.abc import Iterator
-from typing import Final
+from typing import Any, Final
 
 from bigactors.pages.markup import element, text
 from bigactors.pictures import draw_configuration, shown_names
@@ -92,3 +92,12 @@ def _violation(violation: Violation) -> str:
     summary = element("summary", element("b", text(violation.kind)), f": {text(violation.message)}")
     details = (element("div", text(line), style=QUIET) for line in violation.details)
     return element("details", summary, *details, trace_html(violation.trace))
+
+
+def register(display: Any) -> None:
+    """Register the formatters of these values in an `IPython.core.formatters.DisplayFormatter`."""
+    display.formatters["image/svg+xml"].for_type(Configuration, configuration_svg)
+    html = display.formatters["text/html"]
+    html.for_type(Trace, trace_html)
+    html.for_type(Report, report_html)
+    html.for_type(Verdict, verdict_html)

@@ -73,11 +73,6 @@ class Trace:
     def __repr__(self) -> str:
         return f"<Trace {print_length(self)}>"
 
-    def _repr_html_(self) -> str:
-        from bigactors.notebook import trace_html  # noqa: PLC0415 - the notebook's pictures are built on values
-
-        return trace_html(self)
-
     @property
     def configurations(self) -> tuple[Configuration, ...]:
         """c0, c1, ..."""

@@ -91,11 +91,6 @@ class Verdict:
         found = f" violations={len(self.violations)}" if self.violations else ""
         return f"<Verdict {cut(self.property.name)} {self.outcome.value}{found}>"
 
-    def _repr_html_(self) -> str:
-        from bigactors.notebook import verdict_html  # noqa: PLC0415 - notebooks import verdicts
-
-        return verdict_html(self)
-
 
 class UnknownPropertyError(KeyError):
     """A property without a verdict in a report."""
@@ -169,11 +164,6 @@ class Report:
         counts = Counter(verdict.outcome.value for verdict in self.verdicts)
         found = " ".join(f"{outcome.value}={counts[outcome.value]}" for outcome in Outcome)
         return f"<Report {found} configurations={self.configurations} complete={self.complete}>"
-
-    def _repr_html_(self) -> str:
-        from bigactors.notebook import report_html  # noqa: PLC0415 - notebooks import verdicts
-
-        return report_html(self)
 
     @property
     def complete(self) -> bool:

@@ -174,9 +174,7 @@ def imports() -> list[Import]:
 DELEGATES = {
     "bigraphs.bigraph": {"bigraphs.algebra", "bigraphs.drawing", "bigraphs.text"},
     "checker.engines.contract": {"checker.transition_system"},
-    "checker.traces": {"bigactors.notebook"},
-    "checker.verdicts": {"bigactors.notebook"},
-    "semantics.state.configuration": {"bigactors.notebook", "semantics.state.printing"},
+    "semantics.state.configuration": {"semantics.state.printing"},
 }
 
 

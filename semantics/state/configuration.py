@@ -89,11 +89,6 @@ class Configuration:
 
         return print_briefly(self)
 
-    def _repr_svg_(self) -> str | None:
-        from bigactors.notebook import configuration_svg  # noqa: PLC0415 - the notebook's pictures are built on values
-
-        return configuration_svg(self)
-
 
 @dataclass(frozen=True, slots=True)
 class Label:

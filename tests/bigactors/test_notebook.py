@@ -1,6 +1,8 @@
 """What notebooks show: through IPython's formatter, as one value after another is the last of a cell."""
 
 import re
+import subprocess
+import sys
 import xml.etree.ElementTree as ET
 
 import pytest
@@ -25,8 +27,23 @@ def report(mission):
 
 def shown(value):
     """Return what a notebook is given of a value, by its type."""
-    data, _ = DisplayFormatter().format(value)
+    display = DisplayFormatter()
+    notebook.register(display)
+    data, _ = display.format(value)
     return data
+
+
+def test_a_running_ipython_shows_reports_once_the_package_is_imported():
+    cells = """
+import bigactors
+html = get_ipython().display_formatter.formatters["text/html"]
+html.enabled = True  # a terminal shows texts only
+print(html(bigactors.check(bigactors.load_mission("oil_spill"))))
+"""
+    line = [sys.executable, "-m", "IPython", "--no-banner", "--colors=NoColor", "-c", cells]
+    done = subprocess.run(line, capture_output=True, text=True, check=True, timeout=300)
+    assert "race_freedom" in done.stdout
+    assert "<table>" in done.stdout
 
 
 def test_a_configuration_is_a_picture_of_bigraph_and_map(mission):
