@@ -62,45 +62,45 @@ The output of `bigactors --help` and `bigactors COMMAND --help`. [json.md](json.
 RECORDING_HEAD = """\
 # Recordings of live runs
 
-`bigactors run --record FILE.mcap` writes all input of a run and everything that follows from it into one
-[MCAP](https://mcap.dev) file of JSON messages. The file has no chunks, so every flushed message survives: a run ended
-by `kill -9` leaves a readable recording without an index at its end. A command to a vehicle (`commands`) is in the file
-before it is sent. `FILE.tlog` beside it has every MAVLink frame received and sent, in the format of other ground
-stations. Log times are in nanoseconds since 1970 UTC.
+`bigactors run --record FILE.mcap` writes all input of a run, its steps and its commands into one
+[MCAP](https://mcap.dev) file of JSON messages. Every flushed message survives: a run ended by `kill -9` leaves a
+readable recording without an index at its end. A command to a vehicle (`commands`) is in the file before it is sent.
+`FILE.tlog` beside it has every MAVLink frame received and sent, in the format of other ground stations. Log times are
+in nanoseconds since 1970 UTC.
 
 A flood does not fill the disk. Each second, at most 100 arrivals of each entity of the mission are recorded, and at
-most 100 of all other entities of one plugin, each in its turn; `left_out` counts the rest. Every step is recorded
-with what was observed, so a replay needs no arrivals. The telemetry log records at most 1,000 received packets a
-second of each link, and reports how many it left out.
+most 100 of all other entities of one plugin; `left_out` counts the rest. Every step is recorded with its observation,
+so a replay needs no arrivals. The telemetry log records at most 1,000 received packets a second of each link, and
+counts the rest.
 
 `bigactors replay FILE.mcap` runs the steps again through the rules. If the rules don't allow a step, or if it leads to
 another configuration (`digest`), replay names the step and exits with code 1. `run --resume FILE.mcap` continues a
-killed run; `show --trace FILE.mcap --step K` draws any of its configurations.
+killed run. `show --trace FILE.mcap` draws a configuration (`--step K`), or writes every position for QGIS and others
+(`--output tracks.geojson`).
 
-Other programs read it too: [Foxglove](https://foxglove.dev) and Lichtblick show its map and its log. The topics that
-begin with `/` are for them, in Foxglove's schemas. They follow from the other topics, and `bigactors` passes over them:
+[Foxglove](https://foxglove.dev) and Lichtblick show its map and its log: add a Map panel and a Log panel. They warn
+that the file has no index. The topics that begin with `/` are for them, in Foxglove's schemas. They follow from the
+other topics, and `bigactors` passes over them:
 
 - `/NAME/fix` (`foxglove.LocationFix`): where an entity was observed, at most once a second; `arrivals` has all.
 - `/PLUGIN/others/fix`: the same of all entities that the mission does not name; `frame_id` has the name.
 - `/places` (`foxglove.GeoJSON`): the mission's places that never move, and the vehicles' fences, once.
-- `/NAME/area` and `/PLUGIN/others/area` (`foxglove.GeoJSON`): any other place, such as a spill, whenever it is seen to
-  have changed; empty when it is gone.
-- `/log` (`foxglove.Log`): findings, commands, what operators and vehicles said, what was not recorded.
+- `/NAME/area`, `/PLUGIN/others/area` (`foxglove.GeoJSON`): any other place at each change; empty when it is gone.
+- `/log` (`foxglove.Log`): findings, commands, words of operators and vehicles, omissions.
 
-An unknown altitude is 0, and the covariance is unknown. In a program that opens the file, add a Map panel and a Log
-panel. It warns that the file has no index: it reads the whole file first. The schemas in the file leave out members
-whose types these programs do not know (null, arrays of arrays), or else they would not show the topic; the tables below
-are complete. `bigactors show --trace FILE.mcap --output tracks.geojson` writes every position, for QGIS and others.
+An unknown altitude is 0 there, and the covariance is unknown. The schemas in the file leave out members whose types
+these programs do not know (null, arrays of arrays); the tables below are complete.
 
-A step is the step of a trace ([trace.schema.json](trace.schema.json)). `observed` holds what the world decided: the
-cells of P that were written, each as `[cell, value]`. A cell is a list of words such as `["placement", "uav0"]`,
-`["channels", "uav0"]`, `["down", "wifi"]`, `["left", "uav0", "wifi"]`. A placement is `null` (absent),
-`{"at": {"ring": ...}, "altitude": [...]}`, `{"by": ..., "shape": ...}` (carried) or `{"from": ..., "to": ...}` (sent by
-another station). A ring gives latitude and longitude in 1e-7 degree, with `of` and `anchor` where a polygon is another
-one, moved. In a replay, an `env` with an observation may write only P, and nothing that is in transit. A `commit`
-places the vehicle where it was observed, and is a step only if the rule's premises hold there. With several stations
-each has a recording of its part ([stations.md](../how-to/stations.md)). There `observed` has the agent, with the
-station, the number and the parcel that entered, with the station and the number of what left, or with the host that was
+A step is the step of a trace ([trace.schema.json](trace.schema.json)). `observed` has the cells of P that the world
+wrote, each as `[cell, value]`. A cell is a list of words such as `["placement", "uav0"]`, `["channels", "uav0"]`,
+`["down", "wifi"]`, `["left", "uav0", "wifi"]`. A placement is `null` (absent), `{"at": {"ring": ...}, "altitude":
+[...]}`, `{"by": ..., "shape": ...}` (carried) or `{"from": ..., "to": ...}` (sent by another station). A ring gives
+latitude and longitude in 1e-7 degree, with `of` and `anchor` where a polygon is another one, moved.
+
+In a replay, an `env` with an observation may write only P, and nothing that is in transit. A `commit` places the
+vehicle where it was observed, and is a step only if the rule's premises hold there. Of several
+[stations](../how-to/stations.md) each has a recording of its part. There `observed` has the agent, with the station,
+the number and the parcel that entered, with the station and the number of what left, or with the host that was
 learned.
 
 The topics, and what their messages hold:

@@ -20,12 +20,11 @@ comments, which end with the line. `;` may separate declarations and statements.
 such as those of the paper's Figure 8, are ignored.
 
 A file has at most one megabyte and sixty thousand words; a word has at most ten kilobytes; brackets nest at most two
-hundred deep.
+hundred deep. [codes.md](codes.md) lists the diagnostics, with meaning and remedy.
 
-The grammar of each part is shown in EBNF: words in quotes are literal, `[x]` is optional, `x*` repeats any number of
-times, `x+` at least once. `bigactors fmt` writes a mission in the layout used here. The examples are parts of one
-mission, which [stands whole](#a-whole-mission) at the end of this page; that of [timing](#timing) is a part of
-`endurance`, which ships.
+The grammar is in EBNF: words in quotes are literal, `[x]` is optional, `x*` repeats any number of times, `x+` at least
+once. `bigactors fmt` writes a mission in the layout used here. The examples are parts of
+[one mission](#a-whole-mission); that of [timing](#timing) is a part of `endurance`, which ships.
 """
 
 WHOLE: Final = """\
@@ -61,12 +60,6 @@ The examples of this page together, with the file that its world names, `harbour
 WORDS: Final = r"""A name is a letter, followed by letters, digits and underscores. A channel's name may begin with a
 digit and contain `:`, `-` and `.` between its parts: `control:gcs0`, `3g`, `wifi-1`. A number is decimal: `37.04`,
 `4e2`. A string is written in double quotes, with the escapes `\"`, `\\`, `\n` and `\t`. These words cannot be names:
-"""
-
-MISTAKES: Final = """\
-## Mistakes
-
-[codes.md](codes.md) lists the diagnostics of missions, with meaning and remedy.
 """
 
 # An example for some headings of the grammar: a part of a mission with the constructs under the heading.
@@ -244,7 +237,7 @@ def language_reference() -> str:
         if heading in EXAMPLES:
             parts += ["Example:\n", "<!-- frame: whole.mission -->", _fenced(EXAMPLES[heading], "mission")]
     reserved = ", ".join(f"`{word}`" for word in sorted(RESERVED))
-    parts += ["## Words\n", WORDS, f"{reserved}\n", MISTAKES]
+    parts += ["## Words\n", WORDS, f"{reserved}\n"]
     return "\n".join([*parts, WHOLE + _fenced("\n".join(EXAMPLES.values()), "mission")])
 
 
