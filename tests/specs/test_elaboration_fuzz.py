@@ -16,7 +16,8 @@ from specs.parser import parse_bytes
 ROOT = Path(__file__).parents[2]
 CORPUS = ROOT / "tests" / "corpus"
 LARGEST = 4_000
-FEW = 200
+FEW = 70
+MANY = int(os.environ.get("BIGACTORS_FUZZ", "0"))
 WORD = re.compile(r'"[^"\n]*"|\w+|\s+|[^\w\s]')
 NAME = re.compile(r"[^\W\d]\w*")
 NUMBER = re.compile(r"\d[\d.]*")
@@ -96,15 +97,7 @@ def survive(seed):
     return True
 
 
-def run(seeds):
-    return sum(map(survive, seeds))
-
-
-def test_mutated_missions_give_diagnostics_only():
-    assert run(range(FEW)) == 45  # that many are still sound
-
-
 @pytest.mark.fuzz
-@pytest.mark.skipif("BIGACTORS_FUZZ" not in os.environ, reason="set BIGACTORS_FUZZ to the number of missions")
-def test_many_mutated_missions_give_diagnostics_only():
-    run(range(FEW, FEW + int(os.environ["BIGACTORS_FUZZ"])))
+def test_mutated_missions_give_diagnostics_only():
+    sound = sum(map(survive, range(FEW + MANY)))
+    assert 0.1 < sound / (FEW + MANY) < 0.4

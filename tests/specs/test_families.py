@@ -1,8 +1,7 @@
 """Families of bigActors, and quantifiers over bigActors: what they come to."""
 
-from pathlib import Path
-
 import pytest
+from elaborating import elaborated, reachable, told
 
 from semantics.behaviours.expressions import Apply, Literal, Variable
 from semantics.behaviours.statements import ControlBy, Send
@@ -10,11 +9,7 @@ from semantics.behaviours.values import Text
 from semantics.environment import Says
 from semantics.properties.propositions import Ended, Exists, HostedAt, Not, Or, Waiting, holds
 from semantics.properties.temporal import Steps
-from semantics.successors import successors
-from specs.diagnostics import MissionError, Source
-from specs.elaboration import elaborate
 from specs.elaboration.initial_actors import MOST_WRITTEN
-from specs.parser import parse
 
 WORLD = """
 signature {
@@ -32,17 +27,6 @@ world {
 }
 def visit(place) = { control(MOVE_HOST_TO place) }
 """
-
-
-def elaborated(text):
-    source = Source("families.mission", text)
-    return elaborate(parse(source), source, Path())
-
-
-def mistakes(text):
-    with pytest.raises(MissionError) as caught:
-        elaborated(text)
-    return [(item.code.number, item.message, item.hint) for item in caught.value.diagnostics]
 
 
 def agents_of(text):
@@ -108,7 +92,7 @@ def test_entity_and_number_stand_in_arguments_queries_patterns_and_rules():
 def test_a_variable_hides_the_entity_and_a_member_does_not_change_it():
     (sent, _) = statements(family("let u = 3 send u to f[0]"), Send)
     assert not isinstance(sent.message, Literal)
-    ((_, message, hint),) = mistakes(WORLD + family("i = 3"))
+    ((_, message, hint),) = told(WORLD + family("i = 3"))
     assert message == "'i' stands for the same throughout the member"
     assert hint == "bind another name: let other = i"
 
@@ -136,20 +120,11 @@ def test_members_are_named_wherever_bigactors_are():
     """
     )
     mission = elaborated(WORLD + text)
-    assert [each.agent for each in mission.setting.environment if isinstance(each, Says)] == [
-        "f[uav1]",
-        "f[uav0]",
-    ]
-    assert [each.message for each in mission.setting.environment if isinstance(each, Says)] == [
-        Text("go"),
-        "f[uav1]",
-    ]
+    said = [(each.agent, each.message) for each in mission.setting.environment if isinstance(each, Says)]
+    assert said == [("f[uav1]", Text("go")), ("f[uav0]", "f[uav1]")]
     assert [each.agent for each in mission.precautions.limits] == ["f[uav1]"]
-    assert [each.steps for each in mission.properties[0].fairness] == [
-        Steps((), "f[uav1]"),
-        Steps(("fun",), "f[uav0]"),
-    ]
-    assert [each.word for each in mission.properties[0].fairness] == ["f[uav1]", "fun f[0]"]
+    fair = [(each.steps, each.word) for each in mission.properties[0].fairness]
+    assert fair == [(Steps((), "f[uav1]"), "f[uav1]"), (Steps(("fun",), "f[uav0]"), "fun f[0]")]
     assert mission.properties[1].formula.formulas[1] == Or((Waiting("f[uav1]"), Ended("f[uav1]")))
 
 
@@ -157,7 +132,7 @@ def test_families_written_out_are_bounded():
     many = "\n".join(f"  x{number}: Ship = point (37.0, -8.0)" for number in range(200))
     body = "send 1 to f[0] " * (MOST_WRITTEN // 800)
     text = WORLD.replace("world {", f"world {{\n{many}") + family(body, "f[i] for s in Ship hosted_at gcs0")
-    ((code, message, _),) = mistakes(text)
+    ((code, message, _),) = told(text)
     assert (code, message) == ("LS408", "written out, the families have more than 100,000 words")
 
 
@@ -217,19 +192,14 @@ def test_of_a_spawned_bigactor_nothing_is_said_before_it_is_there():
         f'{WORLD}{CREW}check {{ reachable "f": exists x: agents with_behavior visit . x.place == b0 }}'
     )
     found = mission.properties[0].formula
-    seen, front = {mission.initial}, [mission.initial]
-    while front:
-        for step in successors(front.pop()):
-            if step.target not in seen:
-                seen.add(step.target)
-                front.append(step.target)
+    seen, _ = reachable(mission)
     assert {holds(found, c) for c in seen} == {True, False}
     assert all("late" in c.alpha for c in seen if holds(found, c))
 
 
 def test_quantifiers_at_the_beginning_of_runs_do_not_leave_out_who_is_spawned():
     text = '{}{}check {{ ltl "f": {} }}'
-    ((code, message, hint),) = mistakes(text.format(WORLD, CREW, "forall x: agents . <> ended x"))
+    ((code, message, hint),) = told(text.format(WORLD, CREW, "forall x: agents . <> ended x"))
     assert (code, message) == ("LS611", "this is about the beginning of runs, and 'late' is spawned in them")
     assert hint == "write always (forall ...), or quantify over others: agents with_behavior visit"
     elaborated(text.format(WORLD, CREW, "always forall x: agents . <> ended x"))
@@ -252,6 +222,6 @@ def test_brackets_behind_a_variable_give_an_element():
     "head", ["f for u in UAV hosted_at u", "f[] for u in UAV", "f[uav0] hosted_at uav0", "[u] for u in UAV"]
 )
 def test_a_family_that_is_written_otherwise_is_shown_how(head):
-    ((code, _, hint),) = mistakes(WORLD + family("skip", head))
+    ((code, _, hint),) = told(WORLD + family("skip", head))
     assert code in {"LS101", "LS121"}
     assert hint == "a family is written BigActor patrol[i] for u in UAV hosted_at u with_behavior { ... }"
