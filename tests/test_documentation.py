@@ -25,13 +25,13 @@ from subprocess import DEVNULL, PIPE, STDOUT, CompletedProcess, Popen
 
 import pytest
 import yaml
+from repository import PAGES, ROOT, name_of
 
 from bigactors import Limits, check, load_mission
 from bigactors.docs import GENERATED
 from bigraphs.notation import read_system
 from specs.missions import shipped_missions
 
-ROOT = Path(__file__).parents[1]
 LONG = {
     "docs/tutorial/flight.md",
     "docs/explanation/time.md",
@@ -44,10 +44,6 @@ LONG = {
 }
 """Pages that fly, or show many commands one after the other."""
 
-PAGES = [
-    *(ROOT / name for name in ("ARCHITECTURE.md", "CONTRIBUTING.md", "README.md")),
-    *sorted((ROOT / "docs").rglob("*.md")),
-]
 NOT_RUN = {
     "ARCHITECTURE.md": 1,
     "README.md": 3,
@@ -96,10 +92,6 @@ class Block:
     @property
     def name(self):
         return self.notes.get("file", re.sub(r"\W", "_", self.place) + f".{self.kind}")
-
-
-def name_of(page):
-    return page.relative_to(ROOT).as_posix()
 
 
 def by_length(page):

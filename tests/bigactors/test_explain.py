@@ -42,16 +42,3 @@ def test_a_rule_is_explained_with_its_bar(bigactors):
     _, out, _ = bigactors("explain", "sense")
     assert "OBS(a, q) ∈ η, in line" in out
     assert "───" in out
-
-
-def test_an_unknown_code_or_word_is_told(bigactors):
-    assert bigactors("explain", "LS999") == (
-        2,
-        "",
-        "bigactors: there is no code and no word 'LS999'\n  hint: bigactors explain lists them all\n",
-    )
-    assert bigactors("explain", "deadlok") == (
-        2,
-        "",
-        "bigactors: there is no code and no word 'deadlok'\n  hint: did you mean 'deadlock'?\n",
-    )

@@ -10,7 +10,6 @@ import pytest
 from adapters.mavlink.signing import load
 from adapters.naming import NameClash
 from bigactors.arguments import parse_arguments
-from bigactors.cli import main
 from bigactors.commands.run.connections import plugins_of
 from bigactors.commands.run.fences import fence_of
 from bigactors.missions import open_mission
@@ -124,14 +123,6 @@ def test_what_cannot_be_so_is_a_mistake_that_says_why(more, vehicle, says):
     with pytest.raises(Mistake) as error:
         plugins(*more, vehicle=vehicle)
     assert says in str(error.value)
-
-
-@pytest.mark.parametrize(
-    "word", ["--kinds=OilSpill", "--kinds=radar=x", "--time-to-live=ais", "--time-to-live=x=1"]
-)
-def test_what_is_no_value_of_an_option_is_told(word, capsys):
-    assert main(["run", "spill_watch", UAV, word]) == 2
-    assert "is not FEED=" in capsys.readouterr().err
 
 
 def test_vehicles_with_one_system_id_on_two_links_both_have_their_names(mission, tmp_path):

@@ -144,11 +144,6 @@ def test_the_verdict_beside_the_mission_is_found(tmp_path, monkeypatch):
     assert find_verdict(str(mission), "given") == "given"
 
 
-def test_one_verdict_is_written_of_one_mission(tmp_path, capsys):
-    assert main(["check", "--verdict", str(tmp_path / "v"), "oil_spill", "handover"]) == 2
-    assert "one mission" in capsys.readouterr().err
-
-
 # --- a mission that is swapped while it is read -------------------------------------------------------------------
 
 WORLD = """{"type": "FeatureCollection", "features": [

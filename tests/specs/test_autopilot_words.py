@@ -88,7 +88,7 @@ def table(text):
         yield pytest.param(*change, place, message, hint, id=written)
 
 
-@pytest.mark.parametrize(("was", "now", "place", "message", "hint"), table(REFUSED))
+@pytest.mark.parametrize(("was", "now", "place", "message", "hint"), list(table(REFUSED)))
 def test_what_others_write_is_refused_once_with_what_to_write(was, now, place, message, hint):
     (shown_at, said, remedy), *others = told(was, now)
     assert (shown_at, others if was == "skip\n" else []) == (place, [])

@@ -280,7 +280,7 @@ def table(text):
         yield pytest.param(written.replace("\\n", "\n"), place, remedy, id=written)
 
 
-@pytest.mark.parametrize(("written", "place", "remedy"), table(REMEDIES))
+@pytest.mark.parametrize(("written", "place", "remedy"), list(table(REMEDIES)))
 def test_a_remedy_is_what_was_meant_or_what_there_is(written, place, remedy):
     assert [(at, hint) for at, _, hint in shown(PORT + ALONE + written)] == [(place, remedy)]
 
