@@ -1,5 +1,3 @@
-import pytest
-
 from bigraphs.canonical_form import equal
 from bigraphs.examples import example_text
 from bigraphs.notation import read_system
@@ -10,13 +8,6 @@ ctrl Room = 0;
 big house = /x (Room.(Door{x, y} | Room.1) | Door{x, x});
 begin brs init house; rules = []; end
 """
-
-
-@pytest.fixture
-def rooms(missions):
-    for name in ("rooms.big", "rooms.text"):
-        (missions / name).write_text(ROOMS, encoding="utf-8")
-    return missions
 
 
 def test_a_bgm_file_becomes_a_big_file_unless_its_names_do_not(bigactors, missions):

@@ -7,10 +7,8 @@ from specs import Code
 
 
 @pytest.mark.parametrize("code", Code)
-def test_every_code_is_explained(bigactors, code):
-    exit_code, out, err = bigactors("explain", code.number)
-    assert (exit_code, err) == (0, "")
-    assert out.startswith(f"{code.number}: {code.title} ")
+def test_every_code_is_explained(done, code):
+    assert done("explain", code.number).startswith(f"{code.number}: {code.title} ")
 
 
 def test_without_a_code_all_are_listed(bigactors):
@@ -32,10 +30,8 @@ def test_without_a_code_all_are_listed(bigactors):
         (["unserved", "OBS"], "unserved request"),
     ],
 )
-def test_a_word_of_a_report_is_explained(bigactors, asked, first):
-    exit_code, out, err = bigactors("explain", *asked)
-    assert (exit_code, err) == (0, "")
-    assert out.splitlines()[:2] == [first, ""]
+def test_a_word_of_a_report_is_explained(done, asked, first):
+    assert done("explain", *asked).splitlines()[:2] == [first, ""]
 
 
 def test_a_rule_is_explained_with_its_bar(bigactors):

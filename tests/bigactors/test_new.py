@@ -53,24 +53,5 @@ def test_a_path_is_taken_and_the_file_is_named_after_it(here, bigactors):
     assert "\nmission patrol\n" in (here / "missions" / "patrol.mission").read_text("utf-8")
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("taken", "taken.mission: it exists already, and is left as it is"),
-        ("nowhere/patrol", "nowhere/patrol.mission: there is no such folder"),
-        ("2nd", "'2nd' is no name"),
-        ("a b", "'a b' is no name"),
-        ("", "the name of a file is missing"),
-        ("world", "'world' is a word of the language"),
-        ("a\0b", "is no name"),
-    ],
-)
-def test_what_cannot_be_written_is_said_and_nothing_is(here, refused, name, words):
-    (here / "taken.mission").write_text("mine", encoding="utf-8")
-    assert words in refused("new", name)
-    assert [path.name for path in here.iterdir()] == ["taken.mission"]
-    assert (here / "taken.mission").read_text("utf-8") == "mine"
-
-
 def test_only_the_header_has_the_name():
     assert new_mission("patrol").replace("patrol", "new") == new_mission("new")

@@ -94,37 +94,6 @@ def test_a_vehicle_is_known_by_what_the_table_says():
     assert plugins("--name=serial:2f003b=uav0")[0].pilot("uav0").craft.serial == "2F003B"
 
 
-@pytest.mark.parametrize(
-    ("more", "vehicle", "says"),
-    [
-        (["--name=mavlink:3=uav0"], "--vehicle=uav0:4=udp:1", "'uav0' has two system ids: 4 and 3"),
-        (["--name=mavlink:300=uav0"], UAV, "'mavlink:300' is no system id"),
-        (["--name=mavlink:²=uav0"], UAV, "'mavlink:²' is no system id"),
-        ([], f"--vehicle=uav0=udp:127.0.0.1:{'9' * 5_000}", "is no port"),
-        (["--name=mavlink:3=uav0", "--name=serial:2F=uav0"], UAV, "would be called uav0, as serial:2F is"),
-        (["--name=mmsi:263999001=uav0"], UAV, "mmsi:263999001 would be called uav0, as vehicle:uav0 is"),
-        (["--name=mmsi:263999001=uav0"], "--vehicle=uav0:3=udp:1", "would be called uav0, as mavlink:3 is"),
-        (
-            ["--name=name:camera=searchArea0"],
-            UAV,
-            "name:camera would be called searchArea0, as place:searchArea0",
-        ),
-        (["--vehicle=uav0=udp:2"], UAV, "'uav0' is given twice"),
-        (["--kinds=detections=OilSpil"], UAV, "no kind 'OilSpil' that could be detected"),
-        (["--feed=ais=udp:1", "--kinds=ais=OilSpill"], UAV, "no station is of kind 'OilSpill'"),
-        (["--feed=detections=http:0.0.0.0:0"], UAV, "anyone who reaches 0.0.0.0 could post detections"),
-        (["--feed=detections=http:0", "--token=nowhere"], UAV, "No such file"),
-        (["--key=nowhere.json"], UAV, "cannot read the signing key"),
-        (["--fence=uav0"], UAV, "'uav0' is no fence"),
-        (["--within=99,0,98,1"], UAV, "latitude"),
-    ],
-)
-def test_what_cannot_be_so_is_a_mistake_that_says_why(more, vehicle, says):
-    with pytest.raises(Mistake) as error:
-        plugins(*more, vehicle=vehicle)
-    assert says in str(error.value)
-
-
 def test_vehicles_with_one_system_id_on_two_links_both_have_their_names(mission, tmp_path):
     mission(
         "sea0: Location = box (37.2, -8.5) (36.9, -8.8)",
@@ -136,6 +105,11 @@ def test_vehicles_with_one_system_id_on_two_links_both_have_their_names(mission,
     for name, holder in (("uav0", "mavlink:1"), ("uav1", "vehicle:uav1")):
         with pytest.raises(NameClash, match=f"as {holder} is"):
             feed._naming.name(f"name:{name}")
+
+
+def test_a_port_of_many_digits_is_none():
+    with pytest.raises(Mistake, match="is no port"):
+        plugins(vehicle=f"--vehicle=uav0=udp:127.0.0.1:{'9' * 5_000}")
 
 
 # --- feeds ----------------------------------------------------------------------------------------------

@@ -1,10 +1,10 @@
 """What no vehicle can do is said before take-off."""
 
 import asyncio
-import socket
 from contextlib import suppress
 
 import pytest
+from consoles import free_port
 
 from adapters.simulated import Kind, Simulator, Vehicle, run
 from bigactors.arguments import parse_arguments
@@ -92,12 +92,6 @@ async def flown(flight, vehicle):
         simulation.cancel()
         with suppress(asyncio.CancelledError):
             await simulation
-
-
-def free_port():
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return found.getsockname()[1]
 
 
 def options(folder, *statements):

@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 import stat
 import subprocess
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
+from bigactors.cli import main
 from bigactors.verdict_files import _seal
 
 SCHEMA = Path(__file__).parents[2] / "docs" / "reference" / "verdict.schema.json"
@@ -35,13 +37,20 @@ it should be an object with 'key' and 'ed25519', which is 64 bytes in base64
 """
 
 
+@pytest.fixture(scope="module")
+def signed(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path_factory.mktemp("signed"))
+        assert main(["keygen", "own.key"]) == main([*CHECK, "--sign", "own.key"]) == 0
+        return Path.cwd()
+
+
 @pytest.fixture
-def there(tmp_path, monkeypatch, bigactors):
+def there(signed, tmp_path, monkeypatch):
     """Work where there is a key pair, and a verdict that is signed with it."""
-    monkeypatch.chdir(tmp_path)
-    assert bigactors("keygen", "own.key")[0] == 0
-    assert bigactors(*CHECK, "--sign", "own.key")[0] == 0
-    return tmp_path
+    shutil.copytree(signed, tmp_path / "there")
+    monkeypatch.chdir(tmp_path / "there")
+    return tmp_path / "there"
 
 
 def changed(path, **members):
@@ -140,10 +149,10 @@ def test_what_is_no_key_is_told_before_anything_is_explored(there, refused):
     assert "No such file" in refused(*CHECK, "--sign", "nowhere")
 
 
-def test_a_key_of_openssl_serves_as_well(there, done, refused):
+def test_a_key_of_openssl_serves_as_well(there, bigactors, refused):
     made(
         there,
         "openssl genpkey -algorithm ed25519 -out o.key && openssl pkey -in o.key -pubout -out o.key.pub",
     )
-    done(*CHECK, "--sign", "o.key")
+    assert bigactors(*CHECK, "--sign", "o.key")[0] == 0
     assert "nothing was heard of uav0" in refused(*RUN, "--trust", "o.key.pub")

@@ -1,9 +1,8 @@
 """What autopilots and other languages write is refused once, where it stands, with what to write here."""
 
-import re
-
 import pytest
 from elaborating import elaborated, shown
+from tables import rows
 
 MISSION = """mission m
 signature { kind Cell kind UAV driven kind Spill }
@@ -25,52 +24,29 @@ check { deadlock_freedom }
 
 
 REFUSED = r"""
-wait(10 min)
-    wait | not a word of the language here | react { after 10 min => ... }
-sleep(5 s)
-    sleep | not a word of the language here | react { after 10 min => ... }
-takeoff(50 m)
-    takeoff | not a word of the language here | takes off and lands as its flights need
-land()
-    land | unknown behaviour 'land' | takes off and lands as its flights need
-go(50 m)
-    m | is no part of a value | units stand in after 10 min
-control(LAND)
-    LAND | is no control action | takes off and lands as its flights need
-control(TAKEOFF 50 m)
-    TAKEOFF | is no control action | takes off and lands
-control(RTL)
-    RTL | is no control action | an operator orders that in flight
-/* a\n   b { */ skip
-    /* a\n   b { */ | '/*' begins no comment here | write // before each line
-/* open\n  skip
-    /* open | '/*' begins no comment here | write // before each line
-send "found", spill to desk
-    , | a message is one value | send ("found", spill) to desk
-send "a", b, base to desk
-    , | a message is one value | send ("a", b, base) to desk
-match a { case base => skip default => skip }
-    default | not a word of | write case _ => statements
-control(MOVE_HOST_TO (37.0, -8.7))
-    37.0 | names an entity, and here are coordinates | declare target
-control(MOVE_HOST_TO point (37.0, -8.7))
-    37.0 | names an entity | declare target
-control(MOVE uav0 TO (37.0, -8.7))
-    37.0 | names an entity | declare target
-drifts within base ~> drifts 3 km in base
-    3 | no distance and no direction | drifts within base
-drifts within base ~> drifts 3 km
-    3 | no distance and no direction | drifts within place
-spill drifts within base ~> operator says "go"
-    operator | expected 'someone' | someone says "go"
-spill: Spill ~> spill-1: Spill
-    spill-1 | '-' is not part of names | write spill_1
-BigActor b  ~> BigActor b-north
-    b-north | '-' is not part of names | write b_north
-def go(a) ~> def go(to)
-    to | is a word of the language and cannot be a name | another name
-def go(a) ~> def go(a, in)
-    in | is a word of the language and cannot be a name | another name
+wait(10 min)  # wait | not a word of the language here | react { after 10 min => ... }
+sleep(5 s)  # sleep | not a word of the language here | react { after 10 min => ... }
+takeoff(50 m)  # takeoff | not a word of the language here | takes off and lands as its flights need
+land()  # land | unknown behaviour 'land' | takes off and lands as its flights need
+go(50 m)  # m | is no part of a value | units stand in after 10 min
+control(LAND)  # LAND | is no control action | takes off and lands as its flights need
+control(TAKEOFF 50 m)  # TAKEOFF | is no control action | takes off and lands
+control(RTL)  # RTL | is no control action | an operator orders that in flight
+/* a\n   b { */ skip  # /* a\n   b { */ | '/*' begins no comment here | write // before each line
+/* open\n  skip  # /* open | '/*' begins no comment here | write // before each line
+send "found", spill to desk  # , | a message is one value | send ("found", spill) to desk
+send "a", b, base to desk  # , | a message is one value | send ("a", b, base) to desk
+match a { case base => skip default => skip }  # default | not a word of | write case _ => statements
+control(MOVE_HOST_TO (37.0, -8.7))  # 37.0 | names an entity, and here are coordinates | declare target
+control(MOVE_HOST_TO point (37.0, -8.7))  # 37.0 | names an entity | declare target
+control(MOVE uav0 TO (37.0, -8.7))  # 37.0 | names an entity | declare target
+drifts within base ~> drifts 3 km in base  # 3 | no distance and no direction | drifts within base
+drifts within base ~> drifts 3 km  # 3 | no distance and no direction | drifts within place
+spill drifts within base ~> operator says "go"  # operator | expected 'someone' | someone says "go"
+spill: Spill ~> spill-1: Spill  # spill-1 | '-' is not part of names | write spill_1
+BigActor b hosted_at ~> BigActor b-north hosted_at  # b-north | '-' is not part of names | write b_north
+def go(a) ~> def go(to)  # to | is a word of the language and cannot be a name | another name
+def go(a) ~> def go(a, in)  # in | is a word of the language and cannot be a name | another name
 """
 
 
@@ -79,21 +55,15 @@ def told(was, now):
     return shown(MISSION.replace(was, now))
 
 
-def table(text):
-    """Yield what is written, a statement or a text for another, its place, and words of the message and the remedy."""
-    for written, said in re.findall(r"^(\S.*)\n((?: {4}.*\n)+)", text, re.MULTILINE):
-        was, _, now = written.replace("\\n", "\n").rpartition(" ~> ")
-        place, message, hint = " ".join(said.split()).replace("\\n", "\n").split(" | ")
-        change = (was, now) if was else ("skip\n", f"{now}\n")
-        yield pytest.param(*change, place, message, hint, id=written)
-
-
-@pytest.mark.parametrize(("was", "now", "place", "message", "hint"), list(table(REFUSED)))
-def test_what_others_write_is_refused_once_with_what_to_write(was, now, place, message, hint):
-    (shown_at, said, remedy), *others = told(was, now)
-    assert (shown_at, others if was == "skip\n" else []) == (place, [])
-    assert message in said
-    assert hint in remedy
+@pytest.mark.parametrize(("written", "said"), list(rows(REFUSED)))
+def test_what_others_write_is_refused_once_with_what_to_write(written, said):
+    was, _, now = written.rpartition(" ~> ")
+    place, message, remedy = said.split(" | ")
+    found, *others = told(was, now) if was else told("  skip\n", f"  {now}\n")
+    assert found[0] == place
+    assert message in found[1]
+    assert remedy in found[2]
+    assert was or not others
 
 
 def test_a_subtraction_is_no_hyphen():

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from elaborating import elaborated, mistakes
 from hypothesis import given
+from tables import rows
 
 from semantics import strategies
 from semantics.behaviours.expressions import OPERATORS, Apply, EvaluationScope, Fault, Literal, evaluate
@@ -161,59 +162,36 @@ def test_an_operator_is_reported_just_where_it_fails(operator):
 
 # --- where each fault of a run is known before -------------------------------------------------------------------
 
-TEST = "a test needs true or false"
-GONE_THROUGH = "a set, a route or an observation was expected"
-COMPUTED = "can't be computed"
-A_SET = "needs a set, a route or an observation, and"
-AN_ENTITY = "needs an entity, and"
-STATIC = [
-    ("if ? { skip }", "r0", TEST, "a condition is true or false, and 'r0' is an entity"),
-    ("while ? { skip }", "3", TEST, "a condition is true or false, and '3' is a number"),
-    (
-        "react { case o if ? => skip }",
-        "size(o)",
-        TEST,
-        "a condition is true or false, and 'size(o)' is a number",
-    ),
-    ("let y = true and ?", '"x"', TEST, "'and' needs true or false, and '\"x\"' is a text"),
-    ("for p in ? { skip }", "3", GONE_THROUGH, f"'for' {A_SET} '3' is a number"),
-    ("choose p in ? { skip }", "SELF", GONE_THROUGH, f"'choose' {A_SET} 'SELF' is a bigActor"),
-    ("choose p in ? { skip }", "{}", "nothing to choose from", f"'choose' {A_SET} '{{}}' is an empty set"),
-    (
-        "display(first(?))",
-        "{} - {r0}",
-        "the set is empty",
-        f"'first' {A_SET} '{{}} - {{r0}}' is an empty set",
-    ),
-    ("display(size(?))", "3", COMPUTED, f"'size' {A_SET} '3' is a number"),
-    ("display(1 + ?)", "r0", COMPUTED, "'+' needs a number, and 'r0' is an entity"),
-    ("display(kind(?))", '"Loud"', COMPUTED, f"'kind' {AN_ENTITY} '\"Loud\"' is a text"),
-    ("display(element(?, 2))", "(1, 2)", COMPUTED, "'(1, 2)' has 2 items, counted from 0, and no item 2"),
-    ("display(3 in ?)", "r0", COMPUTED, f"'in' {A_SET} 'r0' is an entity"),
-    ("control(MOVE_HOST_TO ?)", "3", "a name was expected", f"MOVE_HOST_TO {AN_ENTITY} '3' is a number"),
-    (
-        "control(MOVE_HOST_TO ?)",
-        "{}",
-        "one name was expected",
-        f"MOVE_HOST_TO {AN_ENTITY} '{{}}' is an empty set",
-    ),
-    ("control(MOVE_HOST_TO r0 VIA ?)", "true", "a name", f"MOVE_HOST_TO {AN_ENTITY} 'true' is true or false"),
-    (
-        "control(go(?))",
-        '"x"',
-        "a name was expected",
-        f"rule 'go' {AN_ENTITY} a text that names none is given",
-    ),
-    (
-        "migrate(?)",
-        "{3}",
-        "a name was expected",
-        f"'migrate' {AN_ENTITY} '{{3}}' is a set that holds a number",
-    ),
-    ("spawn b hosted_at ? with_behavior still()", "3", "a name", f"'hosted_at' {AN_ENTITY} '3' is a number"),
-    ("match ? { case 3 => skip }", "r0", "no case of 'match'", "no case takes 'r0', which is an entity"),
-    ('send "x" to ?', "3", "a name was expected", "'send' needs a bigActor, and '3' is a number"),
-]
+STATIC = r"""
+if ? { skip } with r0  # a test needs true or false | a condition is true or false, and 'r0' is an entity
+while ? { skip } with 3  # a test needs true or false | a condition is true or false, and '3' is a number
+react { case o if ? => skip } with size(o)
+    # a test needs true or false | a condition is true or false, and 'size(o)' is a number
+let y = true and ? with "x"  # a test needs true or false | 'and' needs true or false, and '"x"' is a text
+for p in ? { skip } with 3
+    # a set, a route or an observation was expected | 'for' needs a set, a route or an observation, and '3' is a
+    number
+choose p in ? { skip } with SELF
+    # a set, a route or an observation was expected | 'choose' needs a set, a route or an observation, and 'SELF' is
+    a bigActor
+choose p in ? { skip } with {}
+    # nothing to choose from | 'choose' needs a set, a route or an observation, and '{}' is an empty set
+display(first(?)) with {} - {r0}
+    # the set is empty | 'first' needs a set, a route or an observation, and '{} - {r0}' is an empty set
+display(size(?)) with 3  # can't be computed | 'size' needs a set, a route or an observation, and '3' is a number
+display(1 + ?) with r0  # can't be computed | '+' needs a number, and 'r0' is an entity
+display(kind(?)) with "Loud"  # can't be computed | 'kind' needs an entity, and '"Loud"' is a text
+display(element(?, 2)) with (1, 2)  # can't be computed | '(1, 2)' has 2 items, counted from 0, and no item 2
+display(3 in ?) with r0  # can't be computed | 'in' needs a set, a route or an observation, and 'r0' is an entity
+control(MOVE_HOST_TO ?) with 3  # a name was expected | MOVE_HOST_TO needs an entity, and '3' is a number
+control(MOVE_HOST_TO ?) with {}  # one name was expected | MOVE_HOST_TO needs an entity, and '{}' is an empty set
+control(MOVE_HOST_TO r0 VIA ?) with true  # a name | MOVE_HOST_TO needs an entity, and 'true' is true or false
+control(go(?)) with "x"  # a name was expected | rule 'go' needs an entity, and a text that names none is given
+migrate(?) with {3}  # a name was expected | 'migrate' needs an entity, and '{3}' is a set that holds a number
+spawn b hosted_at ? with_behavior still() with 3  # a name | 'hosted_at' needs an entity, and '3' is a number
+match ? { case 3 => skip } with r0  # no case of 'match' | no case takes 'r0', which is an entity
+send "x" to ? with 3  # a name was expected | 'send' needs a bigActor, and '3' is a number
+"""
 
 UNKNOWN = "element(element(((?, 1), 1), 0), 0)"  # the types of a tuple's tuples are not followed
 
@@ -237,11 +215,9 @@ def fault(text):
     return "none"
 
 
-STATIC_NAMES = [f"{statement} {value}" for statement, value, _, _ in STATIC]
-
-
-@pytest.mark.parametrize(("statement", "value", "said", "diagnostic"), STATIC, ids=STATIC_NAMES)
-def test_a_fault_that_a_type_tells_is_a_diagnostic(statement, value, said, diagnostic):
+@pytest.mark.parametrize(("row", "told"), list(rows(STATIC)))
+def test_a_fault_that_a_type_tells_is_a_diagnostic(row, told):
+    (statement, value), (said, diagnostic) = row.split(" with "), told.split(" | ")
     assert said in fault(mission(statement.replace("?", UNKNOWN.replace("?", value))))
     (found,) = mistakes(mission(statement.replace("?", value)))
     assert (found.code, found.message) == (Code.WRONG_VALUE, diagnostic)

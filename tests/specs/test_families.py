@@ -59,19 +59,14 @@ def test_a_family_has_a_member_for_each_entity_called_by_it(head, members):
 
 
 @pytest.mark.parametrize(
-    ("among", "numbered"),
-    [
-        ("UAV", [("uav0", 0), ("uav1", 1)]),
-        ("{uav1, uav0}", [("uav0", 0), ("uav1", 1)]),
-        ("[uav1, uav0]", [("uav1", 0), ("uav0", 1)]),
-    ],
+    ("among", "members"),
+    [("UAV", ["uav0", "uav1"]), ("{uav1, uav0}", ["uav0", "uav1"]), ("[uav1, uav0]", ["uav1", "uav0"])],
 )
-def test_members_are_numbered_in_the_order_of_names_or_of_the_route(among, numbered):
-    sent = statements(family("send 1 to f[i] migrate(u)", f"f[i] for u in {among} hosted_at u"), Send)
-    assert [each.to for each in sent] == [Literal(f"f[{entity}]") for entity, _ in numbered]
-    counted = statements(family("send i to f[u]", f"f[i] for u in {among} hosted_at u"), Send)
-    assert [(each.to.value, each.message.value) for each in counted] == [
-        (f"f[{entity}]", number) for entity, number in numbered
+def test_members_are_numbered_in_the_order_of_names_or_of_the_route(among, members):
+    sent = statements(family("send 1 to f[i] send i to f[u]", f"f[i] for u in {among} hosted_at u"), Send)
+    numbered = [pair for number, name in enumerate(members) for pair in ((name, 1), (name, number))]
+    assert [(each.to.value, each.message.value) for each in sent] == [
+        (f"f[{name}]", n) for name, n in numbered
     ]
 
 
@@ -80,13 +75,8 @@ def test_entity_and_number_stand_in_arguments_queries_patterns_and_rules():
       visit(u) observe(PARENT(u))
       react { case ("to", =u, n) if n == i => control({ u || a0.$0 -> a0.(u | $0) }) }
     """
-    program = elaborated(WORLD + family(body)).setting.program
-    (one, other) = (
-        each.arguments
-        for each in program.statements
-        if isinstance(each, ControlBy) and each.name != "MOVE_HOST_TO"
-    )
-    assert (one, other) == ((Literal("uav0"),), (Literal("uav1"),))
+    ruled = [each for each in statements(family(body), ControlBy) if each.name != "MOVE_HOST_TO"]
+    assert [each.arguments for each in ruled] == [(Literal("uav0"),), (Literal("uav1"),)]
 
 
 def test_a_variable_hides_the_entity_and_a_member_does_not_change_it():
@@ -175,9 +165,8 @@ def test_a_quantifier_goes_through_bigactors_of_a_family_a_behaviour_or_a_host(a
 
 
 def test_a_kind_called_agents_is_a_kind():
-    text = WORLD.replace("kind Ship", "kind Ship kind agents").replace(
-        "gcs0: Station", "gcs1: agents = point (37, -8)\n gcs0: Station"
-    )
+    text = WORLD.replace("kind Ship", "kind Ship kind agents")
+    text = text.replace("gcs0: Station", "gcs1: agents = point (37, -8)\n gcs0: Station")
     mission = elaborated(text + CREW + 'check { invariant "f": forall x: agents . known x }')
     assert [str(each) for each in mission.properties[0].formula.formulas] == ["known gcs1"]
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from elaborating import mistakes, shown, told
 from geojson import collection, feature
+from tables import rows
 
 from specs.diagnostics import Source
 from specs.elaboration.mission import diagnose
@@ -161,128 +162,89 @@ world {
 """
 ALONE = "BigActor p hosted_at uav with_behavior { skip }\n"
 REMEDIES = r"""
-environment { wifi drop }
-    drop | did you mean 'drops'?
-environment { wifi:land drop and returns }
-    drop | did you mean 'drops'?
-def f() = { contol(MOVE_HOST_TO r0) }
-    contol | write control(MOVE_HOST_TO place)
-def f() = { let n = 2 * 3 }
-    * | numbers are only added and subtracted: + and -
+environment { wifi drop }  # drop | did you mean 'drops'?
+environment { wifi:land drop and returns }  # drop | did you mean 'drops'?
+def f() = { contol(MOVE_HOST_TO r0) }  # contol | write control(MOVE_HOST_TO place)
+def f() = { let n = 2 * 3 }  # * | numbers are only added and subtracted: + and -
 def f(t) = { if x in (CHILDREN(t)) { skip } }
-    CHILDREN | write observe(CHILDREN...), and ask what is received: react { case obs if x in obs => ... }
+    # CHILDREN | write observe(CHILDREN...), and ask what is received: react { case obs if x in obs => ... }
 BigActor q hosted_at uav with_behavior { let who = uav react { case ("clear", =who) => skip } }
-    =who | take the value, and compare it in a guard: case x if x == who => ...
-world { lake: Lake = point (37.1, -8.6) }
-    Lake | declare it: signature { kind Lake }
+    # =who | take the value, and compare it in a guard: case x if x == who => ...
+world { lake: Lake = point (37.1, -8.6) }  # Lake | declare it: signature { kind Lake }
 check { invariant "i": forall u: Drone . u in base }
-    Drone | the kinds are Drifter, Location, OilSpill, Station, Tanker, UAV and Vessel; or declare it: signature
-        { kind Drone }
+    # Drone | the kinds are Drifter, Location, OilSpill, Station, Tanker, UAV and Vessel; or declare it: signature
+    { kind Drone }
 environment { radio drops and returns }
-    radio | the channels are control:gcs and vhf; or declare it: world { channel radio }
-BigActor q hosted_at uav with_behavior { send "a" to me }
-    me | the bigActors are p and q
-BigActor q hosted_at plane with_behavior { skip }
-    plane | the entities are base, boat, gcs, sea and uav
-BigActor q hosted_at uva with_behavior { skip }
-    uva | did you mean 'uav'?
+    # radio | the channels are control:gcs and vhf; or declare it: world { channel radio }
+BigActor q hosted_at uav with_behavior { send "a" to me }  # me | the bigActors are p and q
+BigActor q hosted_at plane with_behavior { skip }  # plane | the entities are base, boat, gcs, sea and uav
+BigActor q hosted_at uva with_behavior { skip }  # uva | did you mean 'uav'?
 BigActor q hosted_at uav with_behavior { control(land(base)) }
-    land | control actions are MOVE_HOST_TO place, MOVE entity TO place, PUT entity IN place, HAND entity TO
-        station, CONNECT_HOST_TO node, DISCONNECT_HOST_FROM node
+    # land | control actions are MOVE_HOST_TO place, MOVE entity TO place, PUT entity IN place, HAND entity TO
+    station, CONNECT_HOST_TO node, DISCONNECT_HOST_FROM node
 BigActor q hosted_at uav with_behavior { control(FLY_TO sea) }
-    FLY_TO | a vehicle is sent to an entity: declare target: Kind = circle (37.08, -8.55) radius 100 m, and
-        write control(MOVE_HOST_TO target)
+    # FLY_TO | a vehicle is sent to an entity: declare target: Kind = circle (37.08, -8.55) radius 100 m, and write
+    control(MOVE_HOST_TO target)
 BigActor q hosted_at uav with_behavior { display(nothing) }
-    nothing | a variable is bound by let nothing = ...; a text is written "nothing"
+    # nothing | a variable is bound by let nothing = ...; a text is written "nothing"
 BigActor q hosted_at uav with_behavior { control(MOVE_HOST_TO gcs) }
-    MOVE_HOST_TO gcs | name a place that may contain a UAV: base, sea
+    # MOVE_HOST_TO gcs | name a place that may contain a UAV: base, sea
 world { cell: Location = box (37.13, -8.5) (37.08, -8.6) }
-    cell | what lies inside touches no border: make sea a little larger
-BigActor q hosted_at uav with_behavior { for c in base, sea { skip } }
-    , | write for c in [base, sea] { ... }
-BigActor q hosted_at uav with_behavior { choose c in base, sea { skip } }
-    , | write choose c in [base, sea] { ... }
-environment { vhf drops and comes back }
-    comes | write returns instead of comes back
-environment { vhf drops and recovers }
-    recovers | write returns instead of recovers
-world { raft: Drifter carried_by boat }
-    carried_by | write carried by
+    # cell | what lies inside touches no border: make sea a little larger
+BigActor q hosted_at uav with_behavior { for c in base, sea { skip } }  # , | write for c in [base, sea] { ... }
+BigActor q hosted_at uav with_behavior { choose c in base, sea { skip } }  # , | write choose c in [base, sea] { ... }
+environment { vhf drops and comes back }  # comes | write returns instead of comes back
+environment { vhf drops and recovers }  # recovers | write returns instead of recovers
+world { raft: Drifter carried_by boat }  # carried_by | write carried by
 BigActor q hosted_at uav with_behavior { wait 10 min }
-    wait | time passes in a react: react { after 10 min => ... }, with cases for what may come earlier
+    # wait | time passes in a react: react { after 10 min => ... }, with cases for what may come earlier
 BigActor q hosted_at uav with_behavior { sleep 10 s }
-    sleep | time passes in a react: react { after 10 min => ... }, with cases for what may come earlier
-world { cell: Location = rect (37.1, -8.6) (37.0, -8.5) }
-    rect | write box (37.13, -8.5) (37.05, -8.7): two corners
-BigActor q hosted_at uav with_behavior { print(3) }
-    print | write display(value)
-environment { boat drifts to sea }
-    to | write drifts within sea, or drifts among sea, others
-environment { boat appears in sea }
-    in | write at instead of in
-environment { boat moves }
-    moves | write drifts within place0, or drifts among place0, place1
+    # sleep | time passes in a react: react { after 10 min => ... }, with cases for what may come earlier
+world { cell: Location = rect (37.1, -8.6) (37.0, -8.5) }  # rect | write box (37.13, -8.5) (37.05, -8.7): two corners
+BigActor q hosted_at uav with_behavior { print(3) }  # print | write display(value)
+environment { boat drifts to sea }  # to | write drifts within sea, or drifts among sea, others
+environment { boat appears in sea }  # in | write at instead of in
+environment { boat moves }  # moves | write drifts within place0, or drifts among place0, place1
 environment { boat drops vhf }
-    } | what happens is written wifi drops, uav0 leaves wifi, boat0 drifts within place0, boat0 appears at
-        place0
+    # } | what happens is written wifi drops, uav0 leaves wifi, boat0 drifts within place0, boat0 appears at place0
 BigActor q hosted_at uav with_behavior { observe(NEIGHBOURS(base)) }
-    NEIGHBOURS | queries are PARENT(...), CHILDREN(...), LINKED_TO(...), HOSTED_AT(...), HOST and ALL
+    # NEIGHBOURS | queries are PARENT(...), CHILDREN(...), LINKED_TO(...), HOSTED_AT(...), HOST and ALL
 BigActor q hosted_at uav with_behavior { react { timeout 10 s => skip } }
-    timeout | write after 10 min => statements
+    # timeout | write after 10 min => statements
 BigActor q hosted_at uav with_behavior { for c in Location { skip } }
-    Location | list those that are meant: {base, sea}
+    # Location | list those that are meant: {base, sea}
 BigActor q hosted_at base with_behavior { control(MOVE_HOST_TO sea) }
-    MOVE_HOST_TO sea | what is driven moves: boat, uav
+    # MOVE_HOST_TO sea | what is driven moves: boat, uav
 world { x: UAV in base }
-    in | write = point (37.08, -8.55): where it lies decides in which place it is; or carried by an entity
-check { invariant "i": uav inside sea }
-    inside | write in: uav0 in place0
-check { invariant "i": uav in sea implies boat in sea }
-    implies | write ->
-check { invariant "i": for all u: UAV . u in sea }
-    for | write forall u: Kind . formula
-check { ltl "l": globally uav in sea }
-    globally | write always
+    # in | write = point (37.08, -8.55): where it lies decides in which place it is; or carried by an entity
+check { invariant "i": uav inside sea }  # inside | write in: uav0 in place0
+check { invariant "i": uav in sea implies boat in sea }  # implies | write ->
+check { invariant "i": for all u: UAV . u in sea }  # for | write forall u: Kind . formula
+check { ltl "l": globally uav in sea }  # globally | write always
 check { ltl "l" under fairness: eventually uav in sea }
-    fairness | write under weak fairness of environment, or of the name of a bigActor
+    # fairness | write under weak fairness of environment, or of the name of a bigActor
 BigActor q hosted_at uav with_behavior { control(MOVE_HOST_TO PARENT(boat)) }
-    PARENT | go where it was seen: observe(ALL) react { case obs: Observation if boat in obs =>
-        control(MOVE_HOST_TO parent(boat, obs)) }
+    # PARENT | go where it was seen: observe(ALL) react { case obs: Observation if boat in obs =>
+    control(MOVE_HOST_TO parent(boat, obs)) }
 check { invariant "i": uav.altitude < 100 }
-    uav | only bigActors have; of an entity is asked: uav in place, uav linked channel
-check { invariant "i": ended uav }
-    uav | name the bigActor that it hosts: p
-check { invariant "i": forall u: UAV u in base }
-    u | write forall u: UAV . formula
-check { invariant "i": exists u: UAV, u in base }
-    , | write exists u: UAV . formula
-check { invariant "i": forall u, v: UAV u in v }
-    u | write forall u, v: UAV . formula
-check { invariant "i": forall u, v in UAV . u in v }
-    in | write forall u, v: UAV . formula
-check { invariant "i": forall u v: UAV . u in v }
-    v | write forall u, v: Kind . formula
-check { invariant "i": forall u in UAV: u in base }
-    in | write forall u: UAV . formula
-check { invariant "i": actually uav = boat }
-    = | ask where it is: uav in place, or of its links: uav linked channel
+    # uav | only bigActors have; of an entity is asked: uav in place, uav linked channel
+check { invariant "i": ended uav }  # uav | name the bigActor that it hosts: p
+check { invariant "i": forall u: UAV u in base }  # u | write forall u: UAV . formula
+check { invariant "i": exists u: UAV, u in base }  # , | write exists u: UAV . formula
+check { invariant "i": forall u, v: UAV u in v }  # u | write forall u, v: UAV . formula
+check { invariant "i": forall u, v in UAV . u in v }  # in | write forall u, v: UAV . formula
+check { invariant "i": forall u v: UAV . u in v }  # v | write forall u, v: Kind . formula
+check { invariant "i": forall u in UAV: u in base }  # in | write forall u: UAV . formula
+check { invariant "i": actually uav = boat }  # = | ask where it is: uav in place, or of its links: uav linked channel
 BigActor q hosted_at uav with_behavior { if uav in base { skip } }
-    base | observe it first: observe(CHILDREN(base)) react { case obs: Observation if x in obs => ... }
-BigActor q hosted_at uav with_behavior { let x == 3 }
-    == | a single = gives a value, == compares
+    # base | observe it first: observe(CHILDREN(base)) react { case obs: Observation if x in obs => ... }
+BigActor q hosted_at uav with_behavior { let x == 3 }  # == | a single = gives a value, == compares
 """
 
 
-def table(text):
-    """Yield what is written, the place at which it is refused, and the remedy, on two lines or more each."""
-    for written, said in re.findall(r"^(\S.*)\n((?: {4}.*\n)+)", text, re.MULTILINE):
-        place, remedy = " ".join(said.split()).split(" | ")
-        yield pytest.param(written.replace("\\n", "\n"), place, remedy, id=written)
-
-
-@pytest.mark.parametrize(("written", "place", "remedy"), list(table(REMEDIES)))
-def test_a_remedy_is_what_was_meant_or_what_there_is(written, place, remedy):
-    assert [(at, hint) for at, _, hint in shown(PORT + ALONE + written)] == [(place, remedy)]
+@pytest.mark.parametrize(("written", "said"), list(rows(REMEDIES)))
+def test_a_remedy_is_what_was_meant_or_what_there_is(written, said):
+    assert [f"{place} | {hint}" for place, _, hint in shown(PORT + ALONE + written)] == [said]
 
 
 FROM_FILE = """signature standard world { from "port.geojson" }
