@@ -39,13 +39,7 @@ integers = st.builds(s.IntegerLiteral, st.integers(0, 10**9 - 1))
 signed = st.builds(s.IntegerLiteral, st.integers(-(10**9) + 1, 10**9 - 1))
 floats = st.floats(allow_nan=False, allow_infinity=False).map(lambda value: value or 0.0)
 positive = st.floats(0, allow_infinity=False).map(lambda value: value or 0.0)
-MOST_DEEP = 5
-LEFT_OUT = {
-    *(s.PathPrefix, s.PathOperation, s.LeadsTo, s.PathQuantifier, s.Taken, s.Enabled),
-    *(s.TemporalProperty, s.FairDeadlockFreedom, s.Progress, s.Timing),
-}
-"""Formulas of runs and times have tests of their own."""
-
+MOST_DEEP = 6
 REQUESTS, FALLBACKS = ["OBS", "CTR", "FLY", "SND", "MGR"], ["hold", "return", "continue"]
 ONE_OF = {
     (s.UnaryOperation, "operator"): ["not", "-"],
@@ -66,6 +60,11 @@ ONE_OF = {
     (s.Connective, "operator"): ["and", "or", "->", "<->"],
     (s.Quantified, "quantifier"): ["forall", "exists"],
     (s.Quantified, "joined"): [False],
+    (s.PathPrefix, "operator"): ["[]", "<>", "X", "always", "eventually", "next", "infinitely often"],
+    (s.PathOperation, "operator"): ["U", "W", "R", "until"],
+    (s.PathQuantifier, "quantifier"): ["A", "E"],
+    (s.TemporalProperty, "logic"): ["ltl", "ctl"],
+    (s.Fairness, "strength"): ["weak", "strong"],
     (s.Stored, "operator"): ["==", "<", "<=", ">", ">="],
     (s.Pending, "request"): [None, "READY", *REQUESTS],
     (s.TimeLimit, "request"): [None, *REQUESTS],
@@ -84,12 +83,17 @@ FIELDS = {key: st.sampled_from(values) for key, values in ONE_OF.items()} | {
     (s.Says, "times"): st.integers(0, 99),
     (s.FromSource, "limit"): st.none() | st.integers(0, 10**6),
     (s.Drops, "channel"): channels,
+    (s.Steps, "words"): st.tuples(names) | st.tuples(names, names),
+    (s.FairDeadlockFreedom, "fairness"): st.deferred(
+        lambda: st.lists(trees(s.Fairness, 1), min_size=1, max_size=2).map(tuple)
+    ),
     (s.Leaves, "channel"): channels,
     (s.ChannelDeclaration, "name"): channels,
     (s.LinkedTo, "other"): channels,
     (s.LiteralPattern, "value"): strings | signed | st.builds(s.TruthLiteral, st.booleans()),
 }
 LEAST = {
+    s.Fairness: 1,
     s.TupleLiteral: 2,
     s.TuplePattern: 2,
     s.Polygon: 1,
@@ -97,6 +101,7 @@ LEAST = {
     s.DriftsAmong: 1,
     (s.Appears, "placements"): 1,
 }
+IN_TUPLES = s.VariablePattern | s.Wildcard | s.LiteralPattern | s.ConstantPattern | s.TuplePattern
 SPECIAL = {
     s.Name: names,
     s.TextLiteral: strings,
@@ -110,7 +115,7 @@ SPECIAL = {
 
 def members(type_):
     """Return the types of a union, or the type alone."""
-    return [each for each in getattr(type_, "__args__", ()) or [type_] if each not in LEFT_OUT]
+    return [each for each in getattr(type_, "__args__", ()) or [type_] if each is not s.Timing]
 
 
 def is_recursive(type_):
@@ -147,7 +152,7 @@ def part(owner, name, type_, depth):
         return FIELDS[owner, name]
     if get_origin(type_) is not tuple:
         return st.deferred(lambda: trees(type_, max(depth, 0)))
-    item, _ = get_args(type_)
+    item, _ = get_args(type_) if owner is not s.TuplePattern else (IN_TUPLES, ...)
     least = LEAST.get(owner, LEAST.get((owner, name), 0))
     items = channels if name == "channels" else st.deferred(lambda: trees(item, max(depth, 0)))
     return st.lists(items, min_size=least, max_size=max(least, 3 if depth > 0 else 0)).map(tuple)
