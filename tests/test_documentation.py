@@ -32,10 +32,9 @@ from bigraphs.notation import read_system
 from specs.missions import shipped_missions
 
 LONG = {
-    "docs/tutorial/flight.md",
-    "docs/explanation/time.md",
+    *(f"docs/tutorial/{name}.md" for name in ("first-mission", "flight", "race")),
+    *(f"docs/explanation/{name}.md" for name in ("reduction", "time")),
     "docs/reference/output.md",
-    "docs/tutorial/race.md",
     *(
         f"docs/how-to/{name}.md"
         for name in ("bigraphs", "connect-a-vehicle", "own-rule", "python", "write-a-plugin")

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from geojson import collection, feature
+from scale import crossed
 
 from bigactors.missions import canonical, digest_of, locate, open_mission
 from bigactors.mistakes import Mistake
@@ -78,14 +79,18 @@ BigActor a hosted_at uav0 with_behavior { observe(ALL) react { case obs => skip 
 """
 
 
-@pytest.mark.parametrize("name", [*shipped_missions(), "believing.mission"])
-def test_a_mission_read_once_is_under_another_scheduler_what_it_would_be_read_again(missions, name):
+@crossed(
+    [*shipped_missions(), "believing.mission"],
+    {f"{scheduler}-{control}": (scheduler, control) for scheduler, control in product(Scheduler, Control)},
+)
+def test_a_mission_read_once_is_under_another_scheduler_what_it_would_be_read_again(
+    missions, name, variation
+):
     (missions / "believing.mission").write_text(BELIEVING, encoding="utf-8")
-    read = open_mission(name, Variation())
-    controls = Control if read.setting.timing is None else (Control.TIMED,)
-    for scheduler, control in product(Scheduler, controls):
-        again = open_mission(name, Variation(scheduler, control))
-        assert digest_of(read.under(scheduler, control)) == digest_of(again)
+    read, (scheduler, control) = open_mission(name, Variation()), variation
+    control = control if read.setting.timing is None else Control.TIMED
+    again = open_mission(name, Variation(scheduler, control))
+    assert digest_of(read.under(scheduler, control)) == digest_of(again)
 
 
 @pytest.mark.parametrize(

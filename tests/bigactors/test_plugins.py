@@ -136,34 +136,47 @@ def test_who_listens_to_the_network_asks_for_a_token(tmp_path):
         plugins("--feed=detections=http:0", f"--token={tmp_path / 'token'}")
 
 
-def test_a_place_that_never_moves_can_be_detected_where_its_kind_is_expected():
-    for more, clashes in (((), True), (("--kinds=detections=Location",), False)):
-        _, feed = plugins("--feed=detections=folder:.", *more)
-        with pytest.raises(NameClash, match="as place:searchArea0 is") if clashes else nullcontext():
-            assert feed._naming.name("name:searchArea0", "Location") == "searchArea0"
+NO_ENTITIES = ["region", "pilot", "OilSpill", "internet"]
 
 
-def test_a_station_cannot_be_detected_whatever_its_kind_unless_the_table_says_which_transponder_it_has():
-    _, feed = plugins("--feed=detections=folder:.", "--kinds=detections=Station")
-    with pytest.raises(NameClash, match="name:gcs0 would be called gcs0, as station:gcs0 is"):
-        feed._naming.name("name:gcs0", "Station")
-    _, feed = plugins("--feed=ais=udp:0", "--name=mmsi:244660274=gcs0")
-    assert feed._naming.name("mmsi:244660274", "BaseStation") == "gcs0"
+@pytest.mark.parametrize(
+    ("option", "seen", "kind", "clash"),
+    [
+        ("--within=36,-9,38,-8", "searchArea0", "Location", "as place:searchArea0 is"),
+        ("--kinds=detections=Location", "searchArea0", "Location", None),  # where its kind is expected
+        (
+            "--kinds=detections=Station",
+            "gcs0",
+            "Station",
+            "name:gcs0 would be called gcs0, as station:gcs0 is",
+        ),
+        (
+            "--within=36,-9,38,-8",
+            "oilSpill0",
+            "Drifter",
+            "oilSpill0 is of kind OilSpill in the mission, not Drifter",
+        ),
+        *(
+            ("--within=36,-9,38,-8", name, "OilSpill", f"name:{name} would be called {name}, as ")
+            for name in NO_ENTITIES
+        ),
+    ],
+)
+def test_what_is_detected_cannot_be_something_else_of_the_mission(option, seen, kind, clash):
+    _, feed = plugins("--feed=detections=folder:.", option)
+    with pytest.raises(NameClash, match=clash) if clash else nullcontext():
+        assert feed._naming.name(f"name:{seen}", kind) == seen
 
 
-def test_what_is_detected_is_of_the_kind_that_the_mission_has_it_as():
-    _, feed = plugins("--feed=detections=folder:.")
-    with pytest.raises(NameClash, match="oilSpill0 is of kind OilSpill in the mission, not Drifter"):
-        feed._naming.name("name:oilSpill0", "Drifter")
-
-
-@pytest.mark.parametrize("name", ["region", "pilot", "OilSpill", "internet"])
-def test_nothing_seen_can_take_a_name_that_the_mission_has_as_no_entity(name):
-    _, feed = plugins("--feed=detections=folder:.")
-    with pytest.raises(NameClash, match=f"name:{name} would be called {name}, as "):
-        feed._naming.name(f"name:{name}", "OilSpill")
+@pytest.mark.parametrize("name", NO_ENTITIES)
+def test_the_table_can_give_no_name_that_the_mission_has_as_no_entity(name):
     with pytest.raises(Mistake, match=f"mmsi:244660274 would be called {name}, as "):
         plugins(f"--name=mmsi:244660274={name}")
+
+
+def test_the_table_says_which_transponder_a_station_has():
+    _, feed = plugins("--feed=ais=udp:0", "--name=mmsi:244660274=gcs0")
+    assert feed._naming.name("mmsi:244660274", "BaseStation") == "gcs0"
 
 
 # --- keys -----------------------------------------------------------------------------------------------
