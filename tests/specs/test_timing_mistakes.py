@@ -85,7 +85,7 @@ within 25 min "there" ~> within "there" 25 min  # "there" | the duration comes f
 time "row": ~> invariant:  # : | write a name in double quotes before the colon: "name": formula
 within 25 min "there" ~> before 25 min "there"  # before | write within 5 min "name": formula
 time "row" ~> earliest "row"  # earliest | write time "name": formula
-  endurance ~>   battery  # battery | write endurance
+endurance ~> battery  # battery | write endurance
 ended sprayer ~> always ended sprayer  # always ended sprayer | write within 5 min "name": F leads to G
 control timed ~> control time  # time | write atomic or timed
 control timed\n ~>   # timing | write: control timed
