@@ -436,12 +436,6 @@ def test_a_missing_extra_names_it(monkeypatch, tmp_path):
     assert "ais" in hint
 
 
-def test_who_says_a_bare_word_is_told_that_texts_stand_in_quotes():
-    text = actor('react { case "go" => skip }', "b", "base0") + "environment { someone says go to b }"
-    ((code, message, hint),) = told(f"{SIGNATURE} world {{ base0: Station = point (1, 1) }} {text}")
-    assert (code, message, hint) == ("LS201", "unknown entity 'go'", 'a text stands in quotes: "go"')
-
-
 def test_mistakes_of_syntax_and_of_meaning_are_reported_together(tmp_path):
     path = tmp_path / "two.mission"
     path.write_text("world {\n  a: A absent\n}\nscheduler fast\n")

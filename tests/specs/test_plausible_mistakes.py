@@ -162,6 +162,7 @@ world {
 """
 ALONE = "BigActor p hosted_at uav with_behavior { skip }\n"
 REMEDIES = r"""
+environment { someone says go to p }  # go | a text stands in quotes: "go"
 environment { wifi drop }  # drop | did you mean 'drops'?
 environment { wifi:land drop and returns }  # drop | did you mean 'drops'?
 def f() = { contol(MOVE_HOST_TO r0) }  # contol | write control(MOVE_HOST_TO place)
