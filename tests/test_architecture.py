@@ -1,28 +1,25 @@
 """Every path and module that the documentation names exists."""
 
 import re
-from pathlib import Path
 
 import pytest
+from repository import PAGES, ROOMS, ROOT, read, sources
 
-ROOT = Path(__file__).parents[1]
-PAGES = [
-    *(ROOT / name for name in ("ARCHITECTURE.md", "CONTRIBUTING.md", "README.md")),
-    *sorted((ROOT / "docs").rglob("*.md")),
-]
 LINKED = [*PAGES, ROOT / "CHANGELOG.md", ROOT / "benchmarks" / "README.md"]
-ROOMS = "adapters|bigactors|bigraphs|checker|physical|semantics|specs"
+LABELS = ("Context", "Decision", "Consequence", "Rejected")
+ANY = "|".join(ROOMS)
 
-PATH = re.compile(rf"`((?:{ROOMS}|tests|benchmarks|docs)/[\w./]*)`")
+PATH = re.compile(rf"`((?:{ANY}|tests|benchmarks|docs)/[\w./]*)`")
 FILE = re.compile(r"`(\w+\.py)`")
-MODULE = re.compile(rf"`((?:{ROOMS})(?:\.\w+)+)`")
+MODULE = re.compile(rf"`((?:{ANY})(?:\.\w+)+)`")
 LINK = re.compile(r"\]\((?!https?:)([^)#\s]*)(?:#([^)\s]+))?\)")
 WRITTEN_BY_BENCHMARKS = "benchmarks/results/"
+KNOWN = {path.name for path in [*sources((*ROOMS, "tests", "benchmarks")), *ROOT.glob("*.py")]}
 
 
 def exists(name):
     """Tell whether a dotted name (installed or not) is a module or package, or something that a module defines."""
-    path = ROOT.joinpath(*re.sub(rf"^bigactors\.(?={ROOMS})", "", name).split("."))
+    path = ROOT.joinpath(*re.sub(rf"^bigactors\.(?={ANY})", "", name).split("."))
     if path.is_dir() or path.with_suffix(".py").exists():
         return True
     module = path.parent / "__init__.py" if path.parent.is_dir() else path.parent.with_suffix(".py")
@@ -38,26 +35,13 @@ def anchors(page):
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_every_path_on_a_page_exists(page):
-    paths = PATH.findall(page.read_text(encoding="utf-8"))
-    assert [path for path in paths if not (ROOT / path).exists() and WRITTEN_BY_BENCHMARKS not in path] == []
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_every_file_that_a_page_names_without_its_folder_exists(page):
+def test_every_path_file_and_module_on_a_page_exists(page):
     text = page.read_text(encoding="utf-8")
+    paths = (path for path in PATH.findall(text) if WRITTEN_BY_BENCHMARKS not in path)
+    assert [path for path in paths if not (ROOT / path).exists()] == []
     names = set(FILE.findall(text)) - set(re.findall("<!-- file: (.+) -->", text))
-    known = {
-        path.name
-        for folder in (*ROOMS.split("|"), "tests", "benchmarks")
-        for path in (ROOT / folder).rglob("*.py")
-    } | {path.name for path in ROOT.glob("*.py")}
-    assert names - known == set()
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_every_module_on_a_page_exists(page):
-    assert [name for name in MODULE.findall(page.read_text(encoding="utf-8")) if not exists(name)] == []
+    assert names - KNOWN == set()
+    assert [name for name in MODULE.findall(text) if not exists(name)] == []
 
 
 @pytest.mark.parametrize("page", LINKED, ids=lambda page: page.name)
@@ -71,13 +55,11 @@ def test_every_link_of_a_page_leads_somewhere(page):
 
 
 def test_a_decision_is_a_short_record_with_a_claim_for_its_title():
-    page = (ROOT / "docs" / "explanation" / "decisions.md").read_text(encoding="utf-8")
+    page = read("docs/explanation/decisions.md")
     records = [record.split("\n\n")[0].partition("\n") for record in page.split("\n### ")[1:]]
     assert len(records) > 60
     for title, _, text in records:
         labels = re.findall(r"\*(\w+):\*", text)
-        assert labels == [
-            each for each in ("Context", "Decision", "Consequence", "Rejected") if each in labels
-        ], title
+        assert labels == [each for each in LABELS if each in labels], title
         assert "Decision" in labels, title
         assert len(text.split()) <= 100, title

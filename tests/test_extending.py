@@ -7,12 +7,11 @@ import re
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from repository import ROOT, read
 
-ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / "docs" / "how-to" / "extending.md").read_text(encoding="utf-8")
+PAGE = read("docs/how-to/extending.md")
 ROW = re.compile(r"^\| `(?P<file>[\w./]+)`(?:: `(?P<symbol>\w+)`)? \| .+ \| (?P<found>.*) \|$", re.MULTILINE)
 
 
@@ -22,7 +21,7 @@ def rows():
 
 def defined(file):
     """Return the names that a file defines, in whatever class."""
-    text = (ROOT / file).read_text(encoding="utf-8")
+    text = read(file)
     if not file.endswith(".py"):
         return set(re.findall(r"^[?]?(\w+):", text, re.MULTILINE))
     nodes = list(ast.walk(ast.parse(text)))
@@ -125,10 +124,10 @@ print(json.dumps({
 """
 
 
-@pytest.fixture(scope="module")
-def swapping(tmp_path_factory):
+@pytest.fixture
+def swapping(tmp_path):
     """Return what is told by a copy of semantics/ whose table of commands has one more."""
-    copy = tmp_path_factory.mktemp("swap")
+    copy = tmp_path
     shutil.copytree(ROOT / "semantics", copy / "semantics", ignore=shutil.ignore_patterns("__pycache__"))
     table = copy / "semantics" / "behaviours" / "commands.py"
     text = table.read_text(encoding="utf-8")
@@ -147,34 +146,17 @@ def swapping(tmp_path_factory):
 
 
 @pytest.mark.long
-def test_a_command_more_is_run_by_both_engines_reduced_or_not(swapping):
+def test_a_command_more_is_run_written_shown_and_hinted_at(swapping):
     holding = ["holds"] * 4
-    assert swapping["atomic"] == [[3, 2, *holding]] * 2
+    assert swapping["atomic"] == swapping["reduced"] == [[3, 2, *holding]] * 2
     assert swapping["timed"] == [[4, 3, *holding]] * 2
-    assert swapping["reduced"] == [[3, 2, *holding]] * 2
-
-
-@pytest.mark.long
-def test_a_command_more_is_written_and_shown(swapping):
     assert "\n  control(SWAP u0 WITH u1)\n" in swapping["formatted"]
     assert "\n- `SWAP entity WITH other`: let two entities change places." in swapping["reference"]
     assert '\n       | "SWAP" expression "WITH" expression\n' in swapping["reference"]
     assert "`SWAP`" in swapping["reference"].partition("## Words")[2]
-
-
-@pytest.mark.long
-def test_nothing_has_the_name_of_a_command_more(swapping):
     message = "LS111: 'SWAP' is a word of the language and cannot be a name; choose another name"
     assert swapping["named"][0] == message
-
-
-@pytest.mark.long
-def test_a_command_more_that_can_never_be_done_is_found_before_a_run(swapping):
     assert swapping["place"] == ["LS506: nothing can drive 'west' (a Place); what is driven moves: u0, u1"]
-
-
-@pytest.mark.long
-def test_a_command_more_is_hinted_at(swapping):
     assert swapping["half"] == [
         "LS109: expected 'WITH', found ')'; control actions are SWAP entity WITH other"
     ]
@@ -183,10 +165,10 @@ def test_a_command_more_is_hinted_at(swapping):
 # --- a command of the program is added as the page says ---------------------------------------------------------------
 
 
-@pytest.fixture(scope="module")
-def counting(tmp_path_factory):
+@pytest.fixture
+def counting(tmp_path):
     """Return a program whose copy of bigactors/ has the command of the page."""
-    copy = tmp_path_factory.mktemp("count")
+    copy = tmp_path
     shutil.copytree(ROOT / "bigactors", copy / "bigactors", ignore=shutil.ignore_patterns("__pycache__"))
     commands = copy / "bigactors" / "commands"
     text = re.search(r"<!-- file: count.py -->\n```python\n(.+?)```", PAGE, re.DOTALL)[1]
@@ -209,15 +191,9 @@ def counting(tmp_path_factory):
     return run
 
 
-def test_a_command_of_the_program_more_works(counting):
+def test_a_command_of_the_program_more_works_and_is_in_the_help_and_hinted_at(counting):
     done = counting("count", "oil_spill")
     assert (done.returncode, done.stdout, done.stderr) == (0, "1\n", "")
-
-
-def test_a_command_of_the_program_more_is_in_the_help(counting):
     assert "\n  count       count the bigActors of a mission\n" in counting("--help").stdout
     assert "\nexamples:\n  bigactors count oil_spill\n" in counting("count", "--help").stdout
-
-
-def test_a_command_of_the_program_more_is_hinted_at(counting):
     assert counting("cuont").stderr.endswith("hint: did you mean 'count'?\n")

@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-
-ROOT = Path(__file__).parents[1]
+from repository import ROOT, name_of, parsed
 
 MAY_IMPORT = {
     "bigraphs": set(),
@@ -147,13 +146,13 @@ FILES = [
     for room in MAY_IMPORT
     for path in sorted((ROOT / room).rglob("*.py")) + sorted((ROOT / room).rglob("*.pyi"))
 ]
-MODULES = {module_of(path.relative_to(ROOT).as_posix()) for path in FILES}
+MODULES = {module_of(name_of(path)) for path in FILES}
 
 
 def imports_of(path: Path) -> Iterator[Import]:
     """Yield every import of a file, those in functions too."""
-    file = path.relative_to(ROOT).as_posix()
-    for node, at_import in walk(ast.parse(path.read_text(encoding="utf-8"))):
+    file = name_of(path)
+    for node, at_import in walk(parsed(path)):
         if isinstance(node, ast.Import):
             yield from (Import(file, node.lineno, alias.name, at_import) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -280,18 +279,3 @@ def test_the_walk_tells_what_runs_at_import():
         for alias in node.names
     }
     assert found == {"a": True, "b": False, "c": True, "d": False}
-
-
-def test_who_reads_bigraphs_alone_waits_for_no_geometry(tmp_path):
-    (tmp_path / "one.big").write_text(
-        "ctrl A = 0;\nbig s0 = A.1;\nreact r = A.1 --> A.1;\nbegin brs\n  init s0;\n  rules = [{r}];\nend\n",
-        encoding="utf-8",
-    )
-    program = (
-        "import sys; from bigactors.cli import main; main(['big', 'validate', 'one.big']);"
-        "print(sorted({'numpy', 'shapely', 'numba', 'scipy'} & set(sys.modules)))"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=tmp_path
-    )
-    assert done.stdout.splitlines()[-1] == "[]"

@@ -5,13 +5,12 @@ import re
 import subprocess
 import sys
 from importlib import import_module
-from pathlib import Path
 
 import pytest
+from repository import ROOT
 
 pytestmark = pytest.mark.long  # it builds the site
 
-ROOT = Path(__file__).parents[1]
 LOADED = re.compile(
     r'<(?:script|img|iframe)[^>]* src="([^"]+)"|<link[^>]* rel="stylesheet"[^>]* href="([^"]+)"'
 )
@@ -21,19 +20,8 @@ LOADED = re.compile(
 def site(tmp_path_factory):
     """Build the site, as `make docs` does."""
     folder = tmp_path_factory.mktemp("site")
-    command = [
-        sys.executable,
-        "-m",
-        "sphinx",
-        "-W",
-        "--keep-going",
-        "--quiet",
-        "-c",
-        "docs",
-        ".",
-        str(folder),
-    ]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    command = [*["-m", "sphinx", "-W", "--keep-going", "--quiet", "-c", "docs", "."], str(folder)]
+    done = subprocess.run([sys.executable, *command], cwd=ROOT, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     return folder
 
@@ -69,9 +57,7 @@ def test_each_public_name_has_its_docstring_and_source_by_its_installed_name(sit
     for each in module.__all__:
         signature, _, text = built.partition(f'id="{name}.{each}"')[2].partition("</dt>")
         assert text.lstrip().startswith("<dd><p>"), each
-        if (
-            getattr(getattr(module, each), "__name__", "") == each
-        ):  # not another name of a type, nor a constant
+        if getattr(getattr(module, each), "__name__", "") == each:  # no constant, nor a type's other name
             assert 'href="../../../_modules/bigactors/' in signature, each
     assert {path.name for path in (site / "_modules").iterdir()} == {"bigactors", "index.html"}
 

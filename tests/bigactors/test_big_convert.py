@@ -1,5 +1,3 @@
-import pytest
-
 from bigraphs.canonical_form import equal
 from bigraphs.examples import example_text
 from bigraphs.notation import read_system
@@ -10,13 +8,6 @@ ctrl Room = 0;
 big house = /x (Room.(Door{x, y} | Room.1) | Door{x, x});
 begin brs init house; rules = []; end
 """
-
-
-@pytest.fixture
-def rooms(missions):
-    for name in ("rooms.big", "rooms.text"):
-        (missions / name).write_text(ROOMS, encoding="utf-8")
-    return missions
 
 
 def test_a_bgm_file_becomes_a_big_file_unless_its_names_do_not(bigactors, missions):
@@ -40,25 +31,6 @@ def test_a_system_that_ships_is_written_whole(bigactors):
     assert equal(read_system(out).initial, ours.initial)
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (("rooms.big", "x.json"), "give OUT the ending .big"),
-        (("rooms.big", "x.big", "--to", "big"), "it is gone with XMI: BigraphER's language is written"),
-        (("rooms.text", "x.big"), "give --from big or bgm"),
-        (("nowhere.text", "x.big"), "'nowhere.text' cannot be read"),
-        (("rooms.big", "x.big", "--from", "bgm"), "rooms.big:1:"),
-        (("rooms.big", "x.big", "--from", "bgm", "--const", "n=1"), "a .bgm file has no constants"),
-        (("rooms.big", "nowhere/x.big"), "there is no such folder"),
-    ],
-)
-def test_what_cannot_be_converted_is_told(bigactors, rooms, words, message):
-    code, _, err = bigactors("big", "convert", *words)
-    assert code == 2
-    assert message in err
-    assert not (rooms / "x.big").exists()
-
-
 PARAMETERS = """\
 ctrl Room = 0; fun ctrl Badge(n) = 0;
 float rate = 2.0;
@@ -69,10 +41,9 @@ begin sbrs int k = [1 : 1 : 3]; init s; rules = [ {renew(k)} ]; preds = { has(k)
 """
 
 
-def test_parameters_are_written_as_they_were_read(bigactors, missions):
+def test_parameters_are_written_as_they_were_read(done, missions):
     (missions / "badges.big").write_text(PARAMETERS, encoding="utf-8")
-    code, out, err = bigactors("big", "convert", "badges.big", "-", "--const", "rate=3.5")
-    assert (code, err) == (0, "")
+    out = done("big", "convert", "badges.big", "-", "--const", "rate=3.5")
     assert "fun react renew(n) = Badge(n) -[rate]-> Badge(n + 1);" in out
     assert read_system(out) == read_system(PARAMETERS, constants={"rate": 3.5})
 

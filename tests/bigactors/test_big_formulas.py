@@ -1,4 +1,5 @@
 import pytest
+from tables import rows
 
 from bigactors.commands.big.formulas import MOST_NESTED, parse_claim
 from bigactors.commands.big.temporal import Decider
@@ -49,34 +50,31 @@ def test_formulas_are_read_as_in_missions(logic, text, written):
     assert str(parse_claim(text, logic, SYSTEM).formula) == written
 
 
-BEHIND = "write AG, EF, AX or A (F U G)"
+MISTAKES = r"""
+ltl <> bal  # 4+3 unknown predicate 'bal' | did you mean 'ball'?
+ltl A ball  # 1+1 ltl is about every run, and doesn't say 'A' | leave it out, or ask with --ctl
+ctl E ball  # 3+4 'E' needs an operator of paths | write AG, EF, AX or A (F U G)
+ctl [] ball  # 1+7 in ctl an operator of paths stands directly behind A or E | write AG, EF, AX or A (F U G)
+ctl ball or X ball  # 9+6 in ctl an operator of paths stands directly behind A or E | write AG, EF, AX or A (F U G)
+ctl taken put  # 7+3 in ctl no step is taken: all that may follow are looked at | write it in ltl, or say enabled
+ctl A infinitely often ball  # 3+16 'infinitely often' is two operators of paths | write AG AF F
+ltl taken clear
+    # 7+5 the rule 'clear' is instantaneous, so no step is its own | name the ordinary rule that it follows
+ltl taken jump  # 7+4 unknown rule 'jump' | the rules are light, light(2), light(1), put
+ltl (ball  # 6+1 the text ends, expected ')'
+"""
 
 
-@pytest.mark.parametrize(
-    ("logic", "text", "message", "caret", "hint"),
-    [
-        ("ltl", "<> bal", "unknown predicate 'bal'", "   ^^^", "did you mean 'ball'?"),
-        ("ltl", "A ball", "ltl is about every run, and doesn't say 'A'", "^", "leave it out, or ask with --ctl"),
-        ("ctl", "E ball", "'E' needs an operator of paths", "  ^^^^", BEHIND),
-        ("ctl", "[] ball", "in ctl an operator of paths stands directly behind A or E", "^^^^^^^", BEHIND),
-        ("ctl", "ball or X ball", "in ctl an operator of paths stands directly behind A or E", "        ^^^^^^",
-         BEHIND),
-        ("ctl", "taken put", "in ctl no step is taken: all that may follow are looked at", "      ^^^",
-         "write it in ltl, or say enabled"),
-        ("ctl", "A infinitely often ball", "'infinitely often' is two operators of paths", "  ^^^^^^^^^^^^^^^^",
-         "write AG AF F"),
-        ("ltl", "taken clear", "the rule 'clear' is instantaneous, so no step is its own", "      ^^^^^",
-         "name the ordinary rule that it follows"),
-        ("ltl", "taken jump", "unknown rule 'jump'", "      ^^^^", "the rules are light, light(2), light(1), put"),
-        ("ltl", "(ball", "the text ends, expected ')'", "     ^", ""),
-    ],
-)  # fmt: skip
-def test_mistakes_are_shown_where_they_are(logic, text, message, caret, hint):
+@pytest.mark.parametrize(("asked", "said"), list(rows(MISTAKES)))
+def test_mistakes_are_shown_where_they_are(asked, said):
+    logic, _, text = asked.partition(" ")
+    (at, message), hint = said.partition(" | ")[0].split(" ", 1), said.partition(" | ")[2]
+    column, width = map(int, at.split("+"))
     with pytest.raises(NotationError) as found:
         parse_claim(text, logic, SYSTEM)
     place, shown, mark, *advice = found.value.render(f"--{logic}").split("\n")
-    assert place == f"--{logic}:1:{caret.index('^') + 1}: {message}"
-    assert (shown, mark) == (f"    1 | {text}", f"      | {caret}")
+    assert place == f"--{logic}:1:{column}: {message}"
+    assert (shown, mark) == (f"    1 | {text}", f"      | {' ' * (column - 1)}{'^' * width}")
     assert advice == ([f"hint: {hint}"] if hint else [])
 
 

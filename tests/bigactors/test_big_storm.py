@@ -28,17 +28,8 @@ begin nbrs init start; rules = [ {walk, leap, fall} ]; preds = { home[2] }; end
 """
 
 # A die from a fair coin: Knuth and Yao, The complexity of nonuniform random number generation, 1976.
-EDGES = [
-    ("S0", "S1"),
-    ("S0", "S2"),
-    ("S1", "S3"),
-    ("S1", "S4"),
-    ("S2", "S5"),
-    ("S2", "S6"),
-    ("S3", "S1"),
-    ("S3", "D1"),
-]
-EDGES += [("S4", "D2"), ("S4", "D3"), ("S5", "D4"), ("S5", "D5"), ("S6", "D6"), ("S6", "S2")]
+EDGES = [edge.split("-") for edge in ["S0-S1", "S0-S2", "S1-S3", "S1-S4", "S2-S5", "S2-S6", "S3-S1", "S3-D1"]]
+EDGES += [edge.split("-") for edge in ["S4-D2", "S4-D3", "S5-D4", "S5-D5", "S6-D6", "S6-S2"]]
 
 
 FACES = [f"face{face}" for face in range(1, 7)]

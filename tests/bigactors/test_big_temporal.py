@@ -162,13 +162,10 @@ preds = { served(n) };
 end
 """
     system = read_system(text)
-    for fairness, outcome in {
-        "weak fairness of serve": VIOLATED,
-        "strong fairness of serve(1)": VIOLATED,
-        "strong fairness of serve(2)": HOLDS,
-        "strong fairness of serve": HOLDS,
-        "strong fairness of rules": HOLDS,
-    }.items():
+    for fairness, outcome in (
+        *((each, VIOLATED) for each in ("weak fairness of serve", "strong fairness of serve(1)")),
+        *((f"strong fairness of {each}", HOLDS) for each in ("serve(2)", "serve", "rules")),
+    ):
         assert decided(system, "ltl", f"under {fairness}: []<> served(2)").outcome is outcome
 
 

@@ -87,12 +87,6 @@ def test_where_nothing_is_enabled_a_step_can_only_be_taken_back(bigactors, monke
     assert out[-2] == "'r' is no choice here: answer u, s, f, q, or ? for what they do"
 
 
-def test_a_trace_on_standard_output_has_no_room_for_answers(chosen):
-    code, out, err = chosen("q\n", "--json", "-")
-    assert (code, out) == (2, [])
-    assert "--choose talks on standard output" in err
-
-
 @pytest.fixture
 def chosen_in_time(bigactors, monkeypatch):
     def run(answers):

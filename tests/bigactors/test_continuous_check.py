@@ -7,9 +7,10 @@ import subprocess
 import sys
 import threading
 import time
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 
 import pytest
+from geojson import collection, feature
 from processes import begun
 
 from bigactors.commands.check import file_changes
@@ -53,18 +54,12 @@ class Watched:
 @pytest.fixture
 def watched(missions):
     """Watch missions, with what goes to the standard error among the lines."""
-    started = []
-
-    def start(*words):
-        command = [sys.executable, "-m", "bigactors", "check", "--no-traces", "--watch", *words]
-        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True, "encoding": "utf-8"}
-        context = begun(command, cwd=missions, **streams)
-        started.append(context)
-        return Watched(context.__enter__())
-
-    yield start
-    for context in started:
-        context.__exit__(None, None, None)
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True, "encoding": "utf-8"}
+    command = [sys.executable, "-m", "bigactors", "check", "--no-traces", "--watch"]
+    with ExitStack() as started:
+        yield lambda *words: Watched(
+            started.enter_context(begun([*command, *words], cwd=missions, **streams))
+        )
 
 
 def saved_in_place(path, text):
@@ -92,40 +87,31 @@ def saved_in_two_halves(path, text):
         file.write(text[len(text) // 2 :])
 
 
-@pytest.mark.parametrize(
-    "save", [saved_in_place, saved_by_renaming, saved_after_deleting, saved_in_two_halves]
-)
-def test_a_mission_is_checked_again_however_it_is_saved(missions, watched, save):
+def test_a_mission_is_checked_again_however_it_is_saved(missions, watched):
     path = missions / "holds.mission"
+    holds = path.read_text("utf-8")
     run = watched("holds.mission")
     first = run.until(WAITING)
     assert first[0].endswith("] checking holds.mission")
     assert "  ✓ found              holds; examined 1, a witness of 8 steps" in first
-    save(path, path.read_text("utf-8").replace("actually uav0 in oilSpill0", "actually uav0 in nowhere0"))
+    saved_in_place(path, holds.replace("actually uav0 in oilSpill0", "actually uav0 in nowhere0"))
     run.until("LS201: unknown entity 'nowhere0'")
     run.until(WAITING)
-    save(path, path.read_text("utf-8").replace("actually uav0 in nowhere0", "oilSpill0 in uav0"))
-    again = run.until("✗ found")
-    assert "  changed: found holds → violated" in again
+    saved_by_renaming(path, holds.replace("actually uav0 in oilSpill0", "oilSpill0 in uav0"))
+    assert "  changed: found holds → violated" in run.until("✗ found")
     run.until(WAITING)
-    assert run.end() == 1
-
-
-def test_what_did_not_change_is_said_too_and_the_last_exit_code_counts(missions, watched):
-    path = missions / "holds.mission"
-    run = watched("holds.mission")
+    saved_after_deleting(path, holds)
+    assert "  changed: found violated → holds" in run.until("✓ found")
     run.until(WAITING)
-    saved_in_place(path, path.read_text("utf-8") + "// more\n")
-    assert "  no verdict changed" in run.until(WAITING)
+    saved_in_two_halves(path, f"{holds}// more\n")
+    assert "  no verdict changed" in run.until("no verdict changed")
+    run.until(WAITING)
     assert run.end() == 0
 
 
 def test_a_file_of_the_world_is_watched(missions, watched):
-    features = (
-        '{"type": "FeatureCollection", "features": [{"type": "Feature", "geometry": {"type": "Point",'
-        ' "coordinates": [-8.7, %s]}, "properties": {"name": "boat0", "kind": "Boat"}}]}'
-    )
-    (missions / "boats.geojson").write_text(features % 37.0)
+    boats = [collection(feature("boat0", "Boat", [-8.7, north])) for north in (37.0, 38.0)]
+    (missions / "boats.geojson").write_text(boats[0])
     (missions / "boats.mission").write_text(
         "signature { kind Boat driven kind Area contains Boat }\n"
         'world { area0: Area = box (37.1, -8.6) (36.9, -8.8) from "boats.geojson" }\n'
@@ -136,7 +122,7 @@ def test_a_file_of_the_world_is_watched(missions, watched):
     assert run.until(WAITING)[-1].endswith(
         "waiting for a save of boats.mission, boats.geojson, holds.mission; Ctrl-C ends"
     )
-    saved_in_place(missions / "boats.geojson", features % 38.0)
+    saved_in_place(missions / "boats.geojson", boats[1])
     lines = run.until(WAITING)
     assert any(line.endswith("] boats.geojson saved, checking again") for line in lines)
     assert "  changed: boats.mission: within holds → violated" in lines
@@ -170,20 +156,6 @@ def test_the_screen_is_cleared_on_a_terminal_only(missions, watched):
     command = [sys.executable, "-m", "bigactors", "check", "--watch", "holds.mission"]
     with begun(command, cwd=missions, stdout=follower, env=os.environ | {"TERM": "xterm"}):
         assert os.read(leader, 100).decode().startswith("\033[H\033[2J[")
-
-
-@pytest.mark.usefixtures("missions")
-def test_who_watches_reads_the_report_himself(bigactors):
-    code, _, err = bigactors("check", "--watch", "--json", "-", "holds.mission")
-    assert code == 2
-    assert "--watch prints its reports" in err
-
-
-@pytest.mark.usefixtures("missions")
-def test_a_name_that_is_misspelt_is_not_waited_for(bigactors):
-    code, out, err = bigactors("check", "--watch", "oil_spil")
-    assert (code, out) == (2, "")
-    assert err == "oil_spil: there is no such file\n  hint: did you mean 'oil_spill'?\n"
 
 
 def test_files_are_compared_by_their_content(tmp_path):

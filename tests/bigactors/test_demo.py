@@ -1,10 +1,9 @@
 from bigactors import trace_files
 
 
-def test_the_demo_ends_well_with_verdicts_pictures_and_traces(missions, bigactors, monkeypatch):
+def test_the_demo_ends_well_with_verdicts_pictures_and_traces(missions, done, monkeypatch):
     monkeypatch.setattr(trace_files, "draw_run", lambda *_, **__: None)  # half a minute of pictures
-    code, out, err = bigactors("demo", "--out", "shown")
-    assert (code, err) == (0, "")
+    out = done("demo", "--out", "shown")
     for mission in ("oil_spill", "harbour_watch"):
         assert f"\n{mission}: " in f"\n{out}"
         assert f"picture: shown/{mission}.svg" in out

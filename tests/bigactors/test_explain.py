@@ -7,10 +7,8 @@ from specs import Code
 
 
 @pytest.mark.parametrize("code", Code)
-def test_every_code_is_explained(bigactors, code):
-    exit_code, out, err = bigactors("explain", code.number)
-    assert (exit_code, err) == (0, "")
-    assert out.startswith(f"{code.number}: {code.title} ")
+def test_every_code_is_explained(done, code):
+    assert done("explain", code.number).startswith(f"{code.number}: {code.title} ")
 
 
 def test_without_a_code_all_are_listed(bigactors):
@@ -32,26 +30,11 @@ def test_without_a_code_all_are_listed(bigactors):
         (["unserved", "OBS"], "unserved request"),
     ],
 )
-def test_a_word_of_a_report_is_explained(bigactors, asked, first):
-    exit_code, out, err = bigactors("explain", *asked)
-    assert (exit_code, err) == (0, "")
-    assert out.splitlines()[:2] == [first, ""]
+def test_a_word_of_a_report_is_explained(done, asked, first):
+    assert done("explain", *asked).splitlines()[:2] == [first, ""]
 
 
 def test_a_rule_is_explained_with_its_bar(bigactors):
     _, out, _ = bigactors("explain", "sense")
     assert "OBS(a, q) ∈ η, in line" in out
     assert "───" in out
-
-
-def test_an_unknown_code_or_word_is_told(bigactors):
-    assert bigactors("explain", "LS999") == (
-        2,
-        "",
-        "bigactors: there is no code and no word 'LS999'\n  hint: bigactors explain lists them all\n",
-    )
-    assert bigactors("explain", "deadlok") == (
-        2,
-        "",
-        "bigactors: there is no code and no word 'deadlok'\n  hint: did you mean 'deadlock'?\n",
-    )

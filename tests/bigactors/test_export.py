@@ -61,16 +61,3 @@ def test_more_ticks_than_zones_count_are_a_mistake_with_its_remedy(capsys, tmp_p
         said = capsys.readouterr().err
         assert "604,800,001 ticks are more than the engine 'fast' counts (134,217,728)" in said
         assert "give timing a larger tick" in said
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (["oil_spill"], "oil_spill says nothing of times"),
-        (["endurance", "--property", "endurence"], "did you mean 'endurance'?"),
-        (["endurance", "--property", "race_freedom"], "only deadlines and endurance are exported"),
-    ],
-)
-def test_what_has_no_automaton_is_said(capsys, arguments, said):
-    assert main(["export", "--format", "tchecker", *arguments]) == 2
-    assert said in capsys.readouterr().err

@@ -7,9 +7,8 @@ import pytest
 pytest.importorskip("pyais")
 pytest.importorskip("pymavlink")
 
-from adapters.mavlink.codec import Encoder
-from adapters.mavlink.message import say
-from adapters.mavlink.tlog import entry
+from telemetry import FIX, log, position
+
 from physical.nmea import checksum
 
 PLACES = """signature standard
@@ -30,34 +29,6 @@ FINE = b"!AIVDM,1,1,,A,139>JhOP000eM?@N`o:00001P000,0*53"
 COARSE = b"!AIVDM,1,1,,A,K39>JhChGASrwP00,0*50"
 
 
-def fix():
-    return say(
-        "GPS_RAW_INT",
-        time_usec=0,
-        fix_type=3,
-        lat=0,
-        lon=0,
-        alt=0,
-        eph=1,
-        epv=1,
-        vel=0,
-        cog=0,
-        satellites_visible=9,
-    )
-
-
-def position(number):
-    return say(
-        "GLOBAL_POSITION_INT", time_boot_ms=1000 * number, lat=474000000, lon=85400000, alt=100000, relative_alt=0,
-        vx=0, vy=0, vz=0, hdg=0,
-    )  # fmt: skip
-
-
-def log(*messages, component=1):
-    encoder = Encoder(1, component)
-    return b"".join(entry(1.7e9 + number, encoder.pack(message)) for number, message in enumerate(messages))
-
-
 def tagged(time, sentence):
     body = b"c:%d" % time
     return b"\\%s*%02X\\%s" % (body, checksum(body), sentence)
@@ -75,7 +46,7 @@ def replayed(missions, bigactors):
 
 def test_a_damaged_log_is_shown_and_its_damage_is_told(replayed):
     code, out, _ = replayed(
-        "x.tlog", log(fix(), position(1)) + bytes(4096) + log(fix(), position(2)) + b"\0\0"
+        "x.tlog", log(FIX, position(1000)) + bytes(4096) + log(FIX, position(2000)) + b"\0\0"
     )
     assert code == 0
     assert "x.tlog: 2 positions, " in out
@@ -87,12 +58,12 @@ def test_a_damaged_log_is_shown_and_its_damage_is_told(replayed):
 @pytest.mark.parametrize(
     ("content", "why"),
     [
-        (log(fix(), fix()), "2 x GPS_RAW_INT: the positions that count are those of GLOBAL_POSITION_INT"),
+        (log(FIX, FIX), "2 x GPS_RAW_INT: the positions that count are those of GLOBAL_POSITION_INT"),
         (
-            log(fix(), position(1), component=0),
+            log(FIX, position(1000), component=0),
             "1 x GLOBAL_POSITION_INT of component 0 of system 1, which is no autopilot",
         ),
-        (log(position(1)), "1 x GLOBAL_POSITION_INT without a GPS fix"),
+        (log(position(1000)), "1 x GLOBAL_POSITION_INT without a GPS fix"),
     ],
 )
 def test_a_log_that_shows_no_position_is_refused_with_what_was_in_it(replayed, content, why):
@@ -103,7 +74,7 @@ def test_a_log_that_shows_no_position_is_refused_with_what_was_in_it(replayed, c
 
 
 def test_a_log_of_another_vehicle_is_refused_with_its_number(replayed):
-    code, _, err = replayed("x.tlog", log(fix(), position(1)), named="mavlink:7=uav0")
+    code, _, err = replayed("x.tlog", log(FIX, position(1000)), named="mavlink:7=uav0")
     assert code == 2
     assert "1 x GLOBAL_POSITION_INT of system 1, which is not named here" in err
 

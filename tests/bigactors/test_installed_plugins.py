@@ -96,12 +96,8 @@ def test_the_scheme_of_an_installed_plugin_chooses_it_and_it_is_told_what_to_dri
     )
     assert (plugin.name, plugin.address, owners) == ("boat:here:1", "here:1", {"uav0": "boat:here:1"})
     (uav0,) = plugin.vehicles
-    assert (uav0.entity, uav0.kind, uav0.channels, uav0.time_to_live) == (
-        "uav0",
-        "UAV",
-        ("control:gcs0",),
-        12.0,
-    )
+    assert (uav0.entity, uav0.kind, uav0.time_to_live) == ("uav0", "UAV", 12.0)
+    assert uav0.channels == ("control:gcs0",)
     assert uav0.fence is not None
     assert (feed.name, feed.address) == ("buoys1", "there")
 
@@ -138,13 +134,9 @@ def test_a_run_with_a_plugin_that_cannot_be_made_does_not_begin_and_says_whose_f
 @pytest.mark.usefixtures("boats")
 def test_the_list_has_each_plugin_with_its_package_and_loads_none(capsys):
     assert main(["plugins"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split() for line in lines if "boat:" in line] == [
-        ["--vehicle", "NAME=boat:ADDRESS", "boats", "1.2", "boats", "by", "a", "line"]
-    ]
-    assert [line.split()[:4] for line in lines if "buoys=" in line] == [
-        ["--feed", "buoys=ADDRESS", "boats", "1.2"]
-    ]
+    lines = [" ".join(line.split()) for line in capsys.readouterr().out.splitlines()]
+    assert lines.count("--vehicle NAME=boat:ADDRESS boats 1.2 boats by a line") == 1
+    assert [line for line in lines if line.startswith("--feed buoys=ADDRESS boats 1.2 ")]
     assert "boats" not in sys.modules
 
 

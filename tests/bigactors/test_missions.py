@@ -4,6 +4,8 @@ from itertools import product
 from pathlib import Path
 
 import pytest
+from geojson import collection, feature
+from scale import crossed
 
 from bigactors.missions import canonical, digest_of, locate, open_mission
 from bigactors.mistakes import Mistake
@@ -12,23 +14,26 @@ from semantics.state.setting import Control, Scheduler
 from specs.elaboration import Variation
 from specs.missions import shipped_missions
 
+AGENT = "BigActor a hosted_at boat0 with_behavior { skip }\n"
 
-def test_the_digest_is_of_the_text_and_of_what_the_files_say(missions):
-    (missions / "a.geojson").write_text(FEATURES % 1)
-    (missions / "with_file.mission").write_text(
-        'signature { kind Boat driven }\nworld { from "a.geojson" }\ncheck { deadlock_freedom }\n'
-    )
+
+@pytest.fixture
+def with_file(missions):
+    """Write a mission whose world is a file, and return the path of that."""
+    text = 'signature { kind Boat driven }\nworld { from "a.geojson" }\n' + AGENT
+    (missions / "with_file.mission").write_text(text)
+    (missions / "a.geojson").write_text(collection(feature("boat0", "Boat", [1, 3])))
+    return missions / "a.geojson"
+
+
+def test_the_digest_is_of_the_text_and_of_what_the_files_say(with_file):
     first = digest_of(open_mission("with_file.mission", Variation()))
     assert first == digest_of(open_mission("with_file.mission", Variation()))
-    (missions / "a.geojson").write_text(FEATURES % 2)
+    with_file.write_text(collection(feature("boat0", "Boat", [2, 3])))
     assert digest_of(open_mission("with_file.mission", Variation())) != first
     assert digest_of(open_mission("holds.mission", Variation())) != digest_of(
         open_mission("race.mission", Variation())
     )
-
-
-FEATURES = """{"type": "FeatureCollection", "features": [{"type": "Feature",
-  "geometry": {"type": "Point", "coordinates": [%d, 3]}, "properties": {"name": "boat0", "kind": "Boat"}}]}"""
 
 
 def test_the_digest_does_not_depend_on_where_the_mission_is(missions):
@@ -56,12 +61,10 @@ def test_what_is_no_mission_is_told(word):
         locate(word)
 
 
-def test_what_a_mission_takes_for_a_path_may_not_be_readable(missions, bigactors):
+def test_what_a_mission_takes_for_a_path_may_not_be_readable(missions, refused):
     path = missions / "big.mission"
     path.write_bytes(b"x" * 2_000_000)
-    code, _, err = bigactors("check", "big.mission")
-    assert code == 2
-    assert "LS001" in err
+    assert "LS001" in refused("check", "big.mission")
 
 
 BELIEVING = """
@@ -76,46 +79,33 @@ BigActor a hosted_at uav0 with_behavior { observe(ALL) react { case obs => skip 
 """
 
 
-@pytest.mark.parametrize("name", [*shipped_missions(), "believing.mission"])
-def test_a_mission_read_once_is_under_another_scheduler_what_it_would_be_read_again(missions, name):
+@crossed(
+    [*shipped_missions(), "believing.mission"],
+    {f"{scheduler}-{control}": (scheduler, control) for scheduler, control in product(Scheduler, Control)},
+)
+def test_a_mission_read_once_is_under_another_scheduler_what_it_would_be_read_again(
+    missions, name, variation
+):
     (missions / "believing.mission").write_text(BELIEVING, encoding="utf-8")
-    read = open_mission(name, Variation())
-    controls = Control if read.setting.timing is None else (Control.TIMED,)
-    for scheduler, control in product(Scheduler, controls):
-        again = open_mission(name, Variation(scheduler, control))
-        assert digest_of(read.under(scheduler, control)) == digest_of(again)
-
-
-TRACES = ("--trace", "run.json", "--against", "run.json")
+    read, (scheduler, control) = open_mission(name, Variation()), variation
+    control = control if read.setting.timing is None else Control.TIMED
+    again = open_mission(name, Variation(scheduler, control))
+    assert digest_of(read.under(scheduler, control)) == digest_of(again)
 
 
 @pytest.mark.parametrize(
     "line",
     [
-        (
-            "check",
-            "with_file.mission",
-            "--verdict",
-            "v.json",
-            "--control",
-            "timed",
-            "--output",
-            "sarif:x.sarif",
-        ),
-        ("simulate", "with_file.mission"),
-        ("replay", "run.json"),
-        ("show", *TRACES),
-        ("show", "with_file.mission", *TRACES),
-        ("show", "with_file.mission"),
+        "check with_file.mission --verdict v.json --control timed --output sarif:x.sarif",
+        "simulate with_file.mission",
+        "replay run.json",
+        "show --trace run.json --against run.json",
+        "show with_file.mission --trace run.json --against run.json",
+        "show with_file.mission",
     ],
-    ids=" ".join,
 )
-def test_every_command_reads_a_mission_and_its_files_once(missions, bigactors, monkeypatch, line):
-    (missions / "a.geojson").write_text(FEATURES % 1)
-    (missions / "with_file.mission").write_text(
-        'signature { kind Boat driven }\nworld { from "a.geojson" }\n'
-        "BigActor a hosted_at boat0 with_behavior { skip }\n"
-    )
+@pytest.mark.usefixtures("with_file")
+def test_every_command_reads_a_mission_and_its_files_once(bigactors, monkeypatch, line):
     assert bigactors("simulate", "with_file.mission", "--json", "run.json")[0] == 0
     opened, really_open = Counter(), os.open
 
@@ -124,5 +114,5 @@ def test_every_command_reads_a_mission_and_its_files_once(missions, bigactors, m
         return really_open(path, *more)
 
     monkeypatch.setattr(os, "open", counting)
-    assert bigactors(*line)[0] == 0
+    assert bigactors(*line.split())[0] == 0
     assert (opened["with_file.mission"], opened["a.geojson"]) == (1, 1)

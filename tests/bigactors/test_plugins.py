@@ -10,7 +10,6 @@ import pytest
 from adapters.mavlink.signing import load
 from adapters.naming import NameClash
 from bigactors.arguments import parse_arguments
-from bigactors.cli import main
 from bigactors.commands.run.connections import plugins_of
 from bigactors.commands.run.fences import fence_of
 from bigactors.missions import open_mission
@@ -95,45 +94,6 @@ def test_a_vehicle_is_known_by_what_the_table_says():
     assert plugins("--name=serial:2f003b=uav0")[0].pilot("uav0").craft.serial == "2F003B"
 
 
-@pytest.mark.parametrize(
-    ("more", "vehicle", "says"),
-    [
-        (["--name=mavlink:3=uav0"], "--vehicle=uav0:4=udp:1", "'uav0' has two system ids: 4 and 3"),
-        (["--name=mavlink:300=uav0"], UAV, "'mavlink:300' is no system id"),
-        (["--name=mavlink:²=uav0"], UAV, "'mavlink:²' is no system id"),
-        ([], f"--vehicle=uav0=udp:127.0.0.1:{'9' * 5_000}", "is no port"),
-        (["--name=mavlink:3=uav0", "--name=serial:2F=uav0"], UAV, "would be called uav0, as serial:2F is"),
-        (["--name=mmsi:263999001=uav0"], UAV, "mmsi:263999001 would be called uav0, as vehicle:uav0 is"),
-        (["--name=mmsi:263999001=uav0"], "--vehicle=uav0:3=udp:1", "would be called uav0, as mavlink:3 is"),
-        (
-            ["--name=name:camera=searchArea0"],
-            UAV,
-            "name:camera would be called searchArea0, as place:searchArea0",
-        ),
-        (["--vehicle=uav0=udp:2"], UAV, "'uav0' is given twice"),
-        (["--kinds=detections=OilSpil"], UAV, "no kind 'OilSpil' that could be detected"),
-        (["--feed=ais=udp:1", "--kinds=ais=OilSpill"], UAV, "no station is of kind 'OilSpill'"),
-        (["--feed=detections=http:0.0.0.0:0"], UAV, "anyone who reaches 0.0.0.0 could post detections"),
-        (["--feed=detections=http:0", "--token=nowhere"], UAV, "No such file"),
-        (["--key=nowhere.json"], UAV, "cannot read the signing key"),
-        (["--fence=uav0"], UAV, "'uav0' is no fence"),
-        (["--within=99,0,98,1"], UAV, "latitude"),
-    ],
-)
-def test_what_cannot_be_so_is_a_mistake_that_says_why(more, vehicle, says):
-    with pytest.raises(Mistake) as error:
-        plugins(*more, vehicle=vehicle)
-    assert says in str(error.value)
-
-
-@pytest.mark.parametrize(
-    "word", ["--kinds=OilSpill", "--kinds=radar=x", "--time-to-live=ais", "--time-to-live=x=1"]
-)
-def test_what_is_no_value_of_an_option_is_told(word, capsys):
-    assert main(["run", "spill_watch", UAV, word]) == 2
-    assert "is not FEED=" in capsys.readouterr().err
-
-
 def test_vehicles_with_one_system_id_on_two_links_both_have_their_names(mission, tmp_path):
     mission(
         "sea0: Location = box (37.2, -8.5) (36.9, -8.8)",
@@ -145,6 +105,11 @@ def test_vehicles_with_one_system_id_on_two_links_both_have_their_names(mission,
     for name, holder in (("uav0", "mavlink:1"), ("uav1", "vehicle:uav1")):
         with pytest.raises(NameClash, match=f"as {holder} is"):
             feed._naming.name(f"name:{name}")
+
+
+def test_a_port_of_many_digits_is_none():
+    with pytest.raises(Mistake, match="is no port"):
+        plugins(vehicle=f"--vehicle=uav0=udp:127.0.0.1:{'9' * 5_000}")
 
 
 # --- feeds ----------------------------------------------------------------------------------------------
@@ -171,34 +136,47 @@ def test_who_listens_to_the_network_asks_for_a_token(tmp_path):
         plugins("--feed=detections=http:0", f"--token={tmp_path / 'token'}")
 
 
-def test_a_place_that_never_moves_can_be_detected_where_its_kind_is_expected():
-    for more, clashes in (((), True), (("--kinds=detections=Location",), False)):
-        _, feed = plugins("--feed=detections=folder:.", *more)
-        with pytest.raises(NameClash, match="as place:searchArea0 is") if clashes else nullcontext():
-            assert feed._naming.name("name:searchArea0", "Location") == "searchArea0"
+NO_ENTITIES = ["region", "pilot", "OilSpill", "internet"]
 
 
-def test_a_station_cannot_be_detected_whatever_its_kind_unless_the_table_says_which_transponder_it_has():
-    _, feed = plugins("--feed=detections=folder:.", "--kinds=detections=Station")
-    with pytest.raises(NameClash, match="name:gcs0 would be called gcs0, as station:gcs0 is"):
-        feed._naming.name("name:gcs0", "Station")
-    _, feed = plugins("--feed=ais=udp:0", "--name=mmsi:244660274=gcs0")
-    assert feed._naming.name("mmsi:244660274", "BaseStation") == "gcs0"
+@pytest.mark.parametrize(
+    ("option", "seen", "kind", "clash"),
+    [
+        ("--within=36,-9,38,-8", "searchArea0", "Location", "as place:searchArea0 is"),
+        ("--kinds=detections=Location", "searchArea0", "Location", None),  # where its kind is expected
+        (
+            "--kinds=detections=Station",
+            "gcs0",
+            "Station",
+            "name:gcs0 would be called gcs0, as station:gcs0 is",
+        ),
+        (
+            "--within=36,-9,38,-8",
+            "oilSpill0",
+            "Drifter",
+            "oilSpill0 is of kind OilSpill in the mission, not Drifter",
+        ),
+        *(
+            ("--within=36,-9,38,-8", name, "OilSpill", f"name:{name} would be called {name}, as ")
+            for name in NO_ENTITIES
+        ),
+    ],
+)
+def test_what_is_detected_cannot_be_something_else_of_the_mission(option, seen, kind, clash):
+    _, feed = plugins("--feed=detections=folder:.", option)
+    with pytest.raises(NameClash, match=clash) if clash else nullcontext():
+        assert feed._naming.name(f"name:{seen}", kind) == seen
 
 
-def test_what_is_detected_is_of_the_kind_that_the_mission_has_it_as():
-    _, feed = plugins("--feed=detections=folder:.")
-    with pytest.raises(NameClash, match="oilSpill0 is of kind OilSpill in the mission, not Drifter"):
-        feed._naming.name("name:oilSpill0", "Drifter")
-
-
-@pytest.mark.parametrize("name", ["region", "pilot", "OilSpill", "internet"])
-def test_nothing_seen_can_take_a_name_that_the_mission_has_as_no_entity(name):
-    _, feed = plugins("--feed=detections=folder:.")
-    with pytest.raises(NameClash, match=f"name:{name} would be called {name}, as "):
-        feed._naming.name(f"name:{name}", "OilSpill")
+@pytest.mark.parametrize("name", NO_ENTITIES)
+def test_the_table_can_give_no_name_that_the_mission_has_as_no_entity(name):
     with pytest.raises(Mistake, match=f"mmsi:244660274 would be called {name}, as "):
         plugins(f"--name=mmsi:244660274={name}")
+
+
+def test_the_table_says_which_transponder_a_station_has():
+    _, feed = plugins("--feed=ais=udp:0", "--name=mmsi:244660274=gcs0")
+    assert feed._naming.name("mmsi:244660274", "BaseStation") == "gcs0"
 
 
 # --- keys -----------------------------------------------------------------------------------------------

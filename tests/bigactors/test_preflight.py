@@ -1,10 +1,10 @@
 """What no vehicle can do is said before take-off."""
 
 import asyncio
-import socket
 from contextlib import suppress
 
 import pytest
+from consoles import free_port
 
 from adapters.simulated import Kind, Simulator, Vehicle, run
 from bigactors.arguments import parse_arguments
@@ -94,42 +94,40 @@ async def flown(flight, vehicle):
             await simulation
 
 
-def free_port():
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return found.getsockname()[1]
-
-
 def options(folder, *statements):
     return parse_arguments([*line(folder, *statements), "--socket", str(folder / "s"), "--for", "600"])
 
 
-def test_a_later_place_too_small_for_the_planes_circle_is_refused_before_take_off(tmp_path):
-    plane = Vehicle(Kind.PLANE, (37.01, -8.65, 20.0))
-    flight = prepare(options(tmp_path, "control(MOVE_HOST_TO east0)", "control(MOVE_HOST_TO pad0)"))
-    with pytest.raises(Mistake, match=r"pad0 is too small: .* the plane needs a circle of 104 m") as error:
-        run(flown(flight, plane))
-    assert error.value.place.endswith("carrier.mission:25")
-    assert not plane.armed
+FENCED = {"FENCE_ENABLE": 1.0}
 
 
-def test_a_place_outside_the_fence_is_refused_before_take_off(tmp_path):
-    plane = Vehicle(Kind.PLANE, (37.01, -8.65, 20.0))
-    asked = options(tmp_path, "control(MOVE_HOST_TO east0)")
-    asked.fence = "west0"
-    with pytest.raises(Mistake, match="lies outside the fence"):
-        run(flown(prepare(asked), plane))
-    assert not plane.armed
-
-
-def test_what_its_own_fence_does_not_hold_is_refused_before_take_off_and_the_fence_is_told(tmp_path, capsys):
-    rover = Vehicle(Kind.ROVER, (37.01, -8.65, 20.0), parameters={"FENCE_ENABLE": 1.0})
-    flight = prepare(options(tmp_path, "control(MOVE_HOST_TO east0)"))
-    with pytest.raises(Mistake, match="its circle fence of 300 m around home does not hold east0") as error:
-        run(flown(flight, rover))
-    assert error.value.place.endswith("carrier.mission:24")
-    assert "warning: uav0 keeps within 300 m around home (FENCE_RADIUS), too" in capsys.readouterr().err
-    assert not rover.armed
+@pytest.mark.parametrize(
+    ("vehicle", "places", "fence", "told"),
+    [
+        ((Kind.PLANE, {}), ("east0", "pad0"), "world", (25, "pad0 is too small: .* needs a circle of 104 m")),
+        ((Kind.PLANE, {}), ("east0",), "west0", (24, "lies outside the fence")),
+        (
+            (Kind.ROVER, FENCED),
+            ("east0",),
+            "world",
+            (24, "its circle fence of 300 m around home does not hold east0"),
+        ),
+    ],
+    ids=["too small for its circle", "outside the fence", "not held by its own fence"],
+)
+def test_a_place_where_it_cannot_go_is_refused_before_take_off(
+    tmp_path, capsys, vehicle, places, fence, told
+):
+    (kind, parameters), (line, said) = vehicle, told
+    craft = Vehicle(kind, (37.01, -8.65, 20.0), parameters=parameters)
+    asked = options(tmp_path, *(f"control(MOVE_HOST_TO {each})" for each in places))
+    asked.fence = fence
+    with pytest.raises(Mistake, match=said) as error:
+        run(flown(prepare(asked), craft))
+    assert error.value.place.endswith(f"carrier.mission:{line}")
+    warned = "warning: uav0 keeps within 300 m around home (FENCE_RADIUS), too" in capsys.readouterr().err
+    assert warned == bool(parameters)
+    assert not craft.armed
 
 
 def test_what_is_passed_outside_the_fence_is_refused_with_its_line_and_may_be_small(tmp_path):

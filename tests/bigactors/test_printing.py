@@ -56,8 +56,9 @@ def stopped_terminal():
         os.close(slave)
 
 
-@pytest.mark.parametrize("output", [full_pipe, stopped_terminal])
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize(
+    ("output", "number"), [(full_pipe, signal.SIGTERM), (stopped_terminal, signal.SIGINT)]
+)
 def test_a_run_whose_output_is_stopped_answers_and_ends(tmp_path, output, number):
     mission, socket = tmp_path / "said.mission", tmp_path / "said.sock"
     mission.write_text(TEXT)

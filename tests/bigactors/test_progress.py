@@ -1,9 +1,5 @@
 import io
-import os
-import re
 import signal
-import subprocess
-import sys
 import threading
 
 import pytest
@@ -87,28 +83,3 @@ def test_a_check_in_another_thread_is_watched_without_signals():
     thread.start()
     thread.join()
     assert not watched[0].interrupted
-
-
-@pytest.mark.usefixtures("missions")
-@pytest.mark.skipif(os.name == "nt", reason="terminals are POSIX's")
-@pytest.mark.parametrize("no_color", ["", "1"])
-def test_marks_are_coloured_on_a_terminal_unless_its_user_wants_none(no_color):
-    ours, theirs = os.openpty()
-    environment = {**os.environ, "TERM": "xterm", "NO_COLOR": no_color}
-    words = [sys.executable, "-m", "bigactors", "check", "race.mission", "--no-traces"]
-    process = subprocess.Popen(words, stdout=theirs, stderr=subprocess.PIPE, env=environment)
-    os.close(theirs)
-    shown = b""
-    while True:
-        try:
-            read = os.read(ours, 10_000)
-        except OSError:  # the other end is closed
-            break
-        if not read:
-            break
-        shown += read
-    _, err = process.communicate(timeout=60)
-    os.close(ours)
-    assert (process.returncode, err) == (1, b"")
-    assert bool(re.search(b"  \033\\[31m\xe2\x9c\x97\033\\[0m race_freedom", shown)) == (not no_color)
-    assert (b"\033" in shown) == (not no_color)

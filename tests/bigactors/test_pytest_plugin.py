@@ -46,28 +46,32 @@ def ran(folder, *words, **settings):
     return folder.runpytest("-p", "bigactors.pytest_plugin", "-p", "no:asyncio", *words)
 
 
-def test_nothing_is_collected_that_was_not_asked_for(folder):
-    result = ran(folder)
-    assert result.ret == pytest.ExitCode.NO_TESTS_COLLECTED
-    result.assert_outcomes()
+VIOLATED = "race.mission::race_freedom\n  race.mission::stays*"
+TIMED = ("holds.mission", "--mission-control", "timed", "--mission-engine", "reference")
 
 
-def test_a_file_that_is_given_is_collected(folder):
-    ran(folder, "holds.mission").assert_outcomes(passed=5)
-
-
-def test_files_that_the_configuration_names_are_collected(folder):
-    ran(folder, mission_files="h*.mission").assert_outcomes(passed=5)
-    ran(folder, mission_files="elsewhere/*.mission").assert_outcomes()
+@pytest.mark.parametrize(
+    ("words", "settings", "outcomes"),
+    [
+        ((), {}, {}),
+        (("holds.mission",), {}, {"passed": 5}),
+        ((), {"mission_files": "h*.mission"}, {"passed": 5}),
+        ((), {"mission_files": "elsewhere/*.mission"}, {}),
+        (TIMED, {}, {"passed": 5}),
+        (("race.mission", "--mission-scheduler", "unordered"), {}, {"passed": 1, "failed": 2}),
+        ((), {"mission_files": "*.mission", "mission_violated": VIOLATED}, {"passed": 6, "xfailed": 2}),
+    ],
+)
+def test_what_is_given_or_configured_is_collected_and_checked_as_options_say(
+    folder, words, settings, outcomes
+):
+    ran(folder, *words, **settings).assert_outcomes(**outcomes)
 
 
 def test_each_property_is_a_test_at_its_line(folder):
     result = ran(folder, "--collect-only", "-q", "race.mission")
-    assert result.outlines[:3] == [
-        "race.mission::race_freedom",
-        "race.mission::stays at home",
-        "race.mission::computation",
-    ]
+    names = ("race_freedom", "stays at home", "computation")
+    assert result.outlines[:3] == [f"race.mission::{name}" for name in names]
     result = ran(folder, "-v", "race.mission::race_freedom")
     result.assert_outcomes(failed=1)
 
@@ -126,11 +130,6 @@ def test_a_mission_in_which_nobody_acts_is_an_error_of_collection(folder):
     result.stdout.fnmatch_lines(["empty.mission:1:1: LS*: the file declares nothing"])
 
 
-def test_what_has_to_be_violated_is_expected_to_be(folder):
-    listed = "race.mission::race_freedom\n  race.mission::stays*"
-    ran(folder, mission_files="*.mission", mission_violated=listed).assert_outcomes(passed=6, xfailed=2)
-
-
 def test_what_holds_and_had_to_be_violated_fails(folder):
     result = ran(folder, mission_files="holds.mission", mission_violated="*::deadlock_freedom")
     result.assert_outcomes(passed=4, failed=1)
@@ -176,23 +175,13 @@ def test_what_failed_last_is_run_again(folder):
     ran(folder, "--lf").assert_outcomes(failed=2)
 
 
-def test_a_mission_is_checked_under_what_options_say(folder):
-    timed = ran(folder, "holds.mission", "--mission-control", "timed", "--mission-engine", "reference")
-    timed.assert_outcomes(passed=5)
-    unordered = ran(folder, "race.mission", "--mission-scheduler", "unordered")
-    unordered.assert_outcomes(passed=1, failed=2)
-
-
 def test_each_property_is_a_case_of_junit(folder):
     ran(folder, "--junit-xml=report.xml", mission_files="*.mission")
     cases = ET.parse(folder.path / "report.xml").getroot().findall(".//testcase")
-    failed = {case.get("name") for case in cases if case.find("failure") is not None}
+    failed = {case.get("name"): case.find("failure") for case in cases if case.find("failure") is not None}
     assert len(cases) == 8
-    assert failed == {"race_freedom", "stays at home"}
-    (race,) = (
-        case for case in cases if case.get("name") == "race_freedom" and case.find("failure") is not None
-    )
-    assert "race_freedom violated: control race" in race.find("failure").text
+    assert failed.keys() == {"race_freedom", "stays at home"}
+    assert "race_freedom violated: control race" in failed["race_freedom"].text
 
 
 def test_workers_share_missions(folder):
@@ -202,25 +191,18 @@ def test_workers_share_missions(folder):
 
 def test_a_whole_run_in_a_process_of_its_own(folder):
     (folder.path / "pytest.ini").write_text(ASKED, encoding="utf-8")
-    command = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-p",
-        "bigactors.pytest_plugin",
-        "--strict-config",
-        "--strict-markers",
-    ]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, encoding="utf-8")
+    words = ["-m", "pytest", "-p", "bigactors.pytest_plugin", "--strict-config", "--strict-markers"]
+    done = subprocess.run(
+        [sys.executable, *words], capture_output=True, text=True, check=False, encoding="utf-8"
+    )
     assert done.returncode == 1
     assert "2 failed, 6 passed" in done.stdout
 
 
 def test_pytest_loads_the_plugin_and_little_else_where_bigactors_is_installed(tmp_path):
-    entry = "[pytest11]\nbigactors = bigactors.pytest_plugin\n"
     project = Path(__file__).parents[2] / "pyproject.toml"
     declared = tomllib.loads(project.read_text("utf-8"))["project"]["entry-points"]["pytest11"]
-    assert entry == "[pytest11]\n" + "".join(f"{name} = {module}\n" for name, module in declared.items())
+    assert declared == {"bigactors": "bigactors.pytest_plugin"}
     script = (
         "import sys, pytest\n"
         "from bigactors import pytest_plugin\n"
@@ -230,12 +212,5 @@ def test_pytest_loads_the_plugin_and_little_else_where_bigactors_is_installed(tm
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True, cwd=tmp_path
     )
-    assert not set(done.stdout.split()) & {
-        "checker",
-        "lark",
-        "networkx",
-        "numpy",
-        "semantics",
-        "shapely",
-        "specs",
-    }
+    slow = {"checker", "lark", "networkx", "numpy", "semantics", "shapely", "specs"}
+    assert not set(done.stdout.split()) & slow

@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 pytest.importorskip("pyais")
 pytest.importorskip("pymavlink")
 
-from adapters.mavlink.codec import Encoder
+from geojson import collection, feature
+from telemetry import BEAT, FIX, log, position
+
 from adapters.mavlink.fleet import Craft
-from adapters.mavlink.message import say
-from adapters.mavlink.tlog import THINGS, entry, messages_in, positions_of
+from adapters.mavlink.tlog import THINGS, messages_in, positions_of
 from physical.ais_recording import read_recording
 from physical.ais_world import seen_at
 from physical.file_account import MAX_KINDS, Counting, FileAccount, in_a_line
@@ -31,13 +32,9 @@ SENTENCES = (
     b"$GPZDA,120000.00,04,03,2026,00,00*64",
     b"$GPGSV,3,1,10*00",
 )
-BEFORE = (
-    b"",
-    b"1772596000.883 ",
-    b"\\c:1772596000*50\\",
-    b"\\c:1772596000*51\\",
-    b"\\g:1-2-7,c:1772596000*00\\",
-)
+BEFORE = [
+    *b"|1772596000.883 |\\c:1772596000*50\\|\\c:1772596000*51\\|\\g:1-2-7,c:1772596000*00\\".split(b"|")
+]
 LINES = (b"# comment", b"noise", b"Dear reader,")
 
 
@@ -98,13 +95,7 @@ def simple(item):
 SCAN = {"type": "ComplexItem", "complexItemType": "StructureScan"}
 
 
-@given(
-    st.lists(ITEM, max_size=6),
-    st.lists(ITEM, max_size=4),
-    st.integers(0, 3),
-    st.integers(0, 3),
-    st.integers(0, 3),
-)
+@given(st.lists(ITEM, max_size=6), st.lists(ITEM, max_size=4), *[st.integers(0, 3)] * 3)
 def test_of_plans(items, inner, scans, circles, points):
     survey = {"type": "ComplexItem", "TransectStyleComplexItem": {"Items": [simple(item) for item in inner]}}
     plan = {
@@ -125,70 +116,32 @@ def test_of_plans(items, inner, scans, circles, points):
 
 @given(st.integers(0, 5), st.booleans(), st.integers(0, 3))
 def test_of_geojson(count, high, others):
-    features = [
-        {
-            "type": "Feature",
-            "properties": {"name": f"a{n}", "kind": "Buoy"} | {f"x{other}": 1 for other in range(others)},
-            "geometry": {"type": "Point", "coordinates": [8, 53, 12] if high else [8, 53]},
-        }
-        for n in range(count)
-    ]
-    read = read_place_file(
-        ".geojson", json.dumps({"type": "FeatureCollection", "features": features}).encode()
-    )
+    more, at = {f"x{other}": 1 for other in range(others)}, [8, 53, 12] if high else [8, 53]
+    features = [feature(f"a{n}", "Buoy", at, **more) for n in range(count)]
+    read = read_place_file(".geojson", collection(*features).encode())
     (tally,) = read.tallies
     assert (tally.total, tally.adds_up, len(read.properties)) == (count, True, count)
     assert sum(number for _, number in tally.asides) == count * (others + high)
 
 
-BEAT = say("HEARTBEAT", type=1, autopilot=3, base_mode=0, custom_mode=0, system_status=4, mavlink_version=3)
-FIX = say(
-    "GPS_RAW_INT",
-    time_usec=0,
-    fix_type=3,
-    lat=0,
-    lon=0,
-    alt=0,
-    eph=1,
-    epv=1,
-    vel=0,
-    cog=0,
-    satellites_visible=9,
+MESSAGES = st.tuples(
+    st.sampled_from([BEAT, FIX, None]), st.sampled_from([1, 2]), st.sampled_from([0, 1]), st.booleans()
 )
-
-
-def position(number):
-    return say(
-        "GLOBAL_POSITION_INT", time_boot_ms=number, lat=474000000, lon=85400000, alt=0, relative_alt=0,
-        vx=0, vy=0, vz=0, hdg=0,
-    )  # fmt: skip
 
 
 @settings(deadline=None)
-@given(
-    st.lists(
-        st.tuples(
-            st.sampled_from([BEAT, FIX, None]),
-            st.sampled_from([1, 2]),
-            st.sampled_from([0, 1]),
-            st.booleans(),
-        ),
-        min_size=1,
-        max_size=25,
-    )
-)
+@given(st.lists(MESSAGES, min_size=1, max_size=25))
 def test_of_telemetry_logs(messages):
     parts, stretches = [], 0
     for number, (message, system, component, damaged) in enumerate(messages, 1):
-        parts.append(
-            entry(1.7e9 + number, Encoder(system, component).pack(message or position(number * 100)))
-        )
+        said = message or position(number * 100)
+        parts.append(log(said, system=system, component=component, start=1.7e9 + number))
         if damaged:
             parts.append(b"\xff" * 20)
             stretches += 1
     counting = Counting()
-    log = messages_in(io.BytesIO(b"".join(parts)), counting)
-    found = list(positions_of(log, {1: Craft("uav0", "UAV", 1)}, counting))
+    read = messages_in(io.BytesIO(b"".join(parts)), counting)
+    found = list(positions_of(read, {1: Craft("uav0", "UAV", 1)}, counting))
     tally = counting.tally(counting.total, *THINGS)
     assert tally.total == len(messages) + stretches
     assert dict(tally.taken).get("position", 0) == len(found)

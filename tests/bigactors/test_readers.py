@@ -10,11 +10,10 @@ from tempfile import TemporaryDirectory
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from telemetry import BEAT, log
 
 from adapters.mavlink import signing
-from adapters.mavlink.codec import Encoder
-from adapters.mavlink.message import say
-from adapters.mavlink.tlog import entry, read_tlog
+from adapters.mavlink.tlog import read_tlog
 from adapters.stations.peers import read_peers
 from bigactors.cli import main
 from bigactors.exits import Exit
@@ -80,14 +79,6 @@ def signed(path):
         signing.load(path)
 
 
-def heartbeats():
-    encoder = Encoder(1, 1)
-    beat = say(
-        "HEARTBEAT", type=1, autopilot=3, base_mode=0, custom_mode=0, system_status=4, mavlink_version=3
-    )
-    return b"".join(entry(1e9 + time, encoder.pack(beat)) for time in range(5))
-
-
 @cache
 def made(*line, name):
     """Return a file that a command line writes."""
@@ -96,28 +87,28 @@ def made(*line, name):
         return next(Path(folder).rglob(name)).read_bytes()
 
 
+def places():
+    at = (37.0, 37.01)
+    return write_geojson(
+        PhysicalProperty(f"p{north}", "Location", box((north, -8.7), (north + 0.005, -8.71))) for north in at
+    )
+
+
+def replayed(path):
+    command("replay", path, "--mission", MISSIONS / "broken_deadlock.mission")
+
+
 FILES = {
     "mission": ((MISSIONS / "two_gates.mission").read_bytes, "x.mission", checked),
-    "geojson": (
-        lambda: write_geojson(
-            PhysicalProperty(f"p{k}", "Location", box((37.0 + k / 100, -8.7), (37.005 + k / 100, -8.71)))
-            for k in range(2)
-        ).encode(),
-        "x.geojson",
-        from_file,
-    ),
+    "geojson": (lambda: places().encode(), "x.geojson", from_file),
     "nmea": (lambda: (MISSIONS / "harbour_watch.nmea").read_bytes()[:4_000], "x.nmea", from_file),
     "waypoints": (lambda: write_waypoints(PLACES, 50.0).encode(), "x.waypoints", from_file),
     "plan": (lambda: write_plan(PLACES, 50.0).encode(), "x.plan", from_file),
-    "big": (
-        (EXAMPLES / "actors.big").read_bytes,
-        "x.big",
-        lambda path: command("big", "validate", path),
-    ),
+    "big": ((EXAMPLES / "actors.big").read_bytes, "x.big", lambda path: command("big", "validate", path)),
     "trace": (
         lambda: made("check", "broken_deadlock", "--trace", "DIR", name="trace.json"),
         "trace.json",
-        lambda path: command("replay", path, "--mission", MISSIONS / "broken_deadlock.mission"),
+        replayed,
     ),
     "verdict": (
         lambda: made("check", "two_gates", "--verdict", "DIR/v.json", name="v.json"),
@@ -125,40 +116,21 @@ FILES = {
         licensed,
     ),
     "peers": (GROUND.encode, "peers.toml", peered),
-    "tlog": (heartbeats, "x.tlog", logged),
-    "key": (
-        lambda: b'{"key": "' + b"00" * 32 + b'", "timestamp": 7, "streams": {"1.1.0": 9}}',
-        "x.key",
-        signed,
-    ),
+    "tlog": (lambda: log(*[BEAT] * 5), "x.tlog", logged),
+    "key": (lambda: KEY, "x.key", signed),
 }
+KEY = b'{"key": "' + b"00" * 32 + b'", "timestamp": 7, "streams": {"1.1.0": 9}}'
 
 NASTY = st.sampled_from(
     [
-        b"NaN",
-        b"1e999",
-        b"-1e999",
+        *b'NaN 1e999 -1e999 null true -1 0.5 "" {} [] "\\ud800" "\xed\xa0\x80" "\\u0000" \x00 \xff'.split(
+            b" "
+        ),
+        *(sign * DEEP for sign in (b"[", b"(", b"{", b"-")),
+        *(b"[" * depth + b"]" * depth for depth in (150, 500, 700, 850, 950, DEEP)),
+        b'{"a":' * DEEP + b"1" + b"}" * DEEP,
         b"1" * 5_000,
         b"-" + b"9" * 300,
-        b'"\\ud800"',
-        b'"\xed\xa0\x80"',
-        b'"\\u0000"',
-        b"null",
-        b"true",
-        b"-1",
-        b"0.5",
-        b'""',
-        b"{}",
-        b"[]",
-        b"[" * DEEP,
-        b"[" * DEEP + b"]" * DEEP,
-        b'{"a":' * DEEP + b"1" + b"}" * DEEP,
-        *(b"[" * depth + b"]" * depth for depth in (150, 500, 700, 850, 950)),
-        b"(" * DEEP,
-        b"{" * DEEP,
-        b"-" * DEEP,
-        b"\x00",
-        b"\xff",
     ]
 )
 
@@ -211,23 +183,14 @@ def test_no_file_is_a_bug_of_ours(kind, draw):
 
 
 @pytest.mark.parametrize("kind", FILES)
-def test_files_that_are_right_are_read(kind):
+@pytest.mark.parametrize(
+    "data", [None, b"", b"[" * 100_000, b"{" * 100_000, b'{"a":' * 100_000, b"\x00" * 1_000, b"\xff\xfe"]
+)
+def test_files_that_are_right_are_read_and_files_that_are_nothing_are_told(kind, data):
     make, name, read = FILES[kind]
     with TemporaryDirectory() as folder:
         path = Path(folder) / name
-        path.write_bytes(make())
-        read(path)
-
-
-@pytest.mark.parametrize("kind", FILES)
-@pytest.mark.parametrize(
-    "data", [b"", b"[" * 100_000, b"{" * 100_000, b'{"a":' * 100_000, b"\x00" * 1_000, b"\xff\xfe"]
-)
-def test_files_that_are_nothing_are_told(kind, data):
-    _, name, read = FILES[kind]
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / name
-        path.write_bytes(data)
+        path.write_bytes(make() if data is None else data)
         read(path)
 
 

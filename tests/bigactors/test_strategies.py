@@ -1,9 +1,5 @@
 """The public strategies: offered in one place, and usable as the how-to says."""
 
-import subprocess
-import sys
-
-import pytest
 from hypothesis import Phase, find, given, settings
 from scale import examples
 
@@ -40,16 +36,3 @@ def test_missions_hold_and_are_violated():
     first = settings(phases=[Phase.generate], database=None)
     for outcome in (Outcome.HOLDS, Outcome.VIOLATED):
         assert find(missions(), is_one(outcome), settings=first).initial.alpha.names()
-
-
-def test_without_hypothesis_the_error_names_the_extra():
-    script = "import sys; sys.modules['hypothesis'] = None; import bigactors.strategies"
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
-    assert "pip install '.[strategies]'" in done.stderr
-
-
-@pytest.mark.parametrize("module", ["bigactors", "bigactors.cli"])
-def test_nobody_else_loads_hypothesis(module):
-    script = f"import sys, {module}; print('hypothesis' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert done.stdout == "False\n"

@@ -8,56 +8,76 @@ import struct
 import subprocess
 import sys
 import termios
+from threading import Thread
 
 import pytest
 
 from bigactors.arguments import parser_of
+from bigactors.cli import main
 from bigactors.commands import NAMES
-from bigactors.terminal import broken
+from bigactors.terminal import COLOUR, broken
 
-ESCAPE = "\x1b"
+pytestmark = pytest.mark.usefixtures("missions")
+
+SIGN = re.compile(r"\x1b\[\d*m")
+UNSET = {"NO_COLOR": "", "FORCE_COLOR": "", "TERM": "xterm", "COLUMNS": ""}
 
 
-def shown(line, *, columns=None, **environment):
+@pytest.fixture
+def shown(monkeypatch, capsys):
     """Return what a command prints, into a pipe or onto a terminal of so many columns."""
-    hidden = {"NO_COLOR": "", "FORCE_COLOR": "", "TERM": "xterm", "COLUMNS": ""}
-    command = [sys.executable, "-m", "bigactors", *line]
-    setting = {"env": {**os.environ, **hidden, **environment}, "stderr": subprocess.STDOUT}
-    if columns is None:
-        return subprocess.run(command, stdout=subprocess.PIPE, check=False, **setting).stdout.decode()
+
+    def run(line, *, columns=None, **environment):
+        COLOUR.set("auto")  # whatever another line has chosen
+        for name, value in (UNSET | environment).items():
+            monkeypatch.setenv(name, value)
+        if columns is None:
+            main(line)
+            return "".join(capsys.readouterr())
+        with monkeypatch.context() as patch:
+            return on_a_terminal(line, columns, patch)
+
+    return run
+
+
+def on_a_terminal(line, columns, patch):
     ours, theirs = os.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
-    with subprocess.Popen(command, stdin=theirs, stdout=theirs, **{**setting, "stderr": theirs}):
-        os.close(theirs)
-        read = b""
+    found = []
+    reader = Thread(target=lambda: found.extend(parts_of(ours)))
+    reader.start()
+    with open(theirs, "w", encoding="utf-8") as stream:
+        for name in ("stdout", "stderr", "__stdout__", "__stderr__"):
+            patch.setattr(sys, name, stream)
+        main(line)
+    reader.join()
+    return b"".join(found).decode().replace("\r\n", "\n")
+
+
+def parts_of(descriptor):
+    """Yield what a terminal shows, until its other end is closed."""
+    with os.fdopen(descriptor, "rb", buffering=0) as file:
         try:
-            while part := os.read(ours, 10_000):
-                read += part
-        except OSError:  # the other end is closed
-            pass
-    os.close(ours)
-    return read.decode().replace("\r\n", "\n")
+            while part := file.read(10_000):
+                yield part
+        except OSError:
+            return
 
 
 def words(text):
     """Return the words of a text, without colours and times."""
-    plain = re.sub(r"\x1b\[\d*m|\r[^\n]*\r", "", text)
-    return re.sub(r"[\d.]+ s\b", "", plain).split()
+    return re.sub(r"[\d.]+ s\b", "", SIGN.sub("", re.sub(r"\r[^\n]*\r", "", text))).split()
 
 
-@pytest.mark.usefixtures("missions")
 @pytest.mark.parametrize("columns", [40, 80, 120, 200])
 @pytest.mark.parametrize(
-    "line",
-    [["check", "race.mission"], ["check", "nowhere.mission"], ["explain", "LS201"], ["check", "--bad"]],
+    "line", ["check race.mission", "check nowhere.mission", "explain LS201", "check --bad"]
 )
-def test_a_terminal_shows_the_words_of_the_pipe_none_of_them_broken(line, columns):
-    onto = shown(line, columns=columns)
-    assert words(onto) == words(shown(line))
+def test_a_terminal_shows_the_words_of_the_pipe_none_of_them_broken(shown, line, columns):
+    onto = shown(line.split(), columns=columns)
+    assert words(onto) == words(shown(line.split()))
     longest = max(len(word) for word in words(onto))
-    assert max(len(re.sub(r"\x1b\[\d*m", "", each)) for each in onto.split("\n")) <= max(
-        columns, longest + 20
-    )
+    assert max(len(SIGN.sub("", each)) for each in onto.split("\n")) <= max(columns, longest + 20)
 
 
 @pytest.mark.parametrize("columns", [40, 80, 200])
@@ -79,52 +99,34 @@ def test_an_excerpt_of_a_file_stays_above_its_caret():
 
 
 COLOURED = [
-    ({}, None, False),
-    ({}, 80, True),
-    ({"NO_COLOR": "1"}, 80, False),
-    ({"TERM": "dumb"}, 80, False),
-    ({"FORCE_COLOR": "1"}, None, True),
-    ({"FORCE_COLOR": "1", "NO_COLOR": "1"}, 80, False),
-    ({"FORCE_COLOR": "1", "TERM": "dumb"}, None, True),
+    ("", {}, None, False),
+    ("", {}, 80, True),
+    ("", {"NO_COLOR": "1"}, 80, False),
+    ("", {"TERM": "dumb"}, 80, False),
+    ("", {"FORCE_COLOR": "1"}, None, True),
+    ("", {"FORCE_COLOR": "1", "NO_COLOR": "1"}, 80, False),
+    ("", {"FORCE_COLOR": "1", "TERM": "dumb"}, None, True),
+    ("--color always", {"NO_COLOR": "1"}, None, True),
+    ("--color never", {"FORCE_COLOR": "1"}, 80, False),
 ]
 
 
-@pytest.mark.usefixtures("missions")
-@pytest.mark.parametrize(("environment", "columns", "coloured"), COLOURED)
-def test_colours_are_for_terminals_and_for_those_who_ask(environment, columns, coloured):
-    found = shown(["check", "race.mission", "--no-traces"], columns=columns, **environment)
-    assert (ESCAPE in found) == coloured
+@pytest.mark.parametrize(("option", "environment", "columns", "coloured"), COLOURED)
+def test_colours_are_for_terminals_and_for_those_who_ask_on_the_line_most(
+    shown, option, environment, columns, coloured
+):
+    for line in (f"{option} check race.mission --no-traces", f"check {option} race.mission --no-traces"):
+        found = shown(line.split(), columns=columns, **environment)
+        assert ("\x1b[31m✗\x1b[0m race_freedom" in found) == coloured
+        assert ("\x1b" in found) == coloured
 
 
-@pytest.mark.usefixtures("missions")
-@pytest.mark.parametrize(
-    "line", [["check", "--color", "{}", "race.mission"], ["--color", "{}", "check", "race.mission"]]
-)
-def test_what_the_line_says_of_colours_counts_most(line):
-    always, never = ([word.format(choice) for word in line] for choice in ("always", "never"))
-    assert ESCAPE in shown(always, NO_COLOR="1")
-    assert ESCAPE not in shown(never, columns=80, FORCE_COLOR="1")
-
-
-@pytest.mark.parametrize("closed", [">&-", "2>&-", "<&-", "<&- >&- 2>&-"])
-def test_what_the_shell_has_closed_changes_no_verdict_and_no_file(tmp_path, closed):
-    (tmp_path / "m.mission").write_text(HOLDS)
-    line = f'"$0" -m bigactors check m.mission --verdict v.json --output json:r.json {closed}'
-    where = {"cwd": tmp_path, "env": {**os.environ, "PYTHONPATH": os.getcwd()}}
-    assert (
-        subprocess.run(
-            ["sh", "-c", line, sys.executable], check=False, capture_output=True, **where
-        ).returncode
-        == 0
+@pytest.mark.parametrize("closed", [">&-", "<&- >&- 2>&-"])
+def test_what_the_shell_has_closed_changes_no_verdict_and_no_file(missions, closed):
+    line = f'"$0" -m bigactors check holds.mission --verdict v.json --output json:r.json {closed}'
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    ran = subprocess.run(
+        ["sh", "-c", line, sys.executable], check=False, capture_output=True, env=environment
     )
-    for name in ("v.json", "r.json"):
-        assert json.loads((tmp_path / name).read_text())
-
-
-HOLDS = """
-signature { kind Location contains Station
-            kind Station }
-world { shore0: Location = box (37.1, -8.5) (37.0, -8.6)
-        gcs0: Station = point (37.05, -8.53) }
-BigActor op0 hosted_at gcs0 with_behavior { display("x") }
-"""
+    assert ran.returncode == 0
+    assert all(json.loads((missions / name).read_text()) for name in ("v.json", "r.json"))

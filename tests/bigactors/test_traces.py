@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -10,6 +11,8 @@ import pytest
 from adapters.live.batch import Heard
 from adapters.recording.writing import Recorder
 from physical import Band, PhysicalProperty, point
+
+pytestmark = pytest.mark.usefixtures("missions")
 
 
 @pytest.fixture
@@ -29,7 +32,6 @@ def run(missions, bigactors):
 # --- simulate -------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.usefixtures("missions")
 def test_a_simulation_is_printed_in_the_notation_of_the_paper(bigactors):
     code, out, err = bigactors("simulate", "holds.mission", "--seed", "3")
     lines = out.splitlines()
@@ -40,34 +42,23 @@ def test_a_simulation_is_printed_in_the_notation_of_the_paper(bigactors):
     assert lines[-1] == "nothing more is enabled"
 
 
-@pytest.mark.usefixtures("missions")
-def test_one_seed_gives_one_run(bigactors):
-    def run(seed):
-        return bigactors("simulate", "race.mission", "--seed", seed)
-
-    assert run("1") == run("1")
+def test_one_seed_gives_one_run_and_another_another(done):
+    runs = [done("simulate", "race.mission", "--seed", str(seed)) for seed in [*range(6), *range(6)]]
+    assert runs[:6] == runs[6:]
+    assert len(set(runs)) > 1
 
 
-@pytest.mark.usefixtures("missions")
-def test_another_seed_gives_another_run(bigactors):
-    runs = {bigactors("simulate", "race.mission", "--seed", str(seed))[1] for seed in range(6)}
-    assert len(runs) > 1
+def test_a_run_and_its_digest_do_not_depend_on_the_hash_seed(done):
+    words = ["simulate", "race.mission", "--seed", "1", "--json", "-"]
+    there = {**os.environ, "PYTHONHASHSEED": "2" if os.environ.get("PYTHONHASHSEED") == "1" else "1"}
+    line = [sys.executable, "-m", "bigactors", *words]
+    assert subprocess.run(line, stdout=subprocess.PIPE, env=there, check=True, text=True).stdout == done(
+        *words
+    )
 
 
-@pytest.mark.usefixtures("missions")
-def test_a_run_and_its_digest_do_not_depend_on_the_hash_seed():
-    def run(hashes):
-        words = [sys.executable, "-m", "bigactors", "simulate", "race.mission", "--seed", "1", "--json", "-"]
-        environment = {**os.environ, "PYTHONHASHSEED": hashes}
-        return subprocess.run(words, capture_output=True, env=environment, check=True).stdout
-
-    assert run("0") == run("1")
-
-
-@pytest.mark.usefixtures("missions")
-def test_a_simulation_stops_after_its_steps(bigactors):
-    code, out, _ = bigactors("simulate", "endless.mission", "--steps", "7")
-    assert code == 0
+def test_a_simulation_stops_after_its_steps(bigactors, done):
+    out = done("simulate", "endless.mission", "--steps", "7")
     assert out.endswith("stopped after 7 steps\n")
     assert out.count("--⟨") == 7
     assert bigactors("simulate", "holds.mission", "--steps", "0")[1].endswith("⟩\nstopped after 0 steps\n")
@@ -75,10 +66,7 @@ def test_a_simulation_stops_after_its_steps(bigactors):
 
 def test_what_is_displayed_is_shown(missions, bigactors):
     text = (missions / "holds.mission").read_text()
-    shown = text.replace(
-        "  control(MOVE_HOST_TO searchArea0)\n", '  display("ready")\n  control(MOVE_HOST_TO searchArea0)\n'
-    )
-    (missions / "shown.mission").write_text(shown)
+    (missions / "shown.mission").write_text(text.replace("  react {", '  display("ready")\n  react {'))
     assert "displayed: " in bigactors("simulate", "shown.mission")[1]
 
 
@@ -86,41 +74,30 @@ def test_what_is_displayed_is_shown(missions, bigactors):
 
 
 @pytest.mark.usefixtures("run")
-def test_a_simulation_replays(bigactors):
-    code, out, err = bigactors("replay", "run.json")
-    assert (code, err) == (0, "")
+def test_a_simulation_replays(done):
+    out = done("replay", "run.json")
     assert "c7 --⟨actuate : CTR(a, MOVE_HOST_TO oilSpill0)⟩--> c8" in out
     assert out.endswith("run.json: 8 steps replayed on figure_2\n")
 
 
-def test_the_traces_of_a_check_replay_those_of_the_monitor_too(missions, bigactors):
+def test_the_traces_of_a_check_replay_those_of_the_monitor_too(missions, bigactors, done):
     report = json.loads(bigactors("check", "look_before_entry_racy", "--json", "-")[1])
     traces = [each[key] for each in report["properties"] for key in ("trace", "witness") if each[key]]
     assert {trace["monitored"] for trace in traces} == {True, False}
     for trace in traces:
         (missions / "trace.json").write_text(json.dumps(trace))
-        code, _, err = bigactors("replay", "trace.json")
-        assert (code, err) == (0, "")
+        done("replay", "trace.json")
 
 
-@pytest.mark.usefixtures("missions")
-def test_a_step_that_is_not_allowed_is_told_with_what_was_enabled(run, bigactors):
+def test_a_step_or_a_choice_that_is_not_allowed_is_told_with_what_was_enabled(run, bigactors):
     steps = run()["steps"]
     run(steps=[*steps[:2], *steps[3:]])
     code, _, err = bigactors("replay", "run.json")
     assert code == 1
-    assert "run.json: step 3: " in err
-    assert "is not enabled" in err
-    assert "enabled instead:\n  ⟨" in err
-    assert "Traceback" not in err
-
-
-def test_a_choice_that_there_is_not_is_told(run, bigactors):
-    steps = run()["steps"]
+    assert re.search(r"run\.json: step 3: (.|\n)*is not enabled(.|\n)*enabled instead:\n  ⟨", err)
     run(steps=[steps[0] | {"choice": 5}, *steps[1:]])
     code, _, err = bigactors("replay", "run.json")
-    assert code == 1
-    assert "step 1: " in err
+    assert (code, "step 1: " in err) == (1, True)
 
 
 @pytest.mark.usefixtures("run")
@@ -129,16 +106,15 @@ def test_a_trace_of_another_mission_is_replayed_with_a_warning_naming_both(bigac
     (missions / "other.mission").write_text(text.replace("radius 400 m", "radius 401 m"))
     code, _, err = bigactors("replay", "run.json", "--mission", "other.mission")
     assert code == 0
-    assert "warning: it was written of another mission" in err
-    assert "written of: holds.mission, digest sha256:" in err
+    for said in ("warning: it was written of another mission", "written of: holds.mission, digest sha256:"):
+        assert said in err
     assert "replayed on: other.mission, digest sha256:" in err
 
 
 @pytest.mark.usefixtures("run")
-def test_the_mission_of_a_trace_is_found_beside_it(bigactors, missions, monkeypatch, tmp_path_factory):
+def test_the_mission_of_a_trace_is_found_beside_it(done, missions, monkeypatch, tmp_path_factory):
     monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
-    code, _, err = bigactors("replay", str(missions / "run.json"))
-    assert (code, err) == (0, "")
+    done("replay", str(missions / "run.json"))
 
 
 @pytest.mark.parametrize(
@@ -158,18 +134,9 @@ def test_the_mission_of_a_trace_is_found_beside_it(bigactors, missions, monkeypa
         ),
     ],
 )
-def test_what_is_no_trace_is_told(missions, bigactors, text, said):
+def test_what_is_no_trace_is_told(missions, refused, text, said):
     (missions / "trace.json").write_text(text)
-    code, _, err = bigactors("replay", "trace.json")
-    assert code == 2
-    assert said in err
-    assert "Traceback" not in err
-
-
-@pytest.mark.usefixtures("missions")
-def test_a_trace_that_is_not_there_is_told(bigactors):
-    code, _, err = bigactors("replay", "trace.json")
-    assert (code, err) == (2, "trace.json: No such file or directory\n")
+    assert said in refused("replay", "trace.json")
 
 
 # --- show -----------------------------------------------------------------------------------------------------
@@ -192,30 +159,8 @@ def test_any_configuration_of_a_trace_is_shown(bigactors, missions):
 
 
 @pytest.mark.usefixtures("run")
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (("--trace", "run.json", "--step", "9"), "there is no c9: the trace ends with c8"),
-        (("holds.mission", "--step", "2"), "--step is a step of a trace"),
-        ((), "there is nothing to show"),
-        (("holds.mission", "--output", "picture.gif"), "picture.gif"),
-        (
-            ("holds.mission", "--output", "no/such/folder.svg"),
-            "no/such/folder.svg: No such file or directory",
-        ),
-    ],
-)
-def test_what_cannot_be_shown_is_told(bigactors, words, said):
-    code, _, err = bigactors("show", *words)
-    assert code == 2
-    assert said in err
-    assert "Traceback" not in err
-
-
-@pytest.mark.usefixtures("run")
-def test_a_trace_is_shown_in_lanes_and_drawn_only_if_asked(bigactors, missions):
-    code, out, err = bigactors("show", "--trace", "run.json", "--lanes")
-    assert (code, err) == (0, "")
+def test_a_trace_is_shown_in_lanes_and_drawn_only_if_asked(bigactors, done, missions):
+    out = done("show", "--trace", "run.json", "--lanes")
     assert out.splitlines()[2] == "c1    ● req_ctr"
     assert not list(missions.glob("*.svg"))
     code, _, err = bigactors("show", "--trace", "run.json", "--lanes", "--output", "lanes.svg")
@@ -224,9 +169,8 @@ def test_a_trace_is_shown_in_lanes_and_drawn_only_if_asked(bigactors, missions):
 
 
 @pytest.mark.usefixtures("run")
-@pytest.mark.parametrize("option", ["--output", "--out"])
-def test_a_trace_becomes_a_page(bigactors, missions, option):
-    code, _, err = bigactors("show", "--trace", "run.json", option, "page.html", "--step", "3")
+def test_a_trace_becomes_a_page(bigactors, missions):
+    code, _, err = bigactors("show", "--trace", "run.json", "--out", "page.html", "--step", "3")
     assert (code, err) == (0, "page written to page.html\n")
     page = (missions / "page.html").read_text(encoding="utf-8")
     assert page.startswith("<!DOCTYPE html>\n")
@@ -259,38 +203,12 @@ def test_the_tracks_of_a_recording_have_every_position_with_its_time(bigactors, 
 
 
 @pytest.mark.usefixtures("run")
-def test_tracks_are_of_a_whole_trace(bigactors):
-    for words, said in (
-        (("holds.mission",), "tracks are those of a trace"),
-        (("--trace", "run.json", "--step", "2"), "tracks are those of a whole trace"),
-    ):
-        code, _, err = bigactors("show", *words, "--output", "tracks.geojson")
-        assert code == 2
-        assert said in err
-
-
-@pytest.mark.usefixtures("run")
-def test_two_traces_are_compared(bigactors):
+def test_two_traces_are_compared(bigactors, done):
     bigactors("simulate", "holds.mission", "--seed", "3", "--steps", "2", "--json", "short.json")
-    code, out, err = bigactors("show", "--trace", "run.json", "--against", "short.json")
-    assert (code, err) == (0, "")
+    out = done("show", "--trace", "run.json", "--against", "short.json")
     assert out.splitlines()[:4] == [
         "< run.json: 8 steps",
         "> short.json: 2 steps",
         "the same for 2 steps, up to c2; then",
         "  < c2 --⟨req_obs : a, observe(CHILDREN(PARENT(uav0)))⟩--> c3",
     ]
-
-
-@pytest.mark.usefixtures("missions")
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (("holds.mission", "--lanes"), "--lanes shows a trace"),
-        (("holds.mission", "--against", "x.json"), "--against is for two traces"),
-    ],
-)
-def test_what_is_of_a_trace_needs_one(bigactors, words, said):
-    code, _, err = bigactors("show", *words)
-    assert code == 2
-    assert said in err

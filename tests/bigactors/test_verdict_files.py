@@ -37,30 +37,32 @@ def verdict(tmp_path, monkeypatch):
     return check
 
 
+@pytest.fixture(scope="module")
+def licensed(tmp_path_factory):
+    """Return a path, the content of a verdict, and its mission."""
+    path = tmp_path_factory.mktemp("licensed") / "x.verdict.json"
+    main(["check", "--no-traces", "--verdict", str(path), "oil_spill", "--control", "timed"])
+    return path, json.loads(path.read_text()), open_mission("oil_spill", AS_WRITTEN)
+
+
 def licence(name, path):
     return licence_for(name, path, open_mission(name, AS_WRITTEN))
 
 
-def changed(path, **members):
+def validate(data):
+    Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(data)
+
+
+def test_a_verdict_is_as_its_schema_says_and_a_licence(verdict):
+    path = verdict("oil_spill", "--control", "timed")
     data = json.loads(Path(path).read_text())
-    Path(path).write_text(json.dumps({**data, **members}))
-    return path
-
-
-def test_a_verdict_is_as_its_schema_says(verdict):
-    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
-    Draft202012Validator.check_schema(schema)
-    data = json.loads(Path(verdict("oil_spill", "--control", "timed")).read_text())
-    Draft202012Validator(schema).validate(data)
+    validate(data)
+    found = licence("oil_spill", path)  # under timed control, and everything holds
+    assert "local_consistency" in found.resting
+    assert "race_freedom" not in found.resting
     resting = {each["name"]: each["rests_on"] for each in data["properties"]}
     assert resting["race_freedom"] == "text"
     assert resting["local_consistency"] == "environment"
-
-
-def test_a_verdict_under_timed_control_that_everything_holds_is_a_licence(verdict):
-    found = licence("oil_spill", verdict("oil_spill", "--control", "timed"))
-    assert "local_consistency" in found.resting
-    assert "race_freedom" not in found.resting
 
 
 @pytest.mark.parametrize(
@@ -78,9 +80,7 @@ def test_no_flight_may_be_given_up_before_it_takes_too_long(verdict, capsys, lim
     path = verdict("limited.mission")
     said = "live lets patrol fly for 5 min, and the times let a flight of it take "
     assert (f"limited.mission: {said}" in capsys.readouterr().err) == short
-    Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(
-        json.loads(Path(path).read_text())
-    )
+    validate(json.loads(Path(path).read_text()))
     if short:
         with pytest.raises(Mistake, match=said):
             licence("limited.mission", path)
@@ -88,26 +88,20 @@ def test_no_flight_may_be_given_up_before_it_takes_too_long(verdict, capsys, lim
         licence("limited.mission", path)
 
 
-def test_a_verdict_under_atomic_control_is_none(verdict):
-    with pytest.raises(Mistake, match="control atomic"):
-        licence("oil_spill", verdict("oil_spill"))
-
-
-def test_a_verdict_that_something_is_violated_is_none(verdict):
-    path = verdict("broken_inconsistent", "--control", "timed")
-    with pytest.raises(Mistake, match="not that everything holds"):
-        licence("broken_inconsistent", path)
-
-
-def test_a_verdict_of_a_search_that_was_cut_off_is_none(verdict):
-    path = verdict("oil_spill", "--control", "timed", "--max-configurations", "5")
-    with pytest.raises(Mistake, match="not that everything holds"):
-        licence("oil_spill", path)
-
-
-def test_a_verdict_of_another_mission_says_what_differs(verdict):
-    with pytest.raises(Mistake, match="text, the places that never move, the entities"):
-        licence("spill_watch", verdict("oil_spill", "--control", "timed"))
+@pytest.mark.parametrize(
+    ("checked", "flown", "says"),
+    [
+        ("oil_spill", "oil_spill", "control atomic"),
+        ("broken_inconsistent --control timed", "broken_inconsistent", "not that everything holds"),
+        ("oil_spill --control timed --max-configurations 5", "oil_spill", "not that everything holds"),
+        ("oil_spill --control timed", "spill_watch", "text, the places that never move, the entities"),
+    ],
+)
+def test_a_verdict_that_not_everything_holds_under_timed_control_of_this_mission_is_none(
+    verdict, checked, flown, says
+):
+    with pytest.raises(Mistake, match=says):
+        licence(flown, verdict(*checked.split()))
 
 
 @pytest.mark.parametrize(
@@ -126,10 +120,11 @@ def test_a_verdict_of_another_mission_says_what_differs(verdict):
         ({"seal": None}, "changed after it was reached"),
     ],
 )
-def test_a_verdict_that_was_tampered_with_is_none(verdict, members, says):
-    path = changed(verdict("oil_spill", "--control", "timed"), **members)
+def test_a_verdict_that_was_tampered_with_is_none(licensed, members, says):
+    path, verdict, mission = licensed
+    path.write_text(json.dumps(verdict | members))
     with pytest.raises(Mistake, match=says):
-        licence("oil_spill", path)
+        licence_for("oil_spill", str(path), mission)
 
 
 def test_the_verdict_beside_the_mission_is_found(tmp_path, monkeypatch):
@@ -142,11 +137,6 @@ def test_the_verdict_beside_the_mission_is_found(tmp_path, monkeypatch):
     (mission.parent / "m.verdict.json").touch()
     assert find_verdict(str(mission), None) == str(mission.parent / "m.verdict.json")
     assert find_verdict(str(mission), "given") == "given"
-
-
-def test_one_verdict_is_written_of_one_mission(tmp_path, capsys):
-    assert main(["check", "--verdict", str(tmp_path / "v"), "oil_spill", "handover"]) == 2
-    assert "one mission" in capsys.readouterr().err
 
 
 # --- a mission that is swapped while it is read -------------------------------------------------------------------
@@ -186,14 +176,6 @@ def test_a_mission_swapped_between_reading_and_licensing_does_not_fly(
     monkeypatch.setattr(run, "find_verdict", swapping)
     with pytest.raises(Mistake, match="the verdict is of another mission"):
         run.prepare(options)
-
-
-@pytest.fixture(scope="module")
-def licensed(tmp_path_factory):
-    """Return a path, the content of a verdict, and its mission."""
-    path = tmp_path_factory.mktemp("licensed") / "x.verdict.json"
-    main(["check", "--no-traces", "--verdict", str(path), "oil_spill", "--control", "timed"])
-    return path, json.loads(path.read_text()), open_mission("oil_spill", AS_WRITTEN)
 
 
 @examples(200)

@@ -31,23 +31,6 @@ def test_the_waypoints_of_a_trace_are_the_centroids_of_the_places_that_it_goes_t
     assert bigactors("world", name)[0] == 0
 
 
-@pytest.mark.parametrize(
-    ("route", "said"),
-    [
-        ("uav0=x.txt", "a route is written as one of .plan, .waypoints"),
-        ("uav9=x.plan", "the mission has no entity 'uav9'"),
-        ("base0=x.plan", "nothing sends 'base0' anywhere"),
-        ("uav0", "is not VEHICLE=FILE"),
-    ],
-)
-@pytest.mark.usefixtures("simulated")
-def test_what_cannot_be_written_as_a_route_is_told(simulated, bigactors, route, said):
-    simulated()
-    code, _, err = bigactors("replay", "run.json", "--waypoints", route)
-    assert code == 2
-    assert said in err
-
-
 @pytest.mark.parametrize(("name", "read"), [("uav0.plan", read_plan), ("uav0.waypoints", read_waypoints)])
 def test_what_is_passed_on_the_way_is_written_before_the_place_that_is_gone_to(
     missions, bigactors, name, read

@@ -6,44 +6,47 @@ from pathlib import Path
 import pytest
 
 from specs.codes import Code
-from specs.diagnostics import MissionError
+from specs.diagnostics import MissionError, render_all
+from specs.elaboration import elaborate, require_bigactor
 from specs.parser import parse_bytes
 
 CORPUS = Path(__file__).parents[1] / "corpus"
-GOOD = sorted((CORPUS / "ok").glob("*.mission"))
 BAD = sorted((CORPUS / "static_error").glob("*.mission"))
-# No text of the corpus shows these: a file that is too large, and a file that cannot be read.
-NOT_IN_THE_CORPUS = {"LS001", "LS007"}
+WARNED = sorted((CORPUS / "warned").glob("*.mission"))
+# No text of the corpus shows these: a file that is too large, one that cannot be read, and what depends on what is
+# installed.
+NOT_IN_THE_CORPUS = {"LS001", "LS007", "LS308"}
 
 
-def expected(path):
-    return path.with_suffix(".expected").read_text(encoding="utf-8")
+def read(path):
+    source, mission = parse_bytes(path.name, path.read_bytes())
+    return elaborate(mission, source, path.parent)
 
 
-def codes(text):
-    return re.findall(r": (LS\d{3}): ", text)
-
-
-def is_syntax(code):
-    return code[:3] in {"LS0", "LS1"} or code == "LS501"
-
-
-@pytest.mark.parametrize("path", GOOD, ids=lambda path: path.stem)
-def test_a_good_mission_parses(path):
-    parse_bytes(path.name, path.read_bytes())
+def codes(paths):
+    texts = (path.with_suffix(".expected").read_text(encoding="utf-8") for path in paths)
+    return {code for text in texts for code in re.findall(r": (LS\d{3}): ", text)}
 
 
 @pytest.mark.parametrize("path", BAD, ids=lambda path: path.stem)
-def test_a_mistake_gives_the_expected_block(path, expect):
-    if not any(map(is_syntax, codes(expected(path)))):
-        parse_bytes(path.name, path.read_bytes())  # what is wrong with it is not the parser's business
-        return
+def test_a_mistake_gives_the_expected_blocks(path, expect):
     with pytest.raises(MissionError) as caught:
-        parse_bytes(path.name, path.read_bytes())
+        require_bigactor(read(path))
     expect(f"{caught.value}\n", path.with_suffix(".expected"))
 
 
-def test_every_code_of_the_parser_has_a_file_in_the_corpus():
-    shown = {code for path in BAD for code in codes(expected(path))}
-    missing = {code.number for code in Code if is_syntax(code.number)} - shown
-    assert missing == NOT_IN_THE_CORPUS
+@pytest.mark.parametrize("path", WARNED, ids=lambda path: path.stem)
+def test_what_is_hardly_meant_gives_the_expected_warnings(path, expect):
+    found = read(path)
+    expect(f"{render_all(found.warnings, found.source)}\n", path.with_suffix(".expected"))
+
+
+def test_every_code_has_a_file_in_the_corpus():
+    warnings = {code.number for code in Code if code.number.startswith("LS7")}
+    assert codes(WARNED) == warnings
+    assert {code.number for code in Code} - warnings - codes(BAD) == NOT_IN_THE_CORPUS
+
+
+@pytest.mark.parametrize("name", ["everything", "rules", "figure2_whole", "empty", "timed"])
+def test_a_sound_mission_elaborates(name):
+    assert read(CORPUS / "ok" / f"{name}.mission").name in (name, "oil_spill")

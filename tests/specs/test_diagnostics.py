@@ -38,23 +38,16 @@ def test_control_characters_are_not_printed():
     assert "\x1b" not in shown("\x1b[31m bad", "bad")
 
 
-def test_of_a_long_line_both_cuts_are_marked():
-    text = f"{'a ' * 100}wrong{' b' * 100}"
-    _, shown, caret, *_ = render(Diagnostic(Code.UNEXPECTED, Span(200, 205), "no"), Source("m", text)).split(
-        "\n"
-    )
-    assert shown.startswith("  1 | …")
-    assert shown.endswith("…")
-    assert caret.index("^") == shown.index("wrong")
-    _, shown, *_ = render(Diagnostic(Code.UNEXPECTED, Span(0, 1), "no"), Source("m", text)).split("\n")
-    assert shown.startswith("  1 | a a")
-    assert shown.endswith("…")
-
-
-def test_of_a_long_line_the_part_around_the_mistake_is_shown():
-    _, line, caret = shown("x" * 500 + " bad " + "y" * 500, "bad").splitlines()
+@pytest.mark.parametrize(
+    ("text", "start"),
+    [("a " * 100 + "bad" + " b" * 100, "…"), ("x" * 500 + " bad " + "y" * 500, "…"), ("bad " * 99, "bad")],
+)
+def test_of_a_long_line_the_part_around_the_mistake_is_shown_and_both_cuts_are_marked(text, start):
+    _, line, caret = shown(text, "bad").splitlines()
     assert len(line) <= 110
     assert line[caret.index("^") :].startswith("bad")
+    assert line.startswith(f"  1 | {start}")
+    assert line.endswith("…")
 
 
 def test_a_mistake_of_several_lines_is_underlined_in_its_first():

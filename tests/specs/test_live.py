@@ -1,16 +1,12 @@
-from pathlib import Path
+from elaborating import elaborated
 
 from semantics.live_policy import Fallback, LivePolicy, TimeLimit
-from specs.diagnostics import Source
-from specs.elaboration import elaborate
-from specs.parser import parse
 
 WORLD = "signature { kind P } world { p0: P = point (1, 1) } BigActor a hosted_at p0 with_behavior { skip }"
 
 
 def precautions_of(text):
-    source = Source("m", WORLD + text)
-    return elaborate(parse(source), source, Path()).precautions
+    return elaborated(WORLD + text).precautions
 
 
 def test_without_a_live_section_vehicles_hold_when_an_assumption_breaks():
@@ -26,11 +22,8 @@ def test_precautions_are_read_in_the_order_written():
 
 
 def test_precautions_change_nothing_that_is_checked():
-    def first(text):
-        source = Source("m", WORLD + text)
-        return elaborate(parse(source), source, Path()).initial
-
-    assert first("") == first("live { a within 1 s: return }")
+    limited = elaborated(WORLD + "live { a within 1 s: return }")
+    assert elaborated(WORLD).initial == limited.initial
 
 
 def test_a_limit_covers_the_requests_that_it_is_about():

@@ -43,34 +43,11 @@ def corpus(name):
     return parse_bytes(name, (CORPUS / "ok" / name).read_bytes())[1]
 
 
-FIGURE_8 = s.BigActor(
-    None,
-    n("gcs2"),
-    (
-        s.Observe(s.QueryApplication("LINKED_TO", s.HostReference())),
-        s.Loop(
-            (
-                s.React(
-                    (
-                        s.Case(
-                            s.ObservationPattern(n("obs")),
-                            None,
-                            (
-                                s.Display(n("obs")),
-                                s.Observe(s.QueryApplication("LINKED_TO", s.HostReference())),
-                            ),
-                        ),
-                        s.Case(
-                            s.LiteralPattern(s.TextLiteral("handover")),
-                            None,
-                            (s.Control(s.Command("HAND", (n("uav0"), n("gcs0")))),),
-                        ),
-                    )
-                ),
-            )
-        ),
-    ),
-)
+LINKED = s.Observe(s.QueryApplication("LINKED_TO", s.HostReference()))
+OBSERVED = s.Case(s.ObservationPattern(n("obs")), None, (s.Display(n("obs")), LINKED))
+HANDED = s.Control(s.Command("HAND", (n("uav0"), n("gcs0"))))
+HANDOVER = s.Case(s.LiteralPattern(s.TextLiteral("handover")), None, (HANDED,))
+FIGURE_8 = s.BigActor(None, n("gcs2"), (LINKED, s.Loop((s.React((OBSERVED, HANDOVER)),))))
 
 
 @pytest.mark.parametrize("name", ["figure8", "figure8_numbered", "figure8_from_one"])
@@ -133,11 +110,8 @@ def test_implication_associates_to_the_right():
     )
 
 
-def test_both_ways_of_sending_are_one():
+def test_both_ways_of_sending_and_of_choosing_are_one():
     assert statement('send "x" to a') == statement('send("x", a)') == s.Send(s.TextLiteral("x"), n("a"))
-
-
-def test_both_ways_of_choosing_are_one():
     assert statement("choose { case => skip case => }") == statement("choose { skip } or { }")
 
 
@@ -147,19 +121,20 @@ def test_a_behaviour_may_be_given_by_a_call():
 
 
 def test_contextual_words_are_names_elsewhere():
-    assert statement("kind = linked(point, box, 3)") == s.Assign(
-        n("kind"), s.FunctionCall(n("linked"), (n("point"), n("box"), s.IntegerLiteral(3)))
-    )
+    called = s.FunctionCall(n("linked"), (n("point"), n("box"), s.IntegerLiteral(3)))
+    assert statement("kind = linked(point, box, 3)") == s.Assign(n("kind"), called)
     assert statement("letter = 1") == s.Assign(n("letter"), s.IntegerLiteral(1))
 
 
 def test_channels_may_have_colons_dashes_and_begin_with_a_digit():
-    clauses = (
-        read("environment { control:gcs0 drops 3g drops and returns u leaves wifi-1 }")
-        .declarations[0]
-        .clauses
+    (environment,) = read(
+        "environment { control:gcs0 drops 3g drops and returns u leaves wifi-1 }"
+    ).declarations
+    assert environment.clauses == (
+        s.Drops(n("control:gcs0")),
+        s.Drops(n("3g"), True),
+        s.Leaves(n("u"), n("wifi-1")),
     )
-    assert clauses == (s.Drops(n("control:gcs0")), s.Drops(n("3g"), True), s.Leaves(n("u"), n("wifi-1")))
 
 
 def test_rule_bodies_come_with_their_terms_and_offsets():

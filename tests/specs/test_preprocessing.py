@@ -30,8 +30,27 @@ def test_only_the_line_numbers_of_a_bigactor_that_count_on_are_blanked():
     assert blanked("0 world {\n1 }") == "0 world {\n1 }"
 
 
-def test_a_file_over_a_megabyte_is_refused_unread():
-    assert refused("é" * 500_001).code is Code.FILE_TOO_LARGE
+@pytest.mark.parametrize(
+    ("text", "code", "start"),
+    [
+        ("é" * 500_001, Code.FILE_TOO_LARGE, 0),
+        ("(" * 201, Code.NESTED_TOO_DEEPLY, 200),
+        ("a" * 10_001, Code.WORD_TOO_LONG, 0),
+        *((f"world {{ {sign} }}", Code.CONTROL_CHARACTER, 8) for sign in ("\0", "\x1b", "\x7f", "\ud800")),
+    ],
+    ids=["a megabyte", "nesting", "a word", "zero", "escape", "delete", "a lone surrogate"],
+)
+def test_what_is_beyond_a_bound_is_refused(text, code, start):
+    found = refused(text)
+    assert (found.code, found.span.start) == (code, start)
+
+
+def test_what_is_at_a_bound_is_read():
+    assert prepare(Source("m", "(" * 200)).open_at_end
+    assert prepare(Source("m", "a" * 10_000)).text
+
+
+def test_a_file_over_a_megabyte_is_refused_undecoded():
     with pytest.raises(MissionError, match="LS001: the file has 5,000,000 bytes, more than 1,000,000"):
         decode("m", b"\xff" * 5_000_000)
 
@@ -47,23 +66,6 @@ def test_bytes_that_are_not_utf8_are_told_by_offset():
 
 def test_line_ends_become_line_feeds_and_the_byte_order_mark_goes():
     assert decode("m", b"\xef\xbb\xbfa\r\nb\rc").text == "a\nb\nc"
-
-
-@pytest.mark.parametrize("character", ["\0", "\x1b", "\x7f", "\ud800"])
-def test_control_characters_and_lone_surrogates_are_refused(character):
-    found = refused(f"world {{ {character} }}")
-    assert found.code is Code.CONTROL_CHARACTER
-    assert found.span.start == 8
-
-
-def test_the_bound_on_nesting_is_exact():
-    assert prepare(Source("m", "(" * 200)).open_at_end
-    assert refused("(" * 201).span.start == 200
-
-
-def test_the_bound_on_words_is_exact():
-    assert prepare(Source("m", "a" * 10_000)).text
-    assert refused("a" * 10_001).code is Code.WORD_TOO_LONG
 
 
 def test_brackets_within_strings_and_comments_do_not_count():

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from elaborating import elaborated
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -14,12 +15,11 @@ from semantics.timing.intervals import Interval
 from semantics.timing.timing import ClauseTimes, Endurance, Every, Motion, Sayable, Window
 from specs import syntax as s
 from specs.diagnostics import MissionError, Source
-from specs.elaboration import elaborate, load_mission
+from specs.elaboration import load_mission
 from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.timing import TickConversion
 from specs.elaboration.variation import Variation
 from specs.formatter import format_mission
-from specs.parser import parse
 
 TIMED = Path(__file__).parents[1] / "corpus" / "ok" / "timed.mission"
 
@@ -46,8 +46,7 @@ def test_what_is_said_of_one_vehicle_replaces_what_is_said_of_its_kind():
     text = TIMED.read_text(encoding="utf-8").replace(
         "  tick 500 ms\n", "  tick 500 ms\n  vessel0 lasts 2 h\n  Vessel lasts 1 h\n"
     )
-    source = Source("changed.mission", text)
-    timing = elaborate(parse(source), source, TIMED.parent).setting.timing
+    timing = elaborated(text, TIMED.parent).setting.timing
     assert dict(timing.endurances)["vessel0"] == Endurance(14_400)
 
 

@@ -1,15 +1,13 @@
 """Worlds from files: what is read of them, what is said of the rest, and how points become places."""
 
 import json
-from pathlib import Path
 
 import pytest
+from elaborating import elaborated, told
+from geojson import collection, feature
 
 from physical import Band, circle, point, write_plan, write_waypoints
 from physical.nmea import checksum
-from specs import MissionError, Source
-from specs.elaboration import elaborate
-from specs.parser import parse
 
 SIGNATURE = """signature {
   kind Location contains Location, UAV, Vessel, Helicopter, Waypoint, Station
@@ -20,15 +18,12 @@ VESSEL = b"!AIVDM,1,1,,A,139>JhOP000eM?@N`o:00001P000,0*53"
 AIRCRAFT = b"!AIVDM,1,1,,A,91b3ktBF1J0eM;PN`dH0I0000000,0*27"
 
 
-def elaborated(world, folder):
-    source = Source("test.mission", f"{SIGNATURE}world {{ {world} }}")
-    return elaborate(parse(source), source, Path(folder))
+def world(text, folder):
+    return elaborated(f"{SIGNATURE}world {{ {text} }}", folder)
 
 
-def mistakes(world, folder):
-    with pytest.raises(MissionError) as caught:
-        elaborated(world, folder)
-    return [(str(found.code.value[0]), found.message, found.hint) for found in caught.value.diagnostics]
+def mistakes(text, folder):
+    return told(f"{SIGNATURE}world {{ {text} }}", folder)
 
 
 def placed(mission, name):
@@ -46,22 +41,20 @@ def folder(tmp_path):
 
 
 def test_what_is_not_read_of_a_file_is_a_note_of_the_verdict(folder):
-    mission = elaborated('from "survey.plan"', folder)
+    mission = world('from "survey.plan"', folder)
     assert mission.notes == (
         "survey.plan: 1 x complex item StructureScan, not read; 1 x rally point, not read",
     )
 
 
 def test_what_is_left_out_at_the_mission_s_wish_is_counted_too(folder):
-    mission = elaborated(
-        'from "way.waypoints" within circle (47.41, 8.56) radius 100 m keep Waypoint', folder
-    )
+    mission = world('from "way.waypoints" within circle (47.41, 8.56) radius 100 m keep Waypoint', folder)
     assert mission.setting.kinds.keys() == {"waypoint1"}
     assert mission.notes == ("way.waypoints: 1 x Waypoint outside the area, not read",)
 
 
 def test_points_become_places_by_a_radius_and_two_at_one_spot_are_one(folder):
-    mission = elaborated('from "survey.plan" keep Waypoint as Location radius 60 m', folder)
+    mission = world('from "survey.plan" keep Waypoint as Location radius 60 m', folder)
     assert mission.setting.kinds == dict.fromkeys(["waypoint0", "waypoint3"], "Location")
     assert placed(mission, "waypoint3").geometry is circle((47.40, 8.55), 60)
     assert placed(mission, "waypoint3").altitude == Band(50, 50)
@@ -85,25 +78,19 @@ def test_names_of_two_files_are_told_apart_by_their_beginnings(folder):
     found = mistakes('from "survey.plan" from "way.waypoints"', folder)
     assert [code for code, *_ in found] == ["LS203"]  # one cause, one finding
     assert "as second" in found[0][2]
-    mission = elaborated('from "survey.plan" as survey from "way.waypoints" as way limit 1', folder)
+    mission = world('from "survey.plan" as survey from "way.waypoints" as way limit 1', folder)
     names = [f"survey_waypoint{number}" for number in range(4)]
     assert sorted(mission.setting.kinds) == [*names, "way_waypoint0"]
 
 
 def test_a_beginning_is_put_before_carriers_too(tmp_path):
-    features = [
-        {
-            "type": "Feature",
-            "properties": {"name": name, "kind": kind, **more},
-            "geometry": {"type": "Point", "coordinates": [8.5, 47.4]},
-        }
-        for name, kind, more in (("ship", "Carrier", {}), ("heli", "Helicopter", {"carried_by": "ship"}))
-    ]
-    (tmp_path / "a.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": features}))
-    source = Source(
-        "t", 'signature { kind Carrier carries Helicopter kind Helicopter } world { from "a.geojson" as a }'
+    ship, heli = (
+        feature("ship", "Carrier", [8.5, 47.4]),
+        feature("heli", "Helicopter", [8.5, 47.4], carried_by="ship"),
     )
-    mission = elaborate(parse(source), source, tmp_path)
+    (tmp_path / "a.geojson").write_text(collection(ship, heli))
+    signature = "signature { kind Carrier carries Helicopter kind Helicopter }"
+    mission = elaborated(signature + 'world { from "a.geojson" as a }', tmp_path)
     assert mission.initial.structure.physical.carrier("a_heli") == "a_ship"
 
 
@@ -111,7 +98,7 @@ def test_a_time_outside_of_a_recording_is_a_mistake_with_its_span(tmp_path):
     pytest.importorskip("pyais")
     body = b"c:1772596000"
     (tmp_path / "x.nmea").write_bytes(b"\\%s*%02X\\%s\n" % (body, checksum(body), VESSEL))
-    assert elaborated('from "x.nmea" at "2026-03-04T03:46:41Z"', tmp_path)
+    assert world('from "x.nmea" at "2026-03-04T03:46:41Z"', tmp_path)
     for time in ("2026-03-05T03:46:41Z", "2026-03-04T03:46:39Z"):
         ((code, message, _),) = mistakes(f'from "x.nmea" at "{time}"', tmp_path)
         assert code == "LS306"
@@ -121,24 +108,19 @@ def test_a_time_outside_of_a_recording_is_a_mistake_with_its_span(tmp_path):
 def test_an_aircraft_above_a_place_is_not_in_it(tmp_path):
     pytest.importorskip("pyais")
     (tmp_path / "x.nmea").write_bytes(AIRCRAFT + b"\n" + VESSEL + b"\n")
-    world = 'from "x.nmea" keep Vessel, SearchAndRescueAircraft as Helicopter harbour0: Location = box {}'
-    for band, parent in (
-        ("altitude 0 m to 50 m", ""),
-        ("altitude 0 m to 700 m", "harbour0"),
-        ("", "harbour0"),
-    ):
-        mission = elaborated(world.format(f"(53.56, 9.92) (53.53, 9.94) {band}"), tmp_path)
+    text = 'from "x.nmea" keep Vessel, SearchAndRescueAircraft as Helicopter harbour0: Location = box {}'
+    for band, is_within in (("altitude 0 m to 50 m", False), ("altitude 0 m to 700 m", True), ("", True)):
+        mission = world(text.format(f"(53.56, 9.92) (53.53, 9.94) {band}"), tmp_path)
         assert placed(mission, "mmsi111211505").altitude == Band(600, 600)
-        assert (mission.initial.structure.logical.parent("mmsi111211505") == "harbour0") == (
-            parent == "harbour0"
-        )
+        within = mission.initial.structure.logical.parent("mmsi111211505") == "harbour0"
+        assert within == is_within
 
 
 def test_vessels_without_a_time_are_in_the_world_and_that_is_noted(tmp_path):
     pytest.importorskip("pyais")
     lines = (VESSEL, b"$GPZDA,120000.00,04,03,2026,00,00*64", AIRCRAFT)
     (tmp_path / "x.nmea").write_bytes(b"\n".join(lines))
-    mission = elaborated('from "x.nmea" keep Vessel, SearchAndRescueAircraft as Helicopter', tmp_path)
+    mission = world('from "x.nmea" keep Vessel, SearchAndRescueAircraft as Helicopter', tmp_path)
     assert len(mission.setting.kinds) == 2
     assert "1 x position without a time" in mission.notes[0]
 
@@ -162,5 +144,5 @@ def test_a_thousand_cells_are_a_world(tmp_path):
         for i in range(32)
         for j in range(32)
     )
-    mission = elaborated(f"{cells} v0: Vessel = point (50.005, 4.005)", tmp_path)
+    mission = world(f"{cells} v0: Vessel = point (50.005, 4.005)", tmp_path)
     assert mission.initial.structure.logical.parent("v0") == "c0_0"

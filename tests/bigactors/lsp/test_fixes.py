@@ -42,34 +42,34 @@ def test_what_is_offered_mends_the_mistake(right, wrong, title):
         assert after.split() == OIL_SPILL.split()
 
 
+def mended(text):
+    """Return a text with the one fix of its one mistake, and what that is called."""
+    (found,) = mistakes(text)
+    (fix,) = fixes(found, text)
+    return replaced(text, (fix.span,), fix.text), fix.title
+
+
 def test_a_channel_that_is_not_declared_can_be():
-    text = OIL_SPILL.replace("environment {", "environment {\n  wifi drops")
-    (found,) = mistakes(text)
-    (fix,) = fixes(found, text)
-    assert fix.title == "Declare 'channel wifi'"
-    assert mistakes(replaced(text, (fix.span,), fix.text)) == ()
+    after, title = mended(OIL_SPILL.replace("environment {", "environment {\n  wifi drops"))
+    assert (title, mistakes(after)) == ("Declare 'channel wifi'", ())
 
 
-def test_where_a_section_is_missing_it_is_written_behind_the_header():
-    text = "// a comment\nmission m\n\nenvironment {\n  wifi drops\n}\n"
-    (found,) = mistakes(text)
-    (fix,) = fixes(found, text)
-    after = replaced(text, (fix.span,), fix.text)
-    assert after.startswith("// a comment\nmission m\n\nworld {\n  channel wifi\n}\n")
-    assert mistakes(after) == ()
-
-
-def test_without_a_signature_that_of_the_paper_is_offered():
-    text = "mission m\n\nworld {\n  uav0: UAV absent\n}\n"
-    (found,) = mistakes(text)
-    (fix,) = fixes(found, text)
-    after = replaced(text, (fix.span,), fix.text)
-    assert after == "mission m\n\nsignature standard\n\nworld {\n  uav0: UAV absent\n}\n"
-    assert mistakes(after) == ()
-
-
-def test_quotes_from_a_document_become_straight():
-    text = OIL_SPILL.replace('"over the spill":', "“over the spill”:")
-    (found,) = mistakes(text)
-    (fix,) = fixes(found, text)
-    assert replaced(text, (fix.span,), fix.text) == OIL_SPILL
+@pytest.mark.parametrize(
+    ("text", "after"),
+    [
+        (
+            "// a comment\nmission m\n\nenvironment {\n  wifi drops\n}\n",
+            "// a comment\nmission m\n\nworld {\n  channel wifi\n}\n",
+        ),
+        (
+            "mission m\n\nworld {\n  uav0: UAV absent\n}\n",
+            "mission m\n\nsignature standard\n\nworld {\n  uav0: UAV absent\n}\n",
+        ),
+        (OIL_SPILL.replace('"over the spill":', "“over the spill”:"), OIL_SPILL),
+    ],
+    ids=["a section behind the header", "the paper's signature", "straight quotes"],
+)
+def test_what_is_missing_or_from_elsewhere_is_mended(text, after):
+    found, _ = mended(text)
+    assert found.startswith(after)
+    assert mistakes(found) == ()
