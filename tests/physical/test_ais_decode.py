@@ -10,7 +10,7 @@ from pyais.encode import encode_dict
 from physical import ais_decode
 from physical.ais_decode import decode, type_of
 from physical.ais_reports import AisError, PositionReport, StaticReport
-from physical.nmea import DecodingFailure, Fragment, checksum, parse_sentence, part_of
+from physical.nmea import DecodingFailure, checksum, parse_sentence, part_of
 
 
 def parts_of(**fields):
@@ -206,13 +206,6 @@ def test_no_payload_raises_and_every_position_is_on_the_earth(text, fill):
             assert abs(report.lat) <= 90
             assert abs(report.lon) <= 180
             assert isinstance(report.lat, float)
-
-
-@given(st.text(ARMOUR, min_size=10, max_size=70), st.sampled_from("123459AB4CE5I<K"))
-def test_no_payload_of_a_type_that_is_decoded_raises(text, first):
-    part = payload(f"{first}{text}".encode())[0]
-    assert isinstance(part, Fragment)
-    assert isinstance(decode((part,), None), tuple)
 
 
 def test_pyais_is_imported_only_when_something_is_decoded():

@@ -1,5 +1,4 @@
 import os
-import random
 import subprocess
 import sys
 from itertools import combinations
@@ -59,24 +58,7 @@ MARINA = (
 )
 
 
-def crowd(count):
-    """Return six places 18 km wide, and movers on channels of two stations, scattered over them."""
-    chance = random.Random(3)
-    spots = [point(54 + chance.random() * 0.6, 8 + chance.random() * 0.6) for _ in range(count)]
-    corners = [(54 + 0.2 * (n % 3), 8 + 0.3 * (n // 3)) for n in range(6)]
-    places = [
-        MapEntity(f"area{n}", "Location", box((s, w), (s + 0.18, w + 0.27)), place=True)
-        for n, (s, w) in enumerate(corners)
-    ]
-    stations = [MapEntity(f"gcs{n}", "Station", spots[n], channels=(f"control:gcs{n}",)) for n in range(2)]
-    movers = [
-        MapEntity(f"uav{n}", "UAV", spot, channels=(f"control:gcs{n % 2}",))
-        for n, spot in enumerate(spots[2:])
-    ]
-    return (*places, *stations, *movers)
-
-
-SCENES = {"oil spill": OIL_SPILL, "marina": MARINA, "30 entities": crowd(24), "one entity": OIL_SPILL[2:3]}
+SCENES = {"oil spill": OIL_SPILL, "marina": MARINA, "one entity": OIL_SPILL[2:3]}
 
 
 def scene(entities, size=SHEET, within=()):

@@ -27,7 +27,6 @@ from semantics.state.setting import Control, Scheduler
 from semantics.successors import successors
 
 LOOK = Observe(of_name("CHILDREN", "area"))
-EMPTY = Apply("not", (is_in("u0", "o"),))
 NOT_U1 = Apply("not", (is_in("u1", "o"),))
 
 

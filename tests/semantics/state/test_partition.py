@@ -14,7 +14,6 @@ from semantics.behaviours.values import Route, Text
 from semantics.environment import Says
 from semantics.extension import say
 from semantics.observed_steps import WRITABLE
-from semantics.state.agents import code_cell
 from semantics.state.canonical import written
 from semantics.state.parcel_serialization import parcel_json
 from semantics.state.parcel_serialization import parcel_of as parcel_in
@@ -340,28 +339,3 @@ def deep(levels):
 def test_what_is_no_parcel_is_refused(data):
     with pytest.raises(ValueError, match=r"."):
         parcel_in(data)
-
-
-def test_what_may_be_said_to_an_agent_goes_where_it_goes():
-    together = Together()
-    part = together.parts["gcs0"]
-    counted = part.with_({each.counter: 1 for each in part.setting.environment if each.agent == "nomad"})
-    assert parcel_of(counted, "nomad").running.says == (1,)
-    gone = next(leave(counted.with_(counted.alpha.hosting("nomad", "gcs1")), "nomad")).target
-    (there,) = enter(together.parts["gcs1"], "gcs0", 1, Parcel("nomad", (), running(says=(1,))))
-    clause = next(each for each in part.setting.environment if each.agent == "nomad")
-    assert there.target.read(clause.counter) == 1
-    assert parcel_of(gone, "nomad") is None
-
-
-def test_requests_are_served_where_their_agent_went():
-    together = Together()
-    for _ in range(200):
-        ways = [way for way in together.ways() if isinstance(way[1], str) or way[1].label.agent == "nomad"]
-        if not ways or together.parts["gcs2"].alpha.host("nomad") == "gcs2":
-            break
-        together.go(ways[0])
-    part = together.parts["gcs1"]
-    assert is_here(part, "nomad") or part.alpha.host("nomad") == "gcs2"
-    assert all(not isinstance(pending.request, OBS) for pending in together.parts["gcs0"].eta.all())
-    assert together.parts["gcs0"].read(code_cell("nomad")) == ()
