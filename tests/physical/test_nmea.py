@@ -1,5 +1,5 @@
 import pytest
-from hypothesis import example, given
+from hypothesis import given
 from hypothesis import strategies as st
 
 from physical.nmea import (
@@ -182,14 +182,6 @@ def test_the_years_of_rmc_begin_in_1980():
 )
 def test_a_time_that_does_not_exist_is_refused(body):
     assert clock(body) is DecodingFailure.TIME
-
-
-@given(st.binary(max_size=120))
-@example(b"--\xff")
-def test_no_bytes_raise(text):
-    assert isinstance(address(text), str)
-    assert isinstance(parse_tag_block(text), TagBlock | DecodingFailure)
-    assert isinstance(parse_sentence(text), Sentence | DecodingFailure)
 
 
 @given(st.lists(st.binary(max_size=12), max_size=14), st.sampled_from(["PGHP", "GPRMC", "GPZDA"]))
