@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scale import examples
 
 from semantics.behaviours.observations import All, Of, QueryOperator
 from semantics.behaviours.values import Route, Text
@@ -188,6 +189,7 @@ class Together:
         return mail, [parcel.running for parcel in found if parcel.running is not None]
 
 
+@examples(60)
 @given(st.data())
 def test_the_stations_together_take_the_steps_of_the_whole(data):
     together = Together()
@@ -206,6 +208,7 @@ HANDOVER = load_mission(
 ).initial
 
 
+@examples(60)
 @given(st.data())
 def test_a_vehicle_goes_round_the_stations_as_in_the_whole(data):
     """Example 2: what one station writes into L the next one has when it is told to go on."""
@@ -218,6 +221,7 @@ def test_a_vehicle_goes_round_the_stations_as_in_the_whole(data):
         assert part.structure.logical.links("uav0") == together.whole.structure.logical.links("uav0")
 
 
+@examples(60)
 @given(st.data())
 def test_what_is_kept_of_an_agent_that_has_ended_goes_where_it_went(data):
     last = "BigActor last hosted_at gcs0 with_behavior { let n = 1 migrate(gcs1) n = n + 1 migrate(gcs2) }"
