@@ -140,26 +140,20 @@ def test_tag_blocks_before_one_sentence_are_read_together():
     assert together([]) is None
 
 
-def test_zda_gives_the_time_of_the_receiver():
-    assert clock(b"GPZDA,213950.00,07,04,2020,00,00") == 1586295590.0
-    assert clock(b"GPZDA,,,,,,") is None
-
-
-def test_pghp_gives_a_time_to_the_millisecond():
-    assert clock(b"PGHP,1,2010,6,11,11,46,11,390,231,45,992190934,1,2B") == 1276256771.39
-
-
-def test_rmc_gives_the_time_of_the_receiver():
-    assert clock(b"GPRMC,213950.00,A,5250.53669,N,00542.34920,E,0.020,,070420,,,A") == 1586295590.0
-
-
-def test_rmc_without_a_fix_gives_no_time():
-    assert clock(b"GPRMC,213950.00,V,,,,,,,070420,,,N") is None
-
-
-def test_the_years_of_rmc_begin_in_1980():
-    assert clock(b"GPRMC,000000,A,,,,,,,010180,,,A") == 315532800.0
-    assert clock(b"GPRMC,000000,A,,,,,,,010179,,,A") == 3439756800.0
+@pytest.mark.parametrize(
+    ("body", "time"),
+    [
+        (b"GPZDA,213950.00,07,04,2020,00,00", 1586295590.0),
+        (b"GPZDA,,,,,,", None),
+        (b"PGHP,1,2010,6,11,11,46,11,390,231,45,992190934,1,2B", 1276256771.39),
+        (b"GPRMC,213950.00,A,5250.53669,N,00542.34920,E,0.020,,070420,,,A", 1586295590.0),
+        (b"GPRMC,213950.00,V,,,,,,,070420,,,N", None),  # no fix
+        (b"GPRMC,000000,A,,,,,,,010180,,,A", 315532800.0),  # years begin in 1980
+        (b"GPRMC,000000,A,,,,,,,010179,,,A", 3439756800.0),
+    ],
+)
+def test_a_receiver_tells_its_time(body, time):
+    assert clock(body) == time
 
 
 @pytest.mark.parametrize(
