@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from bigraphs.algebra import atom, close, ion, lean, merge, nest, placing, substitution
 from bigraphs.bigraph import check
 from bigraphs.canonical_form import canonical, equal
-from bigraphs.decomposition import take_apart
 from bigraphs.errors import BigraphError
 from bigraphs.instantiation import instantiate
 from bigraphs.notation import read_bgm
@@ -107,10 +106,3 @@ def test_the_parameter_is_instantiated_region_by_region():
     assert equal(instantiate(parameter, (1, 0), 2), atom(SIGNATURE, "P") // atom(SIGNATURE, "A"))
     assert instantiate(parameter, (0, 1), 2) is parameter
     assert equal(instantiate(parameter, (1,), 2), atom(SIGNATURE, "P"))
-
-
-def test_context_and_parameter_share_no_node():
-    target = node("A", node("A", atom(SIGNATURE, "A")))
-    for match in matches(rule(node("A"), node("A")), target):
-        parts = take_apart(match)
-        assert len(parts.context.nodes) + len(parts.instance.nodes) + len(parts.parameter.nodes) == 3

@@ -7,15 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scale import examples
-from small_missions import SHAPES, aboard, around, enabled, mission, move_to, run
+from small_missions import SHAPES, aboard, enabled, mission, move_to, run
 
 from physical import circle, point
 from semantics import strategies
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Literal
-from semantics.behaviours.patterns import Anything
 from semantics.behaviours.reaction_rules import Pattern, PlaceVariable, Reaction, matches, moved, relinked
-from semantics.behaviours.statements import Case, ControlBy, Observe, React, Send
+from semantics.behaviours.statements import ControlBy
 from semantics.control import PREMISES, Obstacle, applicable, is_consistent, obstacle, realisations
 from semantics.drive import drive
 from semantics.environment import Drifts, Vanishes
@@ -394,20 +393,6 @@ def test_a_lost_target_is_inconsistent():
         "env",
     )
     assert obstacle(c, c.eta.all()[0].request) is Obstacle.INCONSISTENT
-
-
-def test_a_flight_blocks_its_agents_line_but_messages_arrive():
-    statements = (
-        move_to("area"),
-        Observe(around()),
-        Send(Literal("go"), Literal("b")),
-        React((Case(Anything("m", "message"), None, ()),)),
-    )
-    c = mission(["base", "area", "u0"], statements, {"a": ("u0", (0, 1, 2)), "b": ("u0", (3,))}, **TIMED)
-    c = run(c, "req_ctr", "command", "req_obs", "req_snd")
-    assert enabled(c) == ["commit", "snd"]
-    assert enabled(run(c, "snd")) == ["commit", "rcv_msg"]
-    assert enabled(run(c, "commit")) == ["sense", "snd"]
 
 
 def test_link_changes_commit_at_once():

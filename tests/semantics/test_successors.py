@@ -10,12 +10,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scale import examples
-from small_missions import explore, figure_2, is_in, mission, move_to, received
+from small_missions import explore, figure_2, mission, move_to
 
 from semantics import strategies
-from semantics.behaviours.expressions import Apply, Fault, Literal, QueryOf
+from semantics.behaviours.expressions import Fault, Literal, QueryOf
 from semantics.behaviours.patterns import Anything
-from semantics.behaviours.statements import Case, If, Migrate, Observe, React, Send
+from semantics.behaviours.statements import Case, Migrate, Observe, React, Send
 from semantics.state.cells import QUEUE
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.requests import FLY, READY, Request
@@ -207,30 +207,6 @@ def test_fcfs_tells_no_two_configurations_apart_but_by_the_order_of_what_waits(c
     assert seen == queued(timed)
     told = {(projected(each), each.read(QUEUE), frozenset(answered(each))) for each in found}
     assert len(told) == len(found)
-
-
-@pytest.mark.parametrize(("control", "expected"), [(Control.ATOMIC, (59, 88)), (Control.TIMED, (74, 116))])
-def test_two_uavs_that_look_before_they_enter_have_the_known_counts_under_fcfs(control, expected):
-    statements = [Observe(QueryOf("CHILDREN", QueryOf(None, Literal("area"))))]
-    for other in ("u1", "u0"):
-        at = len(statements)
-        statements += [
-            received("o", at + 1),
-            If(Apply("not", (is_in(other, "o"),)), (at + 2,)),
-            move_to("area"),
-        ]
-    agents = {"a": ("u0", (0, 1)), "b": ("u1", (0, 4))}
-    names = ["area", "base", "sea", "u0", "u1"]
-    assert counts(mission(names, statements, agents, scheduler=Scheduler.FCFS, control=control)) == expected
-
-
-def test_program_order_serves_an_agents_requests_as_asked_and_unordered_does_not():
-    statements = (move_to("area"), move_to("base"))
-    for scheduler, served in ((Scheduler.PROGRAM_ORDER, 1), (Scheduler.UNORDERED, 2)):
-        c = mission(["area", "base", "u0"], statements, {"a": ("u0", (0, 1))}, scheduler=scheduler)
-        both = successors(next(iter(successors(c))).target)
-        asked = next(t.target for t in both if t.label.rule == "req_ctr")
-        assert len([t for t in successors(asked) if t.label.rule == "actuate"]) == served
 
 
 def test_an_observation_is_delivered_in_the_order_in_which_it_was_asked_for():
