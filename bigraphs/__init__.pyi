@@ -43,7 +43,6 @@ from .layout import Layout as Layout
 from .layout import layout as layout
 from .matching import Match as Match
 from .matching import find_matches as find_matches
-from .networkx_graphs import to_networkx as to_networkx
 from .relational_bigraphs import from_relations as from_relations
 from .rewriting import rewrite as rewrite
 from .rewriting import successors as successors

@@ -1,8 +1,6 @@
 from .bgm.systems import read_bgm as read_bgm
 from .big.expression_of import write_big as write_big
-from .big.fragments import Theory as Theory
 from .big.fragments import read_big as read_big
-from .big.fragments import read_theory as read_theory
 from .big.parser import parse_expression as parse_expression
 from .big.parser import parse_model as parse_model
 from .big.printer import format_expression as format_expression
@@ -18,8 +16,4 @@ from .paper import format_regions as format_regions
 from .paper import format_term as format_term
 from .paper import parse_regions as parse_regions
 from .paper import parse_rule as parse_rule
-from .paper_bigraphs import read_bigraph as read_bigraph
-from .paper_bigraphs import read_rule as read_rule
-from .paper_bigraphs import write_bigraph as write_bigraph
-from .paper_bigraphs import write_rule as write_rule
 from .system_files import load_system as load_system

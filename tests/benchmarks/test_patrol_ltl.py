@@ -25,15 +25,9 @@ CLAIMS = {
         "actually spill0 in cell1 leads to actually spill0 in cell2",
         "[] ((spill_at == 1) -> <> (spill_at == 2))",
     ),
-    "comes_to_rest": (
-        "eventually always actually spill0 in cell1",
-        "<> [] (spill_at == 1)",
-    ),
+    "comes_to_rest": ("eventually always actually spill0 in cell1", "<> [] (spill_at == 1)"),
     "believes": ("[] (uav0 in cell0 -> actually uav0 in cell0)", "[] ((uav_in[0] == 0) -> (uav_at[0] == 0))"),
-    "released": (
-        "pending READY a0 R not pending CTR a0",
-        "(seen[0] != 0) V (ctr[0] == NONE)",
-    ),
+    "released": ("pending READY a0 R not pending CTR a0", "(seen[0] != 0) V (ctr[0] == NONE)"),
     "recurs": (
         "([] <> actually spill0 in cell1) -> [] <> actually spill0 in cell2",
         "([] <> (spill_at == 1)) -> ([] <> (spill_at == 2))",

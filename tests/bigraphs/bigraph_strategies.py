@@ -4,6 +4,7 @@ from hypothesis import strategies as st
 
 from bigraphs.bigraph import Bigraph, Node, assemble, normal
 from bigraphs.interface import Interface
+from bigraphs.relational_bigraphs import from_relations
 from bigraphs.rules import ReactionRule, rule
 from bigraphs.signature import Control, Signature
 
@@ -110,3 +111,22 @@ def shuffled(draw, bigraph: Bigraph) -> Bigraph:
     named = [number for number, node in enumerate(bigraph.nodes) if node.name is not None]
     anonymous = [number for number, node in enumerate(bigraph.nodes) if node.name is None]
     return normal(bigraph, [*named, *draw(st.permutations(anonymous))])
+
+
+def cycle(size, start=0):
+    """Return the edges of a ring."""
+    return [(start + step, start + (step + 1) % size) for step in range(size)]
+
+
+def from_graph(edges):
+    """Return nodes whose ports are the ends of a graph's edges."""
+    size = 1 + max(max(edge) for edge in edges)
+    signature = from_relations({"a": "K"}, {}, {}).signature
+    ports = [tuple(e for e, ends in enumerate(edges) if number in ends) for number in range(size)]
+    return assemble(signature, [Node("K", None, each) for each in ports], edges=len(edges))
+
+
+PRISM = [*cycle(3), *cycle(3, 3), (0, 3), (1, 4), (2, 5)]
+UTILITY = [(a, b) for a in range(3) for b in range(3, 6)]
+ALIKE_TO_REFINEMENT = [(cycle(6), [*cycle(3), *cycle(3, 3)]), (PRISM, UTILITY)]
+"""Pairs of regular graphs that are not isomorphic."""

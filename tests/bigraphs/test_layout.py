@@ -3,7 +3,6 @@ from itertools import combinations, pairwise
 from bigraph_strategies import bigraphs
 from hypothesis import given
 from hypothesis import strategies as st
-from scale import examples
 
 from bigraphs.layout import GAP, Box, label_size, layout, pill_width
 from bigraphs.link_curves import route
@@ -84,13 +83,6 @@ def test_curves_run_from_the_border_of_their_nodes_to_their_name(bigraph):
             assert curve[0] == port
             assert curve[-1] == (pill.centre[0], pill.y + pill.height)
             assert len(curve) % 3 == 1
-
-
-@given(anything)
-@examples(20)
-def test_the_layout_is_the_same_again(bigraph):
-    assert layout(bigraph) == layout(bigraph)
-    assert route(layout(bigraph)) == route(layout(bigraph))
 
 
 def test_rows_keep_the_order_of_names():

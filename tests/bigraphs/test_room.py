@@ -19,13 +19,14 @@ def test_public_names_are_sorted_and_there():
 
 PROGRAM = """
 from bigraphs import canonical, layout, node_labels, successors
-from bigraphs.notation import read_big, read_rule, read_bigraph, write_big, write_bigraph, read_theory
-theory = read_theory('''
+from bigraphs.notation import read_system, write_big
+system = read_system('''
 ctrl L = 0; ctrl U = 2; atomic ctrl Z = 1;
 big s = /x /y (L.(U{x, y}.1 | U{y, z}.Z{z} | Z{x}) | L.Z{z} | L.1);
 react move = L.(U{a, b} | id) || L.id --> L.id || L.(U{a, b} | id) @ [1, 0, 2];
+begin brs init s; rules = [ {move} ]; end
 ''')
-for match, result in successors(theory.rules[0], dict(theory.bigraphs)["s"]):
+for match, result in successors(next(system.rules()).reaction(), system.initial):
     print(match.nodes, match.links, match.regions, match.sites, write_big(canonical(result)), layout(result))
 """
 

@@ -3,7 +3,6 @@ from hypothesis import given
 
 from bigraphs.bigraph import Node, assemble
 from bigraphs.labels import node_labels
-from bigraphs.networkx_graphs import to_networkx
 from bigraphs.relational_bigraphs import from_relations
 from bigraphs.text import draw_text
 
@@ -48,18 +47,3 @@ def test_labels_are_all_different_and_every_one_is_drawn(bigraph):
 def test_anonymous_nodes_are_numbered_where_there_are_several():
     nodes = [Node("A"), Node("A"), Node("B", None, (0,)), Node("P", "A#1")]
     assert node_labels(assemble(SIGNATURE, nodes, edges=1)) == ("A#1", "A#1'", "A#2", "B")
-
-
-@given(bigraphs(sharing=True))
-def test_the_networkx_graph_has_every_place_port_and_link(bigraph):
-    graph = to_networkx(bigraph)
-    kinds = [kind for _, kind in graph.nodes(data="kind")]
-    assert kinds.count("node") == len(bigraph.nodes)
-    assert kinds.count("region") == bigraph.regions
-    assert kinds.count("site") == len(bigraph.sites)
-    assert kinds.count("link") == bigraph.edges + len(bigraph.outer_names)
-    relations = [relation for _, _, relation in graph.edges(data="relation")]
-    ports = sum(len(node.ports) for node in bigraph.nodes) + len(bigraph.inner_links)
-    parents = sum(len(node.parents) for node in bigraph.nodes) + sum(map(len, bigraph.sites))
-    assert relations.count("linked") == ports
-    assert relations.count("contains") == parents

@@ -10,7 +10,7 @@ from pyais.encode import encode_dict
 from physical import ais_decode
 from physical.ais_decode import decode, type_of
 from physical.ais_reports import AisError, PositionReport, StaticReport
-from physical.nmea import DecodingFailure, Fragment, checksum, parse_sentence, part_of
+from physical.nmea import DecodingFailure, checksum, parse_sentence, part_of
 
 
 def parts_of(**fields):
@@ -85,23 +85,12 @@ def test_what_is_not_available_is_no_speed_course_or_heading(msg_type, speed):
     assert (report.sog_kn, report.cog_deg, report.heading_deg) == (None, None, None)
 
 
-def test_an_aircraft_flies_at_whole_knots():
-    assert only(parts_of(type=9, mmsi=111232512, lat=1, lon=2, speed=120)).sog_kn == 120
-
-
 @pytest.mark.parametrize(("lat", "lon"), [(-33.85, -151.2), (58.9, 11.0), (0.0, 0.0)])
 def test_message_17_is_scaled_to_degrees_and_signed(lat, lon):
-    head = number(17, 6) + number(0, 2) + number(2655619, 30) + number(0, 2)
     where = number(round(lon * 600), 18) + number(round(lat * 600), 17)
-    report = only(bits(head + where + number(0, 5), 80))
+    report = only(bits(OF_17 + where + number(0, 5), 80))
     assert (report.lat, report.lon) == pytest.approx((lat, lon))
     assert report.coarse
-
-
-def test_message_17_without_a_position_has_none():
-    head = number(17, 6) + number(0, 2) + number(2655619, 30) + number(0, 2)
-    where = number(181 * 600, 18) + number(91 * 600, 17)
-    assert decode(bits(head + where + number(0, 5), 80), None) == ((), DecodingFailure.NOT_AVAILABLE)
 
 
 def test_message_27_is_coarse():
@@ -147,36 +136,41 @@ def test_a_buoy_without_a_position_still_has_its_name():
     assert (static.name, reason) == ("NOORDERHOEK", DecodingFailure.NOT_AVAILABLE)
 
 
+OF_17 = number(17, 6) + number(0, 2) + number(2655619, 30) + number(0, 2)
+OF_24 = number(24, 6) + "00" + number(244660274, 30)
+WITHOUT_REPORT = {
+    "message 17 without a position": (
+        bits(OF_17 + number(181 * 600, 18) + number(91 * 600, 17) + number(0, 5), 80),
+        DecodingFailure.NOT_AVAILABLE,
+    ),
+    "neither position nor name": (payload(b"802R5Ph0BkAgoPNC"), None),
+    "a number beyond nine digits": (
+        bits(number(1, 6) + "00" + "1" * 30 + "0" * 130, 168),
+        DecodingFailure.UNDECODABLE,
+    ),
+    "a third part of message 24": (bits(OF_24 + "10" + "0" * 128, 168), DecodingFailure.UNDECODABLE),
+    **{
+        f"no type {first}": (payload(bytes([first]) + b"0" * 27), DecodingFailure.UNKNOWN)
+        for first in b"0LMNOPw"
+    },
+}
+
+
+@pytest.mark.parametrize("what", WITHOUT_REPORT)
+def test_what_reports_nothing_has_its_reason(what):
+    parts, reason = WITHOUT_REPORT[what]
+    assert decode(parts, None) == ((), reason)
+
+
 def test_a_message_cut_before_its_heading_is_too_short():
     whole = parts_of(type=1, mmsi=244660274, lat=52.97, lon=5.41)[0].payload
     assert decode(payload(whole[:23]), None)[0]
     assert decode(payload(whole[:22]), None) == ((), DecodingFailure.TRUNCATED)
 
 
-@pytest.mark.parametrize("first", b"0LMNOPw")
-def test_a_type_that_does_not_exist_is_unknown(first):
-    assert decode(payload(bytes([first]) + b"0" * 27), None) == ((), DecodingFailure.UNKNOWN)
-
-
 @pytest.mark.parametrize("first", b"678:;<=>?@BDFGHIJ")
 def test_the_type_is_the_first_character_of_the_payload(first):
     assert type_of(payload(bytes([first]) + b"0" * 27)) in range(6, 27)
-
-
-def test_a_message_without_position_or_name_is_passed_over():
-    assert decode(payload(b"802R5Ph0BkAgoPNC"), None) == ((), None)
-
-
-def test_a_number_beyond_nine_digits_is_undecodable():
-    assert decode(bits(number(1, 6) + "00" + "1" * 30 + "0" * 130, 168), None) == (
-        (),
-        DecodingFailure.UNDECODABLE,
-    )
-
-
-def test_a_third_part_of_message_24_is_undecodable():
-    head = number(24, 6) + "00" + number(244660274, 30) + "10"
-    assert decode(bits(head + "0" * 128, 168), None) == ((), DecodingFailure.UNDECODABLE)
 
 
 def test_reading_without_pyais_names_the_extra(monkeypatch):
@@ -206,13 +200,6 @@ def test_no_payload_raises_and_every_position_is_on_the_earth(text, fill):
             assert abs(report.lat) <= 90
             assert abs(report.lon) <= 180
             assert isinstance(report.lat, float)
-
-
-@given(st.text(ARMOUR, min_size=10, max_size=70), st.sampled_from("123459AB4CE5I<K"))
-def test_no_payload_of_a_type_that_is_decoded_raises(text, first):
-    part = payload(f"{first}{text}".encode())[0]
-    assert isinstance(part, Fragment)
-    assert isinstance(decode((part,), None), tuple)
 
 
 def test_pyais_is_imported_only_when_something_is_decoded():

@@ -1,5 +1,4 @@
 from dataclasses import replace
-from itertools import permutations
 
 import pytest
 from hypothesis import given
@@ -21,13 +20,6 @@ def joined(parts, time=None):
         table, lost = step.fragments, lost + len(step.lost)
         complete += [step.complete] if step.complete else []
     return table, complete, lost
-
-
-@pytest.mark.parametrize("order", list(permutations((1, 2, 3))))
-def test_parts_come_together_in_any_order(order):
-    table, complete, lost = joined(fragment(number, total=3) for number in order)
-    assert [part.number for part in complete[0].parts] == [1, 2, 3]
-    assert (table.waiting, lost) == ((), 0)
 
 
 @pytest.mark.parametrize(

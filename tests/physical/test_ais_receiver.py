@@ -1,10 +1,11 @@
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
 from physical.ais_fragments import FRAGMENT_TABLE
 from physical.ais_receiver import GROUP_TABLE, ReceiverState, hear
 from physical.ais_reports import PositionReport, StaticReport
-from physical.nmea import MAX_LINE, DecodingFailure, checksum
+from physical.nmea import DecodingFailure, checksum
 
 POSITION = b"!AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61"
 NAME = (
@@ -30,11 +31,6 @@ def heard_all(*lines, now=None):
     return reports, reasons, ear
 
 
-def time_of(*lines, now=None):
-    (report,), _, _ = heard_all(*lines, now=now)
-    return report.time
-
-
 def test_a_position_is_heard():
     heard = hear(ReceiverState(), POSITION + b"\r\n")
     assert heard.reports == (PositionReport(None, 3, 376427000, 37.346935, 23.44798, 0.0, None, 25.0),)
@@ -52,52 +48,63 @@ def test_a_message_in_two_parts_is_heard_with_its_second():
     assert (reasons, ear.fragments.waiting) == ([], ())
 
 
-def test_the_parts_may_come_in_the_other_order():
-    assert heard_all(*reversed(NAME))[0] == heard_all(*NAME)[0]
+LOST = b"GPRMC,213951.00,V,,,,,,,070420,,,N"
+VSI, APPENDED = b"$ARVSI,r1,1", POSITION + b",1276256770"
+FIRST = tagged(b"g:1-2-7,s:r1,c:1671533231", VSI)
+SECOND = tagged(b"g:2-2-7", POSITION)
+NUMBERED_ALIKE = (
+    tagged(b"g:1-3-7,s:r1,c:1671533231", VSI),
+    tagged(b"g:1-3-7,s:r2,c:1671533241", VSI),
+    tagged(b"g:2-3-7,s:r1", POSITION),
+    tagged(b"g:2-3-7,s:r2", POSITION),
+    tagged(b"g:3-3-7,s:r1", POSITION),
+)
+TIMES = {
+    "the latest PGHP line": ([PGHP, POSITION], [1276256771.39]),
+    "the latest RMC line": ([PGHP, RMC, POSITION], [1586295590.0]),
+    "none once the fix is lost": ([RMC, b"$%s*%02X" % (LOST, checksum(LOST)), POSITION], [None]),
+    "a tag block, of its own line": ([tagged(b"c:1671533231", POSITION), POSITION], [1671533231.0, None]),
+    "the first line of a group": ([FIRST, SECOND], [1671533231.0]),
+    "of a message in two lines": (
+        [tagged(b"g:1-2-7,s:r1,c:1671533231", NAME[0]), tagged(b"g:2-2-7", NAME[1])],
+        [1671533231.0],
+    ),
+    "a tag block alone": ([tagged(b"g:1-2-7,c:1671533231", b""), SECOND], [1671533231.0]),
+    "none of a group that has ended": ([FIRST, SECOND, SECOND], [1671533231.0, None]),
+    "none of a group of another length": ([tagged(b"g:1-3-7,c:1671533231", VSI), SECOND], [None]),
+    "its own of a new group with an old number": (
+        [FIRST, tagged(b"g:1-2-7,s:r2,c:1671533299", POSITION), SECOND],
+        [1671533299.0, 1671533299.0],
+    ),
+    "of two receivers that number alike": (NUMBERED_ALIKE, [1671533231.0, 1671533241.0, 1671533231.0]),
+    "none of other numbers": (
+        [b"%s %s" % (each, POSITION) for each in (b"MMSI 376427000", b"10:47:11", b"127.0.0.1:10110", b"7")],
+        [None] * 4,
+    ),
+    "none of numbers beyond a date": (
+        [b"%s %s" % (each, POSITION) for each in (b"99999999999999", b"20221320104711")],
+        [None] * 2,
+    ),
+}
 
 
-def test_the_time_is_that_of_the_latest_pghp_line():
-    assert time_of(PGHP, POSITION) == 1276256771.39
+@pytest.mark.parametrize("source", TIMES)
+def test_the_time_of_a_report_is(source):
+    lines, times = TIMES[source]
+    assert [report.time for report in heard_all(*lines)[0]] == times
 
 
-def test_the_time_is_that_of_the_latest_rmc_line():
-    assert time_of(PGHP, RMC, POSITION) == 1586295590.0
-
-
-def test_a_receiver_that_lost_its_fix_gives_no_time_any_more():
-    lost = b"GPRMC,213951.00,V,,,,,,,070420,,,N"
-    assert time_of(RMC, b"$%s*%02X" % (lost, checksum(lost)), POSITION) is None
-
-
-def test_the_moment_of_reception_comes_before_the_clock_of_the_recording():
-    assert time_of(RMC, POSITION, now=7.0) == 7.0
-
-
-def test_an_appended_time_comes_before_the_moment_of_reception():
-    assert time_of(POSITION + b",1276256770", now=7.0) == 1276256770.0
-
-
-def test_a_tag_block_comes_before_every_other_time():
-    assert time_of(PGHP, tagged(b"c:1671533231", POSITION + b",1276256770"), now=7.0) == 1671533231.0
-
-
-def test_a_tag_block_gives_its_time_to_its_own_line_only():
-    reports, _, _ = heard_all(tagged(b"c:1671533231", POSITION), POSITION)
-    assert [report.time for report in reports] == [1671533231.0, None]
-
-
-def test_the_lines_of_a_group_share_the_time_of_its_first():
-    lines = tagged(b"g:1-2-7,s:r1,c:1671533231", NAME[0]), tagged(b"g:2-2-7", NAME[1])
-    assert time_of(*lines) == 1671533231.0
-    assert (
-        time_of(tagged(b"g:1-2-7,c:1671533231", b"$ABVSI,r1,1"), tagged(b"g:2-2-7", POSITION)) == 1671533231.0
-    )
-
-
-def test_a_new_group_with_an_old_number_has_its_own_time():
-    old, new = tagged(b"g:1-2-7,s:r1,c:1671533231", POSITION), tagged(b"g:1-2-7,s:r2,c:1671533299", POSITION)
-    reports, _, _ = heard_all(old, new, tagged(b"g:2-2-7", POSITION))
-    assert [report.time for report in reports] == [1671533231.0, 1671533299.0, 1671533299.0]
+@pytest.mark.parametrize(
+    ("lines", "time"),
+    [
+        ([RMC, POSITION], 7.0),
+        ([APPENDED], 1276256770.0),
+        ([PGHP, tagged(b"c:1671533231", APPENDED)], 1671533231.0),
+    ],
+    ids=["the recording's clock comes last", "an appended time comes before it", "a tag block first"],
+)
+def test_the_moment_of_reception_has_its_rank_among_times(lines, time):
+    assert [report.time for report in heard_all(*lines, now=7.0)[0]] == [time]
 
 
 def test_the_first_sentence_of_a_group_begins_another_though_the_station_is_the_same():
@@ -110,32 +117,6 @@ def test_the_first_sentence_of_a_group_begins_another_though_the_station_is_the_
     assert [report.time for report in reports] == [1671533231.0, 1671533241.0, 1671533251.0, 1671533261.0]
 
 
-def test_a_line_whose_group_has_ended_takes_no_time_from_it():
-    whole = tagged(b"g:1-2-7,s:r1,c:1671533231", b"$ARVSI,r1,1"), tagged(b"g:2-2-7", POSITION)
-    reports, _, _ = heard_all(*whole, tagged(b"g:2-2-7", POSITION))
-    assert [report.time for report in reports] == [1671533231.0, None]
-
-
-def test_a_line_of_a_group_of_another_length_takes_no_time_from_it():
-    assert time_of(tagged(b"g:1-3-7,c:1671533231", b"$ARVSI,r1,1"), tagged(b"g:2-2-7", POSITION)) is None
-
-
-def test_two_receivers_may_number_their_groups_alike():
-    lines = (
-        tagged(b"g:1-3-7,s:r1,c:1671533231", b"$ARVSI,r1,1"),
-        tagged(b"g:1-3-7,s:r2,c:1671533241", b"$ARVSI,r2,1"),
-        tagged(b"g:2-3-7,s:r1", POSITION),
-        tagged(b"g:2-3-7,s:r2", POSITION),
-        tagged(b"g:3-3-7,s:r1", POSITION),
-    )
-    reports, _, _ = heard_all(*lines)
-    assert [report.time for report in reports] == [1671533231.0, 1671533241.0, 1671533231.0]
-
-
-def test_the_first_line_of_a_group_may_be_a_tag_block_alone():
-    assert time_of(tagged(b"g:1-2-7,c:1671533231", b""), tagged(b"g:2-2-7", POSITION)) == 1671533231.0
-
-
 def test_a_damaged_tag_block_costs_its_time_but_not_the_sentence():
     reports, reasons, _ = heard_all(b"\\c:1671533231*00\\" + POSITION)
     assert [report.time for report in reports] == [None]
@@ -146,16 +127,6 @@ def test_other_sentences_comments_and_blank_lines_bring_nothing():
     for line in (b"", b"  \r\n", b"# synthetic", b"$GPGSV,3,1,10*00", b"!AIABM,1,1,1,B,,0*00"):
         heard = hear(ReceiverState(), line)
         assert (heard.reports, heard.reasons) == ((), ())
-
-
-def test_what_is_no_sentence_is_told():
-    assert hear(ReceiverState(), b"AIVDM,1,1,,B,35VwAv0300QcEQ`EGcpN40jD0PUQ,0*61").reasons == (
-        DecodingFailure.NO_SENTENCE,
-    )
-
-
-def test_a_line_beyond_the_limit_is_refused():
-    assert hear(ReceiverState(), b" " * MAX_LINE + POSITION).reasons == (DecodingFailure.OVERLONG,)
 
 
 def test_a_damaged_time_leaves_the_clock_as_it_was():
@@ -187,32 +158,6 @@ def test_sentences_in_one_line_are_all_heard():
     assert [report.time for report in heard.reports] == [1671533231.0, 1671533232.0, 1671533232.0]
     heard = hear(ReceiverState(), POSITION + b",1671533231" + POSITION + POSITION + b",1671533232")
     assert [report.time for report in heard.reports] == [1671533231.0, 1671533232.0, 1671533232.0]
-
-
-def test_a_torn_tag_block_gives_no_time():
-    heard = hear(ReceiverState(), b"\\c:1671533231" + POSITION)
-    assert ([report.time for report in heard.reports], heard.reasons) == (
-        [None],
-        (DecodingFailure.TAG_BLOCK,),
-    )
-
-
-def test_numbers_that_are_no_times_are_not_taken_for_one():
-    for before in (
-        b"MMSI 376427000 ",
-        b"10:47:11 ",
-        b"127.0.0.1:10110 ",
-        b"7 ",
-        b"99999999999999 ",
-        b"20221320104711 ",
-    ):
-        assert time_of(before + POSITION) is None, before
-
-
-def test_a_lost_part_is_told_when_its_place_is_taken():
-    other = b"AIVDM,2,1,9,B,55R3Vn82,0"
-    _, reasons, _ = heard_all(NAME[0], b"!%s*%02X" % (other, checksum(other)))
-    assert reasons == [DecodingFailure.INCOMPLETE]
 
 
 LINES = [
@@ -247,11 +192,6 @@ def test_no_lines_raise_and_the_state_stays_small(lines):
     assert all(isinstance(reason, DecodingFailure) for reason in reasons)
     assert len(ear.fragments.waiting) <= FRAGMENT_TABLE
     assert len(ear.groups) <= GROUP_TABLE
-
-
-@given(st.lists(mutated(), max_size=10))
-def test_hearing_is_a_function(lines):
-    assert heard_all(*lines) == heard_all(*lines)
 
 
 def test_the_state_is_bounded_however_many_groups_and_parts_are_heard():

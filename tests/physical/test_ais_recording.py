@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physical.ais_recording import PIECES, has_sentences, read_recording
-from physical.ais_reports import AisError, PositionReport
+from physical.ais_reports import AisError
 from physical.file_account import FileAccount
 from physical.nmea import MAX_LINE, DecodingFailure
 
@@ -146,11 +146,6 @@ def test_an_empty_recording_has_no_reports():
     assert read_recording(b"").tally == FileAccount(0, *PIECES)
 
 
-def test_parts_that_wait_at_the_end_are_incomplete():
-    tally = read_recording(PART).tally
-    assert (tally.taken, tally.left_out) == ((), (("part of an incomplete message", 1),))
-
-
 def test_an_overlong_line_is_counted_once_and_the_next_is_read():
     recording = read_recording(b"x" * (5 * MAX_LINE) + b"\n" + POSITION)
     assert recording.tally.left_out == ((DecodingFailure.OVERLONG.value, 1),)
@@ -214,12 +209,6 @@ def test_the_account_adds_up_to_the_sentences_and_other_lines(parts):
     assert recording.tally.adds_up
     assert all(count > 0 for _, count in (*recording.tally.taken, *recording.tally.left_out))
     assert dict(recording.tally.taken).get("position", 0) == len(recording.positions)
-
-
-@given(st.binary(max_size=3000))
-def test_no_bytes_are_fatal(content):
-    recording = read_recording(content)
-    assert all(isinstance(report, PositionReport) for report in recording.positions)
 
 
 @given(st.data())

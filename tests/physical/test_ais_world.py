@@ -47,29 +47,23 @@ def test_without_speed_or_course_there_is_no_velocity(motion):
     assert physical_property(PositionReport(7.0, 1, VESSEL, 52.97, 5.41, **motion)).velocity is None
 
 
-def test_the_newest_position_at_or_before_the_time_counts():
-    heard = recording(at(1.0, lat=1.0), at(2.0, lat=2.0), at(3.0, lat=3.0))
-    assert places(world_at(heard, 2.0)) == {"mmsi244660274": point(2.0, 5.41)}
-    assert places(world_at(heard, 2.9)) == {"mmsi244660274": point(2.0, 5.41)}
-    assert world_at(heard, 0.5) == ()
-
-
-def test_without_a_time_the_end_counts():
-    assert places(world_at(recording(at(1.0, lat=1.0), at(2.0, lat=2.0)))) == {
-        "mmsi244660274": point(2.0, 5.41)
-    }
-
-
-def test_the_newest_is_newest_by_time_whatever_the_order_of_arrival():
-    assert places(world_at(recording(at(2.0, lat=2.0), at(1.0, lat=1.0)))) == {
-        "mmsi244660274": point(2.0, 5.41)
-    }
-
-
-def test_of_positions_at_one_time_the_last_to_arrive_counts():
-    assert places(world_at(recording(at(1.0, lat=1.0), at(1.0, lat=2.0)))) == {
-        "mmsi244660274": point(2.0, 5.41)
-    }
+@pytest.mark.parametrize(
+    ("times", "asked", "counts"),
+    [
+        pytest.param((1.0, 2.0, 3.0), 2.0, 2.0, id="at the time"),
+        pytest.param((1.0, 2.0, 3.0), 2.9, 2.0, id="before the time"),
+        pytest.param((1.0, 2.0, 3.0), 0.5, None, id="none so early"),
+        pytest.param((1.0, 2.0), None, 2.0, id="at the end"),
+        pytest.param((2.0, 1.0), None, 1.0, id="by time, whatever the order of arrival"),
+        pytest.param((1.0, 1.0), None, 2.0, id="of one time the last to arrive"),
+        pytest.param((None, None), None, 2.0, id="without times the last to arrive"),
+    ],
+)
+def test_the_newest_position_counts(times, asked, counts):
+    """The latitude of each is its place in the order of arrival, from 1."""
+    heard = recording(*(at(time, lat=float(place)) for place, time in enumerate(times, 1)))
+    expected = {} if counts is None else {"mmsi244660274": point(counts, 5.41)}
+    assert places(world_at(heard, asked)) == expected
 
 
 def test_a_position_older_than_its_time_to_live_is_left_out():
@@ -77,12 +71,6 @@ def test_a_position_older_than_its_time_to_live_is_left_out():
     assert len(world_at(heard)) == 2
     assert len(world_at(heard, TIME_TO_LIVE + 1)) == 1
     assert world_at(heard, TIME_TO_LIVE + 31, time_to_live=30) == ()
-
-
-def test_without_times_the_last_to_arrive_counts():
-    assert places(world_at(recording(at(None, lat=1.0), at(None, lat=2.0)))) == {
-        "mmsi244660274": point(2.0, 5.41)
-    }
 
 
 def test_a_time_cannot_be_asked_of_a_recording_without_times():
@@ -144,12 +132,6 @@ def test_a_finer_position_supersedes_coarse_ones_while_it_counts():
     coarse = [finest.supersedes(at(time, msg_type=kind), time) for time, kind in heard]
     assert coarse == [False, False, True, True, False, False, True]
     assert not finest.supersedes(at(14.0, mmsi=BUOY, msg_type=27), 14.0)
-
-
-def test_a_coarse_position_counts_only_where_there_is_no_better():
-    heard = recording(at(1.0, lat=1.0), at(2.0, lat=2.0, msg_type=27))
-    assert places(world_at(heard)) == {"mmsi244660274": point(1.0, 5.41)}
-    assert places(world_at(heard, 2.0, time_to_live=0.5)) == {"mmsi244660274": point(2.0, 5.41)}
 
 
 def test_only_what_is_inside_the_area_is_kept():

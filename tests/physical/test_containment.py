@@ -85,25 +85,6 @@ def test_every_two_places_that_do_not_nest_are_named(world):
     assert {(found.first, found.second) for found in check_places(places)} == expected
 
 
-def test_the_parent_is_the_smallest_place_that_contains():
-    index = PlaceIndex({"ocean": OCEAN, "searchArea0": SEARCH, "oilSpill0": SPILL})
-    assert index.containers(point(37, -8.7)) == ("oilSpill0", "searchArea0", "ocean")
-    assert index.smallest(SPILL) == "searchArea0"
-    assert index.smallest(OCEAN) is None
-    assert index.smallest(point(0, 0)) is None
-
-
-def test_ties_of_area_go_by_name():
-    assert PlaceIndex({"b": SEARCH, "a": SEARCH}).smallest(SPILL) == "a"
-
-
-def test_with_sharing_every_minimal_container_is_a_parent():
-    index = PlaceIndex({"a": box((0, 0), (2, 2)), "b": box((1, 1), (3, 3)), "all": box((-1, -1), (9, 9))})
-    assert index.minimal(point(1.5, 1.5)) == ("a", "b")
-    assert index.minimal(point(0.5, 0.5)) == ("a",)
-    assert index.minimal(point(8, 8)) == ("all",)
-
-
 def test_altitude_counts_where_both_have_a_band():
     index = PlaceIndex({"low": Place(SEARCH, Band(0, 50)), "high": Place(SEARCH, Band(50, 500))})
     assert index.containers(SPILL, Band(10, 20)) == ("low",)

@@ -48,10 +48,6 @@ def test_the_area_of_a_box_is_that_of_the_ellipsoid_between_its_parallels(south,
     assert area(found) == pytest.approx(reference, rel=1e-4)
 
 
-def test_a_point_has_no_area():
-    assert area(point(1, 2)) == 0.0
-
-
 @settings(deadline=None)
 @given(
     st.tuples(st.floats(-90, 90), st.floats(-180, 180)), st.tuples(st.floats(-90, 90), st.floats(-180, 180))

@@ -24,11 +24,6 @@ def test_a_sentence_ends_with_its_checksum_or_where_the_next_begins():
     assert [framed.sentence for framed in framed_in(b"!AIVDM,1,1,,B,,0")] == [b"!AIVDM,1,1,,B,,0"]
 
 
-def test_several_tag_blocks_are_read_together():
-    (framed,) = framed_in(tag(b"s:rABC") + tag(b"c:1772596000,s:XY,n:0") + SENTENCE)
-    assert framed.tag == TagBlock(1772596000.0, "rABC")
-
-
 def test_a_tag_block_alone_is_a_frame_without_a_sentence():
     assert framed_in(tag(b"c:5")) == (Framed(b"", TagBlock(5.0)),)
 

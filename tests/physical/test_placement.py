@@ -149,10 +149,6 @@ def test_moving_there_and_back_gives_the_same_value():
     assert translate_to(here, centroid(HOOK)) is HOOK
 
 
-def test_a_moved_point_is_a_point():
-    assert translate_to(point(1, 2), point(3, 4)) is point(3, 4)
-
-
 def test_nothing_is_moved_over_a_pole():
     with pytest.raises(GeometryError, match="the polygon encloses a pole"):
         translate_to(circle((0, 0), 1000), point(89.999, 0))

@@ -58,11 +58,6 @@ def test_the_items_are_places_above_sea_level():
     ]
 
 
-def test_what_goes_nowhere_is_no_place():
-    jump = simple(0, 0, 0, command=177)
-    assert [item.point for item in read_plan(plan(jump, simple()))][1:] == [None, point(37.0, -8.6)]
-
-
 def test_the_items_that_a_survey_stands_for_are_taken():
     survey = {"type": "ComplexItem", "TransectStyleComplexItem": {"Items": [simple(), simple(37.01)]}}
     assert len(read_plan(plan(survey, simple()))) == 4

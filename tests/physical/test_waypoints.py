@@ -156,15 +156,6 @@ def test_home_may_have_no_command():
     assert places_of(line(0, frame=0, altitude=400), line())["waypoint1"].altitude == Band(450, 450)
 
 
-def test_an_item_without_a_position_is_counted():
-    assert account(HOME, line(21, latitude=0, longitude=0)).left_out == (("LAND without a position", 1),)
-
-
-def test_a_file_that_is_a_fence_has_no_place():
-    assert places_of(*[line(5001, frame=0)] * 4) == {}
-    assert account(*[line(5001, frame=0)] * 4).left_out == (("fence vertex (to stay in)", 4),)
-
-
 commands = st.sampled_from([0, 16, 17, 21, 22, 31, 80, 84, 177, 201, 5001, 5100]) | st.integers(0, 65_535)
 lines = st.builds(
     line,

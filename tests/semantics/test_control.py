@@ -7,15 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scale import examples
-from small_missions import SHAPES, aboard, around, enabled, explore, mission, move_to, run
+from small_missions import SHAPES, aboard, enabled, mission, move_to, run
 
 from physical import circle, point
 from semantics import strategies
 from semantics.behaviours.commands import COMMANDS
-from semantics.behaviours.expressions import Literal, QueryOf
-from semantics.behaviours.patterns import Anything
+from semantics.behaviours.expressions import Literal
 from semantics.behaviours.reaction_rules import Pattern, PlaceVariable, Reaction, matches, moved, relinked
-from semantics.behaviours.statements import Case, ControlBy, Observe, React, Send
+from semantics.behaviours.statements import ControlBy
 from semantics.control import PREMISES, Obstacle, applicable, is_consistent, obstacle, realisations
 from semantics.drive import drive
 from semantics.environment import Drifts, Vanishes
@@ -101,19 +100,6 @@ def test_what_is_carried_leaves_no_hole_where_its_carrier_is():
         control=Control.ATOMIC,
     )
     assert run(c, "actuate").structure.physical.abstract_parent("u0") == "ship"
-
-
-def test_what_a_carrier_holds_goes_along():
-    c = commanding(
-        move_to("area"),
-        entities=("sea", "area", "ship", "crate"),
-        host="ship",
-        placed={"crate": aboard("ship", "crate")},
-        control=Control.ATOMIC,
-    )
-    physical = run(c, "actuate").structure.physical
-    assert physical.contains("area", "crate")
-    assert physical.abstract_parent("crate") == "ship"
 
 
 def test_what_a_carrier_holds_may_be_put_where_the_carrier_is_at_once():
@@ -240,12 +226,6 @@ def test_a_way_changes_nothing_but_where_the_mover_is(control):
     assert round_about.structure.logical.parent("u0") == "area"
 
 
-def test_what_flies_a_way_is_in_transit_to_its_destination_alone():
-    c = run(commanding(by("MOVE_HOST_TO", "area", "sea"), entities=("sea", "base", "area", "u0")), "command")
-    assert c.structure.physical.transit("u0").to == "area"
-    assert c.structure.physical.abstract_parent("u0") == REGION
-
-
 def test_what_is_passed_and_vanishes_is_a_lost_target():
     c = run(
         commanding(
@@ -285,16 +265,6 @@ def test_command_changes_neither_belief_nor_where_the_entity_was():
     assert isinstance(after.eta.all()[0].request, FLY)
 
 
-def test_command_requires_timed_control():
-    assert enabled(commanding(move_to("area"), control=Control.ATOMIC)) == ["actuate"]
-    assert enabled(commanding(move_to("area"))) == ["command"]
-
-
-def test_command_requires_what_actuate_requires():
-    assert enabled(commanding(move_to("area"), beliefs=Beliefs({"area": None}))) == []
-    assert enabled(commanding(move_to("area"), beliefs=Beliefs({"u0": "area"}))) == []
-
-
 def two_commands(beliefs=None):
     """Return a mission in which both agents of u0 command it, the first already on its way."""
     statements = (move_to("area"), move_to("sea"))
@@ -332,13 +302,6 @@ def test_a_command_waits_for_the_carrier_too_even_to_put_something_down():
     assert obstacle(c, c.eta.of("b")[0].request) is None
 
 
-def test_commit_makes_the_reactum_true():
-    after = run(commanding(move_to("area")), "command", "commit")
-    assert after.structure.logical.parent("u0") == "area"
-    assert after.structure.physical.abstract_parent("u0") == "area"
-    assert after.eta.all() == ()
-
-
 def test_a_flight_forgets_where_it_was_believed_to_set_out():
     believed = [Beliefs(), Beliefs(parents={"u0": REGION})]
     flights = [
@@ -366,12 +329,6 @@ def test_commit_requires_a_flight_in_line():
     assert list(commit(behind, "a")) == []
 
 
-def test_commit_requires_the_entity_still_to_be_in_transit():
-    c = run(commanding(move_to("area")), "command").with_({("placement", "u0"): SHAPES["u1"]})
-    assert enabled(c) == []
-    assert obstacle(c, c.eta.all()[0].request) is Obstacle.INCONSISTENT
-
-
 def test_commit_requires_the_entity_to_be_on_the_way_of_this_flight_and_not_of_another():
     """It may have vanished, appeared elsewhere, and been sent from there by another agent."""
     flying = run(commanding(move_to("area")), "command")
@@ -379,15 +336,6 @@ def test_commit_requires_the_entity_to_be_on_the_way_of_this_flight_and_not_of_a
     elsewhere = flying.with_({("placement", "u0"): InTransit(going.origin, "base")})
     assert list(commit(elsewhere, "a")) == []
     assert obstacle(elsewhere, elsewhere.eta.all()[0].request) is Obstacle.INCONSISTENT
-
-
-def test_commit_requires_the_target_to_be_known_and_there():
-    flying = run(commanding(move_to("area")), "command")
-    lost = flying.with_({("placement", "area"): None})
-    forgotten = flying.with_({("parent", "area"): None})
-    assert (enabled(lost), enabled(forgotten)) == ([], [])
-    assert obstacle(lost, flying.eta.all()[0].request) is Obstacle.INCONSISTENT
-    assert obstacle(forgotten, flying.eta.all()[0].request) is Obstacle.UNMATCHED
 
 
 def meeting():
@@ -445,35 +393,6 @@ def test_a_lost_target_is_inconsistent():
         "env",
     )
     assert obstacle(c, c.eta.all()[0].request) is Obstacle.INCONSISTENT
-
-
-def test_nobody_sees_it_arrived_before_it_has():
-    look = Observe(QueryOf("CHILDREN", QueryOf(None, Literal("area"))))
-    c = mission(
-        ["base", "sea", "area", "u0", "u1"],
-        (move_to("area"), look),
-        {"a": ("u0", (0,)), "b": ("u1", (1,))},
-        **TIMED,
-    )
-    for t in explore(c).transitions:
-        before, transition = t
-        flying = isinstance(before.structure.physical.placement("u0"), InTransit)
-        if transition.label.rule == "sense" and flying:
-            assert "u0" not in transition.target.eta.of("b")[0].request.observation
-
-
-def test_a_flight_blocks_its_agents_line_but_messages_arrive():
-    statements = (
-        move_to("area"),
-        Observe(around()),
-        Send(Literal("go"), Literal("b")),
-        React((Case(Anything("m", "message"), None, ()),)),
-    )
-    c = mission(["base", "area", "u0"], statements, {"a": ("u0", (0, 1, 2)), "b": ("u0", (3,))}, **TIMED)
-    c = run(c, "req_ctr", "command", "req_obs", "req_snd")
-    assert enabled(c) == ["commit", "snd"]
-    assert enabled(run(c, "snd")) == ["commit", "rcv_msg"]
-    assert enabled(run(c, "commit")) == ["sense", "snd"]
 
 
 def test_link_changes_commit_at_once():

@@ -6,9 +6,9 @@ agent. It knows the rules req_obs, sense, rcv_obs, req_ctr, actuate and env, und
 
 import copy
 
-from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
+from scale import examples
 from small_missions import SHAPES, around, mission
 
 from physical import point
@@ -283,4 +283,4 @@ class Beside(RuleBasedStateMachine):
 
 
 TestTheKernelBesideANaiveInterpreter = Beside.TestCase
-TestTheKernelBesideANaiveInterpreter.settings = settings(max_examples=60, stateful_step_count=15)
+TestTheKernelBesideANaiveInterpreter.settings = examples(75, stateful_step_count=15)

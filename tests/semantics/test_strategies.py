@@ -70,7 +70,7 @@ def test_a_configuration_has_the_scheduler_and_control_that_were_asked_for(c):
 def test_the_rules_of_the_paper_are_all_reached_by_random_runs():
     seen: set[str] = set()
 
-    @examples(200)
+    @examples(100)
     @given(strategies.initial_configurations(), st.randoms(use_true_random=False))
     def run(c: Configuration, dice: random.Random) -> None:
         with suppress(Fault):
@@ -95,7 +95,7 @@ def test_programs_are_written_from_any_source_of_choices():
         assert all(number < len(program.statements) for number in code)
 
 
-@examples(80)
+@examples(45)
 @given(strategies.configurations())
 def test_no_computation_fails_in_a_generated_configuration(configuration):
     successors(configuration)

@@ -90,23 +90,3 @@ def processes(draw, depth=2, known=FREE, path="z"):
 @given(processes())
 def test_a_process_reduces_as_its_own_semantics_says(start):
     assert explored(replace(SYSTEM, initial=encoded(start))) == reachable(start)
-
-
-def test_a_received_name_is_substituted_below_other_inputs():
-    start = (
-        ("send", "a", "b"),
-        ("get", "a", "z0", (("get", "z0", "z00", (("send", "z00", "z0"),)), ("send", "z0", "z0"))),
-    )
-    states, steps = reachable(start)
-    assert (len(states), len(steps)) == (3, 2)
-    assert explored(replace(SYSTEM, initial=encoded(start))) == (states, steps)
-
-
-def test_ports_are_in_order():
-    start = (("send", "a", "b"), ("get", "b", "z0", ()))
-    assert len(explored(replace(SYSTEM, initial=encoded(start)))[0]) == 1
-
-
-def test_one_client_gets_the_printer():
-    states, steps = explored(SYSTEM)
-    assert (len(states), len(steps)) == (3, 2)

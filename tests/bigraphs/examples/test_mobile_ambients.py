@@ -13,7 +13,6 @@ from scale import examples
 from bigraphs.algebra import parallel, substitution
 from bigraphs.canonical_form import canonical
 from bigraphs.examples import example_text
-from bigraphs.matching import find_matches
 from bigraphs.notation import read_big, read_system
 
 SYSTEM = read_system(example_text("mobile_ambients"))
@@ -122,16 +121,3 @@ def test_each_axiom_is_a_step():
     for start, states in ((enter, 2), (leave, 3), (dissolve, 3)):
         assert same_reductions(start)
         assert len(reachable(start)[0]) == states
-
-
-def test_what_is_behind_a_capability_waits():
-    start = process(("in", "m", process(("open", "n", ()), ("amb", "n", ()))))
-    assert same_reductions(start)
-    assert len(reachable(start)[0]) == 1
-
-
-def test_the_message_is_delivered_in_three_steps():
-    states, steps = explored(SYSTEM)
-    assert (len(states), len(steps)) == (4, 3)
-    (delivered,) = SYSTEM.predicates
-    assert sum(any(True for _ in find_matches(delivered.pattern, state)) for state in states) == 1

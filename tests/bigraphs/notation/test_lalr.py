@@ -123,51 +123,11 @@ def test_a_file_without_mistakes_is_read_without_lark():
     )
 
 
-BGM_WORDS = st.sampled_from(
-    [
-        "a",
-        "B",
-        "%active",
-        "%passive",
-        "%outer",
-        "%inner",
-        "%name",
-        "x",
-        ":",
-        "2",
-        ";",
-        "%rule",
-        "r",
-        "%property",
-        "p",
-        "->",
-        "|",
-        "||",
-        ".",
-        "[",
-        "]",
-        ",",
-        "-",
-        "nil",
-        "nile",
-        "$0",
-        "$this",
-        "$terminal",
-        "(",
-        ")",
-        "!",
-        "==",
-        ">=",
-        "&&",
-        "if",
-        "then",
-        "else",
-        "matches()",
-        "size()",
-        "equal(A)",
-        "#",
-    ]
-)
+OF_BIGMC = """
+a B %active %passive %outer %inner %name x : 2 ; %rule r %property p -> | || . [ ] , - nil nile $0 $this $terminal
+( ) ! == >= && if then else matches() size() equal(A) #
+"""
+BGM_WORDS = st.sampled_from(OF_BIGMC.split())
 
 
 @examples(500)

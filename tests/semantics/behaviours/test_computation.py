@@ -17,7 +17,6 @@ from semantics.behaviours.statements import (
     For,
     ForEach,
     If,
-    Send,
     While,
 )
 from semantics.behaviours.values import Truth
@@ -77,13 +76,6 @@ def test_a_call_binds_all_arguments_before_any_parameter():
         behaviours=swap,
     )
     assert t.shown == ("2", "1")
-
-
-def test_a_variable_that_nothing_reads_any_more_is_forgotten():
-    t = shown(
-        Assign("x", Literal(1)), Assign("y", Literal(2)), Send(Variable("y"), Literal("a")), code=(0, 1, 2)
-    )
-    assert t.target.alpha.store("a") == (("y", 2),)
 
 
 def test_what_follows_an_if_runs_either_way():

@@ -19,7 +19,6 @@ from semantics.behaviours.reaction_rules import (
     matches,
 )
 from semantics.control import applicable
-from semantics.state.initial import Beliefs
 from semantics.state.logical_model import LogicalModel
 from semantics.state.physical_model import Placed
 from semantics.state.signature import REGION
@@ -94,16 +93,6 @@ def test_two_node_variables_stand_for_two_nodes_and_a_place_variable_for_any():
     assert [[match[n], match[m], match[x]] for match in found] == [["u1", "u0", "base"], ["u0", "u1", "base"]]
 
 
-def test_a_name_that_is_not_believed_matches_nothing():
-    assert matches(Pattern(("u0",)), logical_of("u0", beliefs=Beliefs({"u0": None}))) == ()
-
-
-def test_a_node_written_without_a_site_has_no_other_child():
-    logical = logical_of("base", "u0", "u1")
-    assert matches(Pattern(("base", "u0"), (("u0", "base"),), closed=("base",)), logical) == ()
-    assert matches(Pattern(("base", "u0"), (("u0", "base"),)), logical)
-
-
 def test_nothing_reacts_inside_what_is_passive():
     placed = {"u0": Placed(point(37.15, -8.3))}
     assert logical_of("bunker", "u0", placed=placed).parent("u0") == "bunker"
@@ -120,12 +109,6 @@ def test_link_variables_keep_to_their_kind():
     ):
         found = matches(Pattern(("u0",), links=((term, "u0"),)), logical)
         assert [match[term] for match in found] == links
-
-
-def test_a_match_is_found_once_even_if_two_relations_say_the_same():
-    n = NodeVariable("n")
-    pattern = Pattern((n,), ((n, "base"), (n, PlaceVariable("x"))))
-    assert len(matches(pattern, logical_of("base", "u0"))) == 1
 
 
 def test_a_reaction_that_does_not_involve_the_host_is_not_applicable():

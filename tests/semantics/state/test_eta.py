@@ -69,11 +69,6 @@ def test_requests_are_counted_and_found_where_they_stand(scheduler, asked):
         assert all(c.read(each.cell)[each.position] == each.request for each in c.eta.in_line(agent))
 
 
-def test_fcfs_keeps_all_that_wait_for_their_turn_in_the_order_asked():
-    asked = [SND("b", "a", "x"), OBS("a", All()), MGR("b", "u0"), SND("a", "b", "y")]
-    assert [each.request for each in pending(Scheduler.FCFS, asked).eta.all()] == asked
-
-
 def test_what_takes_no_turn_has_no_place_in_the_queue():
     ready = READY("a", All(), Observation.of())
     asked = [OBS("a", All()), OBS("b", All())]

@@ -90,12 +90,6 @@ def test_an_absent_entity_is_not_believed_unless_the_mission_says_so():
     assert said.structure.logical.parent("u0") == "base"
 
 
-def test_a_configuration_is_compared_by_value():
-    assert figure_2() == figure_2()
-    assert len({figure_2(), figure_2()}) == 1
-    assert figure_2() != run(figure_2(), "req_ctr")
-
-
 # --- propositions -----------------------------------------------------------------------------------------------
 
 
