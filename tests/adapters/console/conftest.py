@@ -28,7 +28,7 @@ def pytest_collection_modifyitems(items):
 def fly(folder):
     """Fly the live demonstration into a folder."""
     line = [sys.executable, "-m", "bigactors.live_demo", str(folder)]
-    subprocess.run(line, check=True, capture_output=True, timeout=300)
+    subprocess.run(line, check=True, capture_output=True, timeout=560)
 
 
 @pytest.fixture(scope="session")
@@ -86,5 +86,5 @@ def operates(browser):
         page.close()
     harnesses.close()
     for _, watch, refused in seats:
-        watch.forgive("ERR_CONNECTION_REFUSED", *refused)
+        watch.forgive("net::ERR_CONNECTION", *refused)
         watch.saw_nothing()

@@ -130,11 +130,12 @@ class Operator:
         with by(self.page, button):
             self.waits(SECOND)
 
-    def taps(self, button, by=by_mouse):
-        """Press a button shortly, while time stands still."""
+    def taps(self, button, by=by_mouse, *, says):
+        """Press a button shortly, and read what it says of that, while time stands still."""
         self._stops_the_clock()
         with by(self.page, button):
             self.page.clock.run_for(900)
+        self.sees(".notice", says)
         self.page.clock.resume()
 
     def _stops_the_clock(self):

@@ -90,6 +90,8 @@ class Harness:
         self.port = self._runner.addresses[0][1]
 
     async def _stop(self):
+        for site in list(self._runner.sites):  # first, so that no page comes back meanwhile
+            await site.stop()
         await self._hang_up()
         await self._runner.cleanup()
 

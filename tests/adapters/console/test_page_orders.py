@@ -44,8 +44,7 @@ def gives_a_name_that_no_loss_of_the_server_takes_from_their_hand(ana):
 
 
 def acts_under_it_and_is_asked_no_more(ana):
-    ana.taps(SAY)
-    ana.sees(".notice", "Not sent: keep say “handover” to tower pressed for one second.")
+    ana.taps(SAY, says="Not sent: keep say “handover” to tower pressed for one second.")
     ana.holds(SAY)
     ana.sees(".notice.confirmed", 'say "handover" tower: done')
     assert ana.asked() == [SAID]
@@ -133,8 +132,7 @@ def test_only_a_long_press_orders_by_mouse_key_and_finger(operates):
 
 
 def presses_shortly_and_is_told_to_press_longer(ana, press):
-    ana.taps(HOLD, press)
-    ana.sees(".notice", "Not sent: keep Hold uav0 pressed for one second")
+    ana.taps(HOLD, press, says="Not sent: keep Hold uav0 pressed for one second")
     assert ana.asked() == []
     ana.closes_notices()
 

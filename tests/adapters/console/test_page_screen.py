@@ -117,6 +117,7 @@ def goes_to_a_time_that_is_typed(ana):
     ana.page.locator("#goto").fill("08:03:20")
     ana.presses("Enter")
     ana.sees(".ends .shown", "08:03:20 UTC")
+    ana.sees(".screen.past")
     ana.presses("b", "Shift+B")
     assert sought(ana) == pytest.approx([200, 190, 130], abs=0.01)
 

@@ -138,12 +138,11 @@ ENDS = "breaks what the mission assumes: all vehicles are told to hold"
 
 def reads_what_a_return_ends_before_pressing_it(ana):
     ana.told(vehicles={"uav0": card(on_return=ENDS)})
-    told, button = (ana.page.locator(each) for each in (".on-return:visible", "[aria-label^='Return uav0']"))
-    assert ENDS in told.first.inner_text()
-    assert not told.first.evaluate("e => e.scrollHeight > e.clientHeight + 1")
-    assert ENDS in button.first.get_attribute("aria-label")
-    ana.taps("[aria-label^='Return uav0']:visible")
-    ana.sees(".notice", "Not sent: keep Return uav0 pressed for one second.")
+    told, button = ana.page.locator(f"{UAV0} .on-return"), f"{UAV0} [aria-label^='Return uav0']"
+    assert ENDS in told.inner_text()
+    assert not told.evaluate("e => e.scrollHeight > e.clientHeight + 1")
+    assert ENDS in ana.page.locator(button).get_attribute("aria-label")
+    ana.taps(button, says="Not sent: keep Return uav0 pressed for one second.")
     assert ana.asked() == []
 
 
