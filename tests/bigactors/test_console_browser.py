@@ -56,7 +56,7 @@ def browser():
 def opened(browser, link):
     watch = Watch()
     page = watch.over(browser.new_page(viewport=DESK), link.partition("#")[0])
-    page.set_default_timeout(PATIENCE)
+    page.set_default_timeout(4 * PATIENCE)  # the plane flies for minutes on a busy machine
     page.goto(link)
     yield page, watch
     page.close()
