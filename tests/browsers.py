@@ -8,14 +8,23 @@ import pytest
 PHONE, DESK = {"width": 390, "height": 844}, {"width": 1440, "height": 900}
 
 
+PATIENCE = 60_000
+"""Milliseconds in which whatever a test waits for comes, on the busiest machine."""
+
+
+def playwright():
+    """Return playwright; skip the test where it is not installed."""
+    return pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+
+
 @contextmanager
 def chromium(*arguments):
     """Start Debian's chromium; skip the test where it or playwright is not installed."""
-    playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+    playing = playwright()
     found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     if found is None:
         pytest.skip("there is no chromium")
-    with playwright.sync_playwright() as started:
+    with playing.sync_playwright() as started:
         browser = started.chromium.launch(executable_path=found, args=["--no-sandbox", *arguments])
         try:
             yield browser
@@ -61,6 +70,11 @@ class Watch:
     def saw_nothing(self):
         assert not self.errors, self.errors
         assert not self.others, self.others
+
+
+def says(page, selector, text):
+    """Wait until an element says something, as a whole or by a pattern."""
+    playwright().expect(page.locator(selector).first).to_have_text(text, timeout=PATIENCE)
 
 
 def overflow(page):

@@ -1,7 +1,6 @@
 """`bigactors console` and `run --console`: real processes, a simulated copter, and an operator at a websocket."""
 
 import asyncio
-import json
 import os
 import signal
 import socket
@@ -12,18 +11,13 @@ import urllib.error
 import urllib.request
 from argparse import Namespace
 from contextlib import ExitStack, contextmanager, suppress
-from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-import aiohttp
 import pytest
+from certificates import Authority
+from console_clients import HELLO, client
 from consoles import begun, free_port, link_of
-from cryptography import x509
-from cryptography.hazmat.primitives import hashes, serialization
-from cryptography.hazmat.primitives.asymmetric import ec
-from cryptography.x509.oid import NameOID
 
-from adapters.console.requests import PROTOCOL
 from adapters.recording.reading import read_recording
 from bigactors.cli import main
 from bigactors.commands.console import PORT
@@ -132,29 +126,16 @@ def test_what_is_no_recording_is_a_mistake(tmp_path, capsys, content):
     assert str(path) in capsys.readouterr().err
 
 
-def certificate(folder):
-    """Write a certificate of this machine's own, and its key."""
-    key, now = ec.generate_private_key(ec.SECP256R1()), datetime.now(UTC)
-    name = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, "localhost")])
-    about = x509.CertificateBuilder(name, name, key.public_key(), x509.random_serial_number())
-    about = about.not_valid_before(now).not_valid_after(now + timedelta(days=1))
-    about = about.add_extension(x509.SubjectAlternativeName([x509.DNSName("localhost")]), critical=False)
-    files = folder / "cert.pem", folder / "key.pem"
-    files[0].write_bytes(about.sign(key, hashes.SHA256()).public_bytes(serialization.Encoding.PEM))
-    form = serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
-    files[1].write_bytes(key.private_bytes(serialization.Encoding.PEM, *form))
-    return files
-
-
 def test_with_a_certificate_it_is_served_by_https_also_before_there_is_a_recording(tmp_path):
-    (cert, key), later = certificate(tmp_path), tmp_path / "later.mcap"
-    more = ("--follow", "--tls", cert, key, "--listen=localhost:0")
+    later, authority = tmp_path / "later.mcap", Authority(tmp_path, "authority")
+    authority.sign("localhost", "console")
+    more = ("--follow", "--tls", tmp_path / "console.pem", tmp_path / "console.key", "--listen=localhost:0")
     with begun("-m", "bigactors", "console", later, *more) as process:
         waits = f"{later} is not there yet: the console waits for the run that writes it\n"
         assert process.stdout.readline() == waits
         link = link_of(process, "watch")
         assert link.startswith("https://localhost:")
-        trusting = ssl.create_default_context(cafile=str(cert))
+        trusting = ssl.create_default_context(cafile=str(authority.path))
         with urllib.request.urlopen(link, context=trusting) as answer:
             assert answer.status == 200
         with pytest.raises((urllib.error.URLError, ConnectionError)):
@@ -177,35 +158,11 @@ def flying(folder, *more, at_once=True):
 
 
 async def operate(link, does):
-    """Let somebody operate a console: `does` gets what is shown, and two functions: to wait, and to act."""
+    """Let somebody operate a console."""
     address, _, token = link.partition("/#token=")
-    state = {}
-    async with aiohttp.ClientSession() as session, session.ws_connect(f"{address}/ws") as found:
-        await found.send_json({"type": "hello", "protocol": PROTOCOL, "token": token, "name": "Ana"})
-        answers = {}
-
-        async def frame():
-            heard = json.loads((await found.receive(20)).data)
-            if heard["type"] == "answer":
-                answers[heard["id"]] = heard["refusal"]
-            for name, values in (heard.get("state") or heard.get("set") or {}).items():
-                state.setdefault(name, {}).update(values)
-            for name, keys in heard.get("gone", {}).items():
-                for key in keys:
-                    del state[name][key]
-
-        async def until(true):
-            async with asyncio.timeout(40):
-                while not (state and true()):
-                    await frame()
-
-        async def act(**action):
-            name = str(len(answers))
-            await found.send_json({"type": "act", "id": name, "action": action})
-            await until(lambda: name in answers)
-            return answers[name]
-
-        await does(state, until, act)
+    async with client(address, hello=HELLO | {"token": token}) as ana:
+        await ana.until(bool)
+        await does(ana)
 
 
 def fate(state, what):
@@ -237,51 +194,49 @@ def niceness_of(process):
 
 
 def test_an_operator_acts_and_sees_what_becomes_of_it_and_the_run_outlives_its_console(tmp_path):
-    async def does(state, until, act):
-        await until(lambda: state["vehicles"]["uav0"]["order"] is not None)
-        assert (state["clock"]["live"], state["clock"]["rate"]) == (True, 1.0)
-        assert await act(say={"agent": "op", "message": "status"}) == ""
-        await until(lambda: [each["left"] for each in state["sayings"].values()] == [1])
-        assert "may be said" in await act(say={"agent": "op", "message": "land"})
-        assert await act(order={"order": "hold", "vehicle": "uav0"}) == ""
-        await until(lambda: "confirmed" in fate(state, "hold"))
-        assert "Ana" in state["vehicles"]["uav0"]["taken"]
-        assert {each["by"] for each in state["actions"].values()} == {"Ana"}
-        card = state["vehicles"]["uav0"]
+    async def does(ana):
+        await ana.until(lambda state: state["vehicles"]["uav0"]["order"] is not None)
+        assert (ana.state["clock"]["live"], ana.state["clock"]["rate"]) == (True, 1.0)
+        assert await ana.act(say={"agent": "op", "message": "status"}) == ""
+        await ana.until(lambda state: [each["left"] for each in state["sayings"].values()] == [1])
+        assert "may be said" in await ana.act(say={"agent": "op", "message": "land"})
+        assert await ana.act(order={"order": "hold", "vehicle": "uav0"}) == ""
+        await ana.until(lambda state: "confirmed" in fate(state, "hold"))
+        card = ana.state["vehicles"]["uav0"]
+        assert "Ana" in card["taken"]
+        assert {each["by"] for each in ana.state["actions"].values()} == {"Ana"}
         assert card["altitude"] == pytest.approx(card["height"] + 20.0, abs=25.0)
-        assert await act(give_back={"vehicle": "uav0"}) == ""
-        await until(lambda: state["vehicles"]["uav0"]["taken"] is None)
-        await until(lambda: state["vehicles"]["uav0"]["believed"] == "east0")
+        assert await ana.act(give_back={"vehicle": "uav0"}) == ""
+        await ana.until(lambda state: state["vehicles"]["uav0"]["taken"] is None)
+        await ana.until(lambda state: state["vehicles"]["uav0"]["believed"] == "east0")
 
     with flying(tmp_path) as process:
-        link = link_of(process)
-        asyncio.run(operate(link, does))
+        asyncio.run(operate(link_of(process), does))
         console, recording = console_of(process)
         assert niceness_of(console) == {os.getpriority(os.PRIO_PROCESS, process.pid) + 5}
         told = read_recording(recording)
         assert [message.data["by"] for message in told.of("orders")] == ["Ana"]
         assert [message.data["by"] for message in told.of("given_back")] == ["Ana"]
         os.kill(console, signal.SIGKILL)
-        said = ""
-        while "the run goes on without it" not in said:
-            said += process.stdout.readline()
+        assert any("the run goes on without it" in line for line in process.stdout)
         process.send_signal(signal.SIGINT)
-        assert process.wait(20) == 3
+        assert process.wait(60) == 3
     assert not recording.parent.exists()
 
 
 def test_beside_a_console_nothing_is_commanded_before_somebody_presses_start(tmp_path):
-    async def does(state, until, act):
-        await until(lambda: state["preflight"].get("state") == "ready")
-        assert all(each["done"] for each in state["preflight"]["items"])
-        assert "uav0 is heard" in [each["what"] for each in state["preflight"]["items"]]
-        await asyncio.sleep(1.0)
-        assert state["vehicles"]["uav0"]["order"] is None
-        assert "has not begun" in await act(say={"agent": "op", "message": "status"})
-        assert await act(start=True) == ""
-        await until(lambda: state["vehicles"]["uav0"]["order"] is not None)
-        assert (state["preflight"]["state"], state["preflight"]["by"]) == ("begun", "Ana")
-        assert await act(start=True) == "the run has started already"
+    async def does(ana):
+        await ana.until(lambda state: state["preflight"].get("state") == "ready")
+        assert all(each["done"] for each in ana.state["preflight"]["items"])
+        assert "uav0 is heard" in [each["what"] for each in ana.state["preflight"]["items"]]
+        ready = ana.state["clock"]["now"]
+        await ana.until(lambda state: state["clock"]["now"] > ready + 1.0)
+        assert ana.state["vehicles"]["uav0"]["order"] is None
+        assert "has not begun" in await ana.act(say={"agent": "op", "message": "status"})
+        assert await ana.act(start=True) == ""
+        await ana.until(lambda state: state["vehicles"]["uav0"]["order"] is not None)
+        assert (ana.state["preflight"]["state"], ana.state["preflight"]["by"]) == ("begun", "Ana")
+        assert await ana.act(start=True) == "the run has started already"
 
     with flying(tmp_path, "--record", tmp_path / "run.mcap", at_once=False) as process:
         link = link_of(process)
@@ -289,36 +244,38 @@ def test_beside_a_console_nothing_is_commanded_before_somebody_presses_start(tmp
         assert "press Start" in process.stdout.readline()
         asyncio.run(operate(link, does))
         process.send_signal(signal.SIGINT)
-        assert process.wait(20) == 3
+        assert process.wait(60) == 3
     told = read_recording(tmp_path / "run.mcap")
     (begun_at,) = [each.time for each in told.of("preflight") if each.data["state"] == "begun"]
     assert all(each.time >= begun_at - 0.5 for each in told.of("commands"))
 
 
-def test_a_run_that_did_not_begin_leaves_no_recording_to_stop_the_next_one(tmp_path):
-    (tmp_path / "tour.mission").write_text(MISSION)
-    port = free_port(socket.SOCK_DGRAM)
-    line = ["-m", "bigactors", "run", tmp_path / "tour.mission", f"--vehicle=uav0=udp:127.0.0.1:{port}"]
-    line += ["--unverified", "--wait", "0.5", "--socket", tmp_path / "s", "--record", tmp_path / "run.mcap"]
+def line_of(folder, *more):
+    """Return the line of a run of whose vehicle nothing is heard."""
+    (folder / "tour.mission").write_text(MISSION)
+    vehicle = f"--vehicle=uav0=udp:127.0.0.1:{free_port(socket.SOCK_DGRAM)}"
+    line = ["run", folder / "tour.mission", vehicle, "--unverified", "--wait=0.5", *more]
+    return [*map(str, line), f"--socket={folder / 's'}", f"--record={folder / 'run.mcap'}"]
+
+
+def test_a_run_that_did_not_begin_leaves_no_recording_to_stop_the_next_one(tmp_path, capsys):
     for _ in range(2):
-        with begun(*line) as process:
-            assert process.wait(60) == 2
-            assert "nothing was heard of uav0" in process.stdout.read()
+        assert main(line_of(tmp_path)) == 2
+        assert "nothing was heard of uav0" in "".join(capsys.readouterr())
         assert not (tmp_path / "run.mcap").exists()
     (tmp_path / "run.mcap").write_bytes(b"another's")
-    with begun(*line) as process:
-        assert process.wait(60) == 2
-        assert "there is a file already" in process.stdout.read()
+    assert main(line_of(tmp_path)) == 2
+    assert "there is a file already" in "".join(capsys.readouterr())
     assert (tmp_path / "run.mcap").read_bytes() == b"another's"
 
 
 def test_a_run_whose_console_does_not_start_commands_nothing(tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         place = f"127.0.0.1:{taken.getsockname()[1]}"
-        with flying(tmp_path, "--console", place, "--record", tmp_path / "run.mcap") as process:
-            said = process.stdout.read()
+        line = line_of(tmp_path, "--at-once", "--console", place)
+        with begun("-m", "bigactors", *line) as process:
+            assert "the console does not start" in process.stdout.read()
             assert process.wait(60) == 2
-    assert "the console does not start" in said
     assert not (tmp_path / "run.mcap").exists()
 
 
@@ -336,23 +293,23 @@ def test_a_console_that_closes_its_output_without_a_link_has_not_started_though_
 
 
 def test_a_console_says_that_its_run_was_killed_and_ends_with_it(tmp_path):
-    async def does(state, until, _act):
-        await until(lambda: state["vehicles"]["uav0"]["order"] is not None)
+    async def does(ana):
+        await ana.until(lambda state: state["vehicles"]["uav0"]["order"] is not None)
         process.kill()
-        await until(lambda: state["clock"]["ended"] is not None)
-        assert state["clock"]["ended"].startswith("the run ended without a word")
-        await until(lambda: state["vehicles"]["uav0"]["word"] == "unknown")
+        await ana.until(lambda state: state["clock"]["ended"] is not None)
+        assert ana.state["clock"]["ended"].startswith("the run ended without a word")
+        await ana.until(lambda state: state["vehicles"]["uav0"]["word"] == "unknown")
 
     with flying(tmp_path, "--record", tmp_path / "run.mcap") as process:
         assert "console: it starts beside the run; its links follow\n" in process.stdout
         link = link_of(process)
         asyncio.run(operate(link, does))
         process.wait()
-        end = time.monotonic() + 60
-        while time.monotonic() < end:
-            with suppress(urllib.error.URLError, ConnectionError):
-                urllib.request.urlopen(link.partition("#")[0])
-                time.sleep(0.1)
-                continue
-            return
-    raise AssertionError(link)
+        while is_served(link):
+            time.sleep(0.1)
+
+
+def is_served(link):
+    with suppress(urllib.error.URLError, ConnectionError), urllib.request.urlopen(link.partition("#")[0]):
+        return True
+    return False

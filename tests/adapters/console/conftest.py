@@ -2,8 +2,7 @@
 
 import subprocess
 import sys
-from contextlib import suppress
-from functools import partial
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,8 @@ sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "liv
 from browsers import DESK, Watch, chromium  # noqa: E402 - found by the line before
 from live_missions import WEST  # noqa: E402
 from once import once  # noqa: E402
-from page_harness import PAGE  # noqa: E402
+from page_driving import Operator  # noqa: E402
+from page_harness import PAGE, Harness, world  # noqa: E402
 from recorded import Tape, eventful, uav  # noqa: E402
 
 
@@ -28,7 +28,7 @@ def pytest_collection_modifyitems(items):
 def fly(folder):
     """Fly the live demonstration into a folder."""
     line = [sys.executable, "-m", "bigactors.live_demo", str(folder)]
-    subprocess.run(line, check=True, capture_output=True, timeout=300)
+    subprocess.run(line, check=True, capture_output=True, timeout=560)
 
 
 @pytest.fixture(scope="session")
@@ -46,21 +46,17 @@ def recording(tmp_path_factory):
 
 
 @pytest.fixture
-def taped(request):
-    """Return what begins a recording that is still being written."""
-
-    def begin(folder):
-        tape = Tape(folder / "run.mcap")
-        request.addfinalizer(partial(_close, tape))
-        tape.turn(0, uav(WEST, 0))
-        return tape
-
-    return begin
+def tape(tmp_path):
+    """Return a run that is recorded as it goes."""
+    with Tape(tmp_path / "r.mcap") as begun:
+        yield begun
 
 
-def _close(tape):
-    with suppress(ValueError):  # it was closed by the test
-        tape.recorder.close("over", 2000.0)
+@pytest.fixture
+def flight(tape):
+    """Return a run in which the vehicle was heard in the west."""
+    tape.turn(0, uav(WEST, 0))
+    return tape
 
 
 @pytest.fixture(scope="module")
@@ -71,27 +67,24 @@ def browser():
         yield found
 
 
-DRAWN = "html[data-drawn]"
-
-
 @pytest.fixture
-def shown(browser):
-    """Show a harness in a page until its first frame is drawn whole; at the end, nothing may have gone wrong there."""
-    pages = []
+def operates(browser):
+    """Seat an operator before a page of a state, or of another's harness; at the end, nothing may have gone wrong."""
+    seats, harnesses = [], ExitStack()
 
-    def show(harness, size=DESK, refused=(), name="Ana", until=DRAWN, **options):
+    def seat(served=None, *, size=DESK, refused=(), name="Ana", has_touch=False, **options):
+        if not isinstance(served, Harness):
+            served = harnesses.enter_context(Harness(served or world(), **options))
         watch = Watch()
-        page = browser.new_page(viewport=size, **options)
-        watch.over(page, harness.link.partition("#")[0])
-        page.set_default_timeout(60_000)
-        page.add_init_script(f"if (location.port) localStorage['bigactors.name'] ??= {name!r}")
-        page.goto(harness.link)
-        page.locator(until).wait_for()
-        pages.append((page, watch, refused))
-        return page
+        page = browser.new_page(viewport=size, has_touch=has_touch)
+        watch.over(page, served.link.partition("#")[0])
+        seats.append((page, watch, refused))
+        return Operator(page, served, name)
 
-    yield show
-    for page, watch, refused in pages:
+    yield seat
+    for page, _, _ in seats:
         page.close()
-        watch.forgive("ERR_CONNECTION_REFUSED", *refused)
+    harnesses.close()
+    for _, watch, refused in seats:
+        watch.forgive("net::ERR_CONNECTION", *refused)
         watch.saw_nothing()

@@ -1,80 +1,70 @@
-"""A server that speaks the console's protocol about a state that a test writes, for tests of the page alone.
-
-`python tests/adapters/console/page_harness.py [VEHICLES [ENTITIES]]` serves a world that moves, to be looked at.
-"""
+"""A server that speaks the console's protocol about a state that a test writes, for tests of the page alone."""
 
 import asyncio
 import json
 import math
-import sys
 import threading
 import time
 from pathlib import Path
 
 from aiohttp import WSMsgType, web
+from console_clients import OF_SERVER
+from threaded import loop_beside
+
+from adapters.console.server import HEADERS
 
 PAGE = Path(__file__).parents[3] / "adapters" / "console" / "page"
 TOKEN = "a-token"
-POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
-    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
-)
 
 
 class Harness:
-    """Serves the page, and its state to whoever says hello with the token; keeps what they send."""
+    """Serves the page, and its state to whoever says hello with the token."""
 
-    def __init__(self, state, *, role="act", mode="live", port=0):
+    def __init__(self, state, *, role="act", mode="live", has_begun=True):
         self.state, self.role, self.mode = with_alarms(state), role, mode
-        self.received, self.sockets, self.hellos = [], {}, []
+        self.sockets, self.hellos = {}, []
         self.refusal, self.answers = "", {}
         self.token, self.recording = TOKEN, "run.mcap"
         self.is_slow = False  # then what shows another moment is heard, and not done
-        self.port = port
+        self.port = 0
         self.begun = threading.Event()
-        self.begun.set()
-        self._loop = asyncio.new_event_loop()
-        self._ready = threading.Event()
-        self._thread = threading.Thread(target=self._run, daemon=True)
+        if has_begun:
+            self.begun.set()
+        self._beside = loop_beside()
 
     def __enter__(self):
-        self._thread.start()
-        assert self._ready.wait(60)
+        self._call = self._beside.__enter__()
+        self._call(self._start())
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *error):
         self._call(self._stop())
-        self._loop.call_soon_threadsafe(self._loop.stop)
-        self._thread.join(60)
-        self._loop.close()
+        self._beside.__exit__(*error)
 
     @property
     def link(self):
         return f"http://127.0.0.1:{self.port}/#token={TOKEN}"
 
-    def set(self, section, values):
-        """Set values of a section, and send them."""
-        self.change({section: values})
-
-    def change(self, sections):
-        """Set values of several sections in one frame."""
-        for section, values in sections.items():
-            self.state.setdefault(section, {}).update(values)
+    def change(self, **sections):
+        """Set values of sections, None to drop a key, in one frame; return its number for the newest page."""
         if "alerts" in sections and "alarms" not in sections:
-            known = self.state.get("alarms", {})
-            self.state["alarms"] = alarms_of(self.state["alerts"])
-            for gone in [key for key in known if key not in self.state["alarms"]]:
-                self._call(self._send({"type": "changes", "set": {}, "gone": {"alarms": [gone]}}))
-            sections = {**sections, "alarms": self.state["alarms"]}
-        self._call(self._send({"type": "changes", "set": sections, "gone": {}}))
-
-    def drop(self, section, *keys):
-        for key in keys:
-            del self.state[section][key]
-        self._call(self._send({"type": "changes", "set": {}, "gone": {section: list(keys)}}))
-
-    def acts(self):
-        return [message["action"] for message in self.received if message["type"] == "act"]
+            alerts = self.state["alerts"] | sections["alerts"]
+            sections["alarms"] = dict.fromkeys(self.state["alarms"]) | alarms_of(alerts)
+        gone = {}
+        for section, values in sections.items():
+            known = self.state.setdefault(section, {})
+            known.update(values)
+            gone[section] = [key for key, value in values.items() if value is None and section in KEYED]
+            for key in gone[section]:
+                del known[key]
+        given = {section: values | {} for section, values in sections.items()}
+        for section, keys in gone.items():
+            for key in keys:
+                del given[section][key]
+        frame = {"type": "changes", "set": given, "gone": gone}
+        OF_SERVER.validate(frame | {"n": 2})  # no page is tried by what no server says
+        self._call(self._send(frame))
+        return next(reversed(self.sockets.values()), 0)
 
     def hang_up(self):
         self._call(self._hang_up())
@@ -86,15 +76,6 @@ class Harness:
         self._call(self._start())
 
     # --- in the thread of the loop ------------------------------------------------------------------------------
-
-    def _call(self, coroutine):
-        return asyncio.run_coroutine_threadsafe(coroutine, self._loop).result(60)
-
-    def _run(self):
-        asyncio.set_event_loop(self._loop)
-        self._loop.run_until_complete(self._start())
-        self._ready.set()
-        self._loop.run_forever()
 
     async def _start(self):
         application = web.Application()
@@ -109,6 +90,8 @@ class Harness:
         self.port = self._runner.addresses[0][1]
 
     async def _stop(self):
+        for site in list(self._runner.sites):  # first, so that no page comes back meanwhile
+            await site.stop()
         await self._hang_up()
         await self._runner.cleanup()
 
@@ -117,7 +100,7 @@ class Harness:
             await socket.close(code=1001)
 
     async def _index(self, _):
-        return web.FileResponse(PAGE / "index.html", headers={"Content-Security-Policy": POLICY})
+        return web.FileResponse(PAGE / "index.html", headers=HEADERS)
 
     async def _land(self, request):
         assert request.headers["Authorization"] == f"Bearer {TOKEN}"
@@ -143,8 +126,8 @@ class Harness:
         if not self.begun.is_set():
             await socket.send_json({"type": "waiting", "message": "the run has not begun"})
             await asyncio.to_thread(self.begun.wait, 10)
-        await socket.send_json({"type": "snapshot", "n": 1, "state": self.state})
         self.sockets[socket] = 1
+        await socket.send_json({"type": "snapshot", "n": 1, "state": self.state})
         try:
             async for message in socket:
                 if message.type == WSMsgType.TEXT:
@@ -154,7 +137,6 @@ class Harness:
         return socket
 
     async def _hear(self, socket, message, by):
-        self.received.append(message)
         if message["type"] == "act":
             answer = {"refusal": self.refusal, "left_out": {}, "notes": []} | self.answers
             await socket.send_json({"type": "answer", "id": message["id"]} | answer)
@@ -188,6 +170,10 @@ class Harness:
             await socket.send_str(json.dumps(frame | {"n": self.sockets[socket]}))
 
 
+KEYED = ("vehicles", "alerts", "alarms", "actions", "entities", "sayings")
+"""The sections in which a key may go."""
+
+
 def with_alarms(state):
     """Add what is wrong to a state of which only alerts are given."""
     return state if "alarms" in state else state | {"alarms": alarms_of(state.get("alerts", {}))}
@@ -199,7 +185,7 @@ def alarms_of(alerts):
     return {
         key: alert | {"consequence": follows.get(alert["fallback"], alert["fallback"])}
         for key, alert in alerts.items()
-        if alert["wrong"] and not alert["acknowledged"]
+        if alert and alert["wrong"] and not alert["acknowledged"]
     }
 
 
@@ -220,60 +206,28 @@ PICTURE = (
 
 def card(level=0, **more):
     """Return a vehicle's card that is well, but for what is said."""
-    now = time.time()
-    return {
-        "kind": "UAV",
-        "believed": "searchArea0",
-        "actual": "searchArea0",
-        "differs": False,
-        "going": None,
-        "request": None,
-        "flight": None,
-        "order": None,
-        "link": {"heard": now, "lost": False},
-        "mode": "GUIDED",
-        "armed": True,
-        "battery": {"percent": 78.4, "volts": 22.9},
-        "heading": 92.0,
-        "altitude": None,
-        "height": 118.7,
-        "home": None,
-        "returning": False,
-        "authority": ["porto"],
-        "handed": None,
-        "said": None,
-        "taken": None,
-        "ordered": None,
-        "on_return": None,
-        "level": level,
-        "word": ["well", "watch", "wrong", "lost"][level],
-        "why": "",
-    } | more
+    where = {"believed": "searchArea0", "actual": "searchArea0", "differs": False, "going": None}
+    motion = {"heading": 92.0, "altitude": None, "height": 118.7, "home": None, "returning": False}
+    told = {"link": {"heard": time.time(), "lost": False}, "mode": "GUIDED", "armed": True, "said": None}
+    needs = {"level": level, "word": ["well", "watch", "wrong", "lost"][level], "why": ""}
+    none = ("request", "flight", "order", "handed", "taken", "ordered", "on_return")
+    power = {"battery": {"percent": 78.4, "volts": 22.9}}
+    known = {"kind": "UAV", "authority": ["porto"], **dict.fromkeys(none)}
+    return known | where | motion | told | needs | power | more
 
 
 def entity(latitude, longitude, **more):
-    return {
-        "kind": "Ship",
-        "at": [latitude, longitude],
-        "course": 45.0,
-        "speed": 5.2,
-        "seen": time.time(),
-        "believed": "sea",
-        "actual": "sea",
-        "differs": False,
-        "named": True,
-        "vehicle": False,
-        "source": "ais",
-    } | more
+    motion = {"at": [latitude, longitude], "course": 45.0, "speed": 5.2, "seen": time.time()}
+    where = {"believed": "sea", "actual": "sea", "differs": False}
+    return motion | where | {"kind": "Ship", "named": True, "vehicle": False, "source": "ais"} | more
 
 
 def recorded(action, by):
     """Return what a run records of an action that it took, None of what it records elsewhere."""
     match action:
         case {"order": {"order": order, "vehicle": vehicle}}:
-            fates = {
-                name: {"state": "sent", "why": ""} for name in ([vehicle] if vehicle else ["uav0", "uav1"])
-            }
+            told = [vehicle] if vehicle else ["uav0", "uav1"]
+            fates = {name: {"state": "sent", "why": ""} for name in told}
             return deed(time.time(), by, order, vehicle or "all", "sent") | {"fates": fates}
         case {"say": {"agent": agent, "message": message}}:
             return deed(time.time(), by, f'say "{message}"', agent)
@@ -289,14 +243,23 @@ def deed(at, by, what, about, state="confirmed", why=""):
     return done | {"fates": {}, "left_out": {}, "notes": [], "vain": None, "answered": answered}
 
 
+MOVE = "FLY(pilot0, MOVE_HOST_TO spillArea)"
+TICKS = ["world", "control", "world", "say", "world", "action", "finding"]
+VERDICT = {"property": "local_consistency", "verdict": "holds", "rests_on": ["a vehicle arrives within 60 s"]}
+RING = [[36.9, -8.9], [36.9, -8.5], [37.1, -8.5], [37.1, -8.9]]
+
+
 def world():
     """Return a state with something of everything."""
     now = time.time()
     begin = now - 600
+    handover = {"agent": "tower", "message": "handover", "left": 2, "awaited": True, "vain": None}
+    taken = "uav1 is taken over: give it back first"
+    place = {"kind": "Location", "ring": RING, "parent": None, "altitude": None, "differs": False}
     return {
         "mission": mission(begin),
         "clock": clock(begin, now),
-        "places": {"searchArea0": place()},
+        "places": {"searchArea0": place},
         "fences": {},
         "entities": {
             "cargo1": entity(36.95, -8.75),
@@ -315,20 +278,10 @@ def world():
         "ticks": {str(n): [begin + 12 * n, TICKS[n % 7]] for n in range(1, 50)},
         "bigraph": {"svg": PICTURE, "text": "searchArea0\n  uav0\n  oilSpill0", "step": 42, "drawn": 42},
         "alerts": alerts(now),
-        "sayings": {
-            'tower "handover"': {
-                "agent": "tower",
-                "message": "handover",
-                "left": 2,
-                "awaited": True,
-                "vain": None,
-            }
-        },
+        "sayings": {'tower "handover"': handover},
         "actions": {
             "1": deed(now - 200, "Ana", "hold", "uav0"),
-            "2": deed(
-                now - 100, "Rui", "return", "uav1", "refused", "uav1 is taken over: give it back first"
-            ),
+            "2": deed(now - 100, "Rui", "return", "uav1", "refused", taken),
         },
         "stations": {
             "porto": {"here": True, "reached": None, "heard": None, "vehicles": ["uav0", "uav1"]},
@@ -338,69 +291,40 @@ def world():
     }
 
 
-MOVE = "FLY(pilot0, MOVE_HOST_TO spillArea)"
-TICKS = ["world", "control", "world", "say", "world", "action", "finding"]
-VERDICT = {"property": "local_consistency", "verdict": "holds", "rests_on": ["a vehicle arrives within 60 s"]}
-
-
 def mission(begin):
-    return {
-        "name": "spill_watch",
-        "digest": "9f2b66d01c8a4f10aa55",
-        "verified": True,
-        "verdicts": [VERDICT, {"property": "race_freedom", "verdict": "holds", "rests_on": []}],
-        "scheduler": "fair",
-        "begun": begin,
-        "station": "porto",
-    }
+    free = {"property": "race_freedom", "verdict": "holds", "rests_on": []}
+    known = {"name": "spill_watch", "digest": "9f2b66d01c8a4f10aa55", "scheduler": "fair", "begun": begin}
+    return known | {"verified": True, "verdicts": [VERDICT, free], "station": "porto"}
 
 
 def clock(begin, now):
-    moment = {"now": now, "begin": begin, "head": now, "step": 42}
-    return moment | {
-        "live": True,
-        "playing": False,
-        "speed": 1,
-        "ended": None,
-        "broken_off": False,
-        "rate": 1,
-        "unread": None,
-    }
-
-
-def place():
-    ring = [[36.9, -8.9], [36.9, -8.5], [37.1, -8.5], [37.1, -8.9]]
-    return {"kind": "Location", "ring": ring, "parent": None, "altitude": None, "differs": False}
+    moment = {"now": now, "begin": begin, "head": now, "step": 42, "rate": 1}
+    mode = {"live": True, "playing": False, "speed": 1}
+    return moment | mode | {"ended": None, "broken_off": False, "unread": None}
 
 
 def vehicles(now):
-    asked = {
-        "text": MOVE,
-        "agent": "pilot0",
-        "since": now - 40,
-        "limit": 60,
-        "fallback": "return",
-        "given_up": False,
+    asked = {"text": MOVE, "agent": "pilot0", "since": now - 40, "limit": 60, "fallback": "return"}
+    told = {"command": "GoTo", "to": "spillArea", "way": [[37.0, -8.8], [37.05, -8.7]], "since": now - 39}
+    lost = {
+        "link": {"heard": now - 31, "lost": True},
+        "battery": {"percent": 19.0, "volts": 20.4},
+        "taken": "the link was lost: the autopilot returned",
+        "why": "link lost for 31 s; taken over by the fail-safe",
+        "said": {"text": "Failsafe: GCS lost", "time": now - 12, "severity": 2},
+        "mode": "RTL",
     }
-    way = [[37.0, -8.8], [37.05, -8.7]]
-    told = {"command": "GoTo", "to": "spillArea", "way": way, "since": now - 39}
     return {
-        "uav0": card(1, request=asked, order=told | {"state": "accepted", "why": ""}, why=LONG),
-        "uav1": card(
-            3,
-            link={"heard": now - 31, "lost": True},
-            battery={"percent": 19.0, "volts": 20.4},
-            taken="the link was lost: the autopilot returned",
-            why="link lost for 31 s; taken over by the fail-safe",
-            said={"text": "Failsafe: GCS lost", "time": now - 12, "severity": 2},
-            mode="RTL",
+        "uav0": card(
+            1,
+            request=asked | {"given_up": False},
+            order=told | {"state": "accepted", "why": ""},
+            why="a request over half of its limit",
         ),
+        "uav1": card(3, **lost),
         "boat0": card(kind="USV", battery=None, mode=None, armed=None, authority=[]),
         "uav10": card(2, believed="spillArea", differs=True, why="late: the request has stood 75 s of 60 s"),
     }
-
-
-LONG = "a request over half of its limit"
 
 
 def agent(state, **more):
@@ -410,16 +334,10 @@ def agent(state, **more):
 def step(number, begin):
     """Return one of a pilot's steps, or each third time one of the world's."""
     pilot = f"pilot{number % 2}" if number % 3 else None
-    return {
-        "time": begin + 13 * number,
-        "label": f"{pilot}: control(MOVE_HOST_TO spillArea)" if pilot else "uav0 enters spillArea",
-        "rule": "control",
-        "agent": pilot,
-        "about": "spillArea",
-        "changes": ["uav0 is now in spillArea"] if number % 2 else [],
-        "shown": [],
-        "told": True,
-    }
+    label = f"{pilot}: control(MOVE_HOST_TO spillArea)" if pilot else "uav0 enters spillArea"
+    changes = ["uav0 is now in spillArea"] if number % 2 else []
+    done = {"time": begin + 13 * number, "label": label, "rule": "control", "agent": pilot}
+    return done | {"about": "spillArea", "changes": changes, "shown": [], "told": True}
 
 
 def alerts(now):
@@ -436,32 +354,13 @@ def alert(at, kind, about, message, fallback, *verdicts):
     return said | {"verdicts": list(verdicts), "wrong": True, "acknowledged": None}
 
 
-def crowd(vehicles, entities, moment):
-    """Return sections with many that move: the vehicles' cards and everybody's positions at a moment."""
+def crowd(vehicles, entities):
+    """Return sections with many: the vehicles' cards and everybody's positions."""
     cards, seen = {}, {}
     for n in range(vehicles):
-        angle = n + moment / 20
-        at = 37 + 0.3 * math.sin(angle), -8.7 + 0.3 * math.cos(angle)
-        name = f"v{n:03}"
-        seen[name] = entity(*at, vehicle=True, kind="UAV", course=math.degrees(angle) % 360)
-        cards[name] = card(int(n % 17 == 0), heading=math.degrees(angle) % 360)
+        at = 37 + 0.3 * math.sin(n), -8.7 + 0.3 * math.cos(n)
+        seen[f"v{n:03}"] = entity(*at, vehicle=True, kind="UAV", course=math.degrees(n) % 360)
+        cards[f"v{n:03}"] = card(int(n % 17 == 0), heading=math.degrees(n) % 360)
     for n in range(entities - vehicles):
-        drift = 0.05 * math.sin(n + moment / 30)
-        seen[f"ship{n:04}"] = entity(36.6 + (n % 40) / 50 + drift, -9.2 + (n // 40) / 25)
+        seen[f"ship{n:04}"] = entity(36.6 + (n % 40) / 50, -9.2 + (n // 40) / 25)
     return {"entities": seen, "vehicles": cards}
-
-
-def main(vehicles=0, entities=0):
-    with Harness(world(), port=8767) as harness:
-        print(harness.link, flush=True)  # noqa: T201
-        while True:
-            time.sleep(0.1)
-            now = time.time()
-            moved = crowd(vehicles, entities, now) if vehicles else {}
-            if harness.state["clock"]["live"]:
-                moved["clock"] = harness.state["clock"] | {"now": now, "head": now}
-            harness.change(moved)
-
-
-if __name__ == "__main__":
-    main(*map(int, sys.argv[1:]))

@@ -90,16 +90,28 @@ class Tape:
 
     def history(self):
         """Return all that is recorded so far."""
-        history = History(self.path, rules_of)
-        while history.read_on(1.0):
-            pass
-        return history
+        return read(self.path)
+
+    def shown(self, at=None):
+        """Return the sections that are shown, of now or of a time."""
+        history = self.history()
+        view = history.newest() if at is None else history.at(1000.0 + at).forward(1000.0 + at)
+        return view.sections
 
     def card(self, at=None):
         """Return the vehicle's card, now or at a time."""
-        history = self.history()
-        view = history.newest() if at is None else history.at(1000.0 + at).forward(1000.0 + at)
-        return view.sections["vehicles"]["uav0"]
+        return self.shown(at)["vehicles"]["uav0"]
+
+    def actions(self):
+        return list(self.shown()["actions"].values())
+
+
+def read(path, **more):
+    """Return the history of a recording, read to its end."""
+    history = History(path, rules_of_once, **more)
+    while history.read_on(0.01):
+        pass
+    return history
 
 
 def uav(at, now):
@@ -165,3 +177,23 @@ def written(path, run, told):
         writer.write(topic, time, data)
     writer.flush()
     return writer
+
+
+RUN = {
+    "schema": "bigactors.run/1",
+    "mission": "tour.mission",
+    "text": FLIGHT,
+    "digest": digest_of(mission(FLIGHT)),
+    "version": "0",
+    "verified": True,
+    "vehicles": {"uav0": "autopilot"},
+}
+
+
+def told(path, *told, copied=()):
+    """Return what is shown of a run in which messages are recorded after the first arrival; `copied` come before it."""
+    arrival = {"plugin": "autopilot", "entity": "uav0", "kind": "UAV", "ring": [[370100000, -86500000]]}
+    writer = written(path, RUN, [*copied, ("arrivals", 1001.0, arrival), *told])
+    sections = read(path).newest().sections
+    writer.close()
+    return sections

@@ -24,16 +24,12 @@ def mission():
     return open_mission("distributed_handover", LIVE)
 
 
-def header(mission):
-    return {
-        "mission": "distributed_handover",
-        "text": mission.source.text,
-        "digest": digest_of(mission),
-        "version": "0",
-        "verified": False,
-        "vehicles": {"uav0": "autopilot"},
-        "station": parting_json(PART),
-    }
+@pytest.fixture
+def run(mission):
+    """Return the head of a station's recording."""
+    head = {"mission": "distributed_handover", "text": mission.source.text, "digest": digest_of(mission)}
+    head |= {"schema": f"bigactors.run/{VERSION}", "version": "0", "verified": False}
+    return head | {"vehicles": {"uav0": "autopilot"}, "station": parting_json(PART)}
 
 
 def view(path):
@@ -43,20 +39,28 @@ def view(path):
     return history.newest().sections
 
 
-def test_a_stations_recording_is_replayed_by_its_part_of_the_mission(mission, tmp_path):
+def told(path, run, *messages):
+    """Return what is shown of messages that a run has not."""
+    writer = written(path, run, messages)
+    shown = view(path)
+    writer.close()
+    return shown
+
+
+def test_a_stations_recording_is_replayed_by_its_part_of_the_mission(mission, run, tmp_path):
     first = parted(mission.initial, PART)
-    run = Run(Plan(first, {"uav0": "autopilot"}, mission.precautions))
-    recorder = Recorder(tmp_path / "r.mcap", header(mission), 1000.0, mission.setting.kinds)
+    flown = Run(Plan(first, {"uav0": "autopilot"}, mission.precautions))
+    recorder = Recorder(tmp_path / "r.mcap", run, 1000.0, mission.setting.kinds)
     at = first.structure.physical.position("uav0").geometry.ring[0]
     heard = seen("uav0", (at[0] / 1e7, at[1] / 1e7), 1001.0)
     recorder.arrival(heard, 1001.0)
-    recorder.turn(run.turn(1001.0, heard), 1001.0, lambda _: ())
-    recorder.turn(run.turn(1002.0, sayings=[Saying("op0", "handover")]), 1002.0, lambda _: ())
+    recorder.turn(flown.turn(1001.0, heard), 1001.0, lambda _: ())
+    recorder.turn(flown.turn(1002.0, sayings=[Saying("op0", "handover")]), 1002.0, lambda _: ())
     recorder.close("done", 1003.0)
-    assert "rcv_msg" in run.rules
+    assert "rcv_msg" in flown.rules
     shown = view(tmp_path / "r.mcap")
     assert "0" not in shown["alerts"]  # all was replayed
-    assert shown["clock"]["step"] == run.state.number
+    assert shown["clock"]["step"] == flown.state.number
     assert shown["mission"]["station"] == "gcs0"
     assert set(shown["sayings"]) == {'op0 "handover"'}
     assert shown["sayings"]['op0 "handover"']["left"] == 0
@@ -68,44 +72,40 @@ def test_a_stations_recording_is_replayed_by_its_part_of_the_mission(mission, tm
     }
 
 
-def test_other_stations_are_reached_or_not_as_they_were_heard(mission, tmp_path):
-    run = {"schema": f"bigactors.run/{VERSION}", **header(mission)}
-    told = [
+def test_other_stations_are_reached_or_not_as_they_were_heard(run, tmp_path):
+    shown = told(
+        tmp_path / "r.mcap",
+        run,
         ("stations", 1001.0, {"station": "gcs1", "time": 1001.0, "reached": True, "heard": 1000.5}),
         ("stations", 1003.0, {"station": "gcs1", "time": 1003.0, "reached": False, "heard": 1001.5}),
         ("stations", 1003.0, {"station": "nobody", "time": 1003.0, "reached": True, "heard": 1001.5}),
-    ]
-    written(tmp_path / "r.mcap", run, told).close()
-    shown = view(tmp_path / "r.mcap")["stations"]
+    )["stations"]
     assert shown["gcs1"] == {"here": False, "reached": False, "heard": 1001.5, "vehicles": []}
     assert shown["gcs2"] == {"here": False, "reached": None, "heard": None, "vehicles": []}
     assert set(shown) == set(STATIONS)
 
 
-def test_a_vehicle_whose_station_is_not_reached_is_wrong(mission, tmp_path):
-    run = {"schema": f"bigactors.run/{VERSION}", **header(mission)}
+def test_a_vehicle_whose_station_is_not_reached_is_wrong(run, tmp_path):
     obeys = {"plugin": "autopilot", "entity": "uav0", "kind": "UAV", "ring": [[370100000, -86500000]]}
-    told = [
+    messages = [
         ("arrivals", 1001.0, {**obeys, "channels": ["control:gcs1"]}),
         ("stations", 1002.0, {"station": "gcs1", "time": 1002.0, "reached": False, "heard": 1000.5}),
     ]
     for count, level, why in ((1, 0, ""), (2, 2, "gcs1, which it obeys, is not reached")):
-        writer = written(tmp_path / f"{count}.mcap", run, told[:count])
-        card = view(tmp_path / f"{count}.mcap")["vehicles"]["uav0"]
-        writer.close()
+        card = told(tmp_path / f"{count}.mcap", run, *messages[:count])["vehicles"]["uav0"]
         assert (card["level"], card["why"]) == (level, why)
 
 
-def test_a_flight_that_another_station_has_ordered_is_known_as_a_flight(mission, tmp_path):
+def test_a_flight_that_another_station_has_ordered_is_known_as_a_flight(mission, run, tmp_path):
     first = parted(mission.initial, PART)
-    run = Run(Plan(first, {"uav0": "stations"}, mission.precautions, peers="stations"))
-    said = header(mission) | {"vehicles": {"uav0": "stations"}}
+    flown = Run(Plan(first, {"uav0": "stations"}, mission.precautions, peers="stations"))
+    said = run | {"vehicles": {"uav0": "stations"}}
     recorder = Recorder(tmp_path / "r.mcap", said, 1000.0, mission.setting.kinds)
     place = next(name for name, kind in mission.setting.kinds.items() if kind == "Location")
     at = first.structure.physical.position("uav0").geometry.ring[0]
     heard = seen("uav0", (at[0] / 1e7, at[1] / 1e7), 1001.0, "stations")
-    recorder.turn(run.turn(1001.0, heard), 1001.0, lambda _: ())
-    recorder.turn(run.turn(1002.0, reports=[Underway("uav0", 1002.0, place, 1002.0)]), 1002.0, lambda _: ())
+    recorder.turn(flown.turn(1001.0, heard), 1001.0, lambda _: ())
+    recorder.turn(flown.turn(1002.0, reports=[Underway("uav0", 1002.0, place, 1002.0)]), 1002.0, lambda _: ())
     recorder.close("done", 1003.0)
     card = view(tmp_path / "r.mcap")["vehicles"]["uav0"]
     assert (card["going"], card["request"], card["order"]) == (place, None, None)

@@ -1,9 +1,7 @@
 """Differences of views: applied to what was shown before they give what is shown after, and cost little."""
 
-import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
-from recorded import folded, messages, shown
 
 from adapters.console.view import NOTHING, View, difference, keeping
 
@@ -39,21 +37,6 @@ def test_a_difference_applied_to_what_was_before_gives_what_is_after(before, aft
 def test_views_that_are_equal_differ_in_nothing(sections):
     again = {name: dict(section) for name, section in sections.items()}
     assert difference(View(sections), View(again)) == ({}, {})
-
-
-@pytest.fixture(scope="module")
-def moments(spill_watch):
-    """Return what is shown at times of a real flight, each made by itself."""
-    told = messages(spill_watch)
-    facts = [folded(told[:count]) for count in range(1, len(told), len(told) // 12)]
-    return [shown(each, each.time, facts[-1]) for each in facts]
-
-
-@settings(max_examples=40, deadline=None)
-@given(st.integers(0, 11), st.integers(0, 11))
-def test_from_any_moment_of_a_flight_a_difference_leads_to_any_other(moments, first, second):
-    before, after = moments[first], moments[second]
-    assert full(applied(before, difference(View(before), View(after)))) == full(after)
 
 
 def test_values_that_are_equal_stay_the_same_objects_and_so_do_sections():

@@ -4,8 +4,10 @@ import * as geodesy from "/parts/map/geodesy.js";
 import * as words from "/parts/map/words.js";
 import { Store } from "/parts/store.js";
 
+const headers = { Authorization: "Bearer looks-on" };
+
 async function fetchJson(path) {
-  const answer = await fetch(path);
+  const answer = await fetch(path, { headers });
   if (!answer.ok) throw new Error(`${path}: ${answer.status}`);
   return answer.json();
 }
@@ -18,7 +20,7 @@ const map = createMap(document.getElementById("map"), store, {
   followed: (name) => heard.followed.push(name),
   measured: (on) => heard.measured.push(on),
   fetchJson,
-  tiles: asked.has("tiles") ? { url: "/tiles", headers: { Authorization: "Bearer open" } } : null,
+  tiles: asked.has("tiles") ? { url: "/tiles", headers } : null,
 });
 if (asked.has("theme")) map.setTheme(asked.get("theme"));
 Object.assign(globalThis, { map, store, heard, geodesy, words });

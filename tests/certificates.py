@@ -24,7 +24,8 @@ class Authority:
         """Write FILE.pem and FILE.key for somebody of this name."""
         key = ec.generate_private_key(ec.SECP256R1())
         certificate = _certificate(_name(common_name), self.name, key.public_key())
-        names = x509.SubjectAlternativeName([x509.IPAddress(ip_address("127.0.0.1"))])
+        here = [x509.IPAddress(ip_address("127.0.0.1")), x509.DNSName("localhost")]
+        names = x509.SubjectAlternativeName(here)
         signed = certificate.add_extension(names, critical=False).sign(self.key, hashes.SHA256())
         (self.folder / f"{file}.pem").write_bytes(_pem(signed))
         (self.folder / f"{file}.key").write_bytes(

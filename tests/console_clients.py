@@ -16,7 +16,7 @@ from adapters.console.requests import PROTOCOL
 from adapters.console.server import Site, serving
 from bigactors.commands.console.recorded_history import rules_of
 
-DOCS = Path(__file__).parents[3] / "docs" / "reference"
+DOCS = Path(__file__).parents[1] / "docs" / "reference"
 SCHEMA = json.loads((DOCS / "console.schema.json").read_text(encoding="utf-8"))
 ACCESS = Access("looks-on", "may-act")
 BEARER = {"Authorization": "Bearer looks-on"}
@@ -57,15 +57,21 @@ class Client:
         return frame["type"]
 
     async def until(self, true):
-        async with asyncio.timeout(20):
-            while not true(self.state):
+        """Take frames until something is so of what is shown."""
+        async with asyncio.timeout(60):
+            while not (self.state and true(self.state)):
                 await self.frame()
 
     async def say(self, **message):
         await self.socket.send_json(message)
 
+    async def act(self, **action):
+        """Ask for an action; return why it is refused."""
+        await self.say(type="act", id="1", action=action)
+        return (await self.answer())["refusal"]
+
     async def answer(self):
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(60):
             before = len(self.heard)
             while len(self.heard) == before:
                 await self.frame()
@@ -91,15 +97,20 @@ def play(state):
     return state["clock"]["playing"]
 
 
+def opened(address):
+    """Return a connection of which the test says every byte."""
+    found = socket.create_connection(("127.0.0.1", int(address.rpartition(":")[2])))
+    found.settimeout(10)
+    return found
+
+
 def raw(address):
     """Return a connection that has said hello by hand, and answers nothing from then on."""
-    found = socket.create_connection(("127.0.0.1", int(address.rpartition(":")[2])))
+    found = opened(address)
     found.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1024)
     key = "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13"
-    head = (
-        f"GET /ws HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n{key}\r\n\r\n"
-    )
-    found.sendall(head.encode() + masked(json.dumps(HELLO).encode()))
+    head = f"Host: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n{key}"
+    found.sendall(f"GET /ws HTTP/1.1\r\n{head}\r\n\r\n".encode() + masked(json.dumps(HELLO).encode()))
     return found
 
 
@@ -108,7 +119,6 @@ def masked(said):
 
 
 def read_all(connection):
-    connection.settimeout(10)
     got = b""
     while more := connection.recv(65_536):
         got += more
