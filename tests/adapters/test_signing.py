@@ -6,7 +6,7 @@ import socket
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega
-from worlds import AREA, EPOCH, flight, until
+from worlds import AREA, EPOCH, flight, simulated, until
 
 from adapters.mavlink import signing
 from adapters.mavlink.codec import Decoder, Encoder
@@ -157,17 +157,14 @@ def test_a_signed_flight_arrives_among_forged_unsigned_and_replayed_packets(tmp_
     assert load(path).timestamp > 0
 
 
-def test_a_vehicle_that_does_not_sign_is_not_believed(tmp_path):
+@simulated
+async def test_a_vehicle_that_does_not_sign_is_not_believed(tmp_path):
     path = tmp_path / "key.json"
     save(Signing(KEY), path)
-
-    async def main():
-        async with flight(key_file=path) as f:
-            await asyncio.sleep(30)
-            assert f.world.published == []
-            assert "unsigned packet" in f.world.troubles()
-
-    run(main())
+    async with flight(key_file=path) as f:
+        await asyncio.sleep(30)
+        assert f.world.published == []
+        assert "unsigned packet" in f.world.troubles()
 
 
 def test_after_a_kill_no_packet_that_was_believed_is_believed_again_and_no_time_stamp_sent(tmp_path):
@@ -198,18 +195,15 @@ def test_the_file_is_written_each_ten_seconds_not_with_each_packet(tmp_path, mon
     assert len(written) == 3
 
 
-def test_a_state_that_cannot_be_written_is_said_and_nobody_is_kept_from_flying(tmp_path):
+@simulated
+async def test_a_state_that_cannot_be_written_is_said_and_nobody_is_kept_from_flying(tmp_path):
     folder = tmp_path / "keys"
     folder.mkdir()
     save(Signing(KEY), folder / "key.json")
-
-    async def main():
-        async with flight(key_file=folder / "key.json", signing=Signing(KEY)) as f:
-            shutil.rmtree(folder)
-            await until(lambda: f.world.property("uav0"))
-            await until(lambda: "signing state not written" in f.world.troubles())
-
-    run(main())
+    async with flight(key_file=folder / "key.json", signing=Signing(KEY)) as f:
+        shutil.rmtree(folder)
+        await until(lambda: f.world.property("uav0"))
+        await until(lambda: "signing state not written" in f.world.troubles())
 
 
 def test_the_recorded_packet_of_one_run_is_a_replay_in_the_next(tmp_path):

@@ -1,15 +1,17 @@
 """Simulated flights in a world that remembers: minutes of them in seconds, over real loopback sockets."""
 
+import inspect
 import os
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
 
 from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.keys import Keeper
 from adapters.plugin import Arrived, Rejected
-from adapters.simulated import Disturbance, Kind, Simulator, Vehicle
+from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
 from bigactors.testing import EPOCH, World, running, until
 from physical import box, circle
 
@@ -80,3 +82,35 @@ async def flight(
         simulator = Simulator(f"udpout:127.0.0.1:{plugin.local[1]}", [flown], disturbance, seed, EPOCH)
         async with running(simulator.run()):
             yield Flight(flown, simulator, plugin, world)
+
+
+def simulated(test):
+    """Run a test, which is a coroutine, in simulated time."""
+
+    @wraps(test)
+    def runs(*given, **more):
+        run(test(*given, **more))
+
+    return runs
+
+
+def flown(*fixed, by="", speed=None, **how):
+    """Run a test in simulated time in a flight, its first argument; `by` names parameters that are the flight's."""
+
+    def decorated(test):
+        _, *own = inspect.signature(test).parameters
+        names = dict.fromkeys([*own, *by.split()])
+
+        async def main(given):
+            async with flight(*fixed, **how, **{name: given[name] for name in by.split()}) as f:
+                await test(f, **{name: given[name] for name in own})
+
+        @wraps(test)
+        def runs(**given):
+            run(main(given), speed)
+
+        keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD
+        runs.__signature__ = inspect.Signature([inspect.Parameter(name, keyword) for name in names])
+        return runs
+
+    return decorated

@@ -96,44 +96,36 @@ def test_what_is_no_socket_is_left_alone(tmp_path):
     assert path.read_text() == "mine"
 
 
-def test_the_operator_is_answered_where_no_descriptor_is_left(tmp_path):
+async def test_the_operator_is_answered_where_no_descriptor_is_left(tmp_path):
     path = tmp_path / "a.sock"
-
-    async def main():
-        async with listening(path, None, lambda: "flying"):
-            taken = []
-            soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-            resource.setrlimit(resource.RLIMIT_NOFILE, (min(soft, 256), hard))
-            try:
-                with suppress(OSError):
-                    while True:
-                        taken.append(os.open(os.devnull, os.O_RDONLY))
-                for _ in range(20):
-                    os.close(taken.pop())  # the one that asks, in the same process, needs one itself
-                    assert await status(path) == "flying"
+    async with listening(path, None, lambda: "flying"):
+        taken = []
+        soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (min(soft, 256), hard))
+        try:
+            with suppress(OSError):
+                while True:
                     taken.append(os.open(os.devnull, os.O_RDONLY))
-            finally:
-                resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
-                for each in taken:
-                    os.close(each)
+            for _ in range(20):
+                os.close(taken.pop())  # the one that asks, in the same process, needs one itself
+                assert await status(path) == "flying"
+                taken.append(os.open(os.devnull, os.O_RDONLY))
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+            for each in taken:
+                os.close(each)
 
-    asyncio.run(main())
 
-
-def test_who_says_nothing_is_not_waited_for(tmp_path):
+async def test_who_says_nothing_is_not_waited_for(tmp_path):
     path = tmp_path / "a.sock"
-
-    async def main():
-        async with listening(path, None, lambda: "flying"):
-            idle = [await asyncio.open_unix_connection(path) for _ in range(40)]
-            with pytest.raises(NobodyListens):
-                await status(path)
-            await asyncio.sleep(5.5)
-            assert await status(path) == "flying"
-            for _, writer in idle:
-                writer.close()
-
-    asyncio.run(main())
+    async with listening(path, None, lambda: "flying"):
+        idle = [await asyncio.open_unix_connection(path) for _ in range(40)]
+        with pytest.raises(NobodyListens):
+            await status(path)
+        await asyncio.sleep(5.5)
+        assert await status(path) == "flying"
+        for _, writer in idle:
+            writer.close()
 
 
 def test_a_flood_of_half_requests_leaves_a_run_that_answers_its_operator(tmp_path):
