@@ -3,15 +3,12 @@
 import asyncio
 from dataclasses import replace
 
-import pytest
 from worlds import AREA, flight, flown, simulated, until
 
-from adapters.mavlink import Craft, Stations
+from adapters.mavlink import Craft
 from adapters.mavlink.condition import Condition, look
-from adapters.mavlink.objections import not_ours
-from adapters.mavlink.profiles import PLANE
 from adapters.mavlink.telemetry import Telemetry
-from adapters.plugin import GoTo, Hold, Rejected, TakenOver, Trouble
+from adapters.plugin import GoTo, Hold, TakenOver, Trouble
 from adapters.simulated import Kind
 from physical import circle
 
@@ -51,27 +48,13 @@ async def test_a_vehicle_that_leaves_its_fence_says_so_where_it_is_taken_over():
         )
 
 
-@pytest.mark.parametrize(
-    ("known", "words"),
-    [
-        (Telemetry(profile=PLANE, authority=252), "it obeys system 252, not gcs0"),
-        (
-            Telemetry(profile=PLANE, authority=252, authority_parameter="SYSID_MYGCS"),
-            "it obeys system 252, not gcs0: its SYSID_MYGCS is 252, and gcs0 has 255",
-        ),
-    ],
-)
-def test_whom_a_vehicle_obeys_is_said_with_the_parameter_that_says_so(known, words):
-    assert not_ours(Stations(), known) == words
-
-
 @flown(Kind.COPTER, enforce=False)
-async def test_a_vehicle_that_obeys_another_station_refuses_an_order_and_says_by_which_parameter(f):
+async def test_a_vehicle_that_obeys_another_station_refuses_all_and_says_by_which_parameter(f):
     await until(lambda: f.plugin.pilot("uav0").known.authority, 60)
     f.vehicle.parameters["SYSID_MYGCS"] = 252.0
-    await until(lambda: f.world.of(Trouble, what="unknown authority"), 30)
-    (told,) = f.world.of(Trouble, what="unknown authority")
+    (told,) = await until(lambda: f.world.of(Trouble, what="unknown authority"), 30)
     assert "obeys system 252 (SYSID_MYGCS)" in told.detail
-    await f.plugin.command(Hold("r1", "uav0"))
-    (no,) = f.world.of(Rejected, request="r1")
-    assert no.reason == "it obeys system 252, not gcs0: its SYSID_MYGCS is 252, and gcs0 has 255"
+    await until(lambda: f.world.property("uav0").channels == ())
+    why = "it obeys system 252, not gcs0: its SYSID_MYGCS is 252, and gcs0 has 255"
+    assert (await f.rejects(Hold("r1", "uav0"))).reason == why
+    await f.refuses(GoTo("r2", "uav0", AREA), why)

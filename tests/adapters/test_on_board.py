@@ -13,20 +13,18 @@ from adapters.mavlink.constants import Cmd, Fence, Frame, MissionResult, Mission
 from adapters.mavlink.items import Item, fence, route, same
 from adapters.mavlink.task import PATIENCE
 from adapters.plugin import (
-    Accepted,
     Arrived,
     Follow,
     GiveBack,
     GoTo,
     Hold,
-    Refused,
     Rejected,
     Return,
     Status,
     TakenOver,
     Trouble,
 )
-from adapters.simulated import Kind, run
+from adapters.simulated import Kind
 from adapters.simulated.body import metres_to
 from physical import box, circle, contains, point, polygon
 
@@ -56,18 +54,22 @@ def e7(latitude, longitude):
 
 
 def no_fly(latitude, longitude, radius):
-    return Item(
-        Cmd.FENCE_CIRCLE_EXCLUSION, *e7(latitude, longitude), 0.0, Frame.SEA_LEVEL, (radius, 0.0, 0.0, 0.0)
-    )
+    more = 0.0, Frame.SEA_LEVEL, (radius, 0.0, 0.0, 0.0)
+    return Item(Cmd.FENCE_CIRCLE_EXCLUSION, *e7(latitude, longitude), *more)
+
+
+async def finds(f, kind, *items):
+    """Let a vehicle have something on board, and wait until it is read."""
+    f.vehicle.store.items[kind] = items
+    await until(f.plugin.is_known, 60)
+
+
+def remarked(f, text):
+    return any(text in each for each in f.plugin.remarks())
 
 
 def inside(f, place):
     return contains(place, point(f.vehicle.body.latitude, f.vehicle.body.longitude))
-
-
-async def in_the_air(f, command):
-    await f.plugin.command(command)
-    await until(lambda: f.world.of(Accepted, request=command.request))
 
 
 # --- other people's missions --------------------------------------------------------------------------
@@ -76,7 +78,7 @@ async def in_the_air(f, command):
 @pytest.mark.parametrize("kind", PLANES)
 @flown(by="kind")
 async def test_a_mission_that_somebody_loads_while_it_is_held_is_not_flown_when_it_is_given_back(f, kind):
-    await in_the_air(f, Follow("r1", "uav0", WAY))
+    await f.accepts(Follow("r1", "uav0", WAY))
     ours = mission(f)
     await f.plugin.command(Hold("r2", "uav0"))
     await f.ended("r2")
@@ -126,7 +128,7 @@ async def test_a_mission_that_somebody_loads_at_the_last_moment_is_not_armed_for
 @pytest.mark.parametrize("path", [AWAY, (*AWAY, point(36.92, -8.6))], ids=["as long", "longer"])
 @flown(by="kind")
 async def test_a_mission_that_somebody_loads_while_ours_is_flown_is_a_take_over(f, path):
-    await in_the_air(f, Follow("r1", "uav0", WAY))
+    await f.accepts(Follow("r1", "uav0", WAY))
     theirs(f, path)
     (report,) = await until(lambda: f.world.of(TakenOver), 30)
     assert report.reason.startswith("the mission on board is not the one that it was given")
@@ -136,33 +138,27 @@ async def test_a_mission_that_somebody_loads_while_ours_is_flown_is_a_take_over(
     assert mission(f) == items  # it is not fought
 
 
-@flown()
-async def test_a_mission_that_is_read_while_it_is_flown_is_flown_to_its_end(f):
-    await f.plugin.command(Follow("r1", "uav0", WAY))
-    assert isinstance(await f.ended("r1"), Arrived)
-    await asyncio.sleep(300)
-    assert f.world.of(TakenOver) == []
-
-
 # --- places of a way ----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("kind", PLANES)
-@pytest.mark.parametrize("last", [False, True], ids=["to the second gate", "to the end"])
+@pytest.mark.parametrize(
+    ("kind", "item"), [*zip(PLANES, (-1, -2), strict=True)], ids=["to the end", "to the second gate"]
+)
 @flown(by="kind")
-async def test_the_number_of_an_item_that_somebody_sets_passes_no_place(f, last):
-    await in_the_air(f, Follow("r1", "uav0", WAY))
+async def test_the_number_of_an_item_that_somebody_sets_passes_no_place(f, item):
+    await f.accepts(Follow("r1", "uav0", WAY))
     assert not inside(f, GATES[0])
-    f.vehicle.current = len(mission(f)) - (1 if last else 2)
+    f.vehicle.current = len(mission(f)) + item
     (report,) = await until(lambda: f.world.of(TakenOver), 30)
     assert "of its mission, not to item" in report.reason
-    await asyncio.sleep(600)
+    await until(lambda: inside(f, WAY[-1]))
+    await asyncio.sleep(20)
     assert f.world.of(Arrived) == []
 
 
 @flown()
 async def test_a_mission_that_is_set_back_is_a_take_over(f):
-    await in_the_air(f, Follow("r1", "uav0", WAY))
+    await f.accepts(Follow("r1", "uav0", WAY))
     await until(lambda: f.vehicle.current == 3)
     await asyncio.sleep(5)
     f.vehicle.current = 2
@@ -171,12 +167,16 @@ async def test_a_mission_that_is_set_back_is_a_take_over(f):
 
 
 @flown()
-async def test_a_place_that_the_vehicle_would_turn_before_is_entered_all_the_same(f):
+async def test_a_place_that_the_vehicle_would_turn_before_is_entered_and_a_mission_that_is_read_is_flown_to_its_end(
+    f,
+):
     small = circle((37.012, -8.6), 20)
     await f.plugin.command(Follow("r1", "uav0", (small, WAY[-1])))
     await until(lambda: inside(f, small), every=0.1)
     assert isinstance(await f.ended("r1"), Arrived)
     assert mission(f)[2].parameters[1] == 12.5  # instead of WP_RADIUS, 50 m
+    await asyncio.sleep(60)
+    assert f.world.of(TakenOver) == []
 
 
 # --- fences -------------------------------------------------------------------------------------------
@@ -187,20 +187,20 @@ async def test_a_fence_that_somebody_clears_while_others_are_on_is_noticed_and_i
     parameters = {"FENCE_TYPE": 7.0, "FENCE_RADIUS": 9_000.0, "FENCE_ALT_MAX": 500.0}
     async with flight(craft=Craft("uav0", fence=WIDE), parameters=parameters) as f:
         f.vehicle.switch_fences(~Fence.ALT_MIN, on=True)
-        await in_the_air(f, GoTo("r1", "uav0", WAY[-1]))
+        await f.accepts(GoTo("r1", "uav0", WAY[-1]))
         f.vehicle.store.items[MissionType.FENCE] = ()
         assert f.vehicle.fences & f.vehicle.configured  # it says that it keeps within a fence
         (report,) = await until(lambda: f.world.of(TakenOver), 60)
         assert report.reason.startswith("the fence on board is not the one that it was given")
         await f.plugin.command(GiveBack("r2", "uav0"))
-        await in_the_air(f, GoTo("r3", "uav0", WAY[-1]))
+        await f.accepts(GoTo("r3", "uav0", WAY[-1]))
         assert f.vehicle.fence is not None
 
 
 @pytest.mark.parametrize("away", [6, 40])
 @flown(craft=Craft("uav0", fence=WIDE), enforce=False)
 async def test_a_fenced_vehicle_that_obeyed_somebody_else_for_a_while_goes_on_with_its_flight(f, away):
-    await in_the_air(f, GoTo("r1", "uav0", WAY[-1]))
+    await f.accepts(GoTo("r1", "uav0", circle((37.022, -8.61), 300)))
     ours, f.vehicle.parameters["SYSID_MYGCS"] = f.vehicle.parameters["SYSID_MYGCS"], 252.0
     await asyncio.sleep(away)
     assert f.world.of(Status)[-1].authority == ("system 252",)
@@ -215,10 +215,9 @@ async def test_a_fenced_vehicle_that_obeyed_somebody_else_for_a_while_goes_on_wi
 async def test_a_zone_to_stay_out_of_stays_on_board_beside_the_fence(kind):
     zone = no_fly(37.02, -8.56, 300.0)
     async with flight(kind, craft=Craft("uav0", fence=WIDE)) as f:
-        f.vehicle.store.items[MissionType.FENCE] = (zone,)
-        await until(f.plugin.is_known, 60)
-        assert any("keeps a circle of 300 m" in each for each in f.plugin.remarks())
-        await in_the_air(f, GoTo("r1", "uav0", AREA))
+        await finds(f, MissionType.FENCE, zone)
+        assert remarked(f, "keeps a circle of 300 m")
+        await f.accepts(GoTo("r1", "uav0", AREA))
         there = f.vehicle.store.items[MissionType.FENCE]
         assert len(there) == 5
         assert (there[-1].command, there[-1].parameters[0]) == (Cmd.FENCE_CIRCLE_EXCLUSION, 300.0)
@@ -230,13 +229,16 @@ async def test_a_flight_into_a_zone_to_stay_out_of_or_across_it_is_refused(fence
     craft = Craft("uav0", fence=WIDE if fenced else None)
     parameters = {} if fenced else {"FENCE_ENABLE": 1.0}
     async with flight(craft=craft, parameters=parameters) as f:
-        f.vehicle.store.items[MissionType.FENCE] = (no_fly(37.015, -8.6, 300.0),)
-        await until(f.plugin.is_known, 60)
-        with pytest.raises(Refused, match=r"the bay is not clear of a circle of 300 m .* on board"):
-            await f.plugin.command(GoTo("r1", "uav0", circle((37.0185, -8.6), 250), name="the bay"))
+        await finds(f, MissionType.FENCE, no_fly(37.015, -8.6, 300.0))
+        await f.refuses(
+            GoTo("r1", "uav0", circle((37.0185, -8.6), 250), name="the bay"),
+            r"the bay is not clear of a circle of 300 m .* on board",
+        )
         beyond = circle((37.03, -8.6), 250)
-        with pytest.raises(Refused, match="the straight way to the bay crosses a circle of 300 m"):
-            await f.plugin.command(GoTo("r2", "uav0", beyond, name="the bay"))
+        await f.refuses(
+            GoTo("r2", "uav0", beyond, name="the bay"),
+            "the straight way to the bay crosses a circle of 300 m",
+        )
         round_it = circle((37.015, -8.59), 200)
         await f.plugin.command(Follow("r3", "uav0", (round_it, beyond), name="the bay"))
 
@@ -245,56 +247,26 @@ async def test_a_flight_into_a_zone_to_stay_out_of_or_across_it_is_refused(fence
 async def test_another_zone_to_stay_in_is_kept_and_bounds_what_is_flown():
     other = polygon([(37.0125, -8.59), (36.98, -8.59), (36.98, -8.63), (37.0125, -8.63)])
     async with flight(craft=Craft("uav0", fence=WIDE)) as f:
-        f.vehicle.store.items[MissionType.FENCE] = fence(other)
-        await until(f.plugin.is_known, 60)
-        with pytest.raises(
-            Refused, match="is not inside a polygon of 4 corners to stay in, which is on board"
-        ):
-            await f.plugin.command(GoTo("r1", "uav0", WAY[-1]))
-        await in_the_air(f, GoTo("r2", "uav0", circle((37.006, -8.61), 200)))
+        await finds(f, MissionType.FENCE, *fence(other))
+        await f.refuses(
+            GoTo("r1", "uav0", WAY[-1]), "is not inside a polygon of 4 corners to stay in, which is on board"
+        )
+        await f.accepts(GoTo("r2", "uav0", circle((37.006, -8.61), 200)))
         assert len(f.vehicle.store.items[MissionType.FENCE]) == 8
 
 
-def test_where_one_of_several_zones_is_enough_a_wider_one_is_replaced_and_another_refused():
-    async def main():
-        async with flight(Kind.PX4_COPTER, craft=Craft("uav0", fence=WIDE)) as f:
-            f.vehicle.store.items[MissionType.FENCE] = fence(box((37.1, -8.5), (36.9, -8.7)))
-            await until(f.plugin.is_known, 60)
-            assert any("loses a polygon of 4 corners to stay in" in each for each in f.plugin.remarks())
-            await in_the_air(f, GoTo("r1", "uav0", box((37.003, -8.601), (37.002, -8.603))))
-            assert len(f.vehicle.store.items[MissionType.FENCE]) == 4
-
-    async def refused():
-        async with flight(Kind.PX4_COPTER, craft=Craft("uav0", fence=WIDE)) as f:
-            f.vehicle.store.items[MissionType.FENCE] = fence(box((37.04, -8.5), (36.96, -8.6)))
-            await until(f.plugin.is_known, 60)
-            with pytest.raises(Refused, match="with both it could fly in either"):
-                await f.plugin.command(GoTo("r1", "uav0", box((37.003, -8.601), (37.002, -8.603))))
-
-    run(main())
-    run(refused())
-
-
-@pytest.mark.parametrize(
-    ("parameters", "why"),
-    [
-        ({"FENCE_ACTION": 0.0}, "its FENCE_ACTION is 0; it only reports; set it to 1"),
-        ({"FENCE_AUTOENABLE": 1.0}, "its FENCE_AUTOENABLE is 1; before take-off it switches its fences off"),
-    ],
-)
-@flown(craft=Craft("uav0", fence=WIDE), by="parameters")
-async def test_a_fence_that_would_not_be_kept_is_refused_at_once(f, why):
-    await until(f.plugin.is_known, 60)
-    with pytest.raises(Refused, match=why):
-        await f.plugin.command(GoTo("r1", "uav0", AREA))
-
-
-@simulated
-async def test_fences_that_come_on_by_arming_are_flown_with():
-    parameters = {"FENCE_AUTOENABLE": 3.0, "FENCE_ALT_MAX": 500.0}
-    async with flight(craft=Craft("uav0", fence=WIDE), parameters=parameters) as f:
-        await f.plugin.command(GoTo("r1", "uav0", AREA))
-        assert isinstance(await f.ended("r1"), Arrived)
+@pytest.mark.parametrize("wider", [True, False])
+@flown(Kind.PX4_COPTER, craft=Craft("uav0", fence=WIDE))
+async def test_where_one_of_several_zones_is_enough_a_wider_one_is_replaced_and_another_refused(f, wider):
+    there = GoTo("r1", "uav0", box((37.003, -8.601), (37.002, -8.603)))
+    zone = box((37.1, -8.5), (36.9, -8.7)) if wider else box((37.04, -8.5), (36.96, -8.6))
+    await finds(f, MissionType.FENCE, *fence(zone))
+    if wider:
+        assert remarked(f, "loses a polygon of 4 corners to stay in")
+        await f.accepts(there)
+        assert len(f.vehicle.store.items[MissionType.FENCE]) == 4
+    else:
+        await f.refuses(there, "with both it could fly in either")
 
 
 # --- landing sequences --------------------------------------------------------------------------------
@@ -313,50 +285,54 @@ async def test_a_landing_sequence_stays_on_board_behind_each_mission_and_brings_
     await until(f.plugin.is_known, 60)
     (kept,) = [each for each in f.plugin.remarks() if "landing sequence" in each]
     assert kept.startswith("uav0 keeps its landing sequence: the last 4 items")
-    await in_the_air(f, GoTo("r1", "uav0", AREA))
+    await f.accepts(GoTo("r1", "uav0", AREA))
     assert [item.command for item in mission(f)[-4:]] == [item.command for item in LANDING]
-    await f.plugin.command(Follow("r2", "uav0", WAY))
-    assert isinstance(await f.ended("r2"), Arrived)
-    await f.plugin.command(Return("r3", "uav0"))
-    assert isinstance(await f.ended("r3", 1200), Arrived)
+    await f.accepts(Follow("r2", "uav0", WAY))
+    assert [item.command for item in mission(f)[-4:]] == [item.command for item in LANDING]
+    await f.completes(Return("r3", "uav0"), 1200)
     await until(lambda: not f.vehicle.armed)
     assert f.world.of(TakenOver) == []
 
 
+@pytest.mark.parametrize(
+    ("parameters", "more", "remark"),
+    [
+        (
+            {"RTL_AUTOLAND": 2.0},
+            None,
+            "uav0 has no landing sequence on board, which its RTL_AUTOLAND asks for: when it returns, it circles",
+        ),
+        (
+            {},
+            (LANDING[3],),
+            "uav0 has a mission of 5 items on board, which the flights of this mission replace",
+        ),
+    ],
+)
+@flown(by="parameters")
+async def test_a_landing_sequence_that_is_not_there_and_a_mission_that_is_replaced_are_named_before(
+    f, more, remark
+):
+    if more:
+        theirs(f, more=more)
+    await until(f.plugin.is_known, 60)
+    assert list(f.plugin.remarks()) == [remark]
+
+
+@pytest.mark.parametrize("aside", [False, True])
 @flown(parameters={"RTL_AUTOLAND": 2.0})
-async def test_a_plane_whose_return_asks_for_a_landing_sequence_that_it_has_not_says_so_before_take_off(f):
+async def test_the_jumps_of_a_landing_sequence_keep_their_aims_and_one_out_of_it_is_refused(f, aside):
+    to = 2.0 if aside else len(theirs(f)) + 1.0
+    jump = Item(Cmd.DO_JUMP, 0, 0, 0.0, Frame.SEA_LEVEL, (to, 1.0, 0.0, 0.0))
+    theirs(f, more=(*LANDING[:3], jump, LANDING[3]))
     await until(f.plugin.is_known, 60)
-    (said,) = f.plugin.remarks()
-    assert said == (
-        "uav0 has no landing sequence on board, which its RTL_AUTOLAND asks for: when it returns, it circles"
-    )
-
-
-def test_the_jumps_of_a_landing_sequence_keep_their_aims_and_one_out_of_it_is_refused():
-    def jump(to):
-        return Item(Cmd.DO_JUMP, 0, 0, 0.0, Frame.SEA_LEVEL, (float(to), 1.0, 0.0, 0.0))
-
-    async def main(to):
-        async with flight(parameters={"RTL_AUTOLAND": 2.0}) as f:
-            first = len(theirs(f))
-            theirs(f, more=(*LANDING[:3], jump(first + 1 if to is None else to), LANDING[3]))
-            await until(f.plugin.is_known, 60)
-            await f.plugin.command(GoTo("r1", "uav0", AREA))
-            await until(lambda: f.vehicle.armed)
-            (moved,) = [item.parameters[0] for item in mission(f) if item.command == Cmd.DO_JUMP]
-            assert moved == 4.0  # behind home, take-off, circle and the marker
-
-    run(main(None))
-    with pytest.raises(Refused, match="jumps to item 2, outside of it"):
-        run(main(2))
-
-
-@flown()
-async def test_a_mission_of_somebody_is_named_before_it_is_replaced(f):
-    theirs(f, more=(Item(Cmd.LAND, *e7(37.0, -8.6)),))
-    await until(f.plugin.is_known, 60)
-    (said,) = f.plugin.remarks()
-    assert said == ("uav0 has a mission of 5 items on board, which the flights of this mission replace")
+    if aside:
+        await f.refuses(GoTo("r1", "uav0", AREA), "jumps to item 2, outside of it")
+        return
+    await f.plugin.command(GoTo("r1", "uav0", AREA))
+    await until(lambda: f.vehicle.armed)
+    (moved,) = [item.parameters[0] for item in mission(f) if item.command == Cmd.DO_JUMP]
+    assert moved == 4.0  # behind home, take-off, circle and the marker
 
 
 # --- rally points -------------------------------------------------------------------------------------
@@ -369,14 +345,12 @@ def rally(latitude, longitude):
 @pytest.mark.parametrize("kind", PLANES)
 @flown(craft=Craft("uav0", fence=WIDE), by="kind")
 async def test_a_return_is_done_at_the_rally_point_that_it_leads_to(f):
-    f.vehicle.store.items[MissionType.RALLY] = (rally(37.01, -8.635),)
-    await until(f.plugin.is_known, 60)
-    assert any("rally points on board, 1: it returns to the nearest" in each for each in f.plugin.remarks())
-    await in_the_air(f, GoTo("r1", "uav0", AREA))
+    await finds(f, MissionType.RALLY, rally(37.01, -8.635))
+    assert remarked(f, "rally points on board, 1: it returns to the nearest")
+    await f.accepts(GoTo("r1", "uav0", AREA))
     await f.ended("r1")
     await asyncio.sleep(60)  # until it circles, nearer to that than to its home
-    await f.plugin.command(Return("r2", "uav0"))
-    assert isinstance(await f.ended("r2"), Arrived)
+    await f.completes(Return("r2", "uav0"))
     assert metres_to(f.vehicle.body, 37.01, -8.635)[0] < 200
 
 
@@ -384,14 +358,12 @@ async def test_a_return_is_done_at_the_rally_point_that_it_leads_to(f):
 async def test_a_rally_point_outside_the_fence_is_refused_and_a_return_to_it_is_said():
     outside = rally(37.07, -8.6)
     async with flight(craft=Craft("uav0", fence=WIDE)) as f:
-        f.vehicle.store.items[MissionType.RALLY] = (outside,)
-        await until(f.plugin.is_known, 60)
+        await finds(f, MissionType.RALLY, outside)
         why = "its rally point 1 lies 22.. m outside the fence, and it returns to the nearest: remove it"
-        with pytest.raises(Refused, match=why):
-            await f.plugin.command(GoTo("r1", "uav0", AREA))
+        await f.refuses(GoTo("r1", "uav0", AREA), why)
         f.vehicle.store.items[MissionType.RALLY] = ()
         await asyncio.sleep(70)
-        await in_the_air(f, GoTo("r2", "uav0", AREA))
+        await f.accepts(GoTo("r2", "uav0", AREA))
         f.vehicle.store.items[MissionType.RALLY] = (outside,)
         await asyncio.sleep(70)
         await f.plugin.command(Return("r3", "uav0"))
@@ -401,9 +373,8 @@ async def test_a_rally_point_outside_the_fence_is_refused_and_a_return_to_it_is_
 
 @flown(craft=Craft("uav0", fence=WIDE))
 async def test_a_rally_point_of_another_airfield_is_no_matter(f):
-    f.vehicle.store.items[MissionType.RALLY] = (rally(38.0, -8.6),)
-    await until(f.plugin.is_known, 60)
-    await in_the_air(f, GoTo("r1", "uav0", AREA))
+    await finds(f, MissionType.RALLY, rally(38.0, -8.6))
+    await f.accepts(GoTo("r1", "uav0", AREA))
 
 
 # --- refusals -----------------------------------------------------------------------------------------
@@ -447,15 +418,9 @@ async def test_a_fence_that_is_never_written_is_refused_with_the_vehicles_answer
     assert end.time - f.world.of(Trouble, what="not now")[0].time < PATIENCE
 
 
-@flown(parameters={"ARMING_MIS_ITEMS": 8.0})
-async def test_a_plane_that_asks_for_a_take_off_in_its_mission_gets_it_before_it_is_ready(f):
-    await f.plugin.command(GoTo("r1", "uav0", AREA))
-    assert isinstance(await f.ended("r1"), Arrived)
-
-
-@flown(parameters={"ARMING_MIS_ITEMS": 41.0})
-async def test_items_that_the_mission_will_not_have_are_refused_by_name(f):
-    await until(f.plugin.is_known, 60)
-    why = "ARMING_MIS_ITEMS is 41, so it is not armed without a landing and a rally point on board"
-    with pytest.raises(Refused, match=why):
-        await f.plugin.command(GoTo("r1", "uav0", AREA))
+@pytest.mark.parametrize(
+    "parameters", [{"ARMING_MIS_ITEMS": 8.0}, {"FENCE_AUTOENABLE": 3.0, "FENCE_ALT_MAX": 500.0}]
+)
+@flown(craft=Craft("uav0", fence=WIDE), by="parameters")
+async def test_a_take_off_in_its_mission_and_fences_that_come_on_by_arming_are_given_to_who_asks_for_them(f):
+    await f.accepts(GoTo("r1", "uav0", AREA))

@@ -1,7 +1,9 @@
 """Who is who on a link: by system id, by serial number, as the first heard."""
 
 import asyncio
+from dataclasses import replace
 
+import packets
 import pytest
 from worlds import AREA, EPOCH, HOME, World, flown, running, simulated, until
 
@@ -9,9 +11,8 @@ from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.message import say
 from adapters.mavlink.pilot import Pilot
 from adapters.mavlink.roster import Roster, find, serial_of
-from adapters.plugin import Arrived, GoTo
+from adapters.plugin import GoTo
 from adapters.simulated import Kind, Simulator, Vehicle
-from physical import PhysicalError
 
 NOTHING = {
     **dict.fromkeys(["capabilities", "flight_sw_version", "middleware_sw_version", "os_sw_version"], 0),
@@ -22,14 +23,11 @@ NOTHING = {
 
 def version(system=1, uid=0, uid2=b""):
     message = say("AUTOPILOT_VERSION", uid=uid, uid2=list(uid2.ljust(18, b"\0")), **NOTHING)
-    return type(message)(message.name, message.fields, system, 1)
+    return replace(message, system=system, component=1)
 
 
 def beat(system=1):
-    said = say(
-        "HEARTBEAT", type=2, autopilot=3, base_mode=1, custom_mode=0, system_status=3, mavlink_version=3
-    )
-    return type(said)(said.name, said.fields, system, 1)
+    return replace(packets.beat(2, mode=1), system=system, component=1)
 
 
 def pilots(*crafts):
@@ -66,11 +64,6 @@ def test_who_has_no_number_is_the_first_that_is_none_of_the_others():
     assert (told.pilot.craft.entity, told.pilot.system) == ("uav1", 7)
 
 
-def test_two_vehicles_with_one_serial_number_are_the_users_mistake():
-    with pytest.raises(PhysicalError, match="same name or system id"):
-        Autopilot("autopilot", "udp:127.0.0.1:0", [Craft("uav0", serial="2F"), Craft("uav1", serial="2F")])
-
-
 @simulated
 async def test_vehicles_that_came_with_swapped_system_ids_are_told_apart_by_their_serial_numbers():
     world = World()
@@ -96,9 +89,3 @@ async def test_a_vehicle_with_the_wrong_serial_number_is_reported_and_never_flow
     assert not f.vehicle.armed
     assert f.world.published == []
     assert "system 1 with serial number 30" in f.world.reports[0].detail
-
-
-@flown(Kind.COPTER, craft=Craft("uav0", serial="2F"), serial=b"\x2f")
-async def test_a_vehicle_that_is_known_by_its_serial_number_flies(f):
-    await f.plugin.command(GoTo("r1", "uav0", AREA))
-    assert isinstance(await f.ended("r1"), Arrived)

@@ -5,6 +5,7 @@ import socket
 from contextlib import asynccontextmanager
 
 import pytest
+from packets import beat
 from worlds import AREA, EPOCH, flight, flown, running, simulated, until
 
 from adapters.mavlink.autopilot import MAX_REMOTES
@@ -15,9 +16,8 @@ from adapters.plugin import Arrived, GoTo, LinkLost, LinkRestored, Rebind, Troub
 from adapters.simulated import Simulator
 from physical import contains
 
-BEAT = {"base_mode": 129, "custom_mode": 15, "system_status": 4, "mavlink_version": 3}
 LIES = (
-    say("HEARTBEAT", type=1, autopilot=3, **BEAT),
+    beat(mode=129, custom=15, status=4),
     say(
         "PARAM_VALUE", param_id=b"SYSID_MYGCS", param_value=254.0, param_type=4, param_count=1, param_index=0
     ),

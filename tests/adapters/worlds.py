@@ -8,9 +8,12 @@ from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
 
+import aiohttp.web
+import pytest
+
 from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.keys import Keeper
-from adapters.plugin import Arrived, Rejected
+from adapters.plugin import Accepted, Arrived, Refused, Rejected
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
 from bigactors.testing import EPOCH, World, running, until
 from physical import box, circle
@@ -60,6 +63,30 @@ class Flight:
         ends = lambda: [*self.world.of(Arrived, request=request), *self.world.of(Rejected, request=request)]  # noqa: E731
         return (await until(ends, seconds))[0]
 
+    async def does(self, command, seconds=600.0):
+        """Tell a command, and wait for its end."""
+        await self.plugin.command(command)
+        return await self.ended(command.request, seconds)
+
+    async def completes(self, command, seconds=600.0):
+        end = await self.does(command, seconds)
+        assert isinstance(end, Arrived), end
+        return end
+
+    async def rejects(self, command, seconds=600.0):
+        end = await self.does(command, seconds)
+        assert isinstance(end, Rejected), end
+        return end
+
+    async def refuses(self, command, why):
+        with pytest.raises(Refused, match=why):
+            await self.plugin.command(command)
+
+    async def accepts(self, command):
+        """Tell a command, and wait until the vehicle does it."""
+        await self.plugin.command(command)
+        await until(lambda: self.world.of(Accepted, request=command.request))
+
 
 @asynccontextmanager
 async def flight(
@@ -82,6 +109,20 @@ async def flight(
         simulator = Simulator(f"udpout:127.0.0.1:{plugin.local[1]}", [flown], disturbance, seed, EPOCH)
         async with running(simulator.run()):
             yield Flight(flown, simulator, plugin, world)
+
+
+@asynccontextmanager
+async def answering(answer):
+    """Serve a page over HTTP with what a function returns; yield its address."""
+    application = aiohttp.web.Application()
+    application.router.add_get("/", answer)
+    runner = aiohttp.web.AppRunner(application, access_log=None)
+    await runner.setup()
+    await aiohttp.web.TCPSite(runner, "127.0.0.1", 0).start()
+    try:
+        yield f"http://127.0.0.1:{runner.addresses[0][1]}/"
+    finally:
+        await runner.cleanup()
 
 
 def simulated(test):
