@@ -138,11 +138,8 @@ async def test_after_a_hand_over_to_someone_else_nothing_more_is_commanded():
 async def test_a_place_too_small_for_the_circle_is_refused_before_take_off_unless_it_is_only_passed(f):
     await until(lambda: f.world.property("uav0"))
     why = r"the nest is too small: .* needs a circle of 104 m: it circles at 80 m"
-    for command in (
-        GoTo("r1", "uav0", TINY, name="the nest"),
-        Follow("r1", "uav0", (PATH[0], TINY), name="the nest"),
-    ):
-        await f.refuses(command, why)
+    for kind, where in ((GoTo, TINY), (Follow, (PATH[0], TINY))):
+        await f.refuses(kind("r1", "uav0", where, name="the nest"), why)
     assert not f.vehicle.armed
     await f.plugin.command(Follow("r2", "uav0", (TINY, AREA)))
 
@@ -227,7 +224,9 @@ async def test_an_upload_ends_where_the_vehicle_was_handed_to_a_station_that_is_
         await until(lambda: f.vehicle.ready)
         await f.plugin.command(Follow("r1", "uav0", CLOSE))
         await asyncio.sleep(1.5)
-        end = await f.rejects(HandOver("r2", "uav0", "control:gcs0", "control:gcs1"), 20)
+        await f.plugin.command(HandOver("r2", "uav0", "control:gcs0", "control:gcs1"))
+        end = await f.ended("r1", 20)
+        assert isinstance(end, Rejected)
         assert end.reason == "it obeys gcs1, not gcs0: its SYSID_MYGCS is 254, and gcs0 has 255"
 
 

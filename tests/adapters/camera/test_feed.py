@@ -7,7 +7,7 @@ from http.server import BaseHTTPRequestHandler, HTTPServer
 from itertools import cycle
 
 import pytest
-from worlds import until
+from worlds import World, until
 
 from adapters.camera.feed import Camera, CameraFeed
 from adapters.camera.libraries import opencv
@@ -29,21 +29,15 @@ SIZE = (240, 180)
 BEGIN = 1_795_000_000.0
 
 
-class Sky:
+class Sky(World):
     """A world whose time a test sets, with a vehicle whose pose its messages tell."""
 
     def __init__(self):
-        self.time, self.published, self.reports = BEGIN, [], []
-        self.poses = PoseLog()
+        super().__init__()
+        self.time, self.poses = BEGIN, PoseLog()
 
     def now(self):
         return self.time
-
-    def publish(self, published):
-        self.published.append(published)
-
-    def report(self, report):
-        self.reports.append(report)
 
     def fly(self, pose, until):
         """Let the vehicle be at a pose from now to a time."""
@@ -56,7 +50,7 @@ class Sky:
             self.poses.hear("ATTITUDE", {name: math.radians(a) for name, a in angles.items()}, self.time)
 
     def troubles(self):
-        return {each.what: each.detail for each in self.reports if isinstance(each, Trouble)}
+        return {each.what: each.detail for each in self.of(Trouble)}
 
 
 def picture(pose, slicks=(SPILL,), seed=1):

@@ -126,7 +126,7 @@ TOLD = {
     "twice, and another after it": (GO, None, [[HELD], [HELD], [SENT]], "Hold Hold Return", RETURNS, ""),
     "to who was taken over": (GO, None, [[TAKEN], [HELD]], "GiveBack Hold", HOLDS, OVERRULES),
     "given back": (GO, None, [[HELD], [BACK]], "Hold GiveBack GoTo", "", ANEW),
-    "at once, in its order": (GO, None, [[HELD, BACK, SENT]], "Return", RETURNS, ""),
+    "at once, in its order": (GO, None, [[HELD, BACK, SENT]], "GiveBack Return", RETURNS, ""),
     "given back and held at once": (GO, None, [[TAKEN], [BACK, HELD]], "GiveBack Hold", HOLDS, ""),
     "ended by a pilot": (GO, None, [[HELD], [TAKEN]], "Hold", "it is in RTL", FOR_ITSELF),
     "amid a hand-over": (HAND, None, [[HELD], [BACK]], "Hold GiveBack HandOver", "", ANEW),

@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from live_missions import EAST, TOUR, WEST, Run, boat, plan_of
 from processes import free_port
+from worlds import World as Told
 
 from adapters.live.plan import Plan
 from adapters.live.reported import Finding
@@ -50,21 +51,13 @@ MISSION = "sha256:mission"
 VEHICLES = {"uav0": True}
 
 
-class World:
+class World(Told):
     """What a station's run is told."""
 
-    def __init__(self, ahead=0.0):
-        self.ahead = ahead
-        self.published, self.reports = [], []
+    ahead = 0.0
 
     def now(self):
         return time.time() + self.ahead
-
-    def publish(self, published):
-        self.published.append(published)
-
-    def report(self, report):
-        self.reports.append(report)
 
     def at(self, entity):
         for published in reversed(self.published):
@@ -74,10 +67,7 @@ class World:
         return None
 
     def troubles(self):
-        return " | ".join(f"{each.what}: {each.detail}" for each in self.reports if isinstance(each, Trouble))
-
-    def of(self, kind):
-        return [each for each in self.reports if isinstance(each, kind)]
+        return " | ".join(f"{each.what}: {each.detail}" for each in self.of(Trouble))
 
 
 class Camera:
@@ -96,7 +86,8 @@ class Node:
     """A station: its plugin, its log and its world."""
 
     def __init__(self, peers, folder, mission=MISSION, ahead=0.0):
-        self.peers, self.world = peers, World(ahead)
+        self.peers, self.world = peers, World()
+        self.world.ahead = ahead
         self.journal = Journal(folder / f"{peers.own.name}.log", peers.own.name, mission)
         self.sharing = Sharing(peers, self.journal, "tour", mission, VEHICLES)
 
