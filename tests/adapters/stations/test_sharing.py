@@ -240,10 +240,17 @@ async def test_where_bigactors_are_and_what_broke_all_know(tmp_path):
         assert gcs0.world.of(Broken) == gcs0.world.of(Hosts) == []
 
 
-async def test_of_a_vehicle_only_its_own_links_speak_and_not_before_one_tells_whom_it_obeys(tmp_path):
-    """It answers only that link: the other hears where it is, and whoever begins then should not take it for lost."""
+async def test_of_a_vehicle_only_its_own_links_speak(tmp_path):
     async with two(tmp_path) as (gcs0, gcs1):
         gcs0.see("uav0", EAST)  # an AIS transponder that calls itself so
+        gcs0.see("boat0", WEST)
+        await until(lambda: gcs1.world.at("boat0") == WEST)
+        assert gcs1.world.at("uav0") is None
+
+
+async def test_a_vehicle_is_not_seen_before_a_link_tells_whom_it_obeys(tmp_path):
+    """It answers only that link: the other hears where it is, and whoever begins then should not take it for lost."""
+    async with two(tmp_path) as (gcs0, gcs1):
         gcs1.see("uav0", WEST, owned=True)
         gcs1.see("boat0", WEST)
         await until(lambda: gcs0.world.at("boat0") == WEST)
