@@ -23,6 +23,9 @@ SENTENCES = (
 )
 
 
+PARAMETER = {"param_id": b"SYSID_MYGCS", "param_type": 9}
+
+
 def frames():
     """Frames that a vehicle says, and that a ground station does."""
     vehicle = Vehicle(Kind.PLANE, (37.0, -8.6, 20.0), time=100.0)
@@ -39,28 +42,14 @@ def frames():
         say("MISSION_COUNT", count=3, **whom),
         say("COMMAND_ACK", command=400, result=0, target_system=255, target_component=190),
         item_message(Item(Cmd.WAYPOINT, 370_000_000, -86_000_000, 100.0), 1, 0, 255, 190),
-        say(
-            "PARAM_VALUE",
-            param_id=b"SYSID_MYGCS",
-            param_value=255.0,
-            param_type=9,
-            param_count=1,
-            param_index=0,
-        ),
+        say("PARAM_VALUE", param_value=255.0, param_count=1, param_index=0, **PARAMETER),
     )
     ours = Encoder(255, 190)
     questions = (
         long(Cmd.ARM_DISARM, 1, 1),
         reposition(1, 370_000_000, -86_000_000, (100.0, Frame.HOME), 80.0, enters=True),
         say("MISSION_COUNT", target_system=1, target_component=1, count=3, mission_type=0),
-        say(
-            "PARAM_SET",
-            target_system=1,
-            target_component=1,
-            param_id=b"SYSID_MYGCS",
-            param_value=9.0,
-            param_type=9,
-        ),
+        say("PARAM_SET", target_system=1, target_component=1, param_value=9.0, **PARAMETER),
         item_message(Item(Cmd.WAYPOINT, 370_000_000, -86_000_000, 100.0), 1, 0, 1),
     )
     said = [theirs.pack(message) for message in (*reporter.due(vehicle), *answers)]

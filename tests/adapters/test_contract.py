@@ -9,11 +9,10 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 
 import aiohttp.web
-import numpy as np
 import pytest
-from rosbags.rosbag2 import Writer
-from rosbags.typesys import Stores, get_typestore
-from worlds import AREA, EPOCH, HOME, World, running
+from rosbags.rosbag2 import StoragePlugin
+from routers import fix, write_bag
+from worlds import AREA, EPOCH, HOME, World, answering, running, simulated
 
 import adapters
 from adapters.ais import AisFeed
@@ -28,7 +27,8 @@ from adapters.mavlink import Autopilot, Craft
 from adapters.naming import NamingService
 from adapters.plugin import Plugin
 from adapters.ros import RosFeed, RosVehicles
-from adapters.simulated import Kind, Simulator, Vehicle, run
+from adapters.ros.messages import FIX
+from adapters.simulated import Kind, Simulator, Vehicle
 from adapters.simulated.camera import render
 from adapters.static_places import StaticPlaces
 from adapters.stations.shared_plugin import Shared
@@ -144,12 +144,6 @@ async def location(_tmp_path):
     async def answer(_request):
         return aiohttp.web.Response(body=said[0])
 
-    application = aiohttp.web.Application()
-    application.router.add_get("/", answer)
-    runner = aiohttp.web.AppRunner(application, access_log=None)
-    await runner.setup()
-    await aiohttp.web.TCPSite(runner, "127.0.0.1", 0).start()
-
     @asynccontextmanager
     async def fed():
         said[0] = HEARD
@@ -158,36 +152,22 @@ async def location(_tmp_path):
     def spoil():
         said[0] = JUNK[-1]
 
-    url = f"http://127.0.0.1:{runner.addresses[0][1]}/"
-    yield Connection(LocationService("cloud", url), fed, spoil)
-    await runner.cleanup()
+    async with answering(answer) as url:
+        yield Connection(LocationService("cloud", url), fed, spoil)
+
+
+@asynccontextmanager
+async def idle():
+    yield
 
 
 @asynccontextmanager
 async def ros(tmp_path):
-    store = get_typestore(Stores.ROS2_KILTED)
-    at = store.types["builtin_interfaces/msg/Time"](sec=0, nanosec=0)
-    fix = store.types["sensor_msgs/msg/NavSatFix"](
-        store.types["std_msgs/msg/Header"](at, "gps"),
-        store.types["sensor_msgs/msg/NavSatStatus"](0, 1),
-        37.0,
-        -8.7,
-        0.0,
-        np.zeros(9),
-        0,
-    )
-    with Writer(tmp_path / "bag", version=9) as bag:
-        topic = bag.add_connection("/drifter0/fix", "sensor_msgs/msg/NavSatFix", typestore=store)
-        for second, junk in enumerate(JUNK):
-            bag.write(topic, second * 10**9, junk)
-        bag.write(topic, 5 * 10**9, bytes(store.serialize_cdr(fix, "sensor_msgs/msg/NavSatFix")))
-
-    @asynccontextmanager
-    async def fed():
-        yield
-
+    said = (*JUNK, fix())
+    messages = [(second, "/drifter0/fix", FIX, each) for second, each in enumerate(said)]
+    bag = write_bag(tmp_path / "bag", messages, StoragePlugin.SQLITE3)
     naming = NamingService(kinds={"drifter0": "Drifter"})
-    yield Connection(RosFeed("ros", f"file:{tmp_path / 'bag'}", naming=naming), fed)
+    yield Connection(RosFeed("ros", f"file:{bag}", naming=naming), idle)
 
 
 DOCS = Path(__file__).parents[2] / "docs" / "reference"
@@ -227,66 +207,39 @@ def test_every_plugin_is_held_to_the_contract_and_can_be_given():
     assert LIVING.keys() - {"vehicles"} == feeds.FEEDS.keys() - {"places"}
 
 
-class TestAutopilot(PluginContract):
-    connect = staticmethod(autopilot)
+def held(connect):
+    return type("Held", (PluginContract,), {"connect": staticmethod(connect)})
 
 
-class TestPx4(PluginContract):
-    connect = staticmethod(px4)
-
-
-class TestAis(PluginContract):
-    connect = staticmethod(ais)
-
-
-class TestPlaces(PluginContract):
-    connect = staticmethod(places)
-
-
-class TestDetections(PluginContract):
-    connect = staticmethod(detections)
-
-
-class TestLocation(PluginContract):
-    connect = staticmethod(location)
-
-
-class TestCamera(PluginContract):
-    connect = staticmethod(camera)
-
-
-class TestRos(PluginContract):
-    connect = staticmethod(ros)
+TestAutopilot, TestPx4 = held(autopilot), held(px4)
+TestAis, TestRos, TestLocation = held(ais), held(ros), held(location)
+TestPlaces, TestDetections, TestCamera = held(places), held(detections), held(camera)
 
 
 @pytest.mark.parametrize("make_one", [autopilot, ais, detections])
-def test_it_listens_on_this_machine_only_unless_told_otherwise(make_one, tmp_path):
-    async def main():
-        async with make_one(tmp_path) as connection, running((plugin := connection.plugin).run(World())):
-            await opened(plugin)
-            port = plugin.port if make_one is detections else plugin.local[1]
-            kind = socket.SOCK_STREAM if make_one is detections else socket.SOCK_DGRAM
-            with socket.socket(socket.AF_INET, kind) as other:  # what listens everywhere would be in its way
-                other.bind(("127.0.0.2", port))
-
-    run(main())
+@simulated
+async def test_it_listens_on_this_machine_only_unless_told_otherwise(make_one, tmp_path):
+    async with make_one(tmp_path) as connection, running((plugin := connection.plugin).run(World())):
+        await opened(plugin)
+        port = plugin.port if make_one is detections else plugin.local[1]
+        kind = socket.SOCK_STREAM if make_one is detections else socket.SOCK_DGRAM
+        with socket.socket(socket.AF_INET, kind) as other:  # what listens everywhere would be in its way
+            other.bind(("127.0.0.2", port))
 
 
-@pytest.mark.parametrize("make_one", ["autopilot", "ais", "detections"])
-def test_a_port_that_is_taken_is_an_error_that_says_so(make_one):
-    async def main():
-        kind = socket.SOCK_STREAM if make_one == "detections" else socket.SOCK_DGRAM
-        with socket.socket(socket.AF_INET, kind) as other:
-            other.bind(("127.0.0.1", 0))
-            if make_one == "detections":
-                other.listen()
-            port = other.getsockname()[1]
-            plugin = {
-                "autopilot": lambda: Autopilot("autopilot", f"udp:{port}", [Craft("uav0")]),
-                "ais": lambda: AisFeed("ais", f"udp:{port}"),
-                "detections": lambda: Detections("camera", listen=Listen(port)),
-            }[make_one]()
-            with pytest.raises(OSError, match=r"in use|address"):
-                await plugin.run(World())
-
-    run(main())
+@pytest.mark.parametrize(
+    ("kind", "make"),
+    [
+        (socket.SOCK_DGRAM, lambda port: Autopilot("autopilot", f"udp:{port}", [Craft("uav0")])),
+        (socket.SOCK_DGRAM, lambda port: AisFeed("ais", f"udp:{port}")),
+        (socket.SOCK_STREAM, lambda port: Detections("camera", listen=Listen(port))),
+    ],
+)
+@simulated
+async def test_a_port_that_is_taken_is_an_error_that_says_so(kind, make):
+    with socket.socket(socket.AF_INET, kind) as other:
+        other.bind(("127.0.0.1", 0))
+        if kind is socket.SOCK_STREAM:
+            other.listen()
+        with pytest.raises(OSError, match=r"in use|address"):
+            await make(other.getsockname()[1]).run(World())

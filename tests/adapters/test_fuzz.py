@@ -9,7 +9,7 @@ from random import Random
 
 import pytest
 from mutations import SENTENCES, frames, mutated, with_right_checksum
-from worlds import AREA, World, running, until
+from worlds import AREA, World, running, simulated, until
 
 from adapters.ais import AisFeed
 from adapters.mavlink import Autopilot, Craft
@@ -17,7 +17,7 @@ from adapters.mavlink.codec import Decoder, Garbage
 from adapters.mavlink.constants import Cmd, Frame, Result
 from adapters.mavlink.message import say
 from adapters.plugin import Aged, GoTo
-from adapters.simulated import Kind, Vehicle, protocol, run
+from adapters.simulated import Kind, Vehicle, protocol
 from adapters.simulated.reporting import Reporter
 
 MANY = int(os.environ.get("BIGACTORS_FUZZ_PACKETS", "0"))
@@ -51,27 +51,25 @@ async def thrown(where, number, make):
 
 @amount
 @pytest.mark.parametrize("change", [mutated, with_right_checksum])
-def test_the_autopilot_plugin_takes_mutated_packets(number, change):
-    async def main():
-        random, (said, _) = Random(number), frames()
-        world, plugin = World(), Autopilot("autopilot", "udp:0", [Craft("uav0", system=1)])
-        async with running(plugin.run(world)):
-            await until(lambda: plugin.local)
-            await plugin.command(GoTo("r1", "uav0", AREA))
+@simulated
+async def test_the_autopilot_plugin_takes_mutated_packets(number, change):
+    random, (said, _) = Random(number), frames()
+    world, plugin = World(), Autopilot("autopilot", "udp:0", [Craft("uav0", system=1)])
+    async with running(plugin.run(world)):
+        await until(lambda: plugin.local)
+        await plugin.command(GoTo("r1", "uav0", AREA))
 
-            def make():
-                world.published[:-100] = []
-                world.reports[:-100] = []
-                raw = random.choice(said)
-                return change(raw, random) if random.random() < 0.9 else raw
+        def make():
+            world.published[:-100] = []
+            world.reports[:-100] = []
+            raw = random.choice(said)
+            return change(raw, random) if random.random() < 0.9 else raw
 
-            await thrown(plugin.local, number, make)
-            for published in world.published:
-                assert isinstance(published, Aged)
-                assert published.property.time <= world.now()
-            assert plugin.pilot("uav0").known.heard is not None
-
-    run(main())
+        await thrown(plugin.local, number, make)
+        for published in world.published:
+            assert isinstance(published, Aged)
+            assert published.property.time <= world.now()
+        assert plugin.pilot("uav0").known.heard is not None
 
 
 @amount
@@ -101,22 +99,20 @@ def test_flags_that_are_no_number_move_no_vehicle():
 
 
 @amount
-def test_the_ais_plugin_takes_mutated_sentences(number):
-    async def main():
-        random = Random(number)
-        world, feed = World(), AisFeed("ais", "udp:0")
-        async with running(feed.run(world)):
-            await until(lambda: feed.local)
+@simulated
+async def test_the_ais_plugin_takes_mutated_sentences(number):
+    random = Random(number)
+    world, feed = World(), AisFeed("ais", "udp:0")
+    async with running(feed.run(world)):
+        await until(lambda: feed.local)
 
-            def make():
-                world.published[:-100] = []
-                world.reports[:-100] = []
-                raw = random.choice(SENTENCES)
-                return mutated(raw, random) if random.random() < 0.9 else raw
+        def make():
+            world.published[:-100] = []
+            world.reports[:-100] = []
+            raw = random.choice(SENTENCES)
+            return mutated(raw, random) if random.random() < 0.9 else raw
 
-            await thrown(feed.local, number, make)
-            assert world.published
-            for published in world.published:
-                assert published.property.time <= world.now()
-
-    run(main())
+        await thrown(feed.local, number, make)
+        assert world.published
+        for published in world.published:
+            assert published.property.time <= world.now()

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+from packets import beat
 from worlds import AREA
 
 from adapters.mavlink import pilot
@@ -134,11 +135,10 @@ class Flown:
             self.pilot = pilot.command(self.pilot, command, 0.0).pilot
 
     def goes_on(self, mode, seconds, armed=True):
-        flags = {"base_mode": 1 | 128 * armed, "system_status": 4, "mavlink_version": 3}
-        beat = say("HEARTBEAT", type=1, autopilot=3, custom_mode=mode, **flags)
+        said = beat(mode=1 | 128 * armed, custom=mode, status=4)
         for _ in range(seconds):
             self.now += 1.0
-            self.take(pilot.hear(self.pilot, replace(beat, system=1, component=1), self.now))
+            self.take(pilot.hear(self.pilot, replace(said, system=1, component=1), self.now))
             moved = replace(self.pilot.known.position, time=self.now)
             self.pilot = replace(self.pilot, known=replace(self.pilot.known, position=moved))
             self.take(pilot.tick(self.pilot, self.now))

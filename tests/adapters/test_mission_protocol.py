@@ -116,14 +116,6 @@ def test_an_acceptance_that_comes_too_early_is_not_believed():
     assert not state.over
 
 
-def test_a_lost_ack_ends_the_upload_by_silence():
-    state = begun()
-    for index in range(len(ITEMS)):
-        state, _ = upload.hear(state, asked(index), 0.1)
-    assert not upload.tick(state, 2.0)[0].over
-    assert upload.tick(state, 4.0)[0].over
-
-
 def test_home_is_not_compared_and_all_of_a_fence_is():
     other = (replace(ITEMS[0], x=0), *ITEMS[1:])
     assert same(ITEMS, other, MissionType.MISSION)
@@ -161,15 +153,6 @@ class Line:
                 self.sync, sent = sync.hear(self.sync, message, self.now)
                 ours += sent
             theirs = []
-
-
-@pytest.mark.parametrize(("items", "kind"), KINDS)
-def test_a_sync_is_confirmed_only_by_what_is_read_back(items, kind):
-    line = Line(items, kind, ())
-    while not line.sync.confirmed:
-        line.step()
-    assert same(items, line.store.items[kind], kind)
-    assert line.now < 6.0
 
 
 @given(st.lists(st.sampled_from([0, 0, 1, 1, 1, 2]), max_size=80), st.sampled_from(KINDS))

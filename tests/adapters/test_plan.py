@@ -8,17 +8,15 @@ from adapters.mavlink import Autopilot, pilot
 from adapters.mavlink.constants import Cmd, MissionType, Result
 from adapters.mavlink.fleet import Craft, Stations
 from adapters.mavlink.items import route
-from adapters.mavlink.message import Message, say
+from adapters.mavlink.message import say
 from adapters.mavlink.next_step import Load, Tell, Underway, Vehicle, Wait, next_step
 from adapters.mavlink.pilot import Pilot
 from adapters.mavlink.profiles import BOAT, COPTER, PLANE, ROVER, profile_of
-from adapters.mavlink.takeover import STRANGE
 from adapters.mavlink.task import PATIENCE
 from adapters.mavlink.telemetry import Position, Telemetry
 from adapters.plugin import (
     Accepted,
     Arrived,
-    Doubted,
     Follow,
     GiveBack,
     GoTo,
@@ -27,7 +25,6 @@ from adapters.plugin import (
     Refused,
     Rejected,
     Return,
-    TakenOver,
 )
 from physical import PhysicalError, box, point, waypoint
 
@@ -200,25 +197,6 @@ def under_way():
     return state
 
 
-def test_a_state_that_is_otherwise_for_a_moment_is_a_late_packet():
-    state = under_way()
-    away = replace(state, known=replace(state.known, mode=5))
-    away, _, reports = ticked(away, 1, 1 + STRANGE - 0.5)
-    back = replace(away, known=replace(away.known, mode=PLANE.guided))
-    _, sent, more = ticked(back, 4, 20)
-    assert [type(report) for report in [*reports, *more]] == [Doubted, Accepted]
-    assert of(sent, Cmd.REPOSITION) == []
-
-
-def test_a_state_that_stays_otherwise_is_someone_elses_doing_and_not_fought():
-    state = under_way()
-    _, sent, reports = ticked(replace(state, known=replace(state.known, mode=5)), 1, 20)
-    (end,) = ended(reports)
-    assert end.reason == "it is in FBWA, by itself or told by someone else"
-    assert [report.reason for report in reports if isinstance(report, TakenOver)] == [end.reason]
-    assert of(sent, Cmd.DO_SET_MODE) == of(sent, Cmd.REPOSITION) == []
-
-
 def test_a_place_that_moves_on_does_not_take_a_vehicle_back_from_who_took_it_over():
     state, _, _ = ticked(replace(under_way(), known=replace(under_way().known, mode=5)), 1, 20)
     for told in (replace(THERE, place=box((37.02, -8.61), (37.01, -8.625))), Hold("r2", "uav0")):
@@ -280,34 +258,28 @@ def test_at_a_point_it_is_there_when_it_circles_it():
     assert step(PLANE, GoTo("r", "uav0", at), **known) == Underway(done=True)
 
 
-@pytest.mark.parametrize(
-    ("ids", "own"),
-    [({"gcs0": 255, "gcs1": 255}, ("gcs0",)), ({"gcs0": 0}, ("gcs0",)), ({"gcs0": 255}, ("gcs1",)), ({}, ())],
-)
-def test_stations_have_system_ids_of_their_own(ids, own):
-    with pytest.raises(PhysicalError):
-        Stations(ids, own)
-
-
-def test_a_message_of_another_component_changes_nothing():
-    state = begun()
-    camera = Message("HEARTBEAT", {"type": 30, "autopilot": 8}, 1, 100)
-    assert pilot.hear(state, camera, 5.0).pilot.known == state.known
+def linked(*crafts):
+    return Autopilot("autopilot", "udp:0", crafts)
 
 
 @pytest.mark.parametrize(
-    "crafts",
+    "made",
     [
-        [Craft("uav0", system=255)],
-        [Craft("uav0", system=0)],
-        [Craft("uav0", system=1), Craft("uav1", system=1)],
-        [Craft("uav0"), Craft("uav1")],
-        [Craft("uav0", system=1), Craft("uav0", system=2)],
+        lambda: Stations({"gcs0": 255, "gcs1": 255}, ("gcs0",)),
+        lambda: Stations({"gcs0": 0}, ("gcs0",)),
+        lambda: Stations({"gcs0": 255}, ("gcs1",)),
+        lambda: Stations({}, ()),
+        lambda: linked(Craft("uav0", system=255)),
+        lambda: linked(Craft("uav0", system=0)),
+        lambda: linked(Craft("uav0", system=1), Craft("uav1", system=1)),
+        lambda: linked(Craft("uav0"), Craft("uav1")),
+        lambda: linked(Craft("uav0", system=1), Craft("uav0", system=2)),
+        lambda: linked(Craft("uav0", serial="2F"), Craft("uav1", serial="2F")),
     ],
 )
-def test_vehicles_that_cannot_be_told_apart_are_the_users_mistake(crafts):
+def test_stations_and_vehicles_that_cannot_be_told_apart_are_the_users_mistake(made):
     with pytest.raises(PhysicalError):
-        Autopilot("autopilot", "udp:0", crafts)
+        made()
 
 
 WAY = (point(37.004, -8.604), point(37.008, -8.61), AREA)

@@ -4,15 +4,15 @@ import asyncio
 from dataclasses import replace
 
 import pytest
-from worlds import AREA, HOME, flight, until
+from worlds import AREA, HOME, flown, until
 
 from adapters.live.loop import NotHeard
 from adapters.mavlink.condition import Condition, look
 from adapters.mavlink.constants import Cmd, Frame, MissionType
 from adapters.mavlink.message import say
 from adapters.mavlink.telemetry import Telemetry, absorb
-from adapters.plugin import Accepted, Arrived, Follow, GoTo, Status, TakenOver, Trouble
-from adapters.simulated import Kind, Vehicle, protocol, run
+from adapters.plugin import Arrived, Follow, GoTo, Status, TakenOver, Trouble
+from adapters.simulated import Kind, Vehicle, protocol
 from adapters.simulated.reporting import Reporter
 from physical import Band, box, point
 
@@ -79,33 +79,29 @@ def test_what_a_receiver_does_not_tell_any_more_does_not_count():
     assert known.lacks(11.0) == "it has no position: GPS fix not told any more"
 
 
-def test_a_plane_whose_first_receiver_fails_arrives_by_its_second():
-    async def main():
-        async with flight(Kind.PLANE, second=True) as f:
-            await f.plugin.command(GoTo("r1", "uav0", AREA))
-            await until(lambda: f.world.of(Accepted, request="r1"), 200)
-            f.vehicle.fixed = False
-            assert isinstance(await f.ended("r1"), Arrived)
-            assert f.world.of(Trouble, what="no position") == []
-
-    run(main())
+@flown(Kind.PLANE, second=True)
+async def test_a_plane_whose_first_receiver_fails_arrives_by_its_second(f):
+    await f.accepts(GoTo("r1", "uav0", AREA))
+    f.vehicle.fixed = False
+    assert isinstance(await f.ended("r1"), Arrived)
+    assert f.world.of(Trouble, what="no position") == []
 
 
 @pytest.mark.parametrize("kind", [Kind.PLANE, Kind.PX4_PLANE])
-def test_a_vehicle_that_loses_its_position_in_flight_is_said_to_have_none_and_why(kind):
-    async def main():
-        async with flight(kind) as f:
-            await f.plugin.command(GoTo("r1", "uav0", AREA))
-            await until(lambda: f.world.of(Accepted, request="r1"), 200)
-            f.vehicle.fixed = False
-            await asyncio.sleep(42)
-            (lost,) = f.world.of(Trouble, what="no position")
-            why = "it has no position: GPS fix 1, its own estimate is not good"
-            assert lost.detail == f"{why}; nobody sees where it is"
-            f.vehicle.fixed = True
-            await until(lambda: f.world.of(Trouble, what="position again"), 10)
-
-    run(main())
+@flown(by="kind")
+async def test_a_vehicle_that_loses_its_position_in_flight_is_said_to_have_none_and_why(f):
+    await f.accepts(GoTo("r1", "uav0", AREA))
+    f.vehicle.fixed = False
+    await asyncio.sleep(42)
+    (lost,) = f.world.of(Trouble, what="no position")
+    why = "it has no position: GPS fix 1, its own estimate is not good"
+    assert lost.detail == f"{why}; nobody sees where it is"
+    last = f.world.published[-1]  # it says (0, 0) now, and what was published last ages
+    assert f.world.now() - last.property.time > 20
+    assert all(published.property.geometry.vertices[0][0] > 36 for published in f.world.published)
+    assert last.time_to_live == 30.0
+    f.vehicle.fixed = True
+    await until(lambda: f.world.of(Trouble, what="position again"), 10)
 
 
 def test_a_run_that_does_not_begin_says_whether_a_vehicle_is_silent_or_has_no_position():
@@ -119,52 +115,39 @@ def test_a_run_that_does_not_begin_says_whether_a_vehicle_is_silent_or_has_no_po
 # --- heights ------------------------------------------------------------------------------------------
 
 
-def test_a_target_at_the_same_point_and_another_height_is_not_ours():
-    async def main():
-        async with flight(Kind.PLANE) as f:
-            await f.plugin.command(GoTo("r1", "uav0", AREA))
-            assert isinstance(await f.ended("r1"), Arrived)
-            assert f.vehicle.target.height == 100.0
-            f.vehicle.target = replace(f.vehicle.target, height=400.0)
-            (taken,) = await until(lambda: f.world.of(TakenOver), 20)
-            assert taken.reason.endswith("to go there at another height: its target is 420 m above sea level")
-
-    run(main())
+@flown(Kind.PLANE)
+async def test_a_target_at_the_same_point_and_another_height_is_not_ours(f):
+    await f.completes(GoTo("r1", "uav0", AREA))
+    assert f.vehicle.target.height == 100.0
+    f.vehicle.target = replace(f.vehicle.target, height=400.0)
+    (taken,) = await until(lambda: f.world.of(TakenOver), 20)
+    assert taken.reason.endswith("to go there at another height: its target is 420 m above sea level")
 
 
-@pytest.mark.parametrize("kind", [Kind.PLANE, Kind.COPTER, Kind.PX4_COPTER])
-@pytest.mark.parametrize("band", [None, Band(100.0, 140.0)])
-def test_a_home_that_is_moved_is_said_and_the_next_leg_is_flown_above_the_home_before(kind, band):
-    async def main():
-        async with flight(kind) as f:
-            await f.plugin.command(GoTo("r1", "uav0", NEAR if kind is not Kind.PLANE else AREA, band))
-            assert isinstance(await f.ended("r1"), Arrived)
-            latitude, longitude, altitude = f.vehicle.home
-            before = altitude + f.vehicle.target.height
-            f.vehicle.set_home(latitude, longitude, altitude + 300.0)
-            (moved,) = await until(lambda: f.world.of(Trouble, what="home moved"), 20)
-            assert moved.detail.startswith(
-                "its home was moved by 0 m and +300 m in height, by itself or told"
-            )
-            await f.plugin.command(GoTo("r2", "uav0", point(37.004, -8.6), band))
-            assert isinstance(await f.ended("r2"), Arrived)
-            assert f.vehicle.home[2] + f.vehicle.target.height == pytest.approx(before, abs=0.2)
-            assert f.world.of(TakenOver) == []
-
-    run(main())
+@pytest.mark.parametrize(
+    ("kind", "band"),
+    [(Kind.PLANE, Band(100.0, 140.0)), (Kind.COPTER, None), (Kind.PX4_COPTER, Band(100.0, 140.0))],
+)
+@flown(by="kind")
+async def test_a_home_that_is_moved_is_said_and_the_next_leg_is_flown_above_the_home_before(f, kind, band):
+    await f.completes(GoTo("r1", "uav0", NEAR if kind is not Kind.PLANE else AREA, band))
+    latitude, longitude, altitude = f.vehicle.home
+    before = altitude + f.vehicle.target.height
+    f.vehicle.set_home(latitude, longitude, altitude + 300.0)
+    (moved,) = await until(lambda: f.world.of(Trouble, what="home moved"), 20)
+    assert moved.detail.startswith("its home was moved by 0 m and +300 m in height, by itself or told")
+    await f.completes(GoTo("r2", "uav0", point(37.004, -8.6), band))
+    assert f.vehicle.home[2] + f.vehicle.target.height == pytest.approx(before, abs=0.2)
+    assert f.world.of(TakenOver) == []
 
 
-def test_a_path_in_a_band_is_uploaded_above_sea_level():
-    async def main():
-        async with flight(Kind.PLANE) as f:
-            await f.plugin.command(Follow("r1", "uav0", (point(37.004, -8.604), AREA), Band(150.0, 190.0)))
-            await until(lambda: f.world.of(Accepted, request="r1"), 200)
-            flown = f.vehicle.store.items[MissionType.MISSION][1:]
-            assert {(item.frame, item.z) for item in flown} == {(Frame.SEA_LEVEL, 170.0)}
-            assert isinstance(await f.ended("r1"), Arrived)
-            assert f.vehicle.home[2] + f.vehicle.body.height == pytest.approx(170.0, abs=3.0)
-
-    run(main())
+@flown(Kind.PLANE)
+async def test_a_path_in_a_band_is_uploaded_above_sea_level(f):
+    await f.accepts(Follow("r1", "uav0", (point(37.004, -8.604), AREA), Band(150.0, 190.0)))
+    flown = f.vehicle.store.items[MissionType.MISSION][1:]
+    assert {(item.frame, item.z) for item in flown} == {(Frame.SEA_LEVEL, 170.0)}
+    assert isinstance(await f.ended("r1"), Arrived)
+    assert f.vehicle.home[2] + f.vehicle.body.height == pytest.approx(170.0, abs=3.0)
 
 
 def test_a_simulated_vehicle_stays_where_it_is_when_its_home_is_moved_by_command():

@@ -163,28 +163,26 @@ def test_speed_climb_and_turns_are_the_recorded_ones(recorded, simulated):
         positions = flown(log)
         cruise = median(at.speed for at in positions if at.height > 70)
         climb = median(at.climb for at in positions if 10 < at.height < 50)
-        turns = [
-            abs((b.course - a.course + 180) % 360 - 180) / (b.time - a.time)
-            for a, b in pairwise(positions)
-            if a.height > 70 and b.time > a.time
-        ]
-        hard = sorted(turns)[int(len(turns) * 0.98)]
-        measured.append((cruise, climb, hard))
+        measured.append((cruise, climb, hardest_turn(positions)))
     (cruise, climb, hard), (our_cruise, our_climb, our_hard) = measured
     assert our_cruise == pytest.approx(cruise, rel=0.03)
     assert our_climb == pytest.approx(climb, rel=0.15)
     assert our_hard == pytest.approx(hard, rel=0.35)
 
 
-def test_the_circle_that_a_place_must_hold_is_one_that_the_recorded_plane_can_fly(recorded):
-    """The recording ends before its loiter: its turns say how tight a circle could be."""
-    positions = flown(recorded)
-    rates = [
+def hardest_turn(positions):
+    """Return the rate of turn in degrees a second that is exceeded in 2 % of a cruise."""
+    turns = [
         abs((b.course - a.course + 180) % 360 - 180) / (b.time - a.time)
         for a, b in pairwise(positions)
-        if b.time > a.time and a.height > 70
+        if a.height > 70 and b.time > a.time
     ]
-    tightest = 22.2 / radians(sorted(rates)[int(len(rates) * 0.98)])
+    return sorted(turns)[int(len(turns) * 0.98)]
+
+
+def test_the_circle_that_a_place_must_hold_is_one_that_the_recorded_plane_can_fly(recorded):
+    """The recording ends before its loiter: its turns say how tight a circle could be."""
+    tightest = 22.2 / radians(hardest_turn(flown(recorded)))
     assert 40 < tightest < Kind.PLANE.profile.circle
     assert 2 * pi * Kind.PLANE.profile.circle / 22.2 < 30
 

@@ -1,17 +1,18 @@
 """Who is who on a link: by system id, by serial number, as the first heard."""
 
 import asyncio
+from dataclasses import replace
 
+import packets
 import pytest
-from worlds import AREA, EPOCH, HOME, World, flight, running, until
+from worlds import AREA, EPOCH, HOME, World, flown, running, simulated, until
 
 from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.message import say
 from adapters.mavlink.pilot import Pilot
 from adapters.mavlink.roster import Roster, find, serial_of
-from adapters.plugin import Arrived, GoTo
-from adapters.simulated import Kind, Simulator, Vehicle, run
-from physical import PhysicalError
+from adapters.plugin import GoTo
+from adapters.simulated import Kind, Simulator, Vehicle
 
 NOTHING = {
     **dict.fromkeys(["capabilities", "flight_sw_version", "middleware_sw_version", "os_sw_version"], 0),
@@ -22,14 +23,11 @@ NOTHING = {
 
 def version(system=1, uid=0, uid2=b""):
     message = say("AUTOPILOT_VERSION", uid=uid, uid2=list(uid2.ljust(18, b"\0")), **NOTHING)
-    return type(message)(message.name, message.fields, system, 1)
+    return replace(message, system=system, component=1)
 
 
 def beat(system=1):
-    said = say(
-        "HEARTBEAT", type=2, autopilot=3, base_mode=1, custom_mode=0, system_status=3, mavlink_version=3
-    )
-    return type(said)(said.name, said.fields, system, 1)
+    return replace(packets.beat(2, mode=1), system=system, component=1)
 
 
 def pilots(*crafts):
@@ -66,48 +64,28 @@ def test_who_has_no_number_is_the_first_that_is_none_of_the_others():
     assert (told.pilot.craft.entity, told.pilot.system) == ("uav1", 7)
 
 
-def test_two_vehicles_with_one_serial_number_are_the_users_mistake():
-    with pytest.raises(PhysicalError, match="same name or system id"):
-        Autopilot("autopilot", "udp:127.0.0.1:0", [Craft("uav0", serial="2F"), Craft("uav1", serial="2F")])
+@simulated
+async def test_vehicles_that_came_with_swapped_system_ids_are_told_apart_by_their_serial_numbers():
+    world = World()
+    crafts = [Craft("uav0", serial="AA01"), Craft("uav1", serial="AA02")]
+    plugin = Autopilot("autopilot", "udp:127.0.0.1:0", crafts)
+    homes = {2: HOME, 1: (37.02, -8.6, 20.0)}
+    async with running(plugin.run(world)):
+        await until(lambda: plugin.local)
+        fleet = [
+            Vehicle(Kind.COPTER, homes[system], system, serial=bytes([0xAA, 3 - system])) for system in (1, 2)
+        ]
+        async with running(Simulator(f"udpout:127.0.0.1:{plugin.local[1]}", fleet, epoch=EPOCH).run()):
+            await until(lambda: world.property("uav0") and world.property("uav1"))
+    assert world.property("uav0").geometry.vertices[0] == pytest.approx(HOME[:2], abs=1e-5)
+    assert (plugin.pilot("uav0").system, plugin.pilot("uav1").system) == (2, 1)
 
 
-def test_vehicles_that_came_with_swapped_system_ids_are_told_apart_by_their_serial_numbers():
-    async def main():
-        world = World()
-        crafts = [Craft("uav0", serial="AA01"), Craft("uav1", serial="AA02")]
-        plugin = Autopilot("autopilot", "udp:127.0.0.1:0", crafts)
-        homes = {2: HOME, 1: (37.02, -8.6, 20.0)}
-        async with running(plugin.run(world)):
-            await until(lambda: plugin.local)
-            fleet = [
-                Vehicle(Kind.COPTER, homes[system], system, serial=bytes([0xAA, 3 - system]))
-                for system in (1, 2)
-            ]
-            async with running(Simulator(f"udpout:127.0.0.1:{plugin.local[1]}", fleet, epoch=EPOCH).run()):
-                await until(lambda: world.property("uav0") and world.property("uav1"))
-        assert world.property("uav0").geometry.vertices[0] == pytest.approx(HOME[:2], abs=1e-5)
-        assert (plugin.pilot("uav0").system, plugin.pilot("uav1").system) == (2, 1)
-
-    run(main())
-
-
-def test_a_vehicle_with_the_wrong_serial_number_is_reported_and_never_flown():
-    async def main():
-        async with flight(craft=Craft("uav0", serial="2F"), serial=b"\x30") as f:
-            await until(lambda: "unknown vehicle" in f.world.troubles())
-            await f.plugin.command(GoTo("r1", "uav0", AREA))
-            await asyncio.sleep(60)
-            assert not f.vehicle.armed
-            assert f.world.published == []
-            assert "system 1 with serial number 30" in f.world.reports[0].detail
-
-    run(main())
-
-
-def test_a_vehicle_that_is_known_by_its_serial_number_flies():
-    async def main():
-        async with flight(Kind.COPTER, craft=Craft("uav0", serial="2F"), serial=b"\x2f") as f:
-            await f.plugin.command(GoTo("r1", "uav0", AREA))
-            assert isinstance(await f.ended("r1"), Arrived)
-
-    run(main())
+@flown(craft=Craft("uav0", serial="2F"), serial=b"\x30")
+async def test_a_vehicle_with_the_wrong_serial_number_is_reported_and_never_flown(f):
+    await until(lambda: "unknown vehicle" in f.world.troubles())
+    await f.plugin.command(GoTo("r1", "uav0", AREA))
+    await asyncio.sleep(60)
+    assert not f.vehicle.armed
+    assert f.world.published == []
+    assert "system 1 with serial number 30" in f.world.reports[0].detail

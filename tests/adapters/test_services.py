@@ -190,17 +190,8 @@ def test_a_late_position_does_not_take_the_vehicle_back():
 
 def test_a_fix_is_believed_for_ten_seconds():
     known = absorb(Telemetry(), Message("GPS_RAW_INT", {"fix_type": 3}, 1, 1), 0.0)
-    fields = {
-        "time_boot_ms": 1,
-        "lat": 370_000_000,
-        "lon": 0,
-        "alt": 0,
-        "relative_alt": 0,
-        "hdg": 65_535,
-        "vx": 0,
-        "vy": 0,
-        "vz": 0,
-    }
+    fields = {"time_boot_ms": 1, "lat": 370_000_000, "hdg": 65_535}
+    fields |= dict.fromkeys(("lon", "alt", "relative_alt", "vx", "vy", "vz"), 0)
     position = Message("GLOBAL_POSITION_INT", fields, 1, 1)
     assert absorb(known, position, 9.9).position is not None
     assert absorb(known, position, 10.1).position is None

@@ -3,43 +3,36 @@
 import asyncio
 import time
 
-from worlds import AREA, flight, until
+from worlds import AREA, flown, until
 
 from adapters.plugin import Aged, GoTo, LinkLost, Rejected
-from adapters.simulated import run
 from adapters.stations.authority import LASTING, Authority
 from adapters.stations.entries import Said
 from physical import PhysicalProperty, point
 
 
-def test_a_vehicle_is_not_lost_because_we_did_not_listen():
-    async def main():
-        async with flight() as f:
-            await until(lambda: f.world.property("uav0"))
-            await f.plugin.command(GoTo("r1", "uav0", AREA))
-            for _ in range(5):
-                await asyncio.sleep(2)
-                time.sleep(0.8)  # eight seconds of the loop's
-            await asyncio.sleep(2)
-            assert f.world.of(LinkLost) == f.world.of(Rejected) == []
-            said = f.world.property("uav0")
-            assert 0 <= f.world.now() - said.time < 3.0  # published in the world's time, not in ours
-
-    run(main(), speed=10)
+@flown(speed=10)
+async def test_a_vehicle_is_not_lost_because_we_did_not_listen(f):
+    await until(lambda: f.world.property("uav0"))
+    await f.plugin.command(GoTo("r1", "uav0", AREA))
+    for _ in range(5):
+        await asyncio.sleep(2)
+        time.sleep(0.8)  # eight seconds of the loop's
+    await asyncio.sleep(2)
+    assert f.world.of(LinkLost) == f.world.of(Rejected) == []
+    said = f.world.property("uav0")
+    assert 0 <= f.world.now() - said.time < 3.0  # published in the world's time, not in ours
 
 
-def test_a_vehicle_that_falls_silent_while_we_do_not_listen_is_lost_once_we_have_listened():
-    async def main():
-        async with flight() as f:
-            await until(lambda: f.world.property("uav0"))
-            f.vehicle.system = 77  # another's: ours says nothing any more
-            time.sleep(0.8)
-            back = f.world.now()
-            (lost,) = await until(lambda: f.world.of(LinkLost), 20)
-            assert 2 <= lost.time - back <= 8
-            assert 5 <= lost.time - lost.since <= 7  # only what was listened to is called silence
-
-    run(main(), speed=10)
+@flown(speed=10)
+async def test_a_vehicle_that_falls_silent_while_we_do_not_listen_is_lost_once_we_have_listened(f):
+    await until(lambda: f.world.property("uav0"))
+    f.vehicle.system = 77  # another's: ours says nothing any more
+    time.sleep(0.8)
+    back = f.world.now()
+    (lost,) = await until(lambda: f.world.of(LinkLost), 20)
+    assert 2 <= lost.time - back <= 8
+    assert 5 <= lost.time - lost.since <= 7  # only what was listened to is called silence
 
 
 def test_a_doubt_of_whom_a_vehicle_obeys_does_not_grow_while_nobody_listens():

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from pymavlink.dialects.v20.ardupilotmega import MAVLink_mission_current_message
 from pymavlink.generator.mavcrc import x25crc
-from worlds import flight, until
+from worlds import flown, until
 
 from adapters.addresses import parse_address
 from adapters.mavlink import inventory, merging, survey
@@ -21,7 +21,6 @@ from adapters.mavlink.survey import Survey
 from adapters.mavlink.telemetry import Telemetry, absorb
 from adapters.mavlink.zones import zones
 from adapters.plugin import Trouble
-from adapters.simulated import run
 from adapters.simulated.store import Store
 from adapters.transport import open_port
 from physical import box, point
@@ -188,21 +187,18 @@ def test_the_numbers_are_read_although_the_codec_has_no_names_for_them(numbers):
     assert absorb(Telemetry(), message, 0.0).numbers == (numbers if any(numbers) else None)
 
 
-def test_a_station_that_only_writes_is_heard_as_a_second_one():
-    async def main():
-        async with flight() as f:
-            await until(f.plugin.is_known, 60)
-            assert MISSION in f.plugin.pilot("uav0").on_board
-            count = say("MISSION_COUNT", target_system=1, target_component=1, count=4, mission_type=0)
-            before = f.plugin.pilot("uav0").survey.read[MISSION]
-            address = parse_address(f"udpout:127.0.0.1:{f.plugin.local[1]}")
-            async with open_port(address, lambda *_: None) as port:
-                port.send(Encoder(252, 190).pack(count), None)
-                await until(lambda: f.plugin.pilot("uav0").survey.read[MISSION] > before, 5)
-            (trouble,) = await until(lambda: f.world.of(Trouble, what="second ground station"))
-            assert trouble.detail == "system 252 says MISSION_COUNT"
-
-    run(main())
+@flown()
+async def test_a_station_that_only_writes_is_heard_as_a_second_one(f):
+    await until(f.plugin.is_known, 60)
+    assert MISSION in f.plugin.pilot("uav0").on_board
+    count = say("MISSION_COUNT", target_system=1, target_component=1, count=4, mission_type=0)
+    before = f.plugin.pilot("uav0").survey.read[MISSION]
+    address = parse_address(f"udpout:127.0.0.1:{f.plugin.local[1]}")
+    async with open_port(address, lambda *_: None) as port:
+        port.send(Encoder(252, 190).pack(count), None)
+        await until(lambda: f.plugin.pilot("uav0").survey.read[MISSION] > before, 5)
+    (trouble,) = await until(lambda: f.world.of(Trouble, what="second ground station"))
+    assert trouble.detail == "system 252 says MISSION_COUNT"
 
 
 # --- what is kept -------------------------------------------------------------------------------------

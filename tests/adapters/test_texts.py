@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from worlds import DATA, flight, until
+from worlds import DATA, flight, flown, until
 
 from adapters.mavlink import Craft, Stations
 from adapters.mavlink import pilot as piloting
@@ -138,20 +138,17 @@ def test_a_vehicle_that_flies_tells_its_modes_its_battery_and_what_it_does():
     assert last.volts == 12.6
 
 
-def test_a_long_text_comes_whole_over_a_link_and_a_flood_of_texts_is_rationed():
-    async def main():
-        async with flight(Kind.COPTER) as f:
-            await until(lambda: f.world.of(Status))
-            f.vehicle.words.append((4, LONG))
-            await until(lambda: f.world.of(StatusText))
-            assert f.world.of(StatusText)[-1].text == LONG
-            f.world.reports.clear()
-            for number in range(500):
-                f.vehicle.words.append((6, f"text {number}"))
-            await asyncio.sleep(5)
-            texts = [each for each in f.world.of(StatusText) if each.text.startswith("text")]
-            (trouble,) = f.world.of(Trouble, what="texts of uav0 left out")
-            assert trouble.detail == f"{500 - len(texts)} texts, over 10 in a second"
-            assert 9 <= len(texts) <= 20
-
-    run(main())
+@flown(Kind.COPTER)
+async def test_a_long_text_comes_whole_over_a_link_and_a_flood_of_texts_is_rationed(f):
+    await until(lambda: f.world.of(Status))
+    f.vehicle.words.append((4, LONG))
+    await until(lambda: f.world.of(StatusText))
+    assert f.world.of(StatusText)[-1].text == LONG
+    f.world.reports.clear()
+    for number in range(500):
+        f.vehicle.words.append((6, f"text {number}"))
+    await asyncio.sleep(5)
+    texts = [each for each in f.world.of(StatusText) if each.text.startswith("text")]
+    (trouble,) = f.world.of(Trouble, what="texts of uav0 left out")
+    assert trouble.detail == f"{500 - len(texts)} texts, over 10 in a second"
+    assert 9 <= len(texts) <= 20

@@ -11,9 +11,12 @@ from hypothesis import strategies as st
 
 pytest.importorskip("pymavlink")
 
+import packets
+from packets import beat, fixed
+
 from adapters.mavlink.codec import Encoder
 from adapters.mavlink.fleet import Craft
-from adapters.mavlink.message import Message, say
+from adapters.mavlink.message import Message
 from adapters.mavlink.tlog import Damage, Unread, entries, entry, messages_in, positions_of, read_tlog
 from physical import PhysicalError
 from physical.file_account import Counting
@@ -23,18 +26,11 @@ DATA = (
 )
 START = 1_772_596_000.0
 
-FIX = say(
-    "GPS_RAW_INT", time_usec=0, fix_type=3, lat=474000000, lon=85400000, alt=500000, eph=1, epv=1, vel=0, cog=0,
-    satellites_visible=9,
-)  # fmt: skip
-BEAT = say("HEARTBEAT", type=1, autopilot=3, base_mode=0, custom_mode=0, system_status=4, mavlink_version=3)
+FIX, BEAT = fixed((47.4, 8.54)), beat(status=4)
 
 
 def position(number, latitude=47.4, longitude=8.54):
-    return say(
-        "GLOBAL_POSITION_INT", time_boot_ms=1000 * number, lat=round(latitude * 1e7), lon=round(longitude * 1e7),
-        alt=500000, relative_alt=1000, vx=0, vy=0, vz=0, hdg=0,
-    )  # fmt: skip
+    return packets.position((latitude, longitude), 1000 * number, 500_000, 1000)
 
 
 def log(*messages, system=1, component=1, start=START):
@@ -56,7 +52,7 @@ def read(data, names=(1,)):
     return times, counting.tally(counting.total, "thing")
 
 
-@pytest.mark.parametrize("zeros", [1, 7, 8, 9, 100, 4096, 200_000])
+@pytest.mark.parametrize("zeros", [1, 7, 8, 9, 100, 4096, 70_000])
 @pytest.mark.parametrize("filler", [b"\0", b"\xff", b"\xfe", b"\xfd", b"\0\0\0\0\0\0\0\0\xfe"])
 @pytest.mark.parametrize("after", [0, 20, 60])
 def test_a_damaged_stretch_is_skipped_and_counted_wherever_it_is(zeros, filler, after):

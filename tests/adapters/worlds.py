@@ -1,15 +1,20 @@
 """Simulated flights in a world that remembers: minutes of them in seconds, over real loopback sockets."""
 
+import inspect
 import os
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
+
+import aiohttp.web
+import pytest
 
 from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.keys import Keeper
-from adapters.plugin import Arrived, Rejected
-from adapters.simulated import Disturbance, Kind, Simulator, Vehicle
+from adapters.plugin import Accepted, Arrived, Refused, Rejected
+from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
 from bigactors.testing import EPOCH, World, running, until
 from physical import box, circle
 
@@ -58,6 +63,30 @@ class Flight:
         ends = lambda: [*self.world.of(Arrived, request=request), *self.world.of(Rejected, request=request)]  # noqa: E731
         return (await until(ends, seconds))[0]
 
+    async def does(self, command, seconds=600.0):
+        """Tell a command, and wait for its end."""
+        await self.plugin.command(command)
+        return await self.ended(command.request, seconds)
+
+    async def completes(self, command, seconds=600.0):
+        end = await self.does(command, seconds)
+        assert isinstance(end, Arrived), end
+        return end
+
+    async def rejects(self, command, seconds=600.0):
+        end = await self.does(command, seconds)
+        assert isinstance(end, Rejected), end
+        return end
+
+    async def refuses(self, command, why):
+        with pytest.raises(Refused, match=why):
+            await self.plugin.command(command)
+
+    async def accepts(self, command):
+        """Tell a command, and wait until the vehicle does it."""
+        await self.plugin.command(command)
+        await until(lambda: self.world.of(Accepted, request=command.request))
+
 
 @asynccontextmanager
 async def flight(
@@ -80,3 +109,49 @@ async def flight(
         simulator = Simulator(f"udpout:127.0.0.1:{plugin.local[1]}", [flown], disturbance, seed, EPOCH)
         async with running(simulator.run()):
             yield Flight(flown, simulator, plugin, world)
+
+
+@asynccontextmanager
+async def answering(answer):
+    """Serve a page over HTTP with what a function returns; yield its address."""
+    application = aiohttp.web.Application()
+    application.router.add_get("/", answer)
+    runner = aiohttp.web.AppRunner(application, access_log=None)
+    await runner.setup()
+    await aiohttp.web.TCPSite(runner, "127.0.0.1", 0).start()
+    try:
+        yield f"http://127.0.0.1:{runner.addresses[0][1]}/"
+    finally:
+        await runner.cleanup()
+
+
+def simulated(test):
+    """Run a test, which is a coroutine, in simulated time."""
+
+    @wraps(test)
+    def runs(*given, **more):
+        run(test(*given, **more))
+
+    return runs
+
+
+def flown(*fixed, by="", speed=None, **how):
+    """Run a test in simulated time in a flight, its first argument; `by` names parameters that are the flight's."""
+
+    def decorated(test):
+        _, *own = inspect.signature(test).parameters
+        names = dict.fromkeys([*own, *by.split()])
+
+        async def main(given):
+            async with flight(*fixed, **how, **{name: given[name] for name in by.split()}) as f:
+                await test(f, **{name: given[name] for name in own})
+
+        @wraps(test)
+        def runs(**given):
+            run(main(given), speed)
+
+        keyword = inspect.Parameter.POSITIONAL_OR_KEYWORD
+        runs.__signature__ = inspect.Signature([inspect.Parameter(name, keyword) for name in names])
+        return runs
+
+    return decorated

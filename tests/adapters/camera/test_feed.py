@@ -7,6 +7,7 @@ from http.server import BaseHTTPRequestHandler, HTTPServer
 from itertools import cycle
 
 import pytest
+from worlds import World, until
 
 from adapters.camera.feed import Camera, CameraFeed
 from adapters.camera.libraries import opencv
@@ -28,21 +29,15 @@ SIZE = (240, 180)
 BEGIN = 1_795_000_000.0
 
 
-class Sky:
+class Sky(World):
     """A world whose time a test sets, with a vehicle whose pose its messages tell."""
 
     def __init__(self):
-        self.time, self.published, self.reports = BEGIN, [], []
-        self.poses = PoseLog()
+        super().__init__()
+        self.time, self.poses = BEGIN, PoseLog()
 
     def now(self):
         return self.time
-
-    def publish(self, published):
-        self.published.append(published)
-
-    def report(self, report):
-        self.reports.append(report)
 
     def fly(self, pose, until):
         """Let the vehicle be at a pose from now to a time."""
@@ -55,7 +50,7 @@ class Sky:
             self.poses.hear("ATTITUDE", {name: math.radians(a) for name, a in angles.items()}, self.time)
 
     def troubles(self):
-        return {each.what: each.detail for each in self.reports if isinstance(each, Trouble)}
+        return {each.what: each.detail for each in self.of(Trouble)}
 
 
 def picture(pose, slicks=(SPILL,), seed=1):
@@ -103,10 +98,7 @@ async def test_what_a_camera_sees_is_published_under_a_name_that_it_keeps(tmp_pa
             sky.fly(pose, begin + 60)
             put(tmp_path, begin + 30, picture(pose, slicks, seed=int(begin)))
             before = len(sky.published)
-            for _ in range(200):
-                await asyncio.sleep(0.05)
-                if len(sky.published) > before:
-                    break
+            await until(lambda before=before: len(sky.published) > before, 10)
 
     put(tmp_path, BEGIN, picture(above()))  # of before: it is passed over
     await looked(sky, feed, asyncio.ensure_future(flown()).done)
@@ -175,18 +167,12 @@ async def test_a_stream_is_read_by_its_address_and_tried_again_when_it_is_lost()
     assert isinstance(stream, Stream)
     stream.begin()
     try:
-        for _ in range(200):
-            if shots := stream.taken(BEGIN):
-                break
-            await asyncio.sleep(0.05)
+        shots = await until(lambda: stream.taken(BEGIN), 10)
         assert shots[0].pixels().shape == (180, 240, 3)
         assert BEGIN - 5 < shots[0].time <= BEGIN
         server.shutdown()
         server.server_close()
-        for _ in range(200):
-            if "cannot be opened" in stream.trouble():
-                break
-            await asyncio.sleep(0.05)
+        await until(lambda: "cannot be opened" in stream.trouble(), 10)
         assert stream.trouble().startswith("http://127.0.0.1:")  # without the password
     finally:
         stream.end()

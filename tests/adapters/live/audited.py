@@ -179,35 +179,35 @@ def flown_in(folder, mission, vehicle, *more, disturbance=GOOD, foe=None, second
         "--record=r.mcap",
     ]
     flight = prepare(parse_arguments([*line, f"--for={seconds}", *more]))
-    witness = Witness(vehicle)
+    terminal, witness = Terminal(flight.resting), Witness(vehicle)
+
+    def beside(simulator):
+        return witness.look(), *([foe(flight, simulator, witness)] if foe else [])
+
     with record(flight) as tape:
-        ending, broken = run(_fly(flight, tape, witness, disturbance, foe))
+        ending = run(flown_with(flight, vehicle, (terminal, tape, witness), disturbance, beside))
     assert witness.untrue == []
     trace = trace_of(open_recording("r.mcap"), flight.mission)
     assert trace.configurations[-1] == ending.state.configuration
-    return Flown(ending, witness, vehicle, broken)
+    return Flown(ending, witness, vehicle, terminal.broken)
 
 
-async def _fly(flight, tape, witness, disturbance, foe):
-    terminal = Terminal(flight.resting)
-    flown = asyncio.ensure_future(fly(flight, (terminal, tape, witness)))
+async def flown_with(flight, vehicle, watchers, disturbance=GOOD, beside=lambda _simulator: ()):
+    """Fly a prepared mission with a simulated vehicle, and what goes on beside it; return how it ended."""
+    flown = asyncio.ensure_future(fly(flight, watchers))
     plugin = flight.plugins[0]
     while not plugin.local and not flown.done():
         await asyncio.sleep(0.05)
-    simulator = Simulator(
-        f"udpout:127.0.0.1:{plugin.local[1]}", [witness.vehicle], disturbance, 7, time.time()
-    )
-    beside = [asyncio.ensure_future(each) for each in (simulator.run(), witness.look())]
-    if foe is not None:
-        beside.append(asyncio.ensure_future(foe(flight, simulator, witness)))
+    simulator = Simulator(f"udpout:127.0.0.1:{plugin.local[1]}", [vehicle], disturbance, 7, time.time())
+    tasks = [asyncio.ensure_future(each) for each in (simulator.run(), *beside(simulator))]
     try:
         ending = await flown
-        for task in beside:
+        for task in tasks:
             if task.done():
                 task.result()
-        return ending, terminal.broken
+        return ending
     finally:
-        for task in beside:
+        for task in tasks:
             task.cancel()
             with suppress(asyncio.CancelledError):
                 await task

@@ -7,7 +7,7 @@ from adapters.live.commanded import Commanded
 from adapters.live.core import advance, started
 from adapters.live.plan import Plan
 from adapters.live.state import LiveState
-from adapters.plugin import Accepted
+from adapters.plugin import Accepted, Aged
 from bigactors.cli import main
 from physical import PhysicalProperty, point
 from semantics.live_policy import LivePolicy
@@ -35,7 +35,8 @@ world {
 }
 """
 
-WEST, EAST, BETWEEN = (37.01, -8.65), (37.01, -8.61), (37.01, -8.63)
+TWO = TOUR.replace("boat0: Vessel", "uav1: UAV = point (37.012, -8.652) linked control:gcs0\n  boat0: Vessel")
+WEST, EAST, BETWEEN, BESIDE = (37.01, -8.65), (37.01, -8.61), (37.01, -8.63), (37.012, -8.652)
 
 
 VERDICTS = {}
@@ -113,5 +114,39 @@ class Run:
     def rules(self):
         return [step.transition.label.rule for step in self.steps]
 
+    @property
+    def shown(self):
+        return [text for step in self.steps for text in step.transition.shown]
+
+    @property
+    def told(self):
+        return [type(command).__name__ for command in self.commands]
+
+    @property
+    def refusals(self):
+        return [answer.refusal for answer in self.answers]
+
     def kinds(self):
         return [finding.kind for finding in self.findings]
+
+    def messages(self, *kinds):
+        return [finding.message for finding in self.findings if not kinds or finding.kind in kinds]
+
+
+def flying(text=TOUR, precautions=None, willing=True, **more):
+    """A run whose vehicle was heard where it begins."""
+    run = Run(plan_of(text, precautions, **more), willing)
+    run.turn(0.0, seen("uav0", WEST, 0.0))
+    return run
+
+
+def flying_two(text):
+    """A run whose two vehicles were heard where they begin, beside each other."""
+    run = Run(Plan(plan_of(text).first, {"uav0": "autopilot", "uav1": "autopilot"}))
+    run.turn(0.0, seen("uav0", WEST, 0.0), seen("uav1", BESIDE, 0.0))
+    return run
+
+
+def aged(heard, seconds):
+    """What was heard, which is too old after some seconds."""
+    return Heard(heard.plugin, Aged(heard.published, seconds))

@@ -1,18 +1,18 @@
 """Where a vehicle is put, and when it has arrived: no verified mission breaks on arrival."""
 
-import asyncio
 from dataclasses import replace
 
 import pytest
+from audited import flown_with
 from live_missions import TOUR, Run, mission, plan_of, seen
-from test_flying import flown, options_of
+from test_flying import options_of
 
 from adapters.live.surroundings import spots
 from adapters.mavlink.constants import Cmd, MissionType
 from adapters.mavlink.items import Item
 from adapters.plugin import Accepted, GoTo
-from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
-from bigactors.commands.run.flight import fly, prepare
+from adapters.simulated import Kind, Vehicle, run
+from bigactors.commands.run.flight import prepare
 from bigactors.mistakes import Mistake
 from bigactors.watchers import Terminal
 from physical import circle, contains, overlaps, point, waypoint
@@ -26,7 +26,7 @@ signature {
 }
 world {
   field0: Location = circle (37.0, -8.6) radius 900 m
-  bay0: Location = circle (37.03, -8.6) radius 600 m
+  bay0: Location = circle (37.015, -8.6) radius 600 m
   SLICK
   gcs0: Station = point (37.001, -8.601) linked control:gcs0
   uav0: UAV = point (37.0, -8.6) linked control:gcs0
@@ -38,37 +38,59 @@ BigActor a hosted_at uav0 with_behavior {
 environment { says "look" to a at most once MORE }
 live { on broken assumption: return }
 """
-NEAR = "slick0: Slick = circle (37.0315, -8.6) radius 120 m"
+NEAR = "slick0: Slick = circle (37.0165, -8.6) radius 120 m"
 """The point that the model takes, the centre of bay0, is 47 m from its border."""
 
 
-def bay(folder, slick, more=""):
+def bay(folder, slick, more="", seconds="360", radius="600"):
     path = folder / "bay.mission"
-    path.write_text(BAY.replace("SLICK", slick).replace("MORE", more))
-    return options_of(str(path), folder, "--unverified", "--for", "600")
+    path.write_text(
+        BAY.replace("SLICK", slick).replace("MORE", more).replace("radius 600", f"radius {radius}")
+    )
+    return options_of(str(path), folder, "--unverified", "--for", seconds)
 
 
-def flight(asked, kind=Kind.PLANE, **more):
-    return run(flown(prepare(asked), None, kind, (37.0, -8.6, 20.0), Disturbance(), **more))
+def flight(asked, vehicle):
+    flight = prepare(asked)
+    terminal = Terminal(flight.resting)
+    return run(flown_with(flight, vehicle, (terminal,))), terminal
+
+
+def at_home(kind=Kind.PLANE, **more):
+    return Vehicle(kind, (37.0, -8.6, 20.0), **more)
 
 
 @pytest.mark.parametrize("kind", [Kind.PLANE, Kind.COPTER])
-@pytest.mark.parametrize("wind", [(0.0, 0.0), (5.0, 6.2)])
-def test_a_vehicle_circles_in_its_place_and_out_of_the_smaller_places_in_it(tmp_path, capsys, kind, wind):
-    _, terminal, vehicle = flight(bay(tmp_path, NEAR), kind, wind=wind)
+def test_a_vehicle_circles_in_its_place_and_out_of_the_smaller_places_in_it(tmp_path, capsys, kind):
+    vehicle = at_home(kind, wind=(5.0, 6.2))
+    _, terminal = flight(bay(tmp_path, NEAR), vehicle)
     assert "⟨commit" in capsys.readouterr().out
     assert not terminal.broken
     at, room = point(vehicle.target.latitude, vehicle.target.longitude), 104.0 if kind is Kind.PLANE else 5.0
     around = circle(at.vertices[0], room)
-    assert contains(circle((37.03, -8.6), 600), around)
-    assert not overlaps(circle((37.0315, -8.6), 120), around)
+    assert contains(circle((37.015, -8.6), 600), around)
+    assert not overlaps(circle((37.0165, -8.6), 120), around)
+
+
+@pytest.mark.parametrize(("wind", "broken"), [((5.0, 6.2), False), ((12.0, 9.0), True)])
+def test_a_plane_that_the_wind_carries_out_of_its_place_breaks_an_assumption_that_says_so(
+    tmp_path, capsys, wind, broken
+):
+    vehicle = at_home(wind=wind)
+    _, terminal = flight(bay(tmp_path, "", seconds="240", radius="105"), vehicle)
+    told = capsys.readouterr()
+    assert "⟨commit" in told.out
+    assert terminal.broken == broken
+    reason = "uav0 is in none of the places; it was not sent there, and has not stayed where it was"
+    assert (reason in told.err) == broken
+    assert vehicle.mode == (vehicle.kind.profile.home if broken else vehicle.kind.profile.guided)
 
 
 def test_a_mission_without_control_authority_flies_a_vehicle_that_obeys_some_station(tmp_path, capsys):
     asked = bay(tmp_path, "")
     path = tmp_path / "bay.mission"
     path.write_text(path.read_text().replace(" linked control:gcs0", ""))
-    _, terminal, _ = flight(asked, Kind.COPTER)
+    _, terminal = flight(asked, at_home(Kind.COPTER))
     assert "⟨commit" in capsys.readouterr().out
     assert not terminal.broken
 
@@ -76,10 +98,10 @@ def test_a_mission_without_control_authority_flies_a_vehicle_that_obeys_some_sta
 @pytest.mark.parametrize(
     ("slick", "more", "widest"),
     [
-        pytest.param("slick0: Slick = circle (37.0301, -8.6) radius 430 m", "", "90", id="nested"),
+        pytest.param("slick0: Slick = circle (37.0151, -8.6) radius 430 m", "", "90", id="nested"),
         pytest.param(
             "slick0: Slick = circle (37.1, -8.6) radius 100 m",
-            "slick0 drifts among circle (37.0301, -8.6) radius 430 m",
+            "slick0 drifts among circle (37.0151, -8.6) radius 430 m",
             "90",
             id="it may drift there",
         ),
@@ -89,7 +111,7 @@ def test_a_place_without_room_beside_the_places_in_it_is_refused_before_take_off
     tmp_path, slick, more, widest
 ):
     with pytest.raises(Mistake, match="bay0 leaves too little room") as error:
-        flight(bay(tmp_path, slick, more))
+        flight(bay(tmp_path, slick, more), at_home())
     assert error.value.place.endswith("bay.mission:16")
     assert f"crosses no border has {widest} m" in str(error.value)
     assert "the plane needs a circle of 104 m: it circles at 80 m" in str(error.value)
@@ -135,10 +157,10 @@ def test_what_a_vehicle_shows_of_where_its_place_was_counts_for_nothing():
 
 
 def test_wherever_the_others_may_be_there_is_a_spot_to_be_looked_at():
-    drifts = "slick0 drifts among circle (37.0301, -8.6) radius 200 m"
-    text = BAY.replace("SLICK", NEAR.replace("37.0315", "37.1")).replace("MORE", drifts)
+    drifts = "slick0 drifts among circle (37.0151, -8.6) radius 200 m"
+    text = BAY.replace("SLICK", NEAR.replace("37.0165", "37.1")).replace("MORE", drifts)
     found = [*spots(mission(text).initial, "uav0", "bay0")]
-    bay0 = circle((37.03, -8.6), 600)
+    bay0 = circle((37.015, -8.6), 600)
     assert [place for place, _ in found] == [bay0, bay0]
     inside = sorted(bool(around.inside) for _, around in found)
     assert inside == [False, True]  # the slick comes over the vehicle, or the vehicle comes beside the slick
@@ -170,28 +192,15 @@ FOREIGN = (
 
 @pytest.mark.parametrize("takes", [False, True])
 def test_a_run_asks_before_it_commands_a_vehicle_that_flies_somebodys_mission(tmp_path, capsys, takes):
-    options = bay(tmp_path, "")
+    options = bay(tmp_path, "", seconds="60")
     options.take_over = takes
-
-    async def found_flying():
-        task = asyncio.ensure_future(fly(prepared, (Terminal(prepared.resting),)))
-        while not prepared.plugins[0].local and not task.done():
-            await asyncio.sleep(0.05)
-        vehicle = Vehicle(Kind.PLANE, (37.0, -8.6, 20.0), armed=True, mode=Kind.PLANE.profile.auto)
-        vehicle.body, vehicle.time = replace(vehicle.body, height=100.0), 0.0
-        vehicle.store.items[MissionType.MISSION] = FOREIGN
-        simulator = Simulator(f"udpout:127.0.0.1:{prepared.plugins[0].local[1]}", [vehicle])
-        simulation = asyncio.ensure_future(simulator.run())
-        try:
-            return await task
-        finally:
-            simulation.cancel()
-
-    prepared = prepare(options)
+    vehicle = at_home(armed=True, mode=Kind.PLANE.profile.auto)
+    vehicle.body, vehicle.time = replace(vehicle.body, height=100.0), 0.0
+    vehicle.store.items[MissionType.MISSION] = FOREIGN
     if takes:
-        assert run(found_flying()).state.number > 0
+        assert flight(options, vehicle)[0].state.number > 0
         assert "command" in capsys.readouterr().out
     else:
         with pytest.raises(Mistake, match="uav0 is under way already, in AUTO") as error:
-            run(found_flying())
+            flight(options, vehicle)
         assert "--take-over" in str(error.value)

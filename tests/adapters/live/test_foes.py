@@ -9,11 +9,13 @@ import socket
 from collections import deque
 from contextlib import suppress
 from functools import partial
+from pathlib import Path
 
 import aiohttp
 import pytest
 from audited import PATROL, PLACES, SHUTTLE, airborne, copter, flown_in
 from live_missions import EAST
+from packets import beat, fixed, position
 from pyais.encode import encode_dict
 from scale import soak
 
@@ -63,14 +65,6 @@ def test_the_oil_spill_mission_completes_though_a_third_is_lost_and_the_rest_com
     assert flown.inside("airfield0")
 
 
-def test_blackouts_stop_a_mission_that_does_not_allow_for_them_and_bring_the_vehicle_home(flying):
-    flown = flying(SHUTTLE, copter(), disturbance=Disturbance(blackouts=((120.0, 130.0),)), seconds=600)
-    assert flown.broken
-    assert "uav0 is not on control:gcs0 any more; the mission does not say" in flown.witness.told()
-    assert "commit" not in flown.witness.rules
-    assert flown.inside("west0")  # returned
-
-
 def test_blackouts_of_ten_seconds_only_delay_a_mission_that_allows_for_them(flying):
     blackouts = tuple((start, start + 10.0) for start in range(15, 1500, 90))
     flown = flying(PATROL, copter(), disturbance=Disturbance(blackouts=blackouts))
@@ -78,57 +72,6 @@ def test_blackouts_of_ten_seconds_only_delay_a_mission_that_allows_for_them(flyi
     assert not flown.broken
     assert {"lost link", "link restored"} <= flown.witness.kinds()
     assert flown.inside("west0")
-
-
-# --- the vehicle ----------------------------------------------------------------------------------------
-
-
-def test_a_vehicle_rebooted_in_flight_that_stays_armed_completes_the_mission(flying):
-    async def watchdog(_flight, simulator, witness):
-        await airborne(witness)
-        simulator.reboot(1, armed=True)
-
-    flown = flying(SHUTTLE, copter(), foe=watchdog)
-    assert flown.ended
-    assert "uav0 is heard again, rebooted" in flown.witness.told()
-    assert flown.inside("west0")
-
-
-def test_a_vehicle_that_comes_back_disarmed_stops_the_mission_and_is_not_armed_again(flying):
-    async def watchdog(_flight, simulator, witness):
-        await airborne(witness)
-        simulator.reboot(1)
-
-    flown = flying(SHUTTLE, copter(), foe=watchdog, seconds=720)
-    assert not flown.ended
-    assert {"taken over", "late"} <= flown.witness.kinds()
-    assert "commit" not in flown.witness.rules
-    assert not flown.vehicle.armed
-
-
-def test_a_receiver_that_fails_says_zero_and_comes_back_only_delays_the_mission(flying):
-    async def jammer(_flight, _simulator, witness):
-        await airborne(witness)
-        witness.vehicle.fixed = False  # says (0, 0)
-        await asyncio.sleep(60)
-        witness.vehicle.fixed = True
-
-    flown = flying(SHUTTLE, copter(), foe=jammer)
-    assert flown.ended
-    assert not flown.broken
-
-
-def test_a_clock_in_the_past_or_future_changes_nothing(flying):
-    async def liar(_flight, simulator, witness):
-        await airborne(witness)
-        for clock in (0, 1, 2**32 - 1) * 7:
-            time = say("SYSTEM_TIME", time_unix_usec=2**60, time_boot_ms=clock)
-            simulator._broadcast(witness.vehicle, [time])
-            await asyncio.sleep(1)
-
-    flown = flying(SHUTTLE, copter(speedup=3.0), foe=liar)
-    assert flown.ended
-    assert not flown.broken
 
 
 # --- foes -----------------------------------------------------------------------------------------------
@@ -140,46 +83,55 @@ def _post(flight, *frames):
             link.sendto(frame, flight.plugins[0].local)
 
 
-def beat(kind=6, autopilot=8):
-    more = {"base_mode": 0, "custom_mode": 0, "system_status": 4, "mavlink_version": 3}
-    return say("HEARTBEAT", type=kind, autopilot=autopilot, **more)
+async def watchdog(_flight, simulator, witness):
+    await airborne(witness)
+    simulator.reboot(1, armed=True)
 
 
-def test_a_second_ground_station_is_reported_and_changes_nothing(flying):
-    async def other(flight, _simulator, _witness):
-        encoder = Encoder(253, 190)
-        empty = say("MISSION_COUNT", target_system=1, target_component=1, count=0, mission_type=0)
-        ack = say("MISSION_ACK", target_system=1, target_component=1, type=0, mission_type=0)
-        while True:
-            _post(flight, *map(encoder.pack, (beat(), long(Cmd.DO_SET_MODE, 1, 1, 0), empty, ack)))
-            await asyncio.sleep(0.5)
+async def jammer(_flight, _simulator, witness):
+    await airborne(witness)
+    witness.vehicle.fixed = False  # says (0, 0)
+    await asyncio.sleep(60)
+    witness.vehicle.fixed = True
 
-    flown = flying(SHUTTLE, copter(), foe=other)
+
+async def wrong_clock(_flight, simulator, witness):
+    """A clock in the past and in the future."""
+    await airborne(witness)
+    for clock in (0, 1, 2**32 - 1) * 7:
+        time = say("SYSTEM_TIME", time_unix_usec=2**60, time_boot_ms=clock)
+        simulator._broadcast(witness.vehicle, [time])
+        await asyncio.sleep(1)
+
+
+def there(clock):
+    return position(EAST, clock, 120_000, 100_000)
+
+
+async def other_station(flight, _simulator, _witness):
+    encoder = Encoder(253, 190)
+    empty = say("MISSION_COUNT", target_system=1, target_component=1, count=0, mission_type=0)
+    ack = say("MISSION_ACK", target_system=1, target_component=1, type=0, mission_type=0)
+    while True:
+        _post(flight, *map(encoder.pack, (beat(6, 8, status=4), long(Cmd.DO_SET_MODE, 1, 1, 0), empty, ack)))
+        await asyncio.sleep(0.5)
+
+
+@pytest.mark.parametrize(
+    ("foe", "told"),
+    [
+        (watchdog, "uav0 is heard again, rebooted"),
+        (jammer, ""),
+        (wrong_clock, ""),
+        (other_station, "second ground station"),
+    ],
+)
+def test_what_leaves_the_vehicle_as_it_was_told_is_said_and_the_mission_is_completed(flying, foe, told):
+    flown = flying(SHUTTLE, copter(speedup=3.0 if foe is wrong_clock else 1.0), foe=foe)
     assert flown.ended
-    assert "second ground station" in flown.witness.told()
-
-
-def test_a_station_that_the_vehicle_obeys_too_has_it_and_not_even_the_fall_back_takes_it_away(flying):
-    async def other(_flight, _simulator, witness):
-        await airborne(witness)
-        witness.vehicle.mode = witness.vehicle.kind.profile.hold
-
-    flown = flying(SHUTTLE, copter(), foe=other, seconds=720)
-    assert not flown.ended
-    assert {"taken over", "late"} <= flown.witness.kinds()
-    assert "uav0 is not told to return: it was taken over" in flown.witness.told()
-    assert "commit" not in flown.witness.rules
-    assert flown.vehicle.mode == flown.vehicle.kind.profile.hold
-
-
-NO_FIX = {"alt": 0, "eph": 0, "epv": 0, "vel": 0, "cog": 0, "satellites_visible": 9}
-
-
-def position(at, clock):
-    fields = {"alt": 120_000, "relative_alt": 100_000, "vx": 0, "vy": 0, "vz": 0, "hdg": 0}
-    return say(
-        "GLOBAL_POSITION_INT", time_boot_ms=clock, lat=round(at[0] * 1e7), lon=round(at[1] * 1e7), **fields
-    )
+    assert told in flown.witness.told()
+    assert foe in (watchdog, other_station) or not flown.broken
+    assert flown.inside("west0")
 
 
 def test_forged_unsigned_and_replayed_packets_that_say_it_has_arrived_commit_nothing(flying, tmp_path):
@@ -190,8 +142,8 @@ def test_forged_unsigned_and_replayed_packets_that_say_it_has_arrived_commit_not
         await airborne(witness)
         unsigned, forged = Encoder(1, 1), Encoder(1, 1, signing.new_key("guess"))
         for number in range(200):
-            _post(flight, unsigned.pack(position(EAST, 10**9 + number)))
-            _post(flight, forged.pack(position(EAST, 10**9 + number), 10**15 + number))
+            _post(flight, unsigned.pack(there(10**9 + number)))
+            _post(flight, forged.pack(there(10**9 + number), 10**15 + number))
             _post(flight, *(bytes(frame) for frame in list(heard)[:3]))
             await asyncio.sleep(0.1)
         assert "commit" not in witness.rules
@@ -219,12 +171,11 @@ def test_a_second_source_that_says_that_it_has_arrived_commits_nothing_and_hears
     async def impostor(flight, _simulator, witness):
         await airborne(witness)
         encoder, clock = Encoder(1, 1), 10**7
-        fix = say("GPS_RAW_INT", time_usec=0, fix_type=3, lat=0, lon=0, **NO_FIX)
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
             link.setblocking(False)
             while "commit" not in witness.rules:
                 clock += 100
-                for message in (beat(2, 3), fix, position(EAST, clock)):
+                for message in (beat(2, 3, status=4), fixed(), there(clock)):
                     link.sendto(encoder.pack(message), flight.plugins[0].local)
                 await asyncio.sleep(0.1)
                 with suppress(BlockingIOError):
@@ -318,35 +269,52 @@ def test_positions_from_the_past_and_the_future_neither_move_a_drifter_nor_silen
     assert seen == pytest.approx((37.0112, -8.6512), abs=1e-5)
 
 
-def test_a_transponder_that_jumps_breaks_an_assumption_and_the_vehicle_returns(flying):
-    async def spoofer(flight, _simulator, witness):
-        await airborne(witness)
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
-            link.sendto(ais(263999001, (37.011, -8.61)), flight.plugins[1].local)
-
-    more = ("--feed=ais=udp:0", "--name=mmsi:263999001=drifter0")
-    flown = flying(SHUTTLE, copter(), *more, foe=spoofer, seconds=600)
-    assert flown.broken
-    assert "drifter0 is in east0; the mission does not say that it drifts" in flown.witness.told()
-    assert "commit" not in flown.witness.rules
-    assert flown.inside("west0")
+async def spoofer(flight, _simulator, witness):
+    await airborne(witness)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+        link.sendto(ais(263999001, (37.011, -8.61)), flight.plugins[1].local)
 
 
-def test_a_file_of_places_that_changes_in_flight_breaks_an_assumption_and_the_vehicle_returns(
-    flying, tmp_path
+def places(*corners):
+    east = PhysicalProperty("east0", "Location", box(*corners))
+    Path("places.geojson").write_text(write_geojson([east]))
+
+
+async def surveyor(_flight, _simulator, witness):
+    await airborne(witness)
+    assert not witness.findings
+    places((37.0115, -8.6505), (37.0105, -8.6515))  # onto the drifter
+
+
+LONG_BLACKOUT = {"disturbance": Disturbance(blackouts=((120.0, 130.0),))}
+
+
+@pytest.mark.parametrize(
+    ("line", "how", "told"),
+    [
+        pytest.param(
+            [], LONG_BLACKOUT, "uav0 is not on control:gcs0 any more; the mission does not say", id="blackout"
+        ),
+        pytest.param(
+            ["--feed=ais=udp:0", "--name=mmsi:263999001=drifter0"],
+            {"foe": spoofer},
+            "drifter0 is in east0; the mission does not say that it drifts",
+            id="a transponder that jumps",
+        ),
+        pytest.param(
+            ["--feed=places=places.geojson"],
+            {"foe": surveyor},
+            "east0 is in west0 and contains drifter0",
+            id="a file of places that changes in flight",
+        ),
+    ],
+)
+def test_what_the_mission_does_not_allow_for_breaks_an_assumption_and_the_vehicle_returns(
+    flying, line, how, told
 ):
-    def write(*corners):
-        east = PhysicalProperty("east0", "Location", box(*corners))
-        (tmp_path / "places.geojson").write_text(write_geojson([east]))
-
-    async def surveyor(_flight, _simulator, witness):
-        await airborne(witness)
-        assert not witness.findings
-        write((37.0115, -8.6505), (37.0105, -8.6515))  # onto the drifter
-
-    write((37.02, -8.60), (37.00, -8.62))
-    flown = flying(SHUTTLE, copter(), "--feed=places=places.geojson", foe=surveyor, seconds=600)
+    places((37.02, -8.60), (37.00, -8.62))
+    flown = flying(SHUTTLE, copter(), *line, seconds=600, **how)
     assert flown.broken
-    assert "east0 is in west0 and contains drifter0" in flown.witness.told()
+    assert told in flown.witness.told()
     assert "commit" not in flown.witness.rules
     assert flown.inside("west0")

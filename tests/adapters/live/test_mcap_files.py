@@ -94,14 +94,14 @@ def test_a_chunk_yields_no_more_than_it_declares(tmp_path, compression):
 
 @pytest.mark.parametrize("compression", CompressionType)
 def test_a_file_that_grows_byte_by_byte_is_read_as_a_whole_one(tmp_path, compression):
-    data, path = written(compression, DATA[:15]), tmp_path / "x.mcap"
+    data, path = written(compression, DATA[:5]), tmp_path / "x.mcap"
     path.write_bytes(b"")
     reader = McapReader(path)
     found = []
     for size in range(len(data) + 1):
         path.write_bytes(data[:size])
         found += reader.messages()
-    assert [message.data for message in found] == DATA[:15]
+    assert [message.data for message in found] == DATA[:5]
     assert reader.ended
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import jsonschema
 import pytest
 from audited import flown_in
-from live_missions import LIVE, verify
-from test_resuming import MISSION, SIMULATOR, free_port, rules, started, until
+from live_missions import LIVE, TOUR, verify
+from processes import SIMULATOR, free_port, rules, started, until
 from worlds import ROUND
 
 from adapters.live.operator_socket import acknowledge, fates, give_back, order, say
@@ -20,14 +20,27 @@ from adapters.plugin import Hold
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.reading import read_recording
 from adapters.recording.schemas import SCHEMAS
-from adapters.simulated import Disturbance, Kind, Vehicle
+from adapters.simulated import Kind, Vehicle
 from bigactors.cli import main
 from bigactors.missions import open_mission
-from bigactors.recordings import open_recording, resume
+from bigactors.recordings import mission_of, open_recording, resume, trace_of
 
 pytestmark = pytest.mark.long
 
 SOCKET = Path("s")
+MISSION = (
+    "mission tour\n"
+    + TOUR
+    + """
+BigActor a hosted_at uav0 with_behavior {
+  control(MOVE_HOST_TO east0)
+  observe(CHILDREN(PARENT(HOST)))
+  react { case obs => display(obs) }
+}
+BigActor op hosted_at gcs0 with_behavior { loop { react { case "status" => display("well") } } }
+environment { says "status" to op at most 2 times }
+"""
+)
 KINDS = [
     pytest.param(kind, modes, id=kind.name.lower())
     for kind, modes in (
@@ -134,25 +147,9 @@ def test_a_run_that_is_not_given_back_ends_held_and_is_resumed_so(flying):
     assert found.standing_orders == {"uav0": StandingOrder(Hold("operator-2", "uav0"), "Ana")}
 
 
-def test_what_is_ordered_while_nothing_is_heard_is_told_as_soon_as_it_is(flying):
-    async def operator(_flight, simulator, witness):
-        await comes(lambda: "command" in witness.rules and witness.vehicle.flies)
-        now = asyncio.get_running_loop().time()
-        simulator.disturbance = Disturbance(blackouts=((now, now + 40.0),))
-        await comes(lambda: "lost link" in witness.kinds())
-        note = "uav0 is not heard: it is told as soon as it is, unless it was taken over by then"
-        assert await order(SOCKET, "return", "uav0", "Ana") == ("", {}, (note,))
-        await asyncio.sleep(10.0)
-        assert "confirmed" not in witness.kinds()
-
-    flown = flying(Vehicle(Kind.COPTER, (37.0, -8.6, 20.0)), foe=operator, seconds=400)
-    assert not flown.ended
-    assert flown.ending.state.overrides.taken == {"uav0": "sent home by the operator (Ana)"}
-    assert {"lost link", "ordered", "link restored", "confirmed"} <= flown.witness.kinds()
-    assert mode(flown.vehicle) == "RTL"
-
-
-def test_a_killed_run_holds_its_vehicle_still_when_it_is_resumed(tmp_path, capsys):
+def test_a_killed_run_holds_its_vehicle_still_when_it_is_resumed_and_ends_once_it_is_given_back(
+    tmp_path, capsys
+):
     mission, verdict = tmp_path / "tour.mission", tmp_path / "tour.verdict.json"
     mission.write_text(MISSION)
     verify(mission, verdict)
@@ -163,26 +160,36 @@ def test_a_killed_run_holds_its_vehicle_still_when_it_is_resumed(tmp_path, capsy
     with started("-c", SIMULATOR, f"udpout:127.0.0.1:{port}", "40"):
         with started(*line, "--record", str(first)) as run:
             until(lambda: "command" in rules(first))
+            assert main(["say", "op", "status", *socket]) == 0
+            assert main(["say", "op", "nonsense", *socket]) == 2
             assert main(["hold", "uav0", "--by", "Ana", *socket]) == 0
             until(lambda: modes_in(first)[-1:] == ["BRAKE"])
             assert main(["status", *socket]) == 0
             run.send_signal(signal.SIGKILL)
             run.wait()
-        with started(*line, "--resume", str(first), "--record", str(second), "--for", "25") as run:
+        assert read_recording(first).torn
+        assert "commit" not in rules(first)
+        with started(*line, "--resume", str(first), "--record", str(second), "--for", "110") as run:
             until(lambda: "Arrived" in told(second, "reports", "report"))
             until(lambda: len(modes_in(second)) > 2)
             assert set(modes_in(second)) == {"BRAKE"}
             assert "TakenOver" not in told(second, "reports", "report")
             assert main(["give-back", "uav0", "--by", "Ana", *socket]) == 0
             until(lambda: "commit" in rules(second))
-            _out, _ = run.communicate(timeout=30)
+            assert main(["say", "op", "status", *socket]) == 0
+            run.send_signal(signal.SIGINT)
+            assert "commit" in run.communicate(timeout=120)[0]
+    recording = open_recording(str(second))
+    trace = trace_of(recording, mission_of(recording))
+    assert trace.configurations[-1].structure.logical.parent("uav0") == "east0"
+    assert main(["replay", str(second)]) == 0
     out = capsys.readouterr().out
     assert "told to hold: uav0" in out
     assert "uav0 held by the operator (Ana)\n" in out
     does = r"held by the operator \(Ana\), has not arrived in east0, BRAKE(, disarmed)?, battery"
     held = re.search(rf"^vehicles\n  uav0 {does}", out, re.M)
     assert held is not None, out
-    assert "requests\n  FLY(a, MOVE_HOST_TO east0)\nmay be said\n  op status (2 times more)\n" in out
+    assert "requests\n  FLY(a, MOVE_HOST_TO east0)\nmay be said\n  op status (1 time more)\n" in out
     assert told(second, "orders", "by") == ["Ana"]
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
-from test_orders import ANA, HOLD, RETURN, flying, ordered, told
+from test_orders import ANA, HOLD, RETURN, flying, ordered
 
 from adapters.live.batch import GivingBack
 from adapters.live.core import is_over
@@ -30,25 +30,33 @@ def held():
     return run
 
 
-def test_an_order_is_asked_then_sent_then_confirmed():
-    run = held()
+@pytest.mark.parametrize(
+    ("what", "does", "done"),
+    [(HOLD, "holds", "held"), (RETURN, "returns", "sent home")],
+    ids=["hold", "return"],
+)
+def test_an_order_is_asked_then_sent_then_confirmed_once(what, does, done):
+    run = flying()
+    run.turn(1.0, sayings=[ordered(what=what)])
     fates = [run.state.overrides.fates["uav0"]]
-    for report in (Sent("operator-2", "uav0", 2.0), Accepted("operator-2", "uav0", 3.0)):
-        run.turn(report.time, reports=[report])
+    for kind, now in ((Sent, 2.0), (Accepted, 3.0), (Accepted, 4.0), (Arrived, 5.0)):
+        run.turn(now, reports=[kind("operator-2", "uav0", now)])
         fates.append(run.state.overrides.fates["uav0"])
-    assert fates == [
-        ("asked", f"told to hold by {ANA}, not confirmed yet"),
-        ("sent", f"told to hold by {ANA}, not confirmed yet"),
-        ("confirmed", f"held by {ANA}"),
-    ]
+    asked, end = f"told to {what.value} by {ANA}, not confirmed yet", ("confirmed", f"{done} by {ANA}")
+    assert fates == [("asked", asked), ("sent", asked), end, end, end]
+    assert run.messages()[1:] == [f"uav0 {does}, as {ANA} ordered"]
+    assert run.state.overrides.taken == {"uav0": f"{done} by {ANA}"}
 
 
 def test_a_refused_order_is_shown_as_refused_and_not_as_done():
     run = refused(held())
     run.turn(2.1, reports=[Sent("operator-2", "uav0", 2.1)])  # it was taken on before it was refused
+    assert run.messages()[-1] == f"uav0 {REFUSES}; it is told again until it does"
     assert run.state.overrides.fates == {"uav0": ("refused", REFUSES)}
     assert vehicle_line("uav0", run.state, None, 3.0) == f"uav0 {REFUSES}, has not arrived in east0"
     assert standing(run.state) == f"; uav0 {REFUSES}"
+    run.turn(3.0, seen("uav0", EAST, 3.0))
+    assert "commit" not in run.rules
 
 
 def test_while_a_refused_order_is_told_again_who_asks_hears_that_it_is_refused():
@@ -69,14 +77,14 @@ def test_a_refused_order_is_told_again_until_it_is_confirmed():
     assert run.commands[-2:] == [Hold("operator-2", "uav0")] * 2
     refused(run, now=3.0 + RETRY)
     run.turn(3.0 + 2 * RETRY)
-    assert told(run) == ["GoTo", "Hold", "Hold", "Hold"]
+    assert run.told == ["GoTo", "Hold", "Hold", "Hold"]
     assert (
         "refuses to hold" in run.state.overrides.taken["uav0"]
     )  # also while it is not known what comes of it now
     run.turn(4.0 + 2 * RETRY, reports=[Arrived("operator-2", "uav0", 4.0 + 2 * RETRY)])
     assert run.state.overrides.taken == {"uav0": f"held by {ANA}"}
     run.turn(100.0)
-    assert told(run) == ["GoTo", "Hold", "Hold", "Hold"]
+    assert run.told == ["GoTo", "Hold", "Hold", "Hold"]
     assert run.kinds() == ["ordered", "refused", "confirmed"]  # one reason is said once
 
 
@@ -88,14 +96,14 @@ def test_a_refused_fall_back_is_owed_until_it_is_confirmed():
         f"uav0 refuses to hold, as the mission ordered: {OBEYS}"
     )
     run.turn(2.0 + RETRY)
-    assert told(run) == ["GoTo", "Hold", "Hold"]
+    assert run.told == ["GoTo", "Hold", "Hold"]
     run.turn(3.0 + RETRY, reports=[Arrived("fallback-2", "uav0", 3.0 + RETRY)])
     assert (run.findings[-1].kind, run.findings[-1].message) == (
         "confirmed",
         "uav0 holds, as the mission ordered",
     )
     run.turn(100.0)
-    assert told(run) == ["GoTo", "Hold", "Hold"]
+    assert run.told == ["GoTo", "Hold", "Hold"]
     assert run.state.overrides.owing == {}
 
 

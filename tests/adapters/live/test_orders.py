@@ -1,21 +1,19 @@
 """An operator takes a vehicle: it holds or returns at once, and the mission does not overrule it."""
 
 import pytest
-from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, known_of, plan_of, seen
+from live_missions import BETWEEN, EAST, TOUR, TWO, WEST, Run, boat, flying_two, known_of, plan_of, seen
 
 from adapters.live.batch import Acknowledging, GivingBack, Heard, Ordering
 from adapters.live.core import is_refused, resumed
 from adapters.live.overrides import Fate, StandingOrder
 from adapters.live.plan import Plan
 from adapters.plugin import (
-    Accepted,
     Arrived,
     GoTo,
     Hold,
     LinkLost,
     LinkRestored,
     Presence,
-    Rejected,
     Return,
     Status,
     StatusText,
@@ -30,15 +28,10 @@ GO = "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) obse
 HAND = "BigActor op hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }"
 HOLD, RETURN = Fallback.HOLD, Fallback.RETURN
 ANA = "the operator (Ana)"
-TWO = TOUR.replace("boat0: Vessel", "uav1: UAV = point (37.012, -8.652) linked control:gcs0\n  boat0: Vessel")
 
 
 def ordered(vehicle="uav0", what=HOLD, by="Ana"):
     return Ordering(what, vehicle, by)
-
-
-def told(run):
-    return [type(command).__name__ for command in run.commands]
 
 
 def flying(text=TOUR + GO, precautions=None, **more):
@@ -77,18 +70,14 @@ def test_an_order_replaces_what_the_same_turn_was_to_tell_the_vehicle():
 
 def test_the_other_vehicles_and_agents_go_on():
     goes = GO + "BigActor b hosted_at uav1 with_behavior { control(MOVE_HOST_TO east0) }"
-    plan = plan_of(TWO + goes)
-    run = Run(Plan(plan.first, {"uav0": "autopilot", "uav1": "autopilot"}))
-    run.turn(0.0, seen("uav0", WEST, 0.0), seen("uav1", (37.012, -8.652), 0.0))
+    run = flying_two(TWO + goes)
     run.turn(1.0, sayings=[ordered()])
     run.turn(2.0, seen("uav0", EAST, 2.0), seen("uav1", (37.012, -8.612), 2.0))
     assert [label for label in run.labels if "commit" in label] == ["⟨commit : FLY(b, MOVE_HOST_TO east0)⟩"]
 
 
 def test_an_order_to_all_tells_all_but_those_that_someone_else_has_taken_over():
-    plan = plan_of(TWO)
-    run = Run(Plan(plan.first, {"uav0": "autopilot", "uav1": "autopilot"}))
-    run.turn(0.0, seen("uav0", WEST, 0.0), seen("uav1", WEST, 0.0))
+    run = flying_two(TWO)
     run.turn(1.0, reports=[TakenOver("uav1", 1.0, "it is in RTL")])
     turn = run.turn(2.0, sayings=[ordered(None, RETURN)])
     left_out = "uav1 was taken over, and is not overruled: it is in RTL"
@@ -102,22 +91,14 @@ def test_an_order_to_all_tells_all_but_those_that_someone_else_has_taken_over():
     assert [each.entity for each in turn.commands] == ["uav0"]
 
 
-def test_an_order_to_a_vehicle_that_was_taken_over_overrules_that_and_says_so():
+@pytest.mark.parametrize("held", [False, True])
+def test_an_order_does_not_overrule_what_its_operator_cannot_know_of_yet(held):
     run = flying()
-    run.turn(1.0, reports=[TakenOver("uav0", 1.0, "it is in RTL")])
-    turn = run.turn(2.0, sayings=[ordered()])
-    assert [type(each).__name__ for each in turn.commands] == ["GiveBack", "Hold"]
-    assert "that overrules who took uav0 over: it is in RTL" in turn.findings[0].message
-    assert run.state.overrides.taken == {"uav0": f"told to hold by {ANA}, not confirmed yet"}
-
-
-def test_an_order_does_not_overrule_what_its_operator_cannot_know_of_yet():
-    run = flying()
-    turn = run.turn(1.0, reports=[TakenOver("uav0", 1.0, "it is in RTL")], sayings=[ordered()])
+    run.turn(1.0, sayings=[ordered()] * held)
+    turn = run.turn(2.0, reports=[TakenOver("uav0", 2.0, "it is in RTL")], sayings=[ordered()])
     assert turn.commands == ()
-    assert turn.answers[0].refusal == (
-        "uav0 was taken over just now: it is in RTL; order it again to overrule that"
-    )
+    why = "uav0 was taken over just now: it is in RTL; order it again to overrule that"
+    assert turn.answers[0].refusal == why
 
 
 @pytest.mark.parametrize("owner", ["stations", "autopilot"])
@@ -135,73 +116,54 @@ def test_there_is_no_order_to_what_is_no_vehicle():
     assert turn.answers[0].refusal == "there is no vehicle 'boat0'; there are uav0"
 
 
-def test_what_was_ordered_is_confirmed_once_by_the_vehicle():
-    run = flying()
-    run.turn(1.0, sayings=[ordered(what=RETURN)])
-    run.turn(2.0, reports=[Accepted("operator-2", "uav0", 2.0)])
-    run.turn(3.0, reports=[Accepted("operator-2", "uav0", 3.0), Arrived("operator-2", "uav0", 3.0)])
-    assert [f.message for f in run.findings[1:]] == [f"uav0 returns, as {ANA} ordered"]
-    assert run.state.overrides.taken == {"uav0": f"sent home by {ANA}"}
+HELD, SENT, BACK = ordered(), ordered(what=RETURN), GivingBack("uav0", by="Ben")
+TAKEN, DRIFT = TakenOver("uav0", 1.0, "it is in RTL"), boat(WEST, 1.0)
+HOLDS, RETURNS = (f"told to {what} by {ANA}, not confirmed yet" for what in ("hold", "return"))
+ANEW = "uav0 was given back by Ben, and is commanded again"
+OVERRULES = "that overrules who took uav0 over: it is in RTL"
+FOR_ITSELF = "uav0 was taken over: it is in RTL"
+TOLD = {
+    "twice, and another after it": (GO, None, [[HELD], [HELD], [SENT]], "Hold Hold Return", RETURNS, ""),
+    "to who was taken over": (GO, None, [[TAKEN], [HELD]], "GiveBack Hold", HOLDS, OVERRULES),
+    "given back": (GO, None, [[HELD], [BACK]], "Hold GiveBack GoTo", "", ANEW),
+    "at once, in its order": (GO, None, [[HELD, BACK, SENT]], "GiveBack Return", RETURNS, ""),
+    "given back and held at once": (GO, None, [[TAKEN], [BACK, HELD]], "GiveBack Hold", HOLDS, ""),
+    "ended by a pilot": (GO, None, [[HELD], [TAKEN]], "Hold", "it is in RTL", FOR_ITSELF),
+    "amid a hand-over": (HAND, None, [[HELD], [BACK]], "Hold GiveBack HandOver", "", ANEW),
+    "while the mission is suspended": (GO, LivePolicy(HOLD), [[DRIFT], [SENT]], "Hold Return", RETURNS, ""),
+    "given back meanwhile": (
+        GO,
+        LivePolicy(RETURN),
+        [[HELD], [DRIFT], [BACK]],
+        "Hold GiveBack Return",
+        None,
+        "",
+    ),
+}
 
 
-def test_a_vehicle_that_refuses_an_order_is_not_commanded_by_the_mission_all_the_same():
-    run = flying()
-    run.turn(1.0, sayings=[ordered()])
-    run.turn(2.0, reports=[Rejected("operator-2", "uav0", 2.0, "no mode of that name")])
-    why = f"uav0 refuses to hold, as {ANA} ordered: no mode of that name"
-    assert run.findings[-1].message == f"{why}; it is told again until it does"
-    run.turn(3.0, seen("uav0", EAST, 3.0))
-    assert "commit" not in run.rules
-
-
-def test_an_order_may_be_given_twice_and_another_after_it():
-    run = flying()
-    for number, what in enumerate((HOLD, HOLD, RETURN), 1):
-        run.turn(float(number), sayings=[ordered(what=what)])
-    assert told(run) == ["GoTo", "Hold", "Hold", "Return"]
-    assert run.state.overrides.taken == {"uav0": f"told to return by {ANA}, not confirmed yet"}
-
-
-def test_a_vehicle_that_was_ordered_does_anew_what_the_mission_asks_once_it_is_given_back():
-    run = flying()
-    run.turn(1.0, sayings=[ordered()])
-    run.turn(2.0, sayings=[GivingBack("uav0", by="Ben")])
-    assert told(run) == ["GoTo", "Hold", "GiveBack", "GoTo"]
-    assert (run.state.overrides.taken, run.state.overrides.orders) == ({}, {})
-    assert run.findings[-1].message == "uav0 was given back by Ben, and is commanded again"
-    run.turn(3.0, seen("uav0", EAST, 3.0))
-    assert "commit" in run.rules
-
-
-def test_what_is_said_at_once_counts_in_its_order():
-    run = flying()
-    run.turn(1.0, sayings=[ordered(), GivingBack("uav0"), ordered(what=RETURN)])
-    assert told(run)[-1] == "Return"
-    assert run.state.overrides.taken == {"uav0": f"told to return by {ANA}, not confirmed yet"}
-
-
-def test_a_vehicle_that_was_taken_over_is_given_back_and_held_by_two_words_at_once():
-    run = flying()
-    run.turn(1.0, reports=[TakenOver("uav0", 1.0, "it is in RTL")])
-    run.turn(2.0, sayings=[GivingBack("uav0"), ordered()])
-    assert told(run) == ["GoTo", "GiveBack", "Hold"]
-
-
-def test_an_order_does_not_overrule_who_has_taken_a_held_vehicle_just_now():
-    run = flying()
-    run.turn(1.0, sayings=[ordered()])
-    turn = run.turn(2.0, reports=[TakenOver("uav0", 2.0, "it is in FBWA")], sayings=[ordered()])
-    assert turn.commands == ()
-    assert "just now: it is in FBWA" in turn.answers[0].refusal
+@pytest.mark.parametrize(("text", "policy", "events", "told", "taken", "said"), TOLD.values(), ids=TOLD)
+def test_what_an_operator_orders_is_told(text, policy, events, told, taken, said):
+    run = flying(TOUR + text, policy)
+    for now, each in enumerate(events, 1):
+        heard = [moved for moved in each if moved is DRIFT]
+        reports = [taken for taken in each if taken is TAKEN]
+        run.turn(
+            float(now), *heard, reports=reports, sayings=[word for word in each if word not in (DRIFT, TAKEN)]
+        )
+    assert run.told[1:] == told.split()
+    assert taken is None or run.state.overrides.taken == ({"uav0": taken} if taken else {})
+    assert taken in (HOLDS, RETURNS) or run.state.overrides.orders == {}
+    assert any(said in message for message in run.messages())
 
 
 def test_a_hand_over_that_a_fall_back_ends_is_told_again_if_its_agent_is_still_served():
     run = Run(plan_of(TOUR + GO + HAND, LivePolicy(HOLD, (TimeLimit("FLY", "a", 5.0, HOLD),))))
     run.turn(0.0, seen("uav0", WEST, 0.0))
-    assert sorted(told(run)) == ["GoTo", "HandOver"]
+    assert sorted(run.told) == ["GoTo", "HandOver"]
     run.turn(6.0, seen("uav0", BETWEEN, 6.0))
     run.turn(7.0, seen("uav0", BETWEEN, 7.0))
-    assert told(run)[2:] == ["Hold", "HandOver"]
+    assert run.told[2:] == ["Hold", "HandOver"]
     run.turn(8.0, seen("uav0", BETWEEN, 8.0, channels=("control:gcs1",)))
     assert run.rules[-1] == "actuate"
 
@@ -214,18 +176,10 @@ def test_what_the_mission_falls_back_on_does_not_overrule_an_operator(fallback):
     run.turn(2.0, boat(WEST, 2.0))
     run.turn(10.0)
     assert {"broken assumption", "late"} <= set(run.kinds())
-    assert told(run) == ["GoTo", type(run.commands[-1]).__name__]
-    assert told(run)[-1] == other.value.capitalize()
+    assert run.told == ["GoTo", type(run.commands[-1]).__name__]
+    assert run.told[-1] == other.value.capitalize()
     why = f"{ANA} ordered it to {other.value}"
-    assert f"uav0 is not told to {fallback.value}: {why}" in [f.message for f in run.findings]
-
-
-def test_an_operator_is_obeyed_while_the_mission_is_suspended():
-    run = flying(precautions=LivePolicy(HOLD))
-    run.turn(1.0, boat(WEST, 1.0))
-    assert run.state.overrides.suspended
-    run.turn(2.0, sayings=[ordered(what=RETURN)])
-    assert told(run) == ["GoTo", "Hold", "Return"]
+    assert f"uav0 is not told to {fallback.value}: {why}" in run.messages()
 
 
 def test_a_vehicle_that_is_not_heard_is_told_when_it_is_and_the_operator_knows():
@@ -235,24 +189,7 @@ def test_a_vehicle_that_is_not_heard_is_told_when_it_is_and_the_operator_knows()
     assert turn.commands == (Hold("operator-3", "uav0"),)
     assert "uav0 is not heard: it is told as soon as it is" in turn.findings[0].message
     run.turn(3.0, seen("uav0", BETWEEN, 3.0), reports=[LinkRestored("uav0", 3.0)])
-    assert told(run) == ["GoTo", "Hold", "Hold"]  # the first for the assumption that the lost link broke
-
-
-def test_a_vehicle_that_is_being_handed_over_is_stopped_and_told_again_once_given_back():
-    run = Run(plan_of(TOUR + HAND))
-    run.turn(0.0, seen("uav0", WEST, 0.0))
-    run.turn(1.0, sayings=[ordered()])
-    assert told(run) == ["HandOver", "Hold"]
-    run.turn(2.0, sayings=[GivingBack("uav0")])
-    assert told(run) == ["HandOver", "Hold", "GiveBack", "HandOver"]
-
-
-def test_a_pilot_who_takes_over_a_held_vehicle_ends_the_order():
-    run = flying()
-    run.turn(1.0, sayings=[ordered()])
-    run.turn(2.0, reports=[TakenOver("uav0", 2.0, "it is in FBWA")])
-    assert run.state.overrides.taken == {"uav0": "it is in FBWA"}
-    assert run.state.overrides.orders == {}
+    assert run.told == ["GoTo", "Hold", "Hold"]  # the first for the assumption that the lost link broke
 
 
 def test_a_resumed_run_keeps_the_operators_order():
@@ -273,9 +210,7 @@ def test_a_finding_is_acknowledged_by_its_number_if_there_is_one():
     run = flying()
     for finding in (1, 0, -1):
         run.turn(1.0, sayings=[Acknowledging(finding, "Ana")])
-    assert [answer.refusal for answer in run.answers] == [
-        f"there is no finding {n}; there are 0" for n in (1, 0, -1)
-    ]
+    assert run.refusals == [f"there is no finding {n}; there are 0" for n in (1, 0, -1)]
     run.turn(2.0, reports=[TakenOver("uav0", 2.0, "x")])
     run.turn(3.0, sayings=[Acknowledging(1), Acknowledging(2)])
     assert [answer.refusal for answer in run.answers[3:]] == ["", "there is no finding 2; there are 1"]
@@ -306,22 +241,13 @@ def test_a_vehicle_that_is_given_back_after_its_time_limit_is_flown_by_the_fallb
     run = flying(precautions=LivePolicy(limits=(TimeLimit("FLY", "a", 60.0, then),)))
     run.turn(10.0, seen("uav0", BETWEEN, 10.0), sayings=[ordered()])
     run.turn(100.0, seen("uav0", BETWEEN, 100.0))  # meanwhile the limit is over, and the operator is obeyed
-    assert told(run)[-1] == "Hold"
+    assert run.told[-1] == "Hold"
     turn = run.turn(110.0, seen("uav0", BETWEEN, 110.0), sayings=[GivingBack("uav0", by="Ana")])
     assert [type(command).__name__ for command in turn.commands] == ["GiveBack", fallback.__name__]
     (given,) = (each for each in turn.findings if each.kind == "given back")
     assert given.message == (
         f"uav0 was given back by Ana; what it was to do was given up: it is told to {then.value}"
     )
-
-
-def test_a_vehicle_that_is_given_back_while_the_mission_is_suspended_does_what_a_broken_assumption_asks():
-    run = flying(TWO + GO, LivePolicy(RETURN))
-    run.turn(1.0, seen("uav0", BETWEEN, 1.0), sayings=[ordered()])
-    run.turn(2.0, boat(WEST, 2.0))  # nothing lets the boat drift
-    assert "broken assumption" in run.kinds()
-    turn = run.turn(3.0, seen("uav0", BETWEEN, 3.0), sayings=[GivingBack("uav0")])
-    assert [type(command).__name__ for command in turn.commands] == ["GiveBack", "Return"]
 
 
 SENT_HOME = [
@@ -337,8 +263,8 @@ def test_who_was_told_to_return_does_not_stop_on_its_way_home(precautions, drift
     for now in (drifts, 70.0, 100.0) if drifts < 70.0 else (70.0, drifts, 100.0):
         run.turn(now, seen("uav0", BETWEEN, now), *([boat(WEST, now)] if now == drifts else []))
     assert {"broken assumption", "late"} <= set(run.kinds())
-    assert told(run)[-1] == "Return"
-    assert "Hold" not in told(run)
+    assert run.told[-1] == "Return"
+    assert "Hold" not in run.told
     kept = "uav0 is not told to hold: it was told to return before"
     assert [finding.message for finding in run.findings if finding.kind == "trouble"] == [kept]
     turn = run.turn(110.0, seen("uav0", BETWEEN, 110.0), sayings=[ordered(), GivingBack("uav0")])

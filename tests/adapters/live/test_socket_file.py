@@ -7,10 +7,10 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from contextlib import ExitStack, suppress
 
 import pytest
+from processes import free_port, started, until
 
 from adapters.live.operator_socket import NobodyListens, listening, status
 from adapters.live.socket_file import bound, is_taken
@@ -27,13 +27,6 @@ asyncio.run(main())
 """
 
 
-def until(what, seconds=20.0):
-    end = time.monotonic() + seconds
-    while not what():
-        assert time.monotonic() < end
-        time.sleep(0.05)
-
-
 def listens(port):
     with socket.socket() as asking:
         return not asking.connect_ex(("127.0.0.1", port))
@@ -45,18 +38,13 @@ def asked(path):
 
 def test_a_run_that_is_stopped_keeps_its_socket(tmp_path):
     path = tmp_path / "a.sock"
-    line = [sys.executable, "-c", WAITING, str(path)]
-    with subprocess.Popen(line, stdout=subprocess.PIPE, text=True) as first:
-        try:
-            assert first.stdout.readline() == "ready\n"
-            first.send_signal(signal.SIGSTOP)
-            with pytest.raises(FileExistsError, match="another run listens there"), bound(path):
-                pass
-            assert subprocess.run(line, check=False, capture_output=True).returncode == 1
-            first.send_signal(signal.SIGCONT)
-            assert asked(path) == "the first"
-        finally:
-            first.kill()
+    with started("-c", WAITING, str(path)) as first:
+        assert first.stdout.readline() == "ready\n"
+        first.send_signal(signal.SIGSTOP)
+        with pytest.raises(FileExistsError, match="another run listens there"), bound(path):
+            pass
+        first.send_signal(signal.SIGCONT)
+        assert asked(path) == "the first"
     assert not is_taken(path)
     with bound(path):
         assert is_taken(path)
@@ -96,62 +84,52 @@ def test_what_is_no_socket_is_left_alone(tmp_path):
     assert path.read_text() == "mine"
 
 
-def test_the_operator_is_answered_where_no_descriptor_is_left(tmp_path):
+async def test_the_operator_is_answered_where_no_descriptor_is_left(tmp_path):
     path = tmp_path / "a.sock"
-
-    async def main():
-        async with listening(path, None, lambda: "flying"):
-            taken = []
-            soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-            resource.setrlimit(resource.RLIMIT_NOFILE, (min(soft, 256), hard))
-            try:
-                with suppress(OSError):
-                    while True:
-                        taken.append(os.open(os.devnull, os.O_RDONLY))
-                for _ in range(20):
-                    os.close(taken.pop())  # the one that asks, in the same process, needs one itself
-                    assert await status(path) == "flying"
+    async with listening(path, None, lambda: "flying"):
+        taken = []
+        soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (min(soft, 256), hard))
+        try:
+            with suppress(OSError):
+                while True:
                     taken.append(os.open(os.devnull, os.O_RDONLY))
-            finally:
-                resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
-                for each in taken:
-                    os.close(each)
+            for _ in range(20):
+                os.close(taken.pop())  # the one that asks, in the same process, needs one itself
+                assert await status(path) == "flying"
+                taken.append(os.open(os.devnull, os.O_RDONLY))
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+            for each in taken:
+                os.close(each)
 
-    asyncio.run(main())
 
-
-def test_who_says_nothing_is_not_waited_for(tmp_path):
+async def test_who_says_nothing_is_not_waited_for(tmp_path):
     path = tmp_path / "a.sock"
-
-    async def main():
-        async with listening(path, None, lambda: "flying"):
-            idle = [await asyncio.open_unix_connection(path) for _ in range(40)]
-            with pytest.raises(NobodyListens):
-                await status(path)
-            await asyncio.sleep(5.5)
-            assert await status(path) == "flying"
-            for _, writer in idle:
-                writer.close()
-
-    asyncio.run(main())
+    async with listening(path, None, lambda: "flying"):
+        idle = [await asyncio.open_unix_connection(path) for _ in range(40)]
+        with pytest.raises(NobodyListens):
+            await status(path)
+        await asyncio.sleep(5.5)
+        assert await status(path) == "flying"
+        for _, writer in idle:
+            writer.close()
 
 
 def test_a_flood_of_half_requests_leaves_a_run_that_answers_its_operator(tmp_path):
     mission, path = tmp_path / "m.mission", tmp_path / "m.sock"
     mission.write_text(MISSION)
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        port = found.getsockname()[1]
+    port = free_port()
     run = ["run", str(mission), "--unverified", "--socket", str(path), "--feed", f"detections=http:{port}"]
     line = ["bash", "-c", 'ulimit -n 128; exec "$@"', "-", sys.executable, "-m", "bigactors", *run]
     with (tmp_path / "said").open("wb") as said, subprocess.Popen(line, stdout=said, stderr=said) as flying:
         try:
             until(lambda: is_taken(path) and listens(port), 60.0)
             with ExitStack() as stack:
-                for number in range(600):
+                for number in range(260):
                     half = stack.enter_context(socket.create_connection(("127.0.0.1", port), 5.0))
                     half.sendall(b"POST /detections HTTP/1.1\r\nHost: localhost\r\nContent-Le")
-                    if not number % 100:
+                    if not number % 50:
                         assert "op0" in asked(path)
             assert "op0" in asked(path)
         finally:

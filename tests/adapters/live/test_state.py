@@ -5,7 +5,7 @@ from dataclasses import FrozenInstanceError, fields
 from pathlib import Path
 
 import pytest
-from live_missions import BETWEEN, TOUR, WEST, Run, boat, plan_of, seen
+from live_missions import BETWEEN, TOUR, boat, flying, seen
 
 import adapters.live
 from adapters.live.state import LiveState
@@ -15,9 +15,9 @@ PARTS = ("sightings", "commanded", "overrides", "agents", "due", "reported")
 MODULES = tuple(Path(adapters.live.__file__).parent.glob("*.py"))
 
 
-def flying():
-    run = Run(plan_of(TOUR + GO))
-    run.turn(0.0, seen("uav0", WEST, 0.0), boat((37.03, -8.63), 0.0))
+def on_its_way():
+    run = flying(TOUR + GO)
+    run.turn(0.0, boat((37.03, -8.63), 0.0))
     return run
 
 
@@ -31,14 +31,14 @@ def test_the_parts_are_all_of_the_state_but_the_configuration_and_the_number_of_
 
 @pytest.mark.parametrize("name", PARTS)
 def test_a_part_is_frozen(name):
-    part = parts_of(flying().state)[name]
+    part = parts_of(on_its_way().state)[name]
     field = fields(part)[0].name
     with pytest.raises(FrozenInstanceError):
         setattr(part, field, getattr(part, field))
 
 
 def test_a_turn_in_which_nothing_happens_keeps_all_parts():
-    run = flying()
+    run = on_its_way()
     run.turn(1.0)
     before = parts_of(run.state)
     run.turn(2.0)
@@ -46,7 +46,7 @@ def test_a_turn_in_which_nothing_happens_keeps_all_parts():
 
 
 def test_a_position_on_the_way_changes_only_the_sightings():
-    run = flying()
+    run = on_its_way()
     run.turn(1.0)
     before, newest = parts_of(run.state), dict(run.state.sightings.newest)
     run.turn(2.0, seen("uav0", BETWEEN, 2.0))

@@ -7,21 +7,74 @@ from pathlib import Path
 
 import pytest
 from audited import flown_in
-from live_missions import LIVE
+from live_missions import BETWEEN, EAST, LIVE, TOUR, WEST, Run, flying, plan_of, seen
 from worlds import ROUND
 
+from adapters.live.batch import GivingBack
 from adapters.live.operator_socket import give_back
 from adapters.mavlink.command import long
 from adapters.mavlink.constants import Cmd, Result
+from adapters.plugin import Rejected, TakenOver
 from adapters.simulated import Kind, Vehicle, protocol
 from adapters.simulated.reporting import Reporter
 from bigactors.cli import main
 from bigactors.missions import open_mission
 from bigactors.recordings import open_recording, resume
+from semantics.live_policy import Fallback, LivePolicy
+
+GO = "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO east0) }"
+
+
+def test_a_vehicle_that_was_taken_over_has_not_arrived_though_the_same_news_show_it_there():
+    run = flying(TOUR + GO)
+    run.turn(1.0, seen("uav0", BETWEEN, 1.0))
+    run.turn(2.0, seen("uav0", EAST, 2.0), reports=[TakenOver("uav0", 2.0, "it is in RTL")])
+    assert "commit" not in run.rules
+    assert run.messages() == [
+        "uav0 was taken over: it is in RTL; it gets no commands until `bigactors give-back uav0`"
+    ]
+    run.turn(3.0, reports=[Rejected("a-1", "uav0", 3.0, "it is in RTL")])
+    assert run.kinds() == ["taken over"]
+
+
+@pytest.mark.parametrize("fallback", [Fallback.HOLD, Fallback.RETURN])
+def test_what_the_mission_falls_back_on_does_not_overrule_who_has_taken_a_vehicle_over(fallback):
+    run = flying(TOUR, LivePolicy(fallback))
+    run.turn(1.0, seen("uav0", BETWEEN, 1.0), reports=[TakenOver("uav0", 1.0, "it is in RTL")])
+    assert run.kinds() == ["taken over", "broken assumption", "taken over"]
+    assert run.commands == []
+
+
+def test_nothing_is_told_to_a_vehicle_that_was_taken_over_before_it_is_given_back():
+    run = Run(plan_of(TOUR + GO))
+    run.turn(0.0, reports=[TakenOver("uav0", 0.0, "it is in RTL")])
+    run.turn(1.0, seen("uav0", WEST, 1.0))
+    assert run.commands == []
+    run.turn(2.0, sayings=[GivingBack("uav0")])
+    assert (run.told, run.refusals, run.state.overrides.taken) == (["GiveBack", "GoTo"], [""], {})
+    run.turn(3.0, sayings=[GivingBack("uav0"), GivingBack("uav9")])
+    assert run.refusals[1:] == [
+        "uav0 was not taken over here, and has refused nothing",
+        "there is no vehicle 'uav9'; there are uav0",
+    ]
+
+
+def test_a_vehicle_that_is_given_back_is_told_anew_what_it_was_to_do():
+    run = flying(TOUR + GO)
+    for number, report in enumerate((TakenOver("uav0", 1.0, "x"), Rejected("a-3", "uav0", 2.0, "denied")), 1):
+        run.turn(float(number), reports=[report])
+        run.turn(number + 0.5, sayings=[GivingBack("uav0")])
+    requests = [command.request for command in run.commands]
+    assert requests == ["a-1", "give-back-2", "a-3", "give-back-4", "a-5"]
+    run.turn(3.0, seen("uav0", EAST, 3.0))
+    assert "commit" in run.rules
+
+
+# --- flown ---
 
 
 @pytest.fixture
-def flying(tmp_path, monkeypatch):
+def flight(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     return partial(flown_in, tmp_path, ROUND)
 
@@ -78,8 +131,8 @@ RTL = "it is in RTL, by itself or told by someone else"
     ],
     ids=["over its destination", "to where the mission ends", "by another station"],
 )
-def test_a_vehicle_that_flies_home_unasked_arrives_nowhere_and_is_not_called_back(flying, foe, legs, reason):
-    flown = flying(plane(enforce=False), foe=foe, seconds=600)
+def test_a_vehicle_that_flies_home_unasked_arrives_nowhere_and_is_not_called_back(flight, foe, legs, reason):
+    flown = flight(plane(enforce=False), foe=foe, seconds=600)
     assert flown.witness.rules.count("commit") == legs
     assert not flown.ended
     assert home(flown.vehicle)
@@ -89,8 +142,8 @@ def test_a_vehicle_that_flies_home_unasked_arrives_nowhere_and_is_not_called_bac
 
 
 @pytest.mark.long
-def test_a_vehicle_that_boots_anew_on_the_ground_where_it_was_to_go_has_not_arrived(flying):
-    flown = flying(plane(), foe=killed_on_the_way_home, seconds=600)
+def test_a_vehicle_that_boots_anew_on_the_ground_where_it_was_to_go_has_not_arrived(flight):
+    flown = flight(plane(), foe=killed_on_the_way_home, seconds=600)
     assert flown.inside("home0")
     assert flown.witness.rules.count("commit") == 3
     assert not flown.ended
@@ -100,7 +153,7 @@ def test_a_vehicle_that_boots_anew_on_the_ground_where_it_was_to_go_has_not_arri
 
 
 @pytest.mark.long
-def test_a_vehicle_that_an_operator_gives_back_flies_its_mission_to_the_end(flying):
+def test_a_vehicle_that_an_operator_gives_back_flies_its_mission_to_the_end(flight):
     answers = []
 
     async def operator(flight, simulator, witness):
@@ -111,7 +164,7 @@ def test_a_vehicle_that_an_operator_gives_back_flies_its_mission_to_the_end(flyi
         answers.append((await give_back(Path("s"), "uav1")).refusal)
         answers.append((await give_back(Path("s"), "uav0")).refusal)
 
-    flown = flying(plane(), foe=operator, seconds=1500)
+    flown = flight(plane(), foe=operator, seconds=1500)
     assert flown.ended
     assert answers == ["there is no vehicle 'uav1'; there are uav0", ""]
     assert flown.ending.state.overrides.taken == resumed_from("r.mcap").taken == {}

@@ -1,6 +1,7 @@
 """`react { ... after d => ... }` in live runs: it waits by the clock."""
 
-from live_missions import TOUR, WEST, Run, mission, plan_of, seen
+import pytest
+from live_missions import TOUR, Run, flying, mission, plan_of
 
 from adapters.live.batch import Saying
 from adapters.recording.reading import read_recording
@@ -19,10 +20,6 @@ environment { someone says "go" to a  someone says "stop" to a }
 """
 
 
-def shown(run):
-    return [text for step in run.steps for text in step.transition.shown]
-
-
 def test_an_agent_waits_as_long_as_it_says_and_no_longer():
     run = Run(plan_of(TOUR + WAIT))
     run.turn(0.0)
@@ -32,24 +29,17 @@ def test_an_agent_waits_as_long_as_it_says_and_no_longer():
     assert run.again == 10.0
     run.turn(10.0)
     assert run.labels == ["⟨timeout : a, after 10 s⟩", "⟨fun : a⟩"]
-    assert shown(run) == ["nobody came"]
+    assert run.shown == ["nobody came"]
     assert run.again is None
     assert run.state.due.timeouts == {}
 
 
-def test_a_message_that_comes_in_time_ends_the_wait():
-    run = Run(plan_of(TOUR + WAIT))
-    run.turn(0.0, seen("uav0", WEST, 0.0))
-    run.turn(9.9, sayings=(Saying("a", "go"),))
+@pytest.mark.parametrize("now", [9.9, 10.0], ids=["before its end", "with its end"])
+def test_a_message_that_comes_in_time_ends_the_wait(now):
+    run = flying(TOUR + WAIT)
+    run.turn(now, sayings=(Saying("a", "go"),))
     assert run.rules == ["say", "rcv_msg", "req_ctr", "command"]
     run.turn(10.0)
-    assert "timeout" not in run.rules
-
-
-def test_a_message_that_comes_with_the_end_of_the_wait_is_taken():
-    run = Run(plan_of(TOUR + WAIT))
-    run.turn(0.0, seen("uav0", WEST, 0.0))
-    run.turn(10.0, sayings=(Saying("a", "go"),))
     assert "timeout" not in run.rules
 
 
@@ -76,7 +66,7 @@ def test_each_turn_of_a_loop_waits_anew():
     run.turn(10.0)
     assert run.again == 20.0
     run.turn(20.0)
-    assert shown(run) == ["nobody came", "nobody came"]
+    assert run.shown == ["nobody came", "nobody came"]
 
 
 def test_a_recorded_wait_replays_without_a_clock(tmp_path):

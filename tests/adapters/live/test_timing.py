@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import pytest
 from audited import SHUTTLE, copter, flown_in
-from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, known_of, mission, plan_of, seen
+from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, flying, known_of, mission, plan_of, seen
 
 from adapters.live.batch import Heard, Saying
 from adapters.live.core import resumed
 from adapters.live.due_times import DueTimes
 from adapters.live.overrides import Overrides
-from adapters.live.timing import OWN, flying
+from adapters.live.timing import OWN
+from adapters.live.timing import flying as flights
 from adapters.plugin import Gone, LinkLost, LinkRestored
 from adapters.recording.writing import Recorder
 from bigactors.missions import digest_of
@@ -33,43 +34,32 @@ FLIES = "uav0 flies at 18 m/s to 25 m/s (line 21)"
 
 
 def airborne(text=FLIGHT, **more):
-    run = Run(plan_of(TOUR + text, **more))
-    run.turn(0.0, seen("uav0", WEST, 0.0))
+    run = flying(TOUR + text, **more)
     run.turn(0.1, seen("uav0", WEST, 0.1))
     assert run.rules == ["req_ctr", "command"]
     return run
 
 
 def broken(run):
-    return [finding.message for finding in run.findings if finding.kind == "broken assumption"]
+    return run.messages("broken assumption")
 
 
 def test_a_flight_has_its_interval_while_it_is_under_way():
     run = airborne()
-    (flight,) = flying(run.state.due.timers)
+    (flight,) = flights(run.state.due.timers)
     assert (flight.vehicle, flight.destination, flight.since) == ("uav0", "east0", 0.0)
     assert (flight.least, flight.most) == (71.0, 255.0)
-
-
-def test_a_line_about_a_vehicle_says_how_long_it_still_flies():
-    run = airborne()
     said = vehicle_line("uav0", run.state, None, 30.0)
     assert said == "uav0 is on its way to east0, 2.7 km away, for 30 s, 41 s to 3:45 to go"
 
 
-def test_a_flight_that_ends_in_time_breaks_nothing():
+@pytest.mark.parametrize(("now", "soon"), [(20.0, True), (100.0, False)])
+def test_a_flight_that_is_over_before_it_can_be_breaks_its_assumption(now, soon):
     run = airborne()
-    run.turn(100.0, seen("uav0", EAST, 100.0))
+    run.turn(now, seen("uav0", EAST, now))
     assert run.rules[-1] == "commit"
-    assert broken(run) == []
-
-
-def test_a_flight_that_is_over_before_it_can_be_breaks_its_assumption():
-    run = airborne()
-    run.turn(20.0, seen("uav0", EAST, 20.0))
-    assert broken(run) == [
-        f"the flight of uav0 to east0 is over after 20 s, sooner than 71 s; the mission says: {FLIES}"
-    ]
+    told = f"the flight of uav0 to east0 is over after 20 s, sooner than 71 s; the mission says: {FLIES}"
+    assert broken(run) == [told] * soon
 
 
 def test_a_flight_that_takes_too_long_breaks_its_assumption_at_once_and_only_once():
@@ -96,18 +86,8 @@ def test_a_vehicle_that_is_aloft_for_longer_than_it_lasts_breaks_its_assumption(
 
 
 def test_a_drift_that_comes_too_soon_breaks_its_assumption():
-    run = Run(
-        plan_of(
-            TOUR
-            + """
-BigActor a hosted_at gcs0 with_behavior { react { case "never" => } }
-scheduler fcfs
-control timed
-environment { boat0 drifts among point (37.01, -8.65), point (37.01, -8.61)  someone says "never" to a }
-timing { boat0 drifts at most every 20 min }
-"""
-        )
-    )
+    drifts = "boat0 drifts among point (37.01, -8.65), point (37.01, -8.61)"
+    run = watched(drifts, "boat0 drifts at most every 20 min")
     run.turn(0.0, boat(WEST, 0.0))
     run.turn(10.0, boat(EAST, 10.0))
     assert broken(run) == [
@@ -260,6 +240,10 @@ class Recorded(Run):
         self.recorder.turn(turn, now, lambda _: ())
         return turn
 
+    def lives(self, turns):
+        for now, heard, more in turns:
+            self.turn(now, *heard, **more)
+
     def killed(self):
         """What its recording says, which has no end."""
         return resume(str(self.path), self.mission)
@@ -298,14 +282,12 @@ def test_the_clocks_of_a_recording_are_those_of_its_run_after_every_turn(tmp_pat
 @pytest.mark.parametrize("left", range(1, len(TURNS)))
 def test_a_run_that_goes_on_at_once_has_the_clocks_of_one_that_was_never_killed(tmp_path, left):
     whole, run = Recorded(tmp_path / "whole.mcap"), Recorded(tmp_path / "first.mcap")
-    for now, heard, more in TURNS[:left]:
-        whole.turn(now, *heard, **more)
-        run.turn(now, *heard, **more)
+    for each in (whole, run):
+        each.lives(TURNS[:left])
     run = run.goes_on(tmp_path / "second.mcap")
     run.turn(TURNS[left - 1][0])
-    for now, heard, more in TURNS[left:]:
-        whole.turn(now, *heard, **more)
-        run.turn(now, *heard, **more)
+    for each in (whole, run):
+        each.lives(TURNS[left:])
     agree = [clock for clock in whole.state.due.timers.since if clock.sort is not Sort.AFTER]
     assert agree
     assert [run.state.due.timers.since[each] for each in agree] == [
@@ -316,12 +298,11 @@ def test_a_run_that_goes_on_at_once_has_the_clocks_of_one_that_was_never_killed(
 
 def test_a_flight_goes_on_while_the_run_does_not_and_is_held_to_its_whole_time(tmp_path):
     run = Recorded(tmp_path / "first.mcap")
-    for now, heard, more in TURNS[:2]:
-        run.turn(now, *heard, **more)
-    (before,) = flying(run.state.due.timers)
+    run.lives(TURNS[:2])
+    (before,) = flights(run.state.due.timers)
     again = run.goes_on(tmp_path / "second.mcap")
     again.turn(200.0, seen("uav0", BETWEEN, 200.0))
-    assert list(flying(again.state.due.timers)) == [before]
+    assert list(flights(again.state.due.timers)) == [before]
     assert broken(again) == []
     again.turn(256.0, seen("uav0", BETWEEN, 256.0))
     assert [each[:46] for each in broken(again)] == ["the flight of uav0 to east0 takes longer than "]
@@ -345,8 +326,7 @@ def test_what_a_run_does_itself_stands_still_while_it_does(tmp_path):
 
 def test_who_waits_for_some_time_waits_anew(tmp_path):
     run = Recorded(tmp_path / "first.mcap")
-    for now, heard, more in TURNS[:-1]:
-        run.turn(now, *heard, **more)
+    run.lives(TURNS[:-1])
     (waits,) = (clock for clock in run.state.due.timers.since if clock.sort is Sort.AFTER)
     assert run.state.due.timers.since[waits][0] < 151.0
     again = run.goes_on(tmp_path / "second.mcap")
@@ -359,15 +339,14 @@ def test_who_waits_for_some_time_waits_anew(tmp_path):
 
 def test_a_recording_that_does_not_say_when_its_mission_began_has_no_clocks(tmp_path):
     run = Recorded(tmp_path / "first.mcap")
-    for now, heard, more in TURNS[:3]:
-        run.turn(now, *heard, **more)
+    run.lives(TURNS[:3])
     old = Recorded(tmp_path / "old.mcap")
     old.recorder.copy(each for each in run.killed().messages if each.topic != "clocks")
     before = old.killed()
     assert (before.steps, before.timers) == (len(run.steps), None)
     again = Recorded(tmp_path / "second.mcap", before=before)
     again.turn(100.0, seen("uav0", BETWEEN, 100.0))
-    (flight,) = flying(again.state.due.timers)
+    (flight,) = flights(again.state.due.timers)
     assert flight.since == again.state.due.timers.began == 100.0
 
 

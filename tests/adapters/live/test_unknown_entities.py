@@ -3,7 +3,7 @@
 import asyncio
 
 import aiohttp
-from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
+from live_missions import BETWEEN, EAST, TOUR, WEST, boat, flying, plan_of, seen
 from test_loop import Looker, Vehicle
 
 from adapters.detections import Detections
@@ -25,9 +25,7 @@ GOES_ON = LivePolicy(Fallback.CONTINUE)
 
 
 def quiet_run(text=TOUR):
-    run = Run(plan_of(text, GOES_ON))
-    run.turn(0.0, seen("uav0", WEST, 0.0))
-    return run
+    return flying(text, GOES_ON)
 
 
 def vessel(number, at=WEST, time=0.0, plugin="ais", ttl=60.0):
@@ -50,16 +48,14 @@ def there(run, *names):
 def test_all_strangers_of_a_turn_come_in_one_step_and_are_told_in_one_line():
     run = quiet_run()
     run.turn(1.0, *(vessel(number) for number in range(300)))
-    assert [str(step.transition.label) for step in run.steps] == [
-        "⟨env : mmsi0 appears in west0, and so on for 299 more⟩"
-    ]
-    assert [finding.message for finding in run.findings] == [
+    assert run.labels == ["⟨env : mmsi0 appears in west0, and so on for 299 more⟩"]
+    assert run.messages() == [
         "mmsi0 (Vessel) is in west0, and so on for 299 more; the mission names no such entity"
     ]
     assert all(there(run, "mmsi0", "mmsi299"))
     run.turn(2.0, *(vessel(number, EAST, 2.0) for number in range(300)))
     run.turn(100.0, seen("uav0", WEST, 100.0))
-    assert [str(step.transition.label) for step in run.steps[1:]] == [
+    assert run.labels[1:] == [
         "⟨env : mmsi0 is seen in east0, and so on for 299 more⟩",
         "⟨env : mmsi0 vanishes, and so on for 299 more⟩",
     ]
@@ -69,7 +65,7 @@ def test_all_strangers_of_a_turn_come_in_one_step_and_are_told_in_one_line():
 def test_what_the_mission_names_has_a_step_of_its_own_among_strangers():
     run = quiet_run()
     run.turn(1.0, vessel(0), boat(EAST, 1.0), vessel(1))
-    assert [str(step.transition.label) for step in run.steps] == [
+    assert run.labels == [
         "⟨env : boat0 is seen in east0⟩",
         "⟨env : mmsi0 appears in west0, and so on for 1 more⟩",
     ]
@@ -87,10 +83,11 @@ def test_a_flood_of_one_plugin_leaves_room_for_the_others_and_there_is_an_end_to
     assert left_out == ["ais", "radar", "camera"]
 
 
-def test_what_no_mission_could_use_is_not_kept():
+def test_what_no_mission_could_use_and_what_is_withdrawn_at_once_is_not_kept():
     run = quiet_run()
     nowhere = [vessel(number, BETWEEN) for number in range(10)]
     run.turn(1.0, *nowhere, seen("ghost", WEST, 1.0, "ais", "Submarine", ()))
+    run.turn(2.0, vessel(0), Heard("ais", Gone("mmsi0", 2.0, "ais")))
     assert run.state.sightings.newest.keys() == {"uav0"}
     assert run.steps == []
 
@@ -99,7 +96,7 @@ def test_strangers_that_have_borders_are_places_and_their_moves_are_seen():
     run = quiet_run()
     run.turn(1.0, *(spill(number, (37.005, -8.659 + number * 2e-4)) for number in range(20)))
     run.turn(2.0, spill(0, (37.005, -8.615)))
-    assert [str(step.transition.label) for step in run.steps] == [
+    assert run.labels == [
         "⟨env : place0 appears in west0, and so on for 19 more⟩",
         "⟨env : place0 is seen in east0⟩",
     ]
@@ -164,7 +161,7 @@ def test_nobody_moves_an_entity_by_calling_it_something_else():
         said = PhysicalProperty(name, kind, box((37.0, -8.62), (37.02, -8.60)), time=2.0)
         run.turn(2.0, Heard("camera", said))
     assert len(run.steps) == 1
-    assert [finding.message for finding in run.findings[1:]] == [
+    assert run.messages()[1:] == [
         "'camera' speaks of boat0 as Location, and it is of kind Vessel",
         "'camera' speaks of mmsi0 as Location, and it is of kind Vessel",
         "'camera' speaks of gcs0 as Vessel, and it is of kind Station",
@@ -178,49 +175,36 @@ def test_nothing_that_is_seen_is_called_as_the_region_a_bigactor_or_a_kind_is():
     names = ("region", "a", "b", "UAV")
     run.turn(2.0, *(boat(WEST, 2.0, name) for name in names))
     assert run.steps[before:] == []
-    assert [finding.message for finding in run.findings if finding.kind == "trouble"] == [
+    assert run.messages("trouble") == [
         f"'ais' speaks of {name}, which the mission has as no entity" for name in names
     ]
     assert not run.state.sightings.newest.keys() & set(names)
 
 
-def test_a_stranger_that_is_withdrawn_at_once_was_never_there():
-    run = quiet_run()
-    run.turn(1.0, vessel(0), Heard("ais", Gone("mmsi0", 1.0, "ais")))
-    assert run.steps == []
-    assert run.state.sightings.newest.keys() == {"uav0"}
-
-
 # --- what comes in ----------------------------------------------------------------------------------------
 
 
-def test_strangers_are_taken_in_slices_and_what_the_mission_names_at_once():
-    async def main():
-        inbox = Inbox(Watchers(), lambda: 0.0, {"uav0"})
-        for number in range(2 * AT_ONCE + 1):
-            inbox.publish("ais", vessel(number).published)
-        inbox.publish("autopilot", seen("uav0", WEST, 0.0).published)
-        sizes = []
-        while inbox.awake.is_set():
-            batch, _ = inbox.take()
-            sizes.append((len(batch.heard), "autopilot" in [each.plugin for each in batch.heard]))
-        return sizes
-
-    assert asyncio.run(main()) == [(AT_ONCE + 1, True), (AT_ONCE, False), (1, False)]
-
-
-def test_no_more_strangers_wait_than_are_bounded_and_that_is_said():
-    async def main():
-        inbox = Inbox(Watchers(), lambda: 0.0)
-        for number in range(MOST_WAITING + 7):
-            inbox.publish("ais", vessel(number).published)
+async def test_strangers_are_taken_in_slices_and_what_the_mission_names_at_once():
+    inbox, sizes = Inbox(Watchers(), lambda: 0.0, {"uav0"}), []
+    for number in range(2 * AT_ONCE + 1):
+        inbox.publish("ais", vessel(number).published)
+    inbox.publish("autopilot", seen("uav0", WEST, 0.0).published)
+    while inbox.awake.is_set():
         batch, _ = inbox.take()
-        return len(inbox.strangers) + AT_ONCE, [(each.what, each.count) for each in batch.reports]
+        sizes.append((len(batch.heard), "autopilot" in [each.plugin for each in batch.heard]))
+    assert sizes == [(AT_ONCE + 1, True), (AT_ONCE, False), (1, False)]
 
-    assert asyncio.run(main()) == (MOST_WAITING, [("too much at once", 7)])
+
+async def test_no_more_strangers_wait_than_are_bounded_and_that_is_said():
+    inbox = Inbox(Watchers(), lambda: 0.0)
+    for number in range(MOST_WAITING + 7):
+        inbox.publish("ais", vessel(number).published)
+    batch, _ = inbox.take()
+    assert len(inbox.strangers) + AT_ONCE == MOST_WAITING
+    assert [(each.what, each.count) for each in batch.reports] == [("too much at once", 7)]
 
 
-def test_thousands_of_detections_in_one_post_keep_nobody_waiting():
+async def test_thousands_of_detections_in_one_post_keep_nobody_waiting():
     """Others go on while they are read, and while they are taken in: what waits for a turn waits for a slice."""
     count, camera, looker = 5_000, Detections("camera", listen=Listen(0)), Looker()
     at = {"type": "Point", "coordinates": [-8.65, 37.01]}
@@ -228,33 +212,26 @@ def test_thousands_of_detections_in_one_post_keep_nobody_waiting():
         {"type": "Feature", "properties": {"name": f"d{number}", "kind": "Vessel"}, "geometry": at}
         for number in range(count)
     ]
+    plan, turns, beats = plan_of(TOUR + STAY, GOES_ON), [], 0
+    looker.turned = lambda turn, _now: turns.append(turn)
 
-    async def main():
-        plan, turns, beats = plan_of(TOUR + STAY, GOES_ON), [], 0
-        looker.turned = lambda turn, _now: turns.append(turn)
-        async with LiveRun(plan, started(plan), [Vehicle(), camera], [looker]) as run:
-            await run.begin(2.0)
-            going = asyncio.create_task(
-                run.go(lambda state: state.sightings.admitted.get("camera") == (SHARE, 0))
-            )
+    async def post():
+        body, url = (
+            {"type": "FeatureCollection", "features": features},
+            f"http://127.0.0.1:{camera.port}/detections",
+        )
+        async with aiohttp.ClientSession() as session, session.post(url, json=body) as answer:
+            return answer.status
 
-            async def post():
-                async with aiohttp.ClientSession() as session:
-                    url = f"http://127.0.0.1:{camera.port}/detections"
-                    async with session.post(
-                        url, json={"type": "FeatureCollection", "features": features}
-                    ) as answer:
-                        return answer.status
-
-            posting = asyncio.create_task(post())
-            while not posting.done():
-                beats += 1
-                await asyncio.sleep(0)
-            await going
-            return posting.result(), turns, beats
-
-    status, turns, beats = asyncio.run(main())
-    assert status == 200
+    async with LiveRun(plan, started(plan), [Vehicle(), camera], [looker]) as run:
+        await run.begin(2.0)
+        full = lambda state: state.sightings.admitted.get("camera") == (SHARE, 0)  # noqa: E731
+        going, posting = asyncio.create_task(run.go(full)), asyncio.create_task(post())
+        while not posting.done():
+            beats += 1
+            await asyncio.sleep(0)
+        await going
+    assert posting.result() == 200
     assert beats > count / 50  # the loop went round while features were read
     steps = [step for turn in turns for step in turn.steps if "appears" in str(step.transition.label)]
     assert 3 <= len(steps) <= 20

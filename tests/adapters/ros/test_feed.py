@@ -5,52 +5,24 @@ import random
 import socket
 from contextlib import suppress
 
-import numpy as np
 import pytest
-from rosbags.rosbag2 import StoragePlugin, Writer
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-from routers import for_real, router, tokens
-from worlds import World, running, until
+from rosbags.rosbag2 import StoragePlugin
+from routers import STORE, fix, for_real, header, router, tokens, write_bag
+from worlds import World, running, simulated, until
 
 from adapters.naming import NamingService
 from adapters.ros import RosFeed
 from adapters.ros.feed import _recorded
-from adapters.ros.messages import FIX, GEOGRAPHIC, POSE, STAMPED, hash_of, read_position
+from adapters.ros.messages import FIX, POSE, STAMPED, hash_of, read_position
 from adapters.ros.wire import Topic, key_of
-from adapters.simulated import run
 from physical import PhysicalError, point
 
-STORE = get_typestore(Stores.ROS2_KILTED)
-for _name, _definition in GEOGRAPHIC.items():
-    STORE.register(get_types_from_msg(_definition, _name))
-PUBLISHED = {
-    FIX: "RIHS01_62223ab3fe210a15976021da7afddc9e200dc9ec75231c1b6a557fc598a65404",
-}
+PUBLISHED = {FIX: "RIHS01_62223ab3fe210a15976021da7afddc9e200dc9ec75231c1b6a557fc598a65404"}
 """Hashes as several public programs that talk with ROS 2 have them."""
 
 
 def naming():
     return NamingService(own={"mavlink:1": "uav0"}, kinds={"drifter0": "Drifter", "uav0": "UAV"})
-
-
-def header(seconds):
-    types = STORE.types
-    stamp = types["builtin_interfaces/msg/Time"](sec=int(seconds), nanosec=0)
-    return types["std_msgs/msg/Header"](stamp=stamp, frame_id="gps")
-
-
-def fix(latitude=37.0, longitude=-8.7, seconds=0, status=0):
-    types = STORE.types
-    said = types[FIX](
-        header=header(seconds),
-        status=types["sensor_msgs/msg/NavSatStatus"](status=status, service=1),
-        latitude=latitude,
-        longitude=longitude,
-        altitude=50.0,
-        position_covariance=np.zeros(9),
-        position_covariance_type=0,
-    )
-    return bytes(STORE.serialize_cdr(said, FIX))
 
 
 def pose(latitude=37.0, longitude=-8.7, seconds=None):
@@ -105,18 +77,9 @@ def test_an_address_that_cannot_be_heard_is_refused(address):
 # --- bags -------------------------------------------------------------------------------------------
 
 
-def write_bag(path, messages, storage):
-    with Writer(path, version=9, storage_plugin=storage) as bag:
-        topics = {}
-        for seconds, topic, name, raw in messages:
-            if topic not in topics:
-                topics[topic] = bag.add_connection(topic, name, typestore=STORE)
-            bag.write(topics[topic], int(seconds * 1e9), raw)
-    return path
-
-
 @pytest.mark.parametrize("storage", list(StoragePlugin), ids=lambda each: each.name)
-def test_a_bag_is_replayed_at_its_pace_and_what_is_wrong_in_it_is_counted(tmp_path, storage):
+@simulated
+async def test_a_bag_is_replayed_at_its_pace_and_what_is_wrong_in_it_is_counted(tmp_path, storage):
     messages = [
         (1000, "/drifter0/fix", FIX, fix(37.0, seconds=1000)),
         (1001, "/drifter0/fix", FIX, fix(status=-1, seconds=1001)),
@@ -126,36 +89,32 @@ def test_a_bag_is_replayed_at_its_pace_and_what_is_wrong_in_it_is_counted(tmp_pa
         (1010, "/drifter0/pose", STAMPED, pose(37.1, seconds=1010)),
     ]
     bag = write_bag(tmp_path / "bag", messages, storage)
-
-    async def main():
-        world = World()
-        plugin = RosFeed("ros", f"file:{bag}", naming=naming())
-        async with running(plugin.run(world)):
-            await until(plugin.played.is_set)
-        said = [each.property for each in world.published]
-        assert [(each.entity, each.kind, each.geometry) for each in said] == [
-            ("drifter0", "Drifter", point(37.0, -8.7)),
-            ("drifter0", "Drifter", point(37.1, -8.7)),
-        ]
-        assert said[1].time - said[0].time == pytest.approx(10, abs=0.5)
-        assert {(each.what, each.count) for each in world.reports} == {
-            ("no fix", 1),
-            ("name-clash", 1),
-            ("unknown entity", 1),
-            ("time stamp too old", 1),
-        }
-
-    run(main())
+    world = World()
+    plugin = RosFeed("ros", f"file:{bag}", naming=naming())
+    async with running(plugin.run(world)):
+        await until(plugin.played.is_set)
+    said = [each.property for each in world.published]
+    assert [(each.entity, each.kind, each.geometry) for each in said] == [
+        ("drifter0", "Drifter", point(37.0, -8.7)),
+        ("drifter0", "Drifter", point(37.1, -8.7)),
+    ]
+    assert said[1].time - said[0].time == pytest.approx(10, abs=0.5)
+    assert {(each.what, each.count) for each in world.reports} == {
+        ("no fix", 1),
+        ("name-clash", 1),
+        ("unknown entity", 1),
+        ("time stamp too old", 1),
+    }
 
 
-def test_what_is_no_bag_is_refused(tmp_path):
+async def test_what_is_no_bag_is_refused(tmp_path):
     (tmp_path / "metadata.yaml").write_text("{")
     for path in (tmp_path, tmp_path / "metadata.yaml"):
         with pytest.raises(PhysicalError) as refusal:
-            asyncio.run(RosFeed("ros", f"file:{path}").run(World()))
+            await RosFeed("ros", f"file:{path}").run(World())
         assert refusal.value.code == "bag"
     with pytest.raises(OSError, match="none"):
-        asyncio.run(RosFeed("ros", f"file:{tmp_path / 'none'}").run(World()))
+        await RosFeed("ros", f"file:{tmp_path / 'none'}").run(World())
 
 
 @pytest.mark.parametrize("storage", list(StoragePlugin), ids=lambda each: each.name)
@@ -182,9 +141,9 @@ def test_a_damaged_bag_is_a_mistake_of_the_user(tmp_path, storage):
 # --- a router ---------------------------------------------------------------------------------------
 
 
-def test_a_ros_node_is_heard_in_its_domain_and_sees_ours():
-    async def main(port, node):
-        world = World()
+async def test_a_ros_node_is_heard_in_its_domain_and_sees_ours():
+    world = World()
+    with router() as (port, node):
         plugin = RosFeed("ros", f"tcp:127.0.0.1:{port}?domain=7", naming=naming())
         async with running(plugin.run(world)):
             await asyncio.wait_for(plugin.listening.wait(), 60)
@@ -196,18 +155,15 @@ def test_a_ros_node_is_heard_in_its_domain_and_sees_ours():
             node.put(key_of(7, right), b"junk")
             node.put(key_of(7, right), fix(37.0))
             await for_real(lambda: world.published and len(world.reports) == 2)
-        assert [each.property.geometry for each in world.published] == [point(37.0, -8.7)]
-        assert {each.what for each in world.reports} == {"another type", "message unreadable"}
-        assert "RIHS01_0," in next(each.detail for each in world.reports if each.what == "another type")
-
-    with router() as (port, node):
-        asyncio.run(main(port, node))
+    assert [each.property.geometry for each in world.published] == [point(37.0, -8.7)]
+    assert {each.what for each in world.reports} == {"another type", "message unreadable"}
+    assert "RIHS01_0," in next(each.detail for each in world.reports if each.what == "another type")
 
 
-def test_a_router_that_does_not_answer_is_said(monkeypatch):
+async def test_a_router_that_does_not_answer_is_said(monkeypatch):
     monkeypatch.setattr("adapters.ros.link.PATIENCE", 100)
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         address = f"tcp:127.0.0.1:{taken.getsockname()[1]}"
         with pytest.raises(PhysicalError, match="no Zenoh router answers"):
-            asyncio.run(RosFeed("ros", address).run(World()))
+            await RosFeed("ros", address).run(World())

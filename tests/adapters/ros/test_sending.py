@@ -10,32 +10,19 @@ import xxhash
 import zenoh.ext
 from hypothesis import given
 from hypothesis import strategies as st
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-from routers import for_real, router, session, tokens
+from routers import STORE, for_real, router, session, tokens
 
 from adapters.live.sightings import Sighting, Sightings
 from adapters.live.state import LiveState
 from adapters.live.turn import Turn
 from adapters.ros import RosSending
-from adapters.ros.messages import (
-    FIX,
-    GEOGRAPHIC,
-    STRING,
-    WHERE,
-    hash_of,
-    write_fix,
-    write_string,
-    write_where,
-)
+from adapters.ros.messages import FIX, STRING, WHERE, hash_of, write_fix, write_string, write_where
 from adapters.ros.wire import Topic, key_of
 from bigactors.missions import open_mission
 from physical import PhysicalError, PhysicalProperty, box, point
 from semantics.state.setting import Control, Scheduler
 from specs.elaboration import Variation
 
-STORE = get_typestore(Stores.ROS2_KILTED)
-for _name, _definition in GEOGRAPHIC.items():
-    STORE.register(get_types_from_msg(_definition, _name))
 DEGREES = st.floats(-90, 90)
 TIMES = st.integers(0, 2**31 - 1)
 SPACE = key_of(7, Topic("/bigactors/logical_space", STRING, hash_of(STRING)))
@@ -71,12 +58,11 @@ def state_of(configuration):
     return LiveState(configuration, sightings=Sightings(far))
 
 
-def test_a_ros_node_hears_where_things_are_and_one_that_comes_late_hears_the_logical_space():
+async def test_a_ros_node_hears_where_things_are_and_one_that_comes_late_hears_the_logical_space():
     first = open_mission("oil_spill", Variation(Scheduler.FCFS, Control.TIMED)).initial
     logical = first.structure.logical
     heard, late = [], []
-
-    async def main(port, node):
+    with router() as (port, node):
         node.declare_subscriber("7/**", heard.append)
         sending = RosSending(f"tcp:127.0.0.1:{port}?domain=7")
         try:
@@ -91,10 +77,6 @@ def test_a_ros_node_hears_where_things_are_and_one_that_comes_late_hears_the_log
                 await for_real(lambda: late)
         finally:
             await asyncio.to_thread(sending.close)
-        return listed
-
-    with router() as (port, node):
-        listed = asyncio.run(main(port, node))
     said = {str(each.key_expr): each for each in heard}
     assert len(said) == 3
     fix = said[key_of(7, Topic("/bigactors/uav0/fix", FIX, hash_of(FIX)))]

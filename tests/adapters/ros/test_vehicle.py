@@ -10,7 +10,7 @@ from contextlib import asynccontextmanager, nullcontext
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from routers import router, session, tokens
-from worlds import World, running, until
+from worlds import World, running, simulated, until
 
 from adapters.assigned import Assigned
 from adapters.plugin import (
@@ -34,27 +34,13 @@ from bigactors.testing import Connection, PluginContract
 from physical import PhysicalError, box, circle, distance, point
 
 STORE = get_typestore(Stores.ROS2_KILTED)
-STORE.register(
-    get_types_from_msg(
-        "float64 latitude\nfloat64 longitude\nfloat64 altitude", "geographic_msgs/msg/GeoPoint"
-    )
-)
-STORE.register(
-    get_types_from_msg(
-        "geographic_msgs/GeoPoint position\ngeometry_msgs/Quaternion orientation",
-        "geographic_msgs/msg/GeoPose",
-    )
-)
-STORE.register(
-    get_types_from_msg(
-        "std_msgs/Header header\ngeographic_msgs/GeoPose pose", "geographic_msgs/msg/GeoPoseStamped"
-    )
-)
-STORE.register(
-    get_types_from_msg(
-        "std_msgs/Header header\ngeographic_msgs/GeoPoseStamped[] poses", "geographic_msgs/msg/GeoPath"
-    )
-)
+for _name, _fields in (
+    ("GeoPoint", "float64 latitude\nfloat64 longitude\nfloat64 altitude"),
+    ("GeoPose", "geographic_msgs/GeoPoint position\ngeometry_msgs/Quaternion orientation"),
+    ("GeoPoseStamped", "std_msgs/Header header\ngeographic_msgs/GeoPose pose"),
+    ("GeoPath", "std_msgs/Header header\ngeographic_msgs/GeoPoseStamped[] poses"),
+):
+    STORE.register(get_types_from_msg(_fields, f"geographic_msgs/msg/{_name}"))
 HASHED, HUMBLE = "", "TypeHashNotSupported"
 TRIGGER = (
     "std_srvs::srv::dds_::Trigger_/RIHS01_eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f"
@@ -156,55 +142,46 @@ def answers(world, request):
 
 
 @pytest.mark.parametrize("hashed", [HASHED, HUMBLE], ids=["jazzy", "humble"])
-def test_a_robot_goes_by_a_path_is_held_and_is_refused_what_ros_has_no_word_for(hashed):
-    async def main():
-        async with driven(hashed=hashed) as (plugin, simulated, world):
-            assert world.property("uav0").channels == ("wifi",)
-            await plugin.command(Follow("r1", "uav0", (MID, PLACE), name="north"))
-            await until(lambda: answers(world, "r1")[-1:] == [Arrived])
-            assert answers(world, "r1") == [Accepted, Arrived]
-            assert set(simulated.told) == {"GeoPath"}
-            await plugin.command(GoTo("r2", "uav0", MID))
-            await until(lambda: answers(world, "r2"))
-            await plugin.command(Hold("r3", "uav0"))
-            await until(lambda: answers(world, "r3"))
-            assert (answers(world, "r2"), answers(world, "r3")) == ([Accepted], [Accepted, Arrived])
-            assert (simulated.held, simulated.told[-1]) == (1, "GeoPoseStamped")
-            await plugin.command(GiveBack("r6", "uav0"))
-            await plugin.command(
-                Return("r4", "uav0")
-            )  # without a service of its own: a goal where it was first
-            await until(lambda: answers(world, "r4")[-1:] == [Arrived])
-            assert distance(world.property("uav0").geometry, point(*simulated.home)) <= 10
-            assert set(simulated.heights) == {simulated.height}
-            outside, high = point(39.0, -8.6), (100.0, 120.0)
-            for command, reason in (
-                (HandOver("r5", "uav0", "control:a", "control:b"), "has no HandOver"),
-                (GoTo("r7", "uav0", outside, name="far0"), "far0 is outside the fence of uav0"),
-                (GoTo("r8", "uav0", PLACE, high), "cannot be sent to a height"),
-            ):
-                with pytest.raises(Refused, match=reason):
-                    await plugin.command(command)
-            assert not any(answers(world, f"r{number}") for number in (5, 7, 8))
-
-    run(main())
+@simulated
+async def test_a_robot_goes_by_a_path_is_held_and_is_refused_what_ros_has_no_word_for(hashed):
+    async with driven(hashed=hashed) as (plugin, simulated, world):
+        assert world.property("uav0").channels == ("wifi",)
+        await plugin.command(Follow("r1", "uav0", (MID, PLACE), name="north"))
+        await until(lambda: answers(world, "r1")[-1:] == [Arrived])
+        assert answers(world, "r1") == [Accepted, Arrived]
+        assert set(simulated.told) == {"GeoPath"}
+        await plugin.command(GoTo("r2", "uav0", MID))
+        await until(lambda: answers(world, "r2"))
+        await plugin.command(Hold("r3", "uav0"))
+        await until(lambda: answers(world, "r3"))
+        assert (answers(world, "r2"), answers(world, "r3")) == ([Accepted], [Accepted, Arrived])
+        assert (simulated.held, simulated.told[-1]) == (1, "GeoPoseStamped")
+        await plugin.command(GiveBack("r6", "uav0"))
+        await plugin.command(Return("r4", "uav0"))  # without a service of its own: a goal where it was first
+        await until(lambda: answers(world, "r4")[-1:] == [Arrived])
+        assert distance(world.property("uav0").geometry, point(*simulated.home)) <= 10
+        assert set(simulated.heights) == {simulated.height}
+        outside, high = point(39.0, -8.6), (100.0, 120.0)
+        for command, reason in (
+            (HandOver("r5", "uav0", "control:a", "control:b"), "has no HandOver"),
+            (GoTo("r7", "uav0", outside, name="far0"), "far0 is outside the fence of uav0"),
+            (GoTo("r8", "uav0", PLACE, high), "cannot be sent to a height"),
+        ):
+            with pytest.raises(Refused, match=reason):
+                await plugin.command(command)
+        assert not any(answers(world, f"r{number}") for number in (5, 7, 8))
 
 
-def test_a_goal_that_nobody_takes_is_told_and_then_rejected():
-    async def main():
-        async with driven("&return=home", listens=False) as (plugin, _, world):
-            await plugin.command(GoTo("r1", "uav0", PLACE))
-            await until(lambda: answers(world, "r1"))
-            await plugin.command(Return("r2", "uav0"))
-            await until(lambda: answers(world, "r2"))
-        missing = "no node subscribes to /bigactors/uav0/goal as geographic_msgs/msg/GeoPoseStamped"
-        assert [each.reason for each in world.of(Rejected)] == [
-            missing,
-            "/uav0/home: no such service answers",
-        ]
-        assert {each.detail for each in world.of(Trouble)} == {missing}
-
-    run(main())
+@simulated
+async def test_a_goal_that_nobody_takes_is_told_and_then_rejected():
+    async with driven("&return=home", listens=False) as (plugin, _, world):
+        await plugin.command(GoTo("r1", "uav0", PLACE))
+        await until(lambda: answers(world, "r1"))
+        await plugin.command(Return("r2", "uav0"))
+        await until(lambda: answers(world, "r2"))
+    missing = "no node subscribes to /bigactors/uav0/goal as geographic_msgs/msg/GeoPoseStamped"
+    assert [each.reason for each in world.of(Rejected)] == [missing, "/uav0/home: no such service answers"]
+    assert {each.detail for each in world.of(Trouble)} == {missing}
 
 
 @pytest.mark.long  # Zenoh waits before it connects again

@@ -8,9 +8,9 @@ import socket
 import subprocess
 import sys
 import threading
-import time
 from contextlib import ExitStack, contextmanager, suppress
-from random import SystemRandom
+
+from processes import until
 
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.reading import read_recording
@@ -36,27 +36,6 @@ world {
 live { on broken assumption: continue }
 """
 WEST, EAST, NOWHERE = (37.01, -8.65), (37.01, -8.61), (37.03, -8.63)
-
-
-def free_port():
-    """Return a port that nobody has, below those that the system gives away meanwhile to whoever connects."""
-    while True:
-        port = SystemRandom().randrange(20_000, 32_000)
-        with socket.socket() as found, suppress(OSError):
-            found.bind(("127.0.0.1", port))
-            return port
-
-
-def until(what, seconds=180.0):
-    """Look until something is so; looks that take long are taken less often, so that the stations can go on."""
-    end = time.monotonic() + seconds
-    while True:
-        began = time.monotonic()
-        if found := what():
-            return found
-        ended = time.monotonic()
-        assert ended < end, "it did not come to pass in time"
-        time.sleep(max(0.1, 2 * (ended - began)))
 
 
 def peers_toml(reached, *, listen=None, hosts=None, scheme="tcp", tls=None):
@@ -149,13 +128,8 @@ class Station:
         self.socket = folder / f"{name}.sock"
         self._errors = folder / f"{name}.err"
         self._line = ["-m", "bigactors", "run", str(mission), "--station", name, "--peers", str(peers)]
-        self._line += [
-            "--feed",
-            f"detections=folder:{self.camera}",
-            "--station-log",
-            str(folder / f"{name}.log"),
-        ]
-        self._line += ["--socket", str(self.socket), *(more or ["--unverified"])]
+        self._line += ["--feed", f"detections=folder:{self.camera}", "--socket", str(self.socket)]
+        self._line += ["--station-log", str(folder / f"{name}.log"), *(more or ["--unverified"])]
         self._process = None
         self._mission = None
         self._replayed = (None, None)

@@ -3,7 +3,8 @@
 from contextlib import ExitStack
 
 import pytest
-from company import EAST, NOWHERE, WEST, WORLD, Cable, Station, agree, free_port, peers_toml, running, until
+from company import EAST, NOWHERE, WEST, WORLD, Cable, Station, agree, peers_toml, running
+from processes import free_port, until
 
 from adapters.console.history import History
 from adapters.recording.reading import read_recording

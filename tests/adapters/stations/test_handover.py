@@ -1,12 +1,8 @@
 """Example 2 of the paper with stations as processes: `uav0` is handed from gcs0 to gcs1, and both see where it is."""
 
-import os
-import subprocess
-import sys
-from contextlib import contextmanager
-
 import pytest
-from company import WORLD, Station, free_port, peers_toml, running, until
+from company import WORLD, Station, peers_toml, running
+from processes import SIMULATOR, free_port, started, until
 
 from adapters.console.history import History
 from adapters.recording.reading import read_recording
@@ -46,24 +42,6 @@ check { local_consistency
 """
 )
 
-SIMULATOR = """
-import sys
-from adapters.simulated import Kind, Simulator, Vehicle, run
-address, speed = sys.argv[1:]
-run(Simulator(address, [Vehicle(Kind.COPTER, (37.01, -8.65, 20.0), enforce=False)]).run(), float(speed))
-"""
-
-
-@contextmanager
-def flying(address, speed=30):
-    environment = {**os.environ, "PYTHONPATH": os.getcwd()}
-    process = subprocess.Popen([sys.executable, "-c", SIMULATOR, address, str(speed)], env=environment)
-    try:
-        yield
-    finally:
-        process.kill()
-        process.wait()
-
 
 @pytest.fixture
 def stations(tmp_path):
@@ -81,7 +59,7 @@ def stations(tmp_path):
     rest = ["--verdict", str(tmp_path / "v")]
     more = [*rest, "--vehicle", f"uav0=udpout:127.0.0.1:{vehicle}"]
     found = [Station(tmp_path, name, peers, mission, *(more if name != "gcs2" else rest)) for name in ports]
-    with flying(f"udp:127.0.0.1:{vehicle}"), running(found):
+    with started("-c", SIMULATOR, f"udp:127.0.0.1:{vehicle}", "30", "obeys all"), running(found):
         yield found
 
 

@@ -5,21 +5,25 @@ import json
 import time
 
 import pytest
-from company import WORLD, Station, free_port, peers_toml, running, until
+from company import WORLD, Station, peers_toml, running
+from live_missions import LIVE, Run, plan_of
 from msgspec import Raw
 from msgspec.json import encode
+from processes import free_port, until
 
+from adapters.live.plan import Plan
+from adapters.plugin import Delivered
 from adapters.stations.bus import Bus
 from adapters.stations.entries import Entry, Posted, entry_text
 from adapters.stations.messages import Message
 from adapters.stations.peers import read_peers
 from bigactors.commands.run.stations import digest_of
-from semantics.state.setting import Control, Scheduler
-from specs.elaboration import Variation, load_mission
+from semantics.state.partition import Parting, parted
+from specs.elaboration import load_mission
 
 MISSION = (
     "mission lie\n"
-    + WORLD.replace("linked control:gcs0, internet", "linked control:gcs0, internet", 1)
+    + WORLD
     + """
 BigActor scout hosted_at gcs0 with_behavior {
   let place = west0
@@ -80,24 +84,29 @@ LIES = [
 ]
 
 
-@pytest.mark.parametrize("lie", LIES, ids=range(len(LIES)))
+@pytest.mark.parametrize("lie", LIES[:-1], ids=range(len(LIES) - 1))
+def test_a_forged_parcel_does_not_enter(lie):
+    part = Parting("gcs1", {"gcs0": "gcs0", "gcs1": "gcs1", "gcs2": "gcs1"}, {}, {})
+    run = Run(Plan(parted(plan_of(MISSION).first, part), peers="stations"))
+    run.turn(0.0, reports=[Delivered("gcs0", 1.0, 1, lie)])
+    assert "enter" not in run.rules
+    assert "parcel 1 of gcs0 cannot enter" in run.messages()[0]
+
+
+@pytest.mark.parametrize("lie", [LIES[0], LIES[-1]], ids=["forged", "unreadable"])
 def test_a_forged_parcel_is_refused_and_recorded_and_the_run_goes_on(tmp_path, lie):
     path = tmp_path / "lie.mission"
     path.write_text(MISSION)
     ports = {name: free_port() for name in ("gcs0", "gcs1")}
     for name in ports:
         (tmp_path / f"{name}.toml").write_text(peers_toml(ports, hosts={"gcs1": ["gcs2"]}))
-    liar = Liar(
-        read_peers(tmp_path / "gcs0.toml", "gcs0"),
-        load_mission(path, Variation(Scheduler.FCFS, Control.TIMED)),
-    )
+    liar = Liar(read_peers(tmp_path / "gcs0.toml", "gcs0"), load_mission(path, LIVE))
     liar.post(lie)
     station = Station(tmp_path, "gcs1", tmp_path / "gcs1.toml", path)
     with running([station]):
         until(station.socket.exists)
         asyncio.run(liar.lie(3.0))
-        refused = "cannot enter" if lie != LIES[-1] else "unreadable"
-        until(lambda: refused in station.said)
+        until(lambda: ("cannot enter" if lie == LIES[0] else "unreadable") in station.said)
         assert station._process.poll() is None
         assert "Traceback" not in station.said
         station.interrupt()

@@ -9,7 +9,8 @@ from math import cos, hypot, radians
 from operator import itemgetter
 
 import pytest
-from company import Station, free_port, peers_toml, running, until
+from company import Station, peers_toml, running
+from processes import free_port, until
 from water import AIRFIELD, SEARCH, SPILL, Water, drifted
 
 from adapters.recording.reading import read_recording

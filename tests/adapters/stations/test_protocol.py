@@ -13,7 +13,7 @@ from json_mutations import mutated
 from live_missions import EAST, WEST
 from msgspec.json import encode
 from scale import examples
-from test_sharing import MISSION, Node, World
+from test_sharing import ENTRIES, MISSION, Node, World
 
 from adapters.plugin import Delivered
 from adapters.stations.entries import Entry, Posted, Said, entry_of, entry_text
@@ -225,20 +225,6 @@ def test_no_change_of_a_message_breaks_more_than_itself(data):
         company.nodes["gcs1"].sharing._hear("gcs0", said.encode())
         words = company.nodes["gcs1"].sharing.merge.words
         assert all(isinstance(entry.content, Said) for each in words.values() for entry in each.values())
-
-
-ENTRIES = [
-    {"n": 1, "sent": "uav0", "to": "east0", "time": 1.0},
-    {"n": 2, "hosted": "op0", "host": "gcs0", "time": 1.0},
-    {"n": 3, "believed": "uav0", "slot": "parent", "names": ["east0"], "time": 1.0},
-    {"n": 4, "to": "gcs1", "index": 1, "parcel": {"Parcel": []}, "knows": {"gcs1": 3}, "time": 2.0},
-    {"n": 5, "took": "gcs1", "index": 1},
-    {"n": 6, "broke": "it rains", "time": 2.0},
-    {"n": 7, "entity": "uav0", "kind": "UAV", "at": {"ring": [[370000000, -86500000]]}, "time": 1.0}
-    | {"altitude": [1.0, 2], "channels": ["c"], "by": "ship", "velocity": [1, 2.5]}
-    | {"since": 1.0, "owned": True, "ttl": 60.0, "clock": 7},
-    {"n": 8, "entity": "uav0", "time": 1.0, "gone": True, "since": 1.0, "owned": False},
-]
 
 
 @examples(400)

@@ -4,7 +4,8 @@ import time
 from contextlib import ExitStack
 
 import pytest
-from company import EAST, WEST, WORLD, Cable, Station, free_port, peers_toml, running, until
+from company import EAST, WEST, WORLD, Cable, Station, peers_toml, running
+from processes import free_port, until
 
 from bigactors.cli import main
 from checker.reports.lanes import lanes_of
