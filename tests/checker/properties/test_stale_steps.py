@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from checked_missions import load, start, verdict
+from test_stale_races import BOTH_LOOK as LOOKS
 
 from checker import ReplayError, Trace, check, print_trace, replay, to_json
 from checker.properties.races import STALE
@@ -14,46 +15,6 @@ from checker.reduction import Reduction
 from checker.reports.comparison import comparison_text
 from checker.reports.lanes import LaneStep, Repetition, bounded, folded, lanes_of_trace, lanes_text
 from semantics.races.monitor import monitored
-
-LOOKS = """
-BigActor a hosted_at uav0 with_behavior {
-  observe(CHILDREN(gate0))
-  react { case obs if not (uav1 in obs) => control(MOVE_HOST_TO gate0) case obs => skip }
-}
-BigActor b hosted_at uav1 with_behavior {
-  observe(CHILDREN(gate0))
-  react { case obs if not (uav0 in obs) => control(MOVE_HOST_TO gate0) case obs => skip }
-}
-"""
-
-SCOUTED = """
-BigActor a hosted_at uav0 with_behavior {
-  observe(CHILDREN(gate0))
-  react { case obs =>
-    send "look" to scout
-    if not (uav1 in obs) { control(MOVE_HOST_TO gate0) }
-  }
-}
-BigActor scout hosted_at vessel0 with_behavior {
-  react { case "look" => observe(CHILDREN(gate0)) }
-  react { case obs => send "go" to b }
-}
-BigActor b hosted_at uav1 with_behavior { react { case "go" => control(MOVE_HOST_TO gate0) } }
-"""
-"""The scout asks the same as a, and later; b goes by the scout's word."""
-
-TOLD = """
-BigActor a hosted_at uav0 with_behavior { react { case "go" => control(MOVE_HOST_TO gate0) } }
-BigActor scout hosted_at vessel0 with_behavior {
-  observe(CHILDREN(gate0))
-  react { case obs => if not (uav1 in obs) { send "go" to a } }
-  observe(CHILDREN(gate0))
-  react { case obs => send "enter" to b }
-}
-BigActor b hosted_at uav1 with_behavior { react { case "enter" => control(MOVE_HOST_TO gate0) } }
-"""
-"""What a does rests on the scout's first look, and on none of its own."""
-
 
 ALIKE = """
 mission alike
@@ -77,32 +38,13 @@ check { race_freedom }
 """
 
 
-def race_of(text, agent=None):
-    """Return a stale race of a mission, that of an agent if one is named."""
-    found = verdict(text, "race_freedom").violations
-    return next(
-        each for each in found if each.kind == STALE and agent in (None, each.trace.steps[-1].label.agent)
-    )
+def race_of(text):
+    """Return a stale race of a mission."""
+    return next(each for each in verdict(text, "race_freedom").violations if each.kind == STALE)
 
 
 def said(trace):
     return {role: str(trace.steps[number - 1].label) for number, role in trace.race.roles.items()}
-
-
-@pytest.mark.parametrize("scheduler", ["unordered", "program_order", "fcfs"])
-def test_the_look_is_that_of_who_acts_though_another_asks_the_same_later(scheduler):
-    assert said(race_of(f"{SCOUTED}scheduler {scheduler}\n", "a").trace) == {
-        "sensed": "⟨sense : OBS(a, CHILDREN(gate0))⟩",
-        "changed": "⟨actuate : CTR(b, MOVE_HOST_TO gate0)⟩",
-        "acted": "⟨actuate : CTR(a, MOVE_HOST_TO gate0)⟩",
-    }
-
-
-def test_of_two_looks_of_one_agent_it_is_the_one_that_another_was_told_of():
-    trace = race_of(TOLD, "a").trace
-    looks = [number for number, step in enumerate(trace.steps, 1) if step.label.rule == "sense"]
-    assert len(looks) == 2
-    assert trace.race.sensed == looks[0]
 
 
 def test_a_trace_that_ends_in_no_race_has_no_such_steps():

@@ -12,6 +12,7 @@ from checked_missions import interrupted_at
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from local_crew import LocalCrew
+from scale import IS_WHOLE
 
 from checker import CheckpointError, Engine, Keeping, Limits, Stop, explore
 from checker.engines.archive import read_archive, write_archive
@@ -115,7 +116,7 @@ def damaged(draw, files):
 
 @pytest.mark.fuzz
 @pytest.mark.parametrize("engine", ENGINES)
-@settings(max_examples=max(60, MANY))
+@settings(max_examples=max(30, MANY))
 @given(data=st.data())
 def test_damaged_files_are_refused(engine, data):
     files = ENGINES[engine][0]()
@@ -176,7 +177,7 @@ def forge(arrays, part, way, at, number):
 
 @pytest.mark.fuzz
 @pytest.mark.parametrize("engine", ENGINES)
-@settings(max_examples=max(80, MANY))
+@settings(max_examples=max(40, MANY))
 @given(data=st.data())
 def test_forged_files_are_refused_or_gone_on_with(engine, data):
     files = ENGINES[engine][0]()
@@ -199,7 +200,7 @@ def test_numbers_that_no_search_has_are_told(part, number):
         resumed("fast", kept_fast(), alter)
 
 
-@pytest.mark.parametrize("at", range(40))
+@pytest.mark.parametrize("at", range(40 if IS_WHOLE else 5))
 def test_counts_that_are_not_those_of_the_rows_are_told(at):
     """Whoever alters a count and works out the digest anew changes no report."""
 

@@ -49,10 +49,10 @@ def told(report):
 
 
 def test_with_files_an_exploration_comes_to_the_same_report(tmp_path, monkeypatch):
-    mission = load_mission(MISSIONS / "rendezvous.mission")
+    mission = load_mission(MISSIONS / "takeover.mission")
     whole = check(mission.initial, mission.properties, engine=Engine.FAST)
     memory = Memory(monkeypatch, tmp_path)
-    monkeypatch.setattr(checker.engines.fast.explorer, "CHUNK", 64)
+    monkeypatch.setattr(checker.engines.fast.explorer, "CHUNK", 32)
     limits = Limits(memory=2 * MEGABYTE)
     assert not check(mission.initial, mission.properties, limits, engine=Engine.FAST).complete
     limits = Limits(memory=2 * MEGABYTE, spill=str(tmp_path))

@@ -1,7 +1,6 @@
 """Several threads: whatever they do at once, everything that one thread finds is found, with the same numbers."""
 
 import threading
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,12 +8,12 @@ import pytest
 from checked_missions import interrupted_at, load
 from hypothesis import given
 from hypothesis import strategies as st
-from scale import crossed, examples
+from scale import IS_WHOLE, crossed, examples
 from shipped import UNTIMED
 
 import checker.limits
 from bigactors.cli import main
-from checker import Engine, Keeping, Limits, check, explore, report_text
+from checker import Engine, Keeping, Limits, explore
 from checker.engines.archive import read_archive
 from checker.engines.contract import Options
 from checker.engines.fast import explorer, frontier_chunks, pipeline, space, tree_compression
@@ -26,7 +25,7 @@ from semantics.races.monitor import monitored
 from specs.elaboration import load_mission
 
 MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
-SOME = Limits(configurations=3_000)
+SOME = Limits(configurations=3_000 if IS_WHOLE else 600)
 SEVERAL = (2, 3, 4)
 
 
@@ -69,10 +68,10 @@ def test_a_mission_is_explored_alike_by_any_number_of_threads(name, variation):
 
 
 @pytest.mark.usefixtures("kept")
-@pytest.mark.parametrize("name", ["oil_spill", "takeover", "rendezvous"])
+@pytest.mark.parametrize("name", ["oil_spill", "takeover"])
 def test_a_monitored_mission_is_explored_alike_by_any_number_of_threads(name):
     initial = monitored(start(name))
-    assert [seen(initial, threads) for threads in SEVERAL] == [seen(initial, 1)] * len(SEVERAL)
+    assert seen(initial, 2) == seen(initial, 4) == seen(initial, 1)
 
 
 @given(strategies.initial_configurations(), st.sampled_from([1, 2]))
@@ -103,7 +102,7 @@ def fleet(uavs):
     return load("\n".join(lines), "mission fleet\n").initial
 
 
-@pytest.mark.parametrize("configurations", [40, 400, 2_000])
+@pytest.mark.parametrize("configurations", [40, 1_000])
 def test_wide_missions_are_explored_alike_by_any_number_of_threads(monkeypatch, configurations):
     """Most pieces of a row are met by slices before they have a number: they get it where the slices are stored."""
     monkeypatch.setattr(tree_compression, "SHALLOW", 1)
@@ -111,17 +110,8 @@ def test_wide_missions_are_explored_alike_by_any_number_of_threads(monkeypatch, 
     limits = Limits(configurations=configurations)
     alone = seen(fleet(12), 1, limits=limits)
     assert configurations == 40 or len(alone[-1][1]) > 2  # nodes: by then rows are folded twice
-    for threads in SEVERAL:
+    for threads in SEVERAL if IS_WHOLE else (3,):
         assert seen(fleet(12), threads, limits=limits) == alone
-
-
-@pytest.mark.parametrize("name", UNTIMED)
-def test_reports_are_the_same_for_any_number_of_threads(name):
-    mission = load_mission(MISSIONS / f"{name}.mission")
-    limits = Limits(configurations=1_000)
-    reports = [check(mission, limits=limits, engine=Engine.FAST, threads=threads) for threads in (1, 4)]
-    told = [list(report_text(name, replace(each, seconds=0.0))) for each in reports]
-    assert told[0] == told[1]
 
 
 def test_other_threads_expand_slices_and_sift_them(monkeypatch):
@@ -146,7 +136,7 @@ def test_other_threads_expand_slices_and_sift_them(monkeypatch):
 
 
 @pytest.mark.usefixtures("kept")
-@pytest.mark.parametrize("threads", SEVERAL)
+@pytest.mark.parametrize("threads", SEVERAL if IS_WHOLE else (3,))
 def test_rows_go_over_to_files_under_several_threads(tmp_path, monkeypatch, threads):
     spill, spilled, asked = Rows.spill, [], []
 
@@ -167,7 +157,7 @@ def test_rows_go_over_to_files_under_several_threads(tmp_path, monkeypatch, thre
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("threads", SEVERAL)
+@pytest.mark.parametrize("threads", SEVERAL if IS_WHOLE else (3,))
 def test_without_memory_several_threads_stop_and_say_so(monkeypatch, threads):
     asked = []
 
@@ -184,7 +174,7 @@ def test_without_memory_several_threads_stop_and_say_so(monkeypatch, threads):
 
 
 @pytest.mark.usefixtures("kept")
-@pytest.mark.parametrize(("before", "after"), [(1, 4), (4, 1), (3, 2)])
+@pytest.mark.parametrize(("before", "after"), [(1, 4), (4, 1), (3, 2)] if IS_WHOLE else [(1, 4), (3, 2)])
 def test_other_threads_go_on_from_a_checkpoint(tmp_path, before, after):
     initial = start("rendezvous")
     limits, stop = interrupted_at(4_000, Limits())

@@ -10,7 +10,7 @@ from checked_missions import load, rules_of
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from naive_time import Naive, TooLarge
-from scale import examples
+from scale import IS_WHOLE, examples
 from shipped import TIMED
 from timed_missions import timed_missions, timings, with_timing
 
@@ -114,10 +114,6 @@ def test_a_trace_has_dates_and_replays_with_them(flight):
     data = to_json(trace, "flight", "")
     assert [step["at"] for step in data["steps"]] == [60.0, 120.0]
     assert replay(flight, data) == trace
-
-
-def test_lanes_say_when(flight):
-    trace = decided(flight, within(7)).verdicts["within"].violations[0].trace
     assert [line.split()[-1] for line in lanes_text(lanes_of_trace(trace)) if "●" in line] == ["1:00", "2:00"]
 
 
@@ -224,11 +220,8 @@ def test_a_response_is_bounded_by_all_that_it_takes():
     assert report.verdicts["within"].outcome is Outcome.HOLDS
     assert report.verdicts["time"].note == "at 0:01 at the earliest, at 0:12 at the latest"
     assert decided(c, within(10, pending, over)).verdicts["within"].outcome is Outcome.VIOLATED
-
-
-def test_a_response_to_what_never_is_says_so():
-    report = decided(timed(ANSWERS, Timing()), within(3, Inside("uav0", "gate0"), Ended("b")))
-    assert report.verdicts["within"].remarks[0].startswith("vacuous: never true: ")
+    never = decided(c, within(3, Inside("uav0", "gate0"), over)).verdicts["within"]
+    assert never.remarks[0].startswith("vacuous: never true: ")
 
 
 def environment(clause, times, text='BigActor a hosted_at gcs0 with_behavior { react { case "go" => } }'):
@@ -320,8 +313,9 @@ def test_what_ticks_do_not_get_through_is_given_to_zones(flight, monkeypatch):
     assert report.notes[0].startswith("searched over 4 zones, ")
 
 
-def test_a_limit_of_zones_is_said_and_nothing_holds(flight):
-    report = check(flight, (within(8), when()), Limits(configurations=1), engine=Engine.FAST)
+@pytest.mark.parametrize(("engine", "most"), [(Engine.FAST, 1), (Engine.REFERENCE, 5)])
+def test_a_limit_is_said_and_nothing_holds(flight, engine, most):
+    report = check(flight, (within(8), when()), Limits(configurations=most), engine=engine)
     assert not report.complete
     assert {each.outcome for each in report.verdicts} == {Outcome.INCOMPLETE}
 
@@ -352,11 +346,6 @@ def test_properties_of_runs_are_not_decided_with_times(flight):
     progress = Property(PropertyKind.PROGRESS, "progress")
     found = decided(flight, progress).verdicts["progress"]
     assert (found.outcome, found.note.partition(":")[0]) == (Outcome.INCOMPLETE, "not decided")
-
-
-def test_a_limit_is_said_and_nothing_holds(flight):
-    report = check(flight, (within(8), when()), Limits(configurations=5))
-    assert {each.outcome for each in report.verdicts} == {Outcome.INCOMPLETE}
 
 
 def test_without_timing_nothing_is_decided_of_times():
@@ -399,14 +388,18 @@ def agree(c, data, most):
 UNBOTHERED = list(HealthCheck)
 
 
-@settings(max_examples=6, deadline=None, suppress_health_check=UNBOTHERED)
+def tried(often):
+    return settings(max_examples=often, deadline=None, suppress_health_check=UNBOTHERED)
+
+
+@tried(6)
 @given(timed_missions(), st.data())
 def test_whole_ticks_agree_with_parts_of_ticks(c, data):
     agree(c, data, 100)
 
 
 @pytest.mark.long
-@settings(max_examples=150, deadline=None, suppress_health_check=UNBOTHERED)
+@tried(150)
 @given(timed_missions(), st.data())
 def test_whole_ticks_agree_with_parts_of_ticks_on_many_missions(c, data):
     agree(c, data, 1500)
@@ -468,16 +461,10 @@ def timed_programs(draw):
 ZEROS = {"react": Interval(0, 0), "sense": Interval(0, 0), "messages": (("", Interval(0, 0)),)}
 
 
-@examples(240, deadline=None, suppress_health_check=UNBOTHERED)
-@given(timed_programs(), st.data())
+@tried(540 if IS_WHOLE else 60)
+@given(st.one_of(timed_programs(), timed_missions()), st.data())
 def test_zones_report_what_whole_ticks_report(c, data):
-    agree_with_zones(c, data, 300)
-
-
-@examples(300, deadline=None, suppress_health_check=UNBOTHERED)
-@given(timed_missions(), st.data())
-def test_zones_report_of_generated_missions_what_whole_ticks_report(c, data):
-    agree_with_zones(c, data, 60)
+    agree_with_zones(c, data, 100)
 
 
 @pytest.mark.long
