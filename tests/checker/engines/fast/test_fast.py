@@ -1,8 +1,6 @@
 """The fast explorer: it visits what the reference explorer visits, in the same order, and stops where that stops."""
 
-from pathlib import Path
-
-from checked_missions import load
+from checked_missions import load, timeless, visited
 from hypothesis import given
 from scale import crossed, examples
 from shipped import UNTIMED
@@ -13,7 +11,6 @@ from semantics import Control, Scheduler, strategies
 from semantics.races.monitor import monitored
 from specs.elaboration import Variation, load_mission
 
-MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
 FEW, CROWDED = Limits(configurations=400), Limits(configurations=100, pending=1)
 
 VARIATIONS = {
@@ -21,41 +18,25 @@ VARIATIONS = {
     "timed": Variation(control=Control.TIMED),
     "unordered": Variation(scheduler=Scheduler.UNORDERED),
     "fcfs timed": Variation(scheduler=Scheduler.FCFS, control=Control.TIMED),
-    "monitored": None,
+    "monitored, or crowded": None,
 }
 
 ENGINES = (Engine.REFERENCE, Engine.FAST)
 """Those that give the same numbers to configurations; Ray's are in `tests/checker/engines/cluster`."""
 
 
-def told(report):
-    """Return what a report says, in a form in which a difference can be read."""
-    verdicts = [
-        (
-            each.property.name,
-            each.outcome,
-            [(v.kind, v.message, v.details, labels(v.trace)) for v in each.violations],
-            (each.count, each.different, each.examined),
-            labels(each.witness),
-            (each.note, each.remarks),
-        )
-        for each in report.verdicts
-    ]
-    sizes = (report.configurations, report.transitions, report.depth, report.bounds, report.rules)
-    return (*verdicts, sizes, report.coverage)
-
-
-def labels(trace):
-    return trace and [f"{step.label} {step.choice}" for step in trace.steps]
+def reported(mission, limits=None):
+    """Return the report that both engines come to."""
+    one, other = (timeless(check(mission, limits=limits, engine=engine)) for engine in ENGINES)
+    assert one == other
+    return one
 
 
 def explored(initial, engine, limits=FEW):
     """Return what was visited in which order, and the edges."""
     found = explore(initial, limits=limits, engine=engine, edges=True)
-    visited = (list(found.configurations), list(map(int, found.origins)), found.depth, found.expanded)
     graph = kept_graph(found)
-    edges = (graph.starts.tolist(), graph.targets.tolist(), actions(graph), graph.open.tolist())
-    return (*visited, found.transitions, found.rules, found.bounds, edges)
+    return visited(found), graph.starts.tolist(), graph.targets.tolist(), actions(graph), graph.open.tolist()
 
 
 def actions(graph):
@@ -66,7 +47,7 @@ def actions(graph):
 
 @crossed(UNTIMED, VARIATIONS)
 def test_a_mission_is_explored_alike_by_both_engines(name, variation):
-    initial = load_mission(MISSIONS / f"{name}.mission", variation or Variation()).initial
+    initial = load_mission(name, variation or Variation()).initial
     initial = initial if variation else monitored(initial)
     assert explored(initial, Engine.FAST) == explored(initial, Engine.REFERENCE)
 
@@ -80,18 +61,14 @@ def test_generated_missions_are_explored_alike_by_both_engines(initial):
 
 @crossed(UNTIMED, VARIATIONS)
 def test_both_engines_come_to_the_same_report(name, variation):
-    mission = load_mission(MISSIONS / f"{name}.mission", variation or Variation())
-    for limits in (FEW, CROWDED):
-        reports = [check(mission.initial, mission.properties, limits, engine=engine) for engine in ENGINES]
-        assert told(reports[0]) == told(reports[1])
+    mission = load_mission(name, variation or Variation())
+    reported(mission, FEW if variation else CROWDED)
 
 
 @given(strategies.missions())
 @examples(60)
 def test_generated_missions_are_judged_alike_by_both_engines(mission):
-    limits = Limits(configurations=60)
-    reports = [check(mission, limits=limits, engine=engine) for engine in ENGINES]
-    assert told(reports[0]) == told(reports[1])
+    reported(mission, Limits(configurations=60))
 
 
 ROUTES = """
@@ -117,14 +94,12 @@ check { race_freedom local_consistency reachable "back": b.way == [gate0, north0
 
 
 def test_routes_with_observations_in_them_are_judged_alike_by_both_engines():
-    mission = load(ROUTES)
-    reports = [check(mission.initial, mission.properties, engine=engine) for engine in ENGINES]
-    assert told(reports[0]) == told(reports[1])
-    assert (reports[0].configurations, reports[0].verdicts[2].outcome) == (310, Outcome.HOLDS)
+    report = reported(load(ROUTES))
+    assert (report.configurations, report.verdicts[2].outcome) == (310, Outcome.HOLDS)
 
 
 def test_the_rules_are_run_far_less_often_than_there_are_transitions():
-    found = explore(load_mission(MISSIONS / "rendezvous.mission").initial, engine=Engine.FAST)
+    found = explore(load_mission("rendezvous").initial, engine=Engine.FAST)
     assert (len(found.configurations), found.transitions) == (18_051, 73_275)
     assert found.rule_runs is not None
     assert found.rule_runs < 600
