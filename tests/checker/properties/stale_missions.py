@@ -71,6 +71,33 @@ RESTS = {
       react { case o if not uav1 in o => skip after 5 s => NEVER } ENTER""",
     "a guard that refused and whose case waits": "react { case o if uav1 in o => NEVER after 5 s => skip } ENTER",
     "a guard that had to hold": "react { case o if not (uav1 in o) => skip } ENTER",
+    "a guard": "react { case o if not (uav1 in o) => ENTER case o => skip }",
+    "an earlier guard": "react { case o if uav1 in o => skip case o => ENTER }",
+    "an if": "react { case o => if uav1 in o { skip } else { ENTER } }",
+    "an if around an if": "react { case o => if not (uav1 in o) { if true { ENTER } } }",
+    "a guard in a match": "react { case o => match 0 { case n if not (uav1 in o) => ENTER case _ => skip } }",
+    "a for": "react { case o => for x in nodes(o) { ENTER } }",
+    "a stored value": "let clear = false react { case o => clear = not (uav1 in o) } if clear { ENTER }",
+    "a value stored under a test": """
+      let clear = false react { case o => if not (uav1 in o) { clear = true } } if clear { ENTER }""",
+    "a case whose other waits": "react { case o if not uav1 in o => skip case _ => NEVER } ENTER",
+    "an if whose other way loops": "react { case o => if uav1 in o { loop { LOOKS react { case x => skip } } } } ENTER",
+    "an if whose other way may look in vain": """react { case o => if uav1 in o {
+      observe(HOST) react { case p: Observation if gate0 in p => skip } } } ENTER""",
+    "an if whose other way looks until": """react { case o => if uav1 in o { let full = true while full {
+      LOOKS react { case p => full = uav1 in p } } } } ENTER""",
+    "an if whose other way is told": 'react { case o => if uav1 in o { react { case "free" => skip } } } ENTER',
+    "a for whose body waits": "react { case o => for x in o of UAV { NEVER } } ENTER",
+    "a guard that refused, after which the wait ended": """
+      react { case o: Observation if uav1 in o => skip after 5 s => ENTER }""",
+    "a test before a loop": "react { case o if not uav1 in o => skip } loop { ENTER NEVER }",
+    "a test under which it looked": """
+      react { case o => if not uav1 in o { observe(HOST) } } react { case _: Observation => ENTER }""",
+    "a test under which it looked before": """
+      react { case o => if not uav1 in o { observe(HOST) } } react { case _: Observation => skip } ENTER""",
+    "what an if would have assigned": "react { case o => if uav1 in o { busy = true } } if not busy { ENTER }",
+    "what another case would have assigned": """
+      react { case o if uav1 in o => busy = true case _ => skip } if not busy { ENTER }""",
     "what a for would have assigned": """
       react { case o => for x in o { if x == uav1 { busy = true } } } if not busy { ENTER }""",
     "what would have had it migrate": """
@@ -84,6 +111,11 @@ FREE = {
     "an answer that nobody changes": "react { case o if not (drifter0 in o) => ENTER case o => skip }",
     "its own doing": """
       react { case o if not (uav0 in o) => ENTER control(MOVE_HOST_TO south0) case o => skip }""",
+    "both ways of a test alike": "react { case o => if uav1 in o { skip } ENTER }",
+    "a control that comes before": "ENTER react { case o if uav1 in o => skip case o => skip }",
+    "an if whose other way ends": "react { case o => if uav1 in o { skip } } ENTER",
+    "an if whose other way looks and goes on": """
+      react { case o => if uav1 in o { LOOKS react { case p => skip } } } ENTER""",
     "an if whose other way gives up": """
       react { case o => if uav1 in o { react { case "free" => skip after 5 s => skip } } } ENTER""",
     "an if whose other way counts": """
@@ -96,22 +128,11 @@ FREE = {
       react { case o if not (uav1 in o) => skip } observe(PARENT(uav0)) react { case "never" => ENTER }""",
 }  # fmt: skip
 
-OF_MEMBERS = {
-    "their number": "if size(obs) < 9",
-    "their lack": "if not empty(obs)",
-    "their kind": "if not empty(obs of Vessel)",
-    "the nodes": "if not empty(nodes(obs))",
-    "a difference": "if not empty(obs - {gcs0})",
-    "a union": "if size({gcs0} + obs) < 9",
-    "the first": "if first(obs) == gcs1",
-    "each": "for x in obs",
-    "one": "choose x in obs",
-}
-"""Tests that ask of an observation who is shown, and not on which links."""
-
-OF_ALL = ("obs == obs", "obs != 0", "size({obs, 1}) == 2", "obs in {obs}", "element((obs, 1), 1) == 1")
-"""Tests that ask for all that an observation says."""
-
+COMES_BACK = """
+    a@uav0: react { case "go" => control(MOVE_HOST_TO south0) }
+    b@uav1: observe(CHILDREN(south0)) react { case o if not (uav0 in o) => ENTER observe(PARENT(HOST))
+              react { case there => send("go", a) control(MOVE_HOST_TO south0) } case o => skip }
+    """
 SEEN = [
     case("two look at different places", "", """
     a@uav0: LOOKS react { case o if not (uav1 in o) => ENTER case o => skip }
@@ -124,6 +145,11 @@ SEEN = [
     case("another changes a relation that the redex uses", "a", """
     a@uav0: LOOKS react { case o if not (uav1 in o) => ENTER case o => skip }
     b@gcs0: control(MOVE uav0 TO south0)
+    """),
+    case("another enters and leaves what has to be empty", "a", """
+    rule enter(u: UAV, p: Location) { u || p -> p.u }
+    a@uav0: LOOKS react { case o if not (drifter0 in o) => control(enter(uav0, gate0)) case o => skip }
+    b@uav1: ENTER control(MOVE_HOST_TO south0)
     """),
     case("one looked again", "", """
     a@uav0: LOOKS react { case o => display(o) } react { case "in" => LOOKS }
@@ -138,6 +164,23 @@ SEEN = [
     a@uav0: ENTER
     b@uav1: observe(ALL) react {{ case o if size(children({place}, o) of UAV) < 3 => NORTH }}
     """) for goes, place, stale in (("leaves", "north0", "b"), ("enters", "gate0", "b"), ("passes by", "south0", ""))),
+    case("another comes to the place that one has left itself", "b", COMES_BACK),
+    case("another comes to the place that one has left, of which it asked by where it was", "b",
+      COMES_BACK.replace("CHILDREN(south0)", "CHILDREN(PARENT(HOST))")),
+    case("others do something elsewhere while one is on its own way", "", """
+    control timed
+    b@uav1: observe(CHILDREN(PARENT(HOST))) react { case o if not (uav0 in o) => ENTER case o => skip }
+    a@uav0: ENTER
+    """),
+    case("what a query begins with is changed by another", "b", """
+    b@uav0: observe(CHILDREN(PARENT(uav1))) react { case o if vessel0 in o => ENTER case o => skip }
+    a@uav1: NORTH
+    """),
+    case("what a query begins with is changed by oneself", "", """
+    b@gcs1: observe(CHILDREN(PARENT(uav1))) react { case o if vessel0 in o =>
+      control(MOVE uav1 TO north0) control(CONNECT_HOST_TO gcs0) case o => skip }
+    a@uav0: ENTER
+    """),
     case("as many are linked as before, though others", "", """
     b@gcs1: control(HAND uav1 TO gcs2)
     a@uav1: observe(LINKED_TO(uav1)) react { case o => if size(o) == 4 { ENTER } }
@@ -155,11 +198,63 @@ FREED = """
 """
 
 
+PASSED_BY = """
+    b@uav1: observe(CHILDREN(PARENT(HOST))) react { case o =>
+      let n = size(o of UAV) ENTER observe(PARENT(HOST))
+      react { case there => send("go", a) if n == 1 { control(MOVE_HOST_TO south0) } send(("seen", n), c) } }
+    c@gcs2: react { case m: Message => skip }
+    a@uav0: react { case "go" => control(MOVE_HOST_TO south0) }
+    """
+MOVED = """
+    a@uav0: LOOKS react { case o => let full = uav1 in o NORTH control(MOVE_HOST_TO south0)
+              observe(PARENT(HOST)) react { case there => send(("full", full), b) } }
+    b@uav0: react { case (word, x) if not x => ENTER }
+    """
+
+
 def freed(tells, text=FREED):
     return text.replace("TELLS", tells)
 
 
+LOOKOUT = """
+    c@gcs0: LOOKS react { case o if not (uav1 in o) => send("clear", a) case o => send("full", a) }
+    a@uav0: react { case "clear" => ENTER case "full" => skip }
+    b@uav1: ENTER
+    """
+HANDOVER = """
+    op1@gcs0: observe(LINKED_TO_HOST) react { case o if uav0 in o =>
+      control(HAND uav0 TO gcs1) observe(LINKED_TO(uav0)) react { case again => send("yours", op2) } case o => skip }
+    op2@gcs1: react { case "yours" => control(HAND uav0 TO gcs2) }
+    """
+NOT_HANDED = HANDOVER.replace("control(HAND uav0 TO gcs1)", "skip").replace(
+    "HAND uav0 TO gcs2", "HAND uav1 TO gcs2"
+)
+RELAYED = """
+    a@gcs0: LOOKS react { case o => send(("free", size(o of UAV)), b) }
+    b@uav1: ENTER ARRIVES react { case (word, n) if n == 0 => send(("free", n), c) case m: Message => skip }
+    c@uav0: react { case (word, n) if n == 0 => ENTER case m: Message => skip }
+    """
 TOLD = [
+    case("a word is said under a test", "a", LOOKOUT),
+    case("who says a word under a test changes it afterwards", "a", """
+    c@uav1: LOOKS react { case o if not (uav1 in o) => send("clear", a) ENTER case o => skip }
+    a@uav0: react { case "clear" => ENTER }
+    """),
+    case("who says a word has changed what it tested before", "", HANDOVER),
+    case("who says a word has changed nothing", "", NOT_HANDED),
+    case("a third changes what was tested before a word is said", "op2",
+      f"{NOT_HANDED}op3@gcs0: control(HAND uav0 TO gcs2)"),
+    case("a value is told on by one that has changed it", "c", RELAYED, NEAR),
+    case("another value is told on", "", RELAYED.replace('("free", n), c', '("free", 0), c'), NEAR),
+    case("a value is told to nobody else", "", RELAYED.replace('send(("free", n), c)', "NORTH"), NEAR),
+    case("a value is computed after its teller has changed it", "b", freed('send(("free", size(o of UAV)), b)')),
+    case("a value was computed before its teller has changed it", "b",
+      freed('send(("free", n), b)', FREED.replace("case o =>", "case o => let n = size(o of UAV)"))),
+    case("a value goes through others' hands", "b",
+      freed('send(("free", size(o of UAV)), c)') + "c@uav1: react { case m: Message => send(m, b) }"),
+    case("it is told that something is done", "", freed('send(("free", 0), b)')),
+    case("whatever it says, a message has come", "", freed('send(("free", size(o of UAV)), b)', FREED.replace(
+      "case (word, n) if n == 0 => ENTER case m: Message => skip", "case m: Message => ENTER"))),
     case("a message holds the observation", "a", """
     c@gcs0: LOOKS react { case o => send(o, a) }
     a@uav0: react { case seen if not (uav1 in seen) => ENTER case seen => skip }
@@ -233,20 +328,10 @@ TOLD = [
     a@uav0: LOOKS react { case o => ENTER send(size(o), b) if size(o) == 1 { NORTH } }
     b@uav1: react { case n => skip }
     """),
-    case("a value is about the place that its holder has left", "b", PASSED_BY := """
-    b@uav1: observe(CHILDREN(PARENT(HOST))) react { case o =>
-      let n = size(o of UAV) ENTER observe(PARENT(HOST))
-      react { case there => send("go", a) if n == 1 { control(MOVE_HOST_TO south0) } send(("seen", n), c) } }
-    c@gcs2: react { case m: Message => skip }
-    a@uav0: react { case "go" => control(MOVE_HOST_TO south0) }
-    """),
+    case("a value is about the place that its holder has left", "b", PASSED_BY),
     case("a value is not about the place where its holder is now", "",
       PASSED_BY.replace('"go" => control(MOVE_HOST_TO south0)', '"go" => ENTER')),
-    case("its teller has moved a vehicle, and who is told moves it on", "", MOVED := """
-    a@uav0: LOOKS react { case o => let full = uav1 in o NORTH control(MOVE_HOST_TO south0)
-              observe(PARENT(HOST)) react { case there => send(("full", full), b) } }
-    b@uav0: react { case (word, x) if not x => ENTER }
-    """),
+    case("its teller has moved a vehicle, and who is told moves it on", "", MOVED),
     case("a third has moved a vehicle that its teller has moved", "b", f"{MOVED}c@gcs0: control(MOVE uav0 TO north0)"),
 ]  # fmt: skip
 """What one is told by others."""
@@ -322,6 +407,16 @@ TELLS_ITS_HOST = {
     "a value of it": ("migrate(first(o of UAV))", "ARRIVES", "NORTH ARRIVES", "{HOST}"),
 }  # fmt: skip
 
+STATION = """
+    b@gcs0: observe(LINKED_TO(uav1)) react { case o => migrate(first(o of Station)) }
+            observe(PARENT(HOST)) react { case there => control(MOVE uav1 TO gate0) }
+    a@uav0: control(DISCONNECT_HOST_FROM uav1)
+    """
+SPAWNER = """
+    def enter() = { ENTER }
+    a@vessel0: observe(CHILDREN(south0)) react { case o => let h = first(o of UAV) NORTH
+      observe(PARENT(HOST)) react { case there => spawn c hosted_at h with_behavior enter() } }
+    """
 HOSTED = [
     case("chosen by an observation", "b", migrating("migrate(first(o of UAV))", TAKES_AWAY)),
     case("decided by a test", "b", migrating("if uav1 in o { migrate(uav1) }", TAKES_AWAY)),
@@ -332,17 +427,9 @@ HOSTED = [
     case("written, though an observation is held", "", migrating("migrate(uav1)", COMES)),
     case("decided by an answer that nobody has changed", "", migrating("if vessel0 in o { migrate(uav1) }", COMES)),
     case("left since", "", migrating("migrate(first(o of UAV)) migrate(uav0)", COMES)),
-    case("a station that an observation chose", "b", STATION := """
-    b@gcs0: observe(LINKED_TO(uav1)) react { case o => migrate(first(o of Station)) }
-            observe(PARENT(HOST)) react { case there => control(MOVE uav1 TO gate0) }
-    a@uav0: control(DISCONNECT_HOST_FROM uav1)
-    """),
+    case("a station that an observation chose", "b", STATION),
     case("a station that is written", "", STATION.replace("first(o of Station)", "gcs1")),
-    case("that of its spawner, which made it stale", "c", SPAWNER := """
-    def enter() = { ENTER }
-    a@vessel0: observe(CHILDREN(south0)) react { case o => let h = first(o of UAV) NORTH
-      observe(PARENT(HOST)) react { case there => spawn c hosted_at h with_behavior enter() } }
-    """),
+    case("that of its spawner, which made it stale", "c", SPAWNER),
     case("that of its spawner, which left it as it was", "", SPAWNER.replace("NORTH", "skip")),
 ]  # fmt: skip
 """How a host came to be whose agent acts there."""

@@ -56,6 +56,6 @@ def test_a_control_rests_on_each_answer_with_another_of_which_it_would_not_have_
 def test_both_engines_find_a_race_by_what_the_other_way_would_have_done(engine):
     text = beside_who_enters(RESTS["an if whose other way waits"]) + "check { race_freedom }"
     mission = load(text)
-    found = check(mission.initial, mission.properties, engine=engine).verdicts[0]
+    found = check(mission, engine=engine).verdicts[0]
     assert found.outcome is Outcome.VIOLATED
     assert len(found.violations) == 1

@@ -1,17 +1,13 @@
 """Control races (semantics.md, check 2), each of their clauses."""
 
 import pytest
-from checked_missions import WORLD, kinds, load, moves, rules_of, verdict, violation
+from checked_missions import PILOTS, WORLD, kinds, load, moves, rules_of, verdict, violation
 
 from checker import explore
 from checker.properties.findings import Collected
 from checker.properties.races import ControlRaces
 from checker.verdicts import Outcome
 
-PILOTS = """
-BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }
-BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }
-"""
 HANDS_AND_MOVES = """
 BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }
 BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }

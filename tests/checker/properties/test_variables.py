@@ -9,7 +9,7 @@ import operator
 from pathlib import Path
 
 import pytest
-from checked_missions import WORLD, checked, load, rules_of, verdict_of
+from checked_missions import WORLD, checked, load
 from hypothesis import given
 from hypothesis import strategies as st
 from scale import examples
@@ -22,8 +22,7 @@ from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property, watching
 from semantics.properties.propositions import VariableIs
 from semantics.properties.temporal import Denied, Either, Globally, Now
-from specs import parse_bytes
-from specs.elaboration import elaborate, load_mission
+from specs.elaboration import load_mission
 
 MISSIONS = Path(__file__).parents[3] / "specs" / "missions"
 
@@ -274,7 +273,7 @@ def asked(invariant, reachable, claim):
 @everything
 def test_verdicts_are_those_of_an_interpreter_that_forgets_nothing(block, invariant, reachable, claim):
     mission = mission_of(block, *asked(invariant, reachable, claim))
-    report = check(mission.initial, mission.properties, engine=Engine.REFERENCE)
+    report = check(mission, engine=Engine.REFERENCE)
     assert outcomes(report) == {**expected(block, invariant, reachable, claim), "computation": True}
     for each in report.verdicts:
         for trace in filter(None, (each.witness, *(found.trace for found in each.violations))):
@@ -286,14 +285,12 @@ def test_verdicts_are_those_of_an_interpreter_that_forgets_nothing(block, invari
 def test_the_fast_explorer_and_reductions_say_the_same(block, invariant, reachable, claim):
     wanted = expected(block, invariant, reachable, claim)
     mission = mission_of(block, *asked(invariant, reachable, claim))
-    slow, fast = (
-        check(mission.initial, mission.properties, engine=each) for each in (Engine.REFERENCE, Engine.FAST)
-    )
+    slow, fast = (check(mission, engine=each) for each in (Engine.REFERENCE, Engine.FAST))
     assert outcomes(fast) == {**wanted, "computation": True}
     assert [each.remarks for each in fast.verdicts] == [each.remarks for each in slow.verdicts]
     assert (fast.configurations, fast.transitions) == (slow.configurations, slow.transitions)
     mission = mission_of(block, *asked(invariant, reachable, None))
-    reduced = check(mission.initial, mission.properties, engine=Engine.REFERENCE, reduce=[Reduction.POR])
+    reduced = check(mission, engine=Engine.REFERENCE, reduce=[Reduction.POR])
     assert (outcomes(reduced)["i"], outcomes(reduced)["r"]) == (wanted["i"], wanted["r"])
 
 
@@ -329,33 +326,15 @@ def test_a_variable_is_kept_however_it_is_bound(engine):
     stays = [f'ltl "{each}, then": [] ({each} -> [] {each})' for each in LAST]
     later = 'ltl "next": X a.f < 1 ctl "later": AF AG (ended a -> a.y > 5)'
     mission = load(f"{EVERY_WAY} check {{ {' '.join((*ends, *stays))} {later} }}")
-    report = check(mission.initial, mission.properties, engine=engine)
+    report = check(mission, engine=engine)
     assert {name for name, holds in outcomes(report).items() if not holds} == {"next"}
-    reduced = check(mission.initial, mission.properties, engine=engine, reduce=[Reduction.POR])
+    reduced = check(mission, engine=engine, reduce=[Reduction.POR])
     assert all(outcomes(reduced)[each] for each in LAST)
     assert reduced.configurations < report.configurations
 
 
 FOUND = VariableIs(VariableOf("scout", ("found",)), Truth.TRUE)
 SEARCH = MISSIONS / "search_and_deploy.mission"
-
-
-@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
-def test_what_a_scout_has_found_is_seen_from_where_it_finds_it(engine):
-    """`found` is given and tested within one `fun`: nobody reads it any more when others can look."""
-    asked = {
-        "found": "reachable: scout.found == true",
-        "said": "invariant: pending SND scout -> scout.found == true",
-        "true": "invariant: scout.found != true or present oilSpill0",
-    }
-    claims = " ".join(claim.replace(":", f' "{name}":') for name, claim in asked.items())
-    text = SEARCH.read_text(encoding="utf-8").replace("check {", f"check {{ {claims}")
-    source, tree = parse_bytes("search.mission", text.encode())
-    mission = elaborate(tree, source, MISSIONS)
-    report = check(mission.initial, mission.properties, engine=engine)
-    assert [outcomes(report)[name] for name in asked] == [True, True, True]
-    rules = rules_of(verdict_of(report, "found").witness)
-    assert (len(rules), rules[-2:], rules.count("env")) == (8, ["rcv_obs", "fun"], 1)
 
 
 def test_properties_given_beside_a_configuration_keep_what_they_name():
@@ -405,9 +384,7 @@ def test_a_reduction_sees_what_is_given_to_variables(engine):
         f' reachable "{one} {other}": a.n == {one} and b.n == {other}' for one in (1, 2) for other in (1, 2)
     )
     first = {each: load(f"{text} check {{ {each} }}") for each in ("local_consistency", claims)}
-    plain, named = (
-        check(each.initial, each.properties, engine=engine, reduce=[Reduction.POR]) for each in first.values()
-    )
+    plain, named = (check(each, engine=engine, reduce=[Reduction.POR]) for each in first.values())
     assert set(outcomes(named).values()) == {True}
     assert plain.configurations < named.configurations
 
@@ -426,12 +403,10 @@ def test_agents_are_not_exchanged_where_a_property_names_a_variable_of_one():
     for claim in ('reachable "it": a.n == 1', 'ltl "it": <> a.n == 1'):
         one = load(f"{twins} check {{ {claim} }}", ALIKE)
         with pytest.raises(RefusedError, match=r"a property tells them apart: it names a\.n"):
-            check(one.initial, one.properties, reduce=[Reduction.SYMMETRY])
+            check(one, reduce=[Reduction.SYMMETRY])
     both = load(
         f'{twins} check {{ invariant "it": a.n != 1 or b.n != 1 reachable "r": a.n > 0 and b.n > 0 }}', ALIKE
     )
-    whole, reduced = (
-        check(both.initial, both.properties, reduce=reduce) for reduce in ((), (Reduction.SYMMETRY,))
-    )
+    whole, reduced = (check(both, reduce=reduce) for reduce in ((), (Reduction.SYMMETRY,)))
     assert outcomes(whole) == outcomes(reduced) == {"it": False, "r": True, "computation": True}
     assert (whole.configurations, reduced.configurations) == (5 * 5, 5 * 6 // 2)

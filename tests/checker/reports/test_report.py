@@ -5,7 +5,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from checked_missions import checked, load, moves, start
+from checked_missions import PILOTS, checked, load, moves, start
 
 from checker import (
     Bound,
@@ -28,15 +28,11 @@ from semantics.state.setting import Control
 
 def lines(text, limits=None):
     mission = load(text)
-    report = check(mission.initial, mission.properties, limits)
+    report = check(mission, limits=limits)
     return [re.sub(r"\d+\.\d\d s$", "T s", line) for line in report_text("m", report, traces=False)]
 
 
 ENTERS = moves("gate0", "a", "uav0")
-PILOTS = """
-BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }
-BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }
-"""
 EVERYTHING = """
 check { local_consistency race_freedom deadlock_freedom arrival invariant "never": not (actually uav1 in gate0)
         reachable "in": actually uav0 in gate0 }
@@ -65,7 +61,7 @@ check { local_consistency }
 def test_only_so_many_violations_are_shown_and_the_others_counted():
     mission = load(THREE_STALE)
     for most, said in ((1, "3 different, of which 1 is shown"), (2, "3 different, of which 2 are shown")):
-        report = check(mission.initial, mission.properties, violations=most)
+        report = check(mission, violations=most)
         assert len(report.verdicts[0].violations) == most
         assert said in next(line for line in report_text("m", report) if "✗" in line)
         assert [each.kind for each in report.verdicts[0].violations] == ["unmatched", "inconsistent"][:most]
@@ -108,7 +104,7 @@ def test_the_notes_of_a_mission_come_last():
 
 def as_json(text, limits=None):
     mission = load(text)
-    report = check(mission.initial, mission.properties, limits, notes=("a note",))
+    report = check(mission, limits=limits, notes=("a note",))
     return json.loads(json.dumps(report_json("m", "sha256:0", report, mission.setting.control)))
 
 

@@ -157,7 +157,7 @@ def test_the_schema_refuses_what_is_not_so(changed):
 
 def test_the_three_steps_of_a_race_are_essential_and_say_what_they_are():
     mission = load_mission(ROOT / "tests" / "corpus" / "violated" / "stale_message.mission")
-    report = check(mission.initial, mission.properties, SPARE)
+    report = check(mission, limits=SPARE)
     said = sarif_json([CheckResult("stale_message", "stale_message.mission", report)], "1")
     VALIDATOR.validate(said)
     (found,) = (each for each in said["runs"][0]["results"] if "stale" in each["message"]["text"])
@@ -182,6 +182,7 @@ PLACED = {
     "stale_message": 'case "clear" => control(MOVE_HOST_TO gate0)',
     "stale_timed": "control(MOVE_HOST_TO gate0)",
     "unmatched": "control(MOVE uav0 TO gate0)",
+    "unserved": "control(",
     "unrealisable": "control(PUT drifter0 IN spill0)",
 }
 
@@ -190,7 +191,7 @@ PLACED = {
 def test_a_violation_belongs_to_the_statement_that_it_is_about(stem):
     mission = load_mission(ROOT / "tests" / "corpus" / "violated" / f"{stem}.mission")
     lines = mission.source.text.splitlines()
-    report = check(mission.initial, mission.properties, SPARE)
+    report = check(mission, limits=SPARE)
     found = [each for verdict in report.verdicts for each in verdict.violations]
     assert found
     for violation in found:
