@@ -80,7 +80,7 @@ def test_time_that_stops_has_the_path_to_that_moment():
     assert [(leg.begin, leg.end, leg.label.rule) for leg in stop.path] == [(0, 5, "timeout")]
 
 
-@settings(max_examples=15, suppress_health_check=list(HealthCheck), deadline=None)
+@settings(max_examples=6, suppress_health_check=list(HealthCheck), deadline=None)
 @given(timed_missions())
 def test_no_leg_of_a_path_takes_longer_than_its_bound(c):
     asked = [within(2, Ended(a)) for a in sorted(c.alpha.names())[:1]]

@@ -4,7 +4,7 @@ import pytest
 from checked_missions import WORLD, load, start, verdict
 from hypothesis import assume, event, given, reject
 from mission_texts import missions
-from scale import examples
+from scale import IS_WHOLE, examples
 from stale_missions import written
 
 from checker import Limits, explore, owned
@@ -43,7 +43,7 @@ def test_what_is_owned_has_no_race(text):
         assert races(c) in (set(), None)
 
 
-@examples(30)
+@examples(30 if IS_WHOLE else 15)
 @given(initial_configurations())
 def test_what_is_owned_among_generated_configurations_has_no_race(c):
     assume(len(c.alpha.names()) > 1)

@@ -12,7 +12,7 @@ import pytest
 from checked_missions import WORLD, checked, load
 from hypothesis import given
 from hypothesis import strategies as st
-from scale import examples
+from scale import IS_WHOLE, examples
 
 from checker import Engine, Outcome, Reduction, RefusedError, check, explore, replay, to_json
 from checker.properties.inspections import Reachability
@@ -269,7 +269,7 @@ def asked(invariant, reachable, claim):
         yield f'ltl "l": {written(claim)}'
 
 
-@examples(150)
+@examples(150 if IS_WHOLE else 75)
 @everything
 def test_verdicts_are_those_of_an_interpreter_that_forgets_nothing(block, invariant, reachable, claim):
     mission = mission_of(block, *asked(invariant, reachable, claim))

@@ -81,7 +81,7 @@ def read_back(model):
     return verdict_of(uppaal_text(model))
 
 
-@pytest.mark.parametrize("name", TIMED)
+@pytest.mark.parametrize("name", TIMED if IS_WHOLE else [name for name in TIMED if name != "oil_spill_timed"])
 def test_a_shipped_mission_read_back_has_its_verdicts(name):
     mission = load_mission(name)
     agree(mission.initial, mission.properties, read_back)
