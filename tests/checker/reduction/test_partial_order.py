@@ -4,12 +4,12 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from checked_missions import WORLD, load, start
+from checked_missions import WORLD, load, start, visited
 from everything_found import everything, stale_races
 from hypothesis import given
 from hypothesis import strategies as st
 from mission_texts import missions
-from scale import crossed, examples
+from scale import IS_WHOLE, crossed, examples
 from shipped import UNTIMED
 
 from checker import Engine, Limits, Outcome, Reduction, RefusedError, check, explore
@@ -68,26 +68,16 @@ def endless(name, variation):
     return name in ("nomad", "search_and_deploy") and variation.scheduler is Scheduler.UNORDERED
 
 
-@crossed(SMALL, VARIATIONS)
-def test_a_mission_has_the_same_findings(name, variation):
-    if not endless(name, variation):
-        mission = load_mission(MISSIONS / f"{name}.mission", variation)
-        assert compared(mission.initial, asked_of(mission)) is not None
-
-
 @pytest.mark.parametrize("name", ["takeover", "broken_deadlock"])
 def test_a_larger_mission_has_the_same_findings(name):
-    mission = load_mission(MISSIONS / f"{name}.mission")
+    mission = load_mission(name)
     whole, part = compared(mission.initial, asked_of(mission))
     assert part * 4 <= whole
 
 
 def test_a_reduced_search_says_so_and_counts_what_it_followed():
-    mission = load_mission(MISSIONS / "rendezvous.mission")
-    report, other = (
-        check(mission.initial, mission.properties, reduce=POR, engine=engine)
-        for engine in (Engine.REFERENCE, Engine.FAST)
-    )
+    mission = load_mission("rendezvous")
+    report, other = (check(mission, reduce=POR, engine=engine) for engine in (Engine.REFERENCE, Engine.FAST))
     assert {each.outcome for each in report.verdicts} == {Outcome.HOLDS}  # as in tests/missions
     assert report.reduced == ("por",)
     assert (report.configurations, report.transitions, report.allowed) == (67, 83, 184)
@@ -101,46 +91,20 @@ def test_a_reduced_search_says_so_and_counts_what_it_followed():
 # --- the fast explorer ----------------------------------------------------------------------------------------
 
 
-def visited(initial, engine, formulas=(), most=600):
-    """Return everything that a reduced search tells, configuration for configuration."""
-    reduce = Reduced(initial, POR, formulas)
-    found = explore(initial, limits=Limits(configurations=most), engine=engine, reduce=reduce)
-    origins = list(map(int, found.origins))
-    counts = (found.transitions, found.allowed, found.rules, found.depth, found.expanded, found.bounds)
-    return list(found.configurations), origins, counts
-
-
 def agreed(initial, formulas=(), most=600):
     """Assert that both explorers choose the same; return whether anything was left out."""
-    fast = visited(initial, Engine.FAST, formulas, most)
-    assert fast == visited(initial, Engine.REFERENCE, formulas, most)
-    return fast[2][0] < fast[2][1]
-
-
-@crossed(UNTIMED, VARIATIONS)
-def test_both_explorers_follow_the_same_steps_of_a_mission(name, variation):
-    mission = load_mission(MISSIONS / f"{name}.mission", variation)
-    agreed(mission.initial, asked_of(mission), most=300)
-    agreed(monitored(mission.initial), most=300)
-
-
-@given(
-    strategies.initial_configurations(
-        schedulers=(Scheduler.PROGRAM_ORDER, Scheduler.UNORDERED), monitored=False
-    ),
-    st.data(),
-)
-@examples(60)
-def test_both_explorers_follow_the_same_steps_of_generated_programs(initial, data):
-    agreed(initial, data.draw(st.lists(atoms_of(initial), max_size=2)), most=120)
-    agreed(monitored(initial), most=120)
-
-
-@given(missions(), st.sampled_from(["", "scheduler unordered\n"]))
-@examples(25)
-def test_both_explorers_follow_the_same_steps_of_generated_missions(text, scheduler):
-    with suppress(MissionError):
-        agreed(load(text + scheduler).initial, [Inside("uav0", "gate0", actually=True), Ended("a")], most=200)
+    slow, fast = (
+        explore(
+            initial,
+            limits=Limits(configurations=most),
+            engine=engine,
+            reduce=Reduced(initial, POR, formulas),
+        )
+        for engine in (Engine.REFERENCE, Engine.FAST)
+    )
+    assert visited(fast) == visited(slow)
+    assert fast.allowed == slow.allowed
+    return fast.transitions < fast.allowed
 
 
 # --- generated ------------------------------------------------------------------------------------------------
@@ -156,25 +120,6 @@ def atoms_of(initial):
         st.builds(Present, name),
         *(st.builds(atom, agent) for atom in (Ended, Waiting, HasPending)),
     )
-
-
-@given(
-    strategies.initial_configurations(
-        schedulers=(Scheduler.PROGRAM_ORDER, Scheduler.UNORDERED), monitored=False
-    ),
-    st.data(),
-)
-@examples(40)
-def test_generated_programs_have_the_same_findings(initial, data):
-    compared(initial, data.draw(st.lists(atoms_of(initial), max_size=2)), most=300)
-
-
-@given(missions(), st.sampled_from(["", "scheduler unordered\n"]))
-@examples(20)
-def test_generated_missions_have_the_same_findings(text, scheduler):
-    with suppress(MissionError):  # some are found wrong before they are run
-        formulas = [Inside("uav0", "gate0", actually=True), Ended("a")]
-        compared(load(text + scheduler).initial, formulas, most=600)
 
 
 HOSTS = ("uav0", "uav1", "vessel0", "gcs0")
@@ -200,20 +145,39 @@ def fleets(draw):
     return "\n".join([*loops, f"BigActor last hosted_at {hosts[2]} with_behavior {{ {last} }}\n"])
 
 
-@given(fleets(), st.sampled_from(["", "scheduler unordered\n"]), st.booleans())
-@examples(9)
-def test_generated_fleets_have_the_same_findings(text, scheduler, seen):
-    with suppress(MissionError):
-        initial = load(text + scheduler).initial
-        formulas = [Inside("uav0", "gate0", actually=True), Waiting("a1")][: 2 * seen]
-        compared(initial, formulas, most=500)
-        assert not ignored(initial, formulas, most=300)
-        agreed(initial, formulas, most=100)
+PROGRAMS = strategies.initial_configurations(
+    schedulers=(Scheduler.PROGRAM_ORDER, Scheduler.UNORDERED), monitored=False
+)
+TEXTS = st.builds(
+    "{}{}".format, st.one_of(missions(), fleets()), st.sampled_from(["", "scheduler unordered\n"])
+)
+
+
+def is_reduced_well(initial, formulas):
+    """Assert that a reduced search finds the same, ignores nobody, and is the same by both explorers."""
+    compared(initial, formulas, most=300)
+    assert not ignored(initial, formulas, most=300)
+    agreed(initial, formulas, most=120)
+    agreed(monitored(initial), most=120)
+
+
+@given(PROGRAMS, st.data())
+@examples(90 if IS_WHOLE else 60)
+def test_generated_programs_are_reduced_well(initial, data):
+    is_reduced_well(initial, data.draw(st.lists(atoms_of(initial), max_size=2)))
+
+
+@given(TEXTS, st.booleans())
+@examples(60 if IS_WHOLE else 36)
+def test_generated_missions_are_reduced_well(text, seen):
+    with suppress(MissionError):  # some are found wrong before they are run
+        formulas = [Inside("uav0", "gate0", actually=True), Waiting("a1" if "a1" in text else "a")]
+        is_reduced_well(load(text).initial, formulas[: 2 * seen])
 
 
 def test_a_trace_of_a_reduced_search_replays_but_is_not_said_to_be_a_shortest_one():
-    mission = load_mission(MISSIONS / "broken_deadlock.mission")
-    (found,) = [v for v in check(mission.initial, mission.properties, reduce=POR).verdicts if v.violations]
+    mission = load_mission("broken_deadlock")
+    (found,) = [v for v in check(mission, reduce=POR).verdicts if v.violations]
     trace = found.violations[0].trace
     assert trace.called == "a trace"
     assert replay(mission.initial, to_json(trace, "m", "d")) == trace
@@ -238,12 +202,12 @@ def test_who_believes_what_another_sees_to_be_the_other_way_round_is_followed_be
 
 
 def test_what_it_does_not_preserve_is_refused():
-    mission = load_mission(MISSIONS / "oil_spill.mission", Variation(scheduler=Scheduler.FCFS))
+    mission = load_mission("oil_spill", Variation(scheduler=Scheduler.FCFS))
     with pytest.raises(
         RefusedError, match="'por' is refused: under 'scheduler fcfs' all requests stand in one"
     ):
-        check(mission.initial, mission.properties, reduce=POR)
-    found = Reduced(load_mission(MISSIONS / "oil_spill.mission").initial, POR)
+        check(mission, reduce=POR)
+    found = Reduced(load_mission("oil_spill").initial, POR)
     assert (
         found.refuses(Property(PropertyKind.CTL, "EF p"))
         == "it is not known to be kept for properties of the kind 'ctl'"
@@ -329,7 +293,7 @@ def test_a_loop_in_which_a_step_is_put_off_is_no_counterexample(engine):
         .replace("strong fairness", "weak fairness")
     )
     mission = load(text, world="")
-    found = check(mission.initial, mission.properties, engine=engine, reduce=POR)
+    found = check(mission, engine=engine, reduce=POR)
     assert [each.outcome for each in found.verdicts if each.property.name == "comes home"] == [
         Outcome.INCOMPLETE
     ]
@@ -377,21 +341,14 @@ def ignored(initial, formulas=(), most=2_000):
     return reduced.ignored() if found.complete else None
 
 
-@pytest.mark.parametrize("name", [name for name in UNTIMED if name not in ("spill_watch", "surveillance")])
-def test_no_step_is_put_off_for_ever_in_a_mission(name):
-    mission = load_mission(MISSIONS / f"{name}.mission")
-    assert ignored(mission.initial, asked_of(mission)) == set()
-
-
-@given(
-    strategies.initial_configurations(
-        schedulers=(Scheduler.PROGRAM_ORDER, Scheduler.UNORDERED), monitored=False
-    ),
-    st.data(),
-)
-@examples(40)
-def test_no_step_is_put_off_for_ever_in_generated_programs(initial, data):
-    assert not ignored(initial, data.draw(st.lists(atoms_of(initial), max_size=2)), most=300)
+@crossed(UNTIMED, VARIATIONS)
+def test_a_mission_is_reduced_well(name, variation):
+    mission = load_mission(name, variation)
+    if name in SMALL and not endless(name, variation):
+        assert compared(mission.initial, asked_of(mission)) is not None
+    agreed(mission.initial, asked_of(mission), most=300)
+    agreed(monitored(mission.initial), most=300)
+    assert ignored(mission.initial, asked_of(mission)) in (set(), None)
 
 
 # --- the tests would notice -----------------------------------------------------------------------------------

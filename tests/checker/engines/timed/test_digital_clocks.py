@@ -24,9 +24,9 @@ from checker.traces import ReplayError, print_trace, to_json
 from checker.verdicts import Outcome
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property, watching
-from semantics.properties.propositions import Ended, HasPending, Inside, Not
+from semantics.properties.propositions import Ended, HasPending, Inside, LinkedWith, Not
 from semantics.timing.intervals import Interval
-from semantics.timing.timing import ClauseTimes, Endurance, Motion, Sayable, Timing
+from semantics.timing.timing import ClauseTimes, Endurance, Every, Motion, Sayable, Timing, Window
 from specs.elaboration import load_mission
 from specs.missions import shipped_missions
 
@@ -166,6 +166,18 @@ def test_what_is_not_said_is_not_assumed_and_a_late_deadline_says_so():
     )
 
 
+@pytest.mark.parametrize("said", [(), (("HAND", Interval(0, 2)),)], ids=["unsaid", "said"])
+def test_a_command_of_which_no_line_speaks_takes_any_time(said):
+    hand = "BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }"
+    linked = LinkedWith("uav0", "gcs1", actually=True)
+    report = decided(
+        timed(hand, Timing(react=Interval(0, 1), commands=said)), when(linked), within(3, linked)
+    )
+    latest = "at 0:03 at the latest" if said else "at any time if at all: it may never"
+    assert report.verdicts["time"].note == f"at 0:00 at the earliest, {latest}"
+    assert (report.verdicts["within"].outcome is Outcome.HOLDS) is bool(said)
+
+
 COMES_AGAIN = """
 signature { kind Tanker contains UAV kind UAV driven }
 world {
@@ -200,6 +212,39 @@ def test_a_response_is_bounded_by_all_that_it_takes():
     assert decided(c, within(10, pending, over)).verdicts["within"].outcome is Outcome.VIOLATED
     never = decided(c, within(3, Inside("uav0", "gate0"), over)).verdicts["within"]
     assert never.remarks[0].startswith("vacuous: never true: ")
+
+
+def environment(clause, times, text='BigActor a hosted_at gcs0 with_behavior { react { case "go" => } }'):
+    return timed(f"{text}\nenvironment {{ {clause} }}", Timing(react=Interval(0, 0), clauses=(times,)))
+
+
+def test_a_message_may_be_said_in_its_window_and_need_not_be():
+    c = environment('someone says "go" to a', ClauseTimes(Sayable(2, 4)))
+    report = decided(c, when(Ended("a")), Property(PropertyKind.DEADLOCK_FREEDOM, "deadlock_freedom"))
+    assert (
+        report.verdicts["time"].note
+        == "at 0:02 at the earliest, at 0:04 at the latest if at all: it may never"
+    )
+    assert report.verdicts["deadlock_freedom"].outcome is Outcome.VIOLATED
+    ever = environment('someone says "go" to a', ClauseTimes(Sayable(2)))
+    assert decided(ever, Property(PropertyKind.DEADLOCK_FREEDOM, "d")).verdicts["d"].outcome is Outcome.HOLDS
+
+
+def test_what_vanishes_in_a_window_does():
+    c = environment("drifter0 vanishes", ClauseTimes(Window(2, 4)))
+    gone = Not(Inside("drifter0", "vessel0", actually=True))
+    assert decided(c, when(gone)).verdicts["time"].note == "at 0:02 at the earliest, at 0:04 at the latest"
+
+
+def test_a_channel_drops_at_most_every_so_often_and_returns_in_time():
+    c = environment("mesh drops and returns", ClauseTimes(Every(5), returns=2))
+    timeline = explore(c).times.timeline
+    drops, ups = (timeline.situations[number].steps for number in timeline.order)
+    assert [str(each.transition.label) for each in (*drops, *ups)] == [
+        "⟨env : mesh drops⟩",
+        "⟨env : mesh returns⟩",
+    ]
+    assert len(timeline.states) == 9  # up: 0 to 5 since the last drop; down: 0 to 2
 
 
 def test_agents_that_loop_in_zero_time_stop_it():
@@ -331,7 +376,7 @@ def tried(often):
     return settings(max_examples=often, deadline=None, suppress_health_check=UNBOTHERED)
 
 
-@tried(20)
+@tried(12)
 @given(timed_missions(), st.data())
 def test_whole_ticks_agree_with_parts_of_ticks(c, data):
     agree(c, data, 100)
