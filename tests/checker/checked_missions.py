@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from checker import Interruption, Limits, Progress, Report, Trace, Verdict, Violation, check
 from semantics.state.configuration import Configuration
@@ -36,6 +37,23 @@ world {
 """
 """Two UAVs and a vessel on one mesh, three stations on the internet, and an empty gate."""
 
+PILOTS = """
+BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }
+BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }
+"""
+"""Two that command one vehicle."""
+
+BOTH_LOOK = "".join(
+    f"""
+    BigActor {agent} hosted_at {host} with_behavior {{
+      observe(CHILDREN(gate0))
+      react {{ case o if not ({other} in o) => control(MOVE_HOST_TO gate0) case o => skip }}
+    }}
+    """
+    for agent, host, other in (("a", "uav0", "uav1"), ("b", "uav1", "uav0"))
+)
+"""Two that look whether the other is in the gate before they enter it."""
+
 SPARE = Limits(configurations=20_000)
 
 
@@ -62,7 +80,7 @@ def start(text: str, world: str = WORLD) -> Configuration:
 
 def checked(text: str, world: str = WORLD, limits: Limits = SPARE) -> Report:
     mission = load(text, world)
-    return check(mission.initial, mission.properties, limits, notes=mission.notes)
+    return check(mission, limits=limits, notes=mission.notes)
 
 
 def verdict(text: str, name: str, world: str = WORLD, limits: Limits = SPARE) -> Verdict:
@@ -70,6 +88,17 @@ def verdict(text: str, name: str, world: str = WORLD, limits: Limits = SPARE) ->
     if "check {" not in text:
         text += f"\ncheck {{ {name} }}"
     return verdict_of(checked(text, world, limits), name)
+
+
+def visited(found: Any) -> tuple[Any, ...]:
+    """Return all that an exploration tells of what it visited, in its order."""
+    counts = (found.depth, found.expanded, found.transitions, found.rules, list(map(str, found.bounds)))
+    return (list(found.configurations), list(map(int, found.origins)), *counts)
+
+
+def timeless(report: Report) -> Report:
+    """Return what a report says, whenever it is made."""
+    return replace(report, seconds=0.0)
 
 
 def verdict_of(report: Report, name: str) -> Verdict:

@@ -26,7 +26,7 @@ HOSTILE = '<a b="c"> & ]]> ::error::%0A,line=1\n\r\t\x00\x07\x1b[31m\x9f\ud800\u
 
 def result(text, name="m.mission", limits=SPARE):
     mission = load(text)
-    report = check(mission.initial, mission.properties, limits)
+    report = check(mission, limits=limits)
     return CheckResult(name, name, report, check_line=7, text=mission.source.text)
 
 

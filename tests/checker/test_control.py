@@ -81,18 +81,6 @@ def test_a_flight_into_what_must_be_empty_commits_only_where_it_is_empty():
     assert any("commit" in each for each in labels(walked(c, OUT)))
 
 
-def test_who_enters_and_leaves_what_a_control_needs_empty_makes_what_was_seen_there_stale():
-    text = """
-    rule enter(u: UAV, p: Location) { u || p -> p.u }
-    BigActor a hosted_at uav0 with_behavior {
-      observe(CHILDREN(gate0))
-      react { case o if not (drifter0 in o) => control(enter(uav0, gate0)) case o => skip }
-    }
-    BigActor b hosted_at uav1 with_behavior { control(MOVE_HOST_TO gate0) control(MOVE_HOST_TO south0) }
-    """
-    assert "stale-observation race" in kinds(verdict(text, "race_freedom"))
-
-
 def test_of_several_that_are_to_fly_one_in_transit_is_enough_to_wait_for():
     text = """
     rule both(u: UAV, v: UAV, p: Sea) { u || v || p.$0 -> p.(u | v | $0) }

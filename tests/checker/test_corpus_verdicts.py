@@ -16,7 +16,7 @@ HOLDS = sorted(path.with_suffix(".mission") for path in (CORPUS / "ok").glob("*.
 def report_of(path):
     """Return a mission's report as text, without the time that it took, and its exit code."""
     mission = load_mission(path)
-    report = check(mission.initial, mission.properties, notes=mission.notes)
+    report = check(mission, notes=mission.notes)
     lines = report_text(mission.name, report)
     return "".join(f"{re.sub(r', [0-9.]+ s$', '', line)}\n" for line in lines), report.exit_code
 

@@ -1,7 +1,6 @@
 """Bounds hold for what comes after exploring, too: nothing is said to hold that was not looked at to the end."""
 
 from importlib import import_module
-from pathlib import Path
 
 import pytest
 
@@ -13,7 +12,6 @@ from checker.limits import GRACE, BoundMet, bounded, look
 from specs.elaboration import load_mission
 
 CHECK = import_module("checker.check")  # its name is taken by the function
-MISSIONS = Path(__file__).parents[2] / "specs" / "missions"
 DAY = Limits(seconds=86_400.0)
 
 
@@ -39,23 +37,18 @@ def clock(monkeypatch):
     return Clock(monkeypatch)
 
 
-def test_where_no_bounds_were_set_none_is_met():
-    look()
-
-
 def test_time_counts_from_when_it_began_with_what_was_spent_before(clock):
     with bounded(Limits(seconds=10.0, spent=4.0)):
+        with bounded(Limits(seconds=1.0)):
+            clock.now = 2.0
+            with pytest.raises(BoundMet):
+                look()
         clock.now = 6.0
         look()
         clock.now = 6.5
         with pytest.raises(BoundMet, match="the time limit of 10 s"):
             look()
     look()
-
-
-def test_memory_is_looked_at():
-    with bounded(Limits(memory=1)), pytest.raises(BoundMet, match="the memory limit of 0 MB"):
-        look()
 
 
 def test_an_interruption_is_a_bound_a_little_later():
@@ -69,23 +62,14 @@ def test_an_interruption_is_a_bound_a_little_later():
 
 
 def test_what_is_doubted_is_bounded():
-    mission = load_mission(MISSIONS / "surveillance.mission")
+    mission = load_mission("surveillance")
     space = explore(mission.initial, engine=Engine.FAST).survey.space
     with bounded(Limits(seconds=-1.0)), pytest.raises(BoundMet):
         crosscheck.crosscheck(space, 1)
 
 
-def test_inner_bounds_end_with_their_block(clock):
-    with bounded(Limits(seconds=10.0)):
-        with bounded(Limits(seconds=1.0)):
-            clock.now = 2.0
-            with pytest.raises(BoundMet):
-                look()
-        look()
-
-
 def test_what_was_explored_and_not_looked_at_does_not_hold(clock, monkeypatch):
-    mission = load_mission(MISSIONS / "oil_spill.mission")
+    mission = load_mission("oil_spill")
     whole = check(mission.initial, mission.properties, DAY, engine=Engine.FAST)
     clock.jumps_before(monkeypatch, checker.engines.fast.explorer, "inspect_fast")
     clock.now = checker.engines.fast.explorer.time.monotonic()
@@ -97,18 +81,6 @@ def test_what_was_explored_and_not_looked_at_does_not_hold(clock, monkeypatch):
     assert outcomes == {Outcome.INCOMPLETE}
     assert report.exit_code == 3
     assert not report.coverage.complete
-
-
-@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
-def test_temporal_properties_are_not_decided_when_the_time_is_over(clock, monkeypatch, engine):
-    mission = load_mission(MISSIONS / "surveillance.mission")
-    asked = [each for each in mission.properties if each.kind in ("ltl", "ctl", "progress")]
-    assert asked
-    clock.jumps_before(monkeypatch, CHECK._Check, "decide_temporal")
-    report = check(mission.initial, asked, DAY, engine=engine)
-    assert {each.outcome for each in report.verdicts} == {Outcome.INCOMPLETE}
-    assert {each.note for each in report.verdicts} == {"not decided: the time limit of 86400 s was met"}
-    assert report.exit_code == 3
 
 
 def wishing_before(monkeypatch, place, name, limits):
@@ -124,25 +96,32 @@ def wishing_before(monkeypatch, place, name, limits):
 
 
 @pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
-def test_temporal_properties_are_not_decided_after_an_interruption(monkeypatch, engine):
-    mission, limits = load_mission(MISSIONS / "surveillance.mission"), Limits()
+@pytest.mark.parametrize("bound", ["the time limit of 86400 s", "an interruption"])
+def test_temporal_properties_are_not_decided_when_a_bound_was_met(clock, monkeypatch, engine, bound):
+    mission = load_mission("surveillance")
     asked = [each for each in mission.properties if each.kind in ("ltl", "ctl", "progress")]
-    wishing_before(monkeypatch, CHECK._Check, "decide_temporal", limits)
+    assert asked
+    limits = Limits(seconds=86_400.0)
+    if bound == "an interruption":
+        wishing_before(monkeypatch, CHECK._Check, "decide_temporal", limits)
+    else:
+        clock.jumps_before(monkeypatch, CHECK._Check, "decide_temporal")
     report = check(mission.initial, asked, limits, engine=engine)
-    assert {each.note for each in report.verdicts} == {"not decided: an interruption was met"}
+    assert {each.outcome for each in report.verdicts} == {Outcome.INCOMPLETE}
+    assert {each.note for each in report.verdicts} == {f"not decided: {bound} was met"}
     assert report.exit_code == 3
 
 
 def test_an_interruption_in_looking_at_what_was_explored_ends_the_check(monkeypatch):
-    mission, limits = load_mission(MISSIONS / "oil_spill.mission"), Limits()
+    mission, limits = load_mission("oil_spill"), Limits()
     wishing_before(monkeypatch, checker.engines.fast.explorer, "inspect_fast", limits)
-    report = check(mission.initial, mission.properties, limits, engine=Engine.FAST)
+    report = check(mission, limits=limits, engine=Engine.FAST)
     assert str(report.bounds[0]) == "an interruption, in looking at what was explored"
     assert report.exit_code == 3
 
 
 def test_after_an_interruption_one_checkpoint_is_written_at_most(monkeypatch, tmp_path):
-    mission, limits = load_mission(MISSIONS / "oil_spill.mission"), Limits()
+    mission, limits = load_mission("oil_spill"), Limits()
     monkeypatch.setattr(checker.engines.fast.explorer, "CHUNK", 1)
     saved = []
 
@@ -158,7 +137,7 @@ def test_after_an_interruption_one_checkpoint_is_written_at_most(monkeypatch, tm
 
 
 def test_the_time_that_the_first_explorer_took_is_not_given_twice(monkeypatch):
-    mission = load_mission(MISSIONS / "takeover.mission")
+    mission = load_mission("takeover")
     monkeypatch.setattr(CHECK, "PATIENCE", 0.0)
     given = []
     explore_by = CHECK.explore_by
@@ -174,10 +153,10 @@ def test_the_time_that_the_first_explorer_took_is_not_given_twice(monkeypatch):
 
 
 def test_deciding_may_take_longer_than_the_patience_with_the_first_explorer(clock, monkeypatch):
-    mission = load_mission(MISSIONS / "surveillance.mission")
+    mission = load_mission("surveillance")
     monkeypatch.setattr(CHECK, "PATIENCE", 3_600.0)
     clock.jumps_before(monkeypatch, CHECK._Check, "decide_temporal")
-    report = check(mission.initial, mission.properties)
+    report = check(mission)
     assert "not decided" not in " ".join(each.note for each in report.verdicts)
     assert Outcome.INCOMPLETE not in {each.outcome for each in report.verdicts}
 

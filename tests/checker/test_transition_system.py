@@ -44,15 +44,6 @@ def test_the_table_has_a_row_for_each_transition(engine):
     assert table["source"].is_monotonic_increasing
 
 
-def test_two_engines_number_and_write_alike():
-    one, other = (
-        explore(load_mission("oil_spill").initial, edges=True, engine=engine).to_pandas()
-        for engine in (Engine.REFERENCE, Engine.FAST)
-    )
-    columns = ["source", "target", "label"]
-    assert sorted(one[columns].values.tolist()) == sorted(other[columns].values.tolist())
-
-
 def test_without_transitions_there_is_no_graph():
     found = explore(load_mission("oil_spill").initial)
     for asked in (found.to_networkx, found.to_pandas):

@@ -45,10 +45,6 @@ def test_a_graph_has_every_transition_in_the_order_of_the_rules(engine):
     assert graph.partial is None
 
 
-def test_edges_are_kept_only_if_they_are_asked_for():
-    assert explore(start(TEXT)).edges is None
-
-
 @pytest.mark.parametrize("most", [1, 2, 3, 5, 8])
 def test_where_an_exploration_is_cut_off_the_graph_is_partial(most):
     whole, everything = kept(TEXT)

@@ -63,14 +63,6 @@ def equals_naive_enumeration(c):
     assert found.transitions == len(transitions) == found.rules.total()
 
 
-def test_the_origins_lead_back_to_the_first_configuration_by_shortest_paths():
-    found = explore(start(SLOW))
-    distances, _ = enumerate_naively(start(SLOW))
-    for number, configuration in enumerate(found.configurations):
-        path = found.path(number)
-        assert (path[0], path[-1], len(path)) == (0, number, distances[configuration] + 1)
-
-
 def test_each_configuration_is_inspected_once_in_the_order_of_discovery():
     numbers, sources = [], []
 
@@ -86,46 +78,37 @@ def test_each_configuration_is_inspected_once_in_the_order_of_discovery():
 # --- bounds ---------------------------------------------------------------------------------------------------
 
 
-def test_a_limit_of_configurations_that_is_just_met_cuts_nothing_off():
-    everything = explore(start(SLOW))
-    exact = explore(start(SLOW), limits=Limits(configurations=len(everything.configurations)))
+def test_a_limit_of_configurations_cuts_off_what_is_beyond_and_nothing_if_it_is_just_met():
+    whole = explore(start(SLOW))
+    most = len(whole.configurations)
+    exact = explore(start(SLOW), limits=Limits(configurations=most))
     assert exact.complete
-    assert exact.transitions == everything.transitions
+    assert exact.transitions == whole.transitions
+    for few in (most - 1, 1):
+        found = explore(start(SLOW), limits=Limits(configurations=few))
+        assert (found.configurations, *map(str, found.bounds)) == (
+            whole.configurations[:few],
+            f"the limit of {few} configurations",
+        )
 
 
-def test_a_limit_of_configurations_ends_incomplete():
-    most = len(explore(start(SLOW)).configurations) - 1
-    found = explore(start(SLOW), limits=Limits(configurations=most))
-    assert (len(found.configurations), *map(str, found.bounds)) == (
-        most,
-        f"the limit of {most} configurations",
-    )
-    assert explore(start(SLOW), limits=Limits(configurations=1)).configurations == [start(SLOW)]
+ASKS_ON = "BigActor a hosted_at uav0 with_behavior { loop { observe(PARENT(HOST)) } }"
 
 
-def test_a_limit_of_time_ends_incomplete():
-    found = explore(start(SLOW), limits=Limits(seconds=0.0))
-    assert list(map(str, found.bounds)) == ["the time limit of 0 s"]
-    assert len(found.configurations) == 1
-
-
-def test_time_that_was_spent_before_counts():
-    late = explore(start(SLOW), limits=Limits(seconds=60.0, spent=61.0))
-    assert list(map(str, late.bounds)) == ["the time limit of 60 s"]
-    assert explore(start(SLOW), limits=Limits(seconds=60.0, spent=1.0)).complete
-
-
-def test_what_an_agent_leaves_pending_is_bounded():
-    text = "BigActor a hosted_at uav0 with_behavior { loop { observe(PARENT(HOST)) } }"
-    found = explore(start(text), limits=Limits(pending=3))
-    assert list(map(str, found.bounds)) == ["more than 3 requests or messages of one agent pending"]
-    assert max(len(c.eta.of("a")) for c in found.configurations) == 4
-
-
-def test_what_waits_in_a_mailbox_is_bounded():
-    found = explore(start(ENDLESS), limits=Limits(pending=2))
-    assert list(map(str, found.bounds)) == ["more than 2 requests or messages of one agent pending"]
-    assert max(len(c.alpha.mailbox("b")) for c in found.configurations) == 3
+@pytest.mark.parametrize(
+    ("text", "limits", "bound"),
+    [
+        (SLOW, Limits(seconds=0.0), "the time limit of 0 s"),
+        (ASKS_ON, Limits(pending=3), "more than 3 requests or messages of one agent pending"),
+        (ENDLESS, Limits(pending=2), "more than 2 requests or messages of one agent pending"),
+    ],
+)
+def test_what_a_bound_cuts_off_is_incomplete(text, limits, bound):
+    found = explore(start(text), limits=limits)
+    assert list(map(str, found.bounds)) == [bound]
+    pending = max(len(c.eta.of("a")) for c in found.configurations)
+    waiting = max(len(c.alpha.mailbox(each)) for c in found.configurations for each in c.alpha.names())
+    assert max(pending, waiting) == (0 if limits.pending > 3 else limits.pending + 1)
 
 
 CUT = """
@@ -143,7 +126,7 @@ check { local_consistency race_freedom deadlock_freedom arrival invariant "alway
 @pytest.mark.parametrize("limits", [Limits(configurations=5), Limits(seconds=0.0), Limits(pending=1)])
 def test_what_was_cut_off_never_reads_as_holding(limits):
     mission = load(CUT)
-    report = check(mission.initial, mission.properties, limits)
+    report = check(mission, limits=limits)
     assert not report.complete
     assert {verdict.outcome for verdict in report.verdicts} == {Outcome.INCOMPLETE}
     assert report.exit_code == 3
@@ -232,17 +215,13 @@ def test_progress_is_reported_as_it_grows():
     assert seen[0].frontier == 1
     assert seen[-1].configurations == len(found.configurations)
     assert seen[-1].depth == found.depth
-
-
-def test_no_progress_is_reported_of_what_is_done_at_once():
-    seen = []
-    explore(start(TWO_MOVERS), report=seen.append, every=60.0)
-    assert seen == []
+    explore(start(TWO_MOVERS), report=seen.clear, every=60.0)  # it is done at once
+    assert seen
 
 
 def test_the_monitors_memory_is_not_counted():
     text = SLOW.replace("case obs => control", "case obs if uav1 in obs or uav0 in obs => control")
     mission = load(text + moves("gate0", "c", "uav1"))
-    report = check(mission.initial, mission.properties)
+    report = check(mission)
     found = explore(mission.initial)
     assert (report.configurations, report.transitions) == (len(found.configurations), found.transitions)

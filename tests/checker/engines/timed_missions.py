@@ -1,8 +1,14 @@
-"""Missions with times, drawn at random: what `semantics.strategies` draws, and a timing for it."""
+"""Missions with times, drawn at random: what `semantics.strategies` draws, or some small ones, and a timing for it."""
 
+from dataclasses import replace
+
+from checked_missions import load
 from hypothesis import strategies as st
 
 from semantics.environment import Appears, Drifts, Drops, Leaves, Says, Vanishes
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
+from semantics.properties.propositions import Inside
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Setting
 from semantics.strategies import initial_configurations
@@ -88,3 +94,53 @@ def with_timing(c: Configuration, timing: Timing) -> Configuration:
     """Return the first configuration of the same mission with times."""
     setting = c.setting.with_(timing=timing)
     return Configuration(setting, c.state).with_(remembered_at_first(setting))
+
+
+FLIGHT = (
+    "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO south0) }\ncontrol timed\nscheduler fcfs"
+)
+ANSWERS = """
+BigActor a hosted_at gcs0 with_behavior { observe(PARENT(uav0)) react { case obs => send("seen", b) } }
+BigActor b hosted_at gcs1 with_behavior { react { case "seen" => } }
+"""
+
+
+PROGRAMS = [
+    'BigActor a hosted_at gcs0 with_behavior { loop { send("on", a) react { case "on" => } } }',
+    """
+    BigActor a hosted_at gcs0 with_behavior { loop { send("on", b) react { case "off" => } } }
+    BigActor b hosted_at gcs0 with_behavior { loop { react { case "on" => send("off", a) } } }""",
+    """
+    BigActor a hosted_at gcs0 with_behavior { react { case "go" => loop { send("on", a) react { case "on" => } } } }
+    environment { someone says "go" to a }""",
+    """
+    BigActor a hosted_at gcs0 with_behavior { loop { observe(PARENT(uav0)) react { case obs => } } }
+    environment { mesh drops and returns }""",
+    """
+    BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }
+    BigActor b hosted_at gcs0 with_behavior { react { case "go" => control(HAND uav0 TO gcs2) } }
+    environment { someone says "go" to b }""",
+    """
+    BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) control(HAND uav0 TO gcs2) }
+    BigActor b hosted_at gcs0 with_behavior { observe(ALL) react { case obs => control(HAND uav0 TO gcs2) } }""",
+    ANSWERS,
+    f"{FLIGHT}\nenvironment {{ drifter0 vanishes }}",
+]
+"""Agents that may stop time, that race, that fly and that answer."""
+
+
+@st.composite
+def timed_programs(draw):
+    c = load(draw(st.sampled_from(PROGRAMS))).initial
+    timing = draw(timings(c.setting, draw(st.sampled_from([1000, 60_000]))))
+    return with_timing(c, replace(timing, **ZEROS) if draw(st.booleans()) else timing)
+
+
+ZEROS = {"react": Interval(0, 0), "sense": Interval(0, 0), "messages": (("", Interval(0, 0)),)}
+
+
+SOUTH = Inside("uav0", "south0", actually=True)
+
+
+def within(bound, formula=SOUTH, then=None):
+    return Property(PropertyKind.WITHIN, "within", formula, bound=bound, then=then)

@@ -29,6 +29,16 @@ def pairs_of(row: Row) -> set[frozenset[tuple[str, str]]]:
     return {frozenset(pair) for pair in combinations(row.items(), 2)}
 
 
+def spread(rows: list[Row], most: int) -> list[Row]:
+    """Return so many of some rows, each with as many pairs as possible that are in none before it."""
+    chosen: list[Row] = []
+    met: set[frozenset[tuple[str, str]]] = set()
+    for _ in range(most):
+        chosen.append(max(rows, key=lambda row: len(pairs_of(row) - met)))
+        met |= pairs_of(chosen[-1])
+    return chosen
+
+
 def _row(
     factors: dict[str, tuple[str, ...]], left: set[frozenset[tuple[str, str]]], draw: random.Random
 ) -> Row:

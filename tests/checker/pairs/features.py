@@ -28,7 +28,7 @@ OPTIONS = {
     "reduction": (NO, "por", "symmetry", "both"),
     "resumed": (NO, YES),
     "spill": (NO, YES),
-    "memory": (NO, YES),
+    "rows": ("plain", "compressed"),
 }
 """How it may be checked."""
 

@@ -5,20 +5,16 @@ from itertools import pairwise
 
 from checked_missions import load
 from hypothesis import HealthCheck, given, settings
-from timed_missions import timed_missions, with_timing
+from timed_missions import FLIGHT, timed_missions, with_timing, within
 
 from checker import Limits, check
 from checker.reports.report import report_text
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
-from semantics.properties.propositions import Ended, HasPending, Inside, Not
+from semantics.properties.propositions import Ended, HasPending, Not
 from semantics.timing.intervals import Interval
 from semantics.timing.timing import ONE_HOST, Endurance, Motion, Timing
 
-SOUTH = Inside("uav0", "south0", actually=True)
-FLIGHT = (
-    "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO south0) }\ncontrol timed\nscheduler fcfs"
-)
 LINES = (("UAV flies at 18 m/s to 25 m/s", 7), ("agents react within 1 min", 8))
 MINUTES = Timing(
     60_000,
@@ -31,10 +27,6 @@ MINUTES = Timing(
 
 def flight(timing=MINUTES):
     return with_timing(load(FLIGHT).initial, timing)
-
-
-def within(bound, formula=SOUTH, then=None):
-    return Property(PropertyKind.WITHIN, "within", formula, bound=bound, then=then)
 
 
 def report_on(c, *asked):
@@ -88,7 +80,7 @@ def test_time_that_stops_has_the_path_to_that_moment():
     assert [(leg.begin, leg.end, leg.label.rule) for leg in stop.path] == [(0, 5, "timeout")]
 
 
-@settings(max_examples=15, suppress_health_check=list(HealthCheck), deadline=None)
+@settings(max_examples=6, suppress_health_check=list(HealthCheck), deadline=None)
 @given(timed_missions())
 def test_no_leg_of_a_path_takes_longer_than_its_bound(c):
     asked = [within(2, Ended(a)) for a in sorted(c.alpha.names())[:1]]

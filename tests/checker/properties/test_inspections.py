@@ -2,13 +2,13 @@
 
 import pytest
 from checked_missions import (
+    PILOTS,
     WORLD,
     checked,
     enumerate_naively,
     kinds,
     load,
     moves,
-    rules_of,
     verdict,
     verdict_of,
     violation,
@@ -33,74 +33,74 @@ def consistency(text):
     return verdict(text, "local_consistency")
 
 
-def test_a_control_whose_redex_is_gone_is_unmatched():
-    text = """
-    BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) control(MOVE uav0 TO gate0) }
-    """
-    found = consistency(text)
-    assert kinds(found) == {"unmatched": 3}
-    assert rules_of(violation(found, "unmatched").trace) == ["req_ctr", "actuate", "req_ctr"]
-    message = "CTR(a, MOVE uav0 TO gate0) is unmatched: its redex matches nothing in L"
-    assert violation(found, "unmatched").message == message
+ASKS = moves("gate0", "a", "uav0")
+BELIEVES = "believes { uav0 in south0 }"
+LOOKS_FIRST = "observe(PARENT(HOST)) react { case obs => control(MOVE_HOST_TO gate0) }"
+QUEUED = "observe(PARENT(HOST)) control(MOVE_HOST_TO gate0) react { case o => skip }"
+HANDS = "BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }\n"
+B_DRIFTS = ASKS + moves("gate0", "b", "uav1") + "environment { uav1 drifts among north0 }\n"
 
 
-def test_a_control_that_believes_what_is_no_longer_so_is_inconsistent():
-    found = consistency(moves("gate0", "a", "uav0") + "environment { uav0 drifts among south0 }")
-    assert kinds(found) == {"inconsistent": 2}
-    assert violation(found, "inconsistent").details == ("uav0: L has it in north0, P shows it in south0",)
+def a_does(body):
+    return f"BigActor a hosted_at uav0 with_behavior {{ {body} }}\n"
 
 
-def test_a_control_of_what_has_vanished_is_inconsistent():
-    found = consistency(moves("gate0", "a", "uav0") + "environment { uav0 vanishes }")
-    assert violation(found, "inconsistent").details == ("uav0: L has it in north0, P does not show it",)
+CONSISTENCY = {
+    "where what moves is elsewhere": (
+        ASKS + "environment { uav0 drifts among south0 }",
+        {"inconsistent": 2},
+        "uav0: L has it in north0, P shows it in south0",
+    ),
+    "where what moves has vanished": (
+        ASKS + "environment { uav0 vanishes }",
+        {"inconsistent": 2},
+        "uav0: L has it in north0, P does not show it",
+    ),
+    "where a link is down": (
+        HANDS + "environment { uav0 leaves control:gcs0 }",
+        {"inconsistent": 2},
+        "uav0: L has it on control:gcs0, mesh, P on mesh",
+    ),
+    "where the target has vanished": (ASKS + "environment { gate0 vanishes }", {"inconsistent": 2}, ""),
+    "where nobody looked at what is believed": (ASKS + BELIEVES, {"inconsistent": 1}, ""),
+    "not after a look": (a_does(LOOKS_FIRST) + BELIEVES, {}, ""),
+    "not of what waits behind a look": (a_does(QUEUED) + BELIEVES, {}, ""),
+    "of all in no line": (a_does(QUEUED) + f"{BELIEVES} scheduler unordered", {"inconsistent": 2}, ""),
+    "whose turn it may be": (B_DRIFTS + "scheduler program_order", {"inconsistent": 2}, ""),
+    "whose turn it is not": (B_DRIFTS + "scheduler fcfs", {"inconsistent": 2}, ""),
+    "not of a command for what is in transit": (
+        PILOTS + "control timed\nenvironment { uav0 arrives }",
+        {},
+        "",
+    ),
+}
 
 
-def test_a_target_that_has_vanished_makes_a_control_inconsistent():
-    text = "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }\nenvironment { gate0 vanishes }"
-    assert kinds(consistency(text)) == {"inconsistent": 2}
+UNMATCHED = {
+    "an authority": ("gcs0", "MOVE vessel0 TO gate0", "vessel0 is not on control:gcs0"),
+    "an authority of one's own": ("vessel0", "HAND uav0 TO gcs1", "vessel0 is not on control:gcs0"),
+    "one authority of both": (
+        "gcs0",
+        "MOVE uav1 TO gate0",
+        "gcs0 is on control:gcs0, uav1 is on control:gcs1: on none together",
+    ),
+    "a place on the carrier": ("uav0", "PUT drifter0 IN gate0", "drifter0 is not in uav0: L has it in vessel0"),
+}  # fmt: skip
 
 
-def test_a_link_that_is_down_makes_a_control_inconsistent_and_both_sides_are_shown():
-    text = """
-    BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }
-    environment { uav0 leaves control:gcs0 }
-    """
-    found = consistency(text)
-    assert violation(found, "inconsistent").details == ("uav0: L has it on control:gcs0, mesh, P on mesh",)
+@pytest.mark.parametrize(("host", "command", "words"), UNMATCHED.values(), ids=UNMATCHED)
+def test_an_unmatched_control_is_told_with_what_is_missing(host, command, words):
+    text = f"BigActor a hosted_at {host} with_behavior {{ control({command}) }}\n"
+    assert words in violation(consistency(text), "unmatched").details
 
 
-def test_a_control_that_no_physical_change_makes_true_is_unrealisable():
-    text = """
-    BigActor a hosted_at vessel0 with_behavior { control(MOVE_HOST_TO south0) control(PUT drifter0 IN north0) }
-    environment { vessel0 drifts among point (36.985, -8.71) }
-    """
-    found = consistency(text)
-    assert list(kinds(found)) == ["unrealisable"]
-    assert violation(found, "unrealisable").message.endswith("no physical change makes its reactum true")
-
-
-def test_looking_again_repairs_what_is_inconsistent_if_nothing_moves_in_between():
-    text = """
-    BigActor a hosted_at uav0 with_behavior {
-      observe(PARENT(HOST)) react { case obs => control(MOVE_HOST_TO gate0) }
-    }
-    believes { uav0 in south0 }
-    """
-    assert consistency(text).outcome is Outcome.HOLDS
-    assert kinds(consistency(moves("gate0", "a", "uav0") + "believes { uav0 in south0 }")) == {
-        "inconsistent": 1
-    }
-
-
-def test_only_the_control_next_in_line_is_asked_for():
-    text = """
-    BigActor a hosted_at uav0 with_behavior {
-      observe(PARENT(HOST)) control(MOVE_HOST_TO gate0) react { case o => skip }
-    }
-    believes { uav0 in south0 }
-    """
-    assert consistency(text).outcome is Outcome.HOLDS
-    assert consistency(text + "scheduler unordered").outcome is Outcome.VIOLATED
+@pytest.mark.parametrize(("text", "found", "words"), CONSISTENCY.values(), ids=CONSISTENCY)
+def test_a_control_is_inconsistent(text, found, words):
+    said = consistency(text)
+    assert kinds(said) == found
+    assert said.outcome is (Outcome.VIOLATED if found else Outcome.HOLDS)
+    if words:
+        assert violation(said, "inconsistent").details == (words,)
 
 
 ENTERS = """
@@ -114,7 +114,7 @@ environment { uav0 drifts among point (36.98, -8.70), point (37.02, -8.70) }
 @pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
 def test_findings_about_the_same_control_of_the_text_are_shown_as_one(engine):
     mission = load(ENTERS + "check { local_consistency }")
-    found = verdict_of(check(mission.initial, mission.properties, engine=engine), "local_consistency")
+    found = verdict_of(check(mission, engine=engine), "local_consistency")
     assert [(each.subject, each.alike, each.told[-1]) for each in found.violations] == [
         ("CTR(a, MOVE_HOST_TO gate0)", 2, "and 2 alike")
     ]
@@ -128,26 +128,6 @@ def test_findings_about_different_controls_of_the_text_are_shown_each():
         ("CTR(a, MOVE_HOST_TO gate0)", 0),
         ("CTR(a, MOVE_HOST_TO south0)", 0),
     ]
-
-
-def test_whose_turn_it_is_makes_no_difference_to_consistency():
-    text = (
-        moves("gate0", "a", "uav0") + moves("gate0", "b", "uav1") + "environment { uav1 drifts among north0 }"
-    )
-    for scheduler in ("program_order", "fcfs"):
-        found = consistency(text + f"\nscheduler {scheduler}")
-        assert kinds(found) == {"inconsistent": 2}
-
-
-TWO_PILOTS = """
-BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }
-BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }
-"""
-
-
-def test_a_command_for_what_is_in_transit_waits_and_is_no_inconsistency():
-    found = checked(TWO_PILOTS + "control timed\nenvironment { uav0 arrives }\ncheck { local_consistency }")
-    assert verdict_of(found, "local_consistency").outcome is Outcome.HOLDS
 
 
 def test_a_flight_whose_target_vanished_is_inconsistent():
@@ -198,38 +178,6 @@ def test_a_mission_without_controls_is_vacuously_consistent():
 
 def deadlock(text):
     return verdict(text, "deadlock_freedom")
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ('BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } }', "a waits at a react"),
-        (
-            "BigActor a hosted_at gcs0 with_behavior { control(HAND uav1 TO gcs2) }",
-            "CTR(a, HAND uav1 TO gcs2) is pending",
-        ),
-        (
-            "BigActor a hosted_at gcs0 with_behavior { migrate(drifter0) }",
-            "MGR(a, drifter0) is pending",
-        ),
-        (
-            'BigActor a hosted_at drifter0 with_behavior { send("x", b) }\nBigActor b hosted_at gcs0 with_behavior { }',
-            'SND(a, b, "x") is pending',
-        ),
-        (
-            "BigActor a hosted_at gcs0 with_behavior { control(HAND uav1 TO gcs2) observe(ALL) }",
-            "CTR(a, HAND uav1 TO gcs2) is pending; OBS(a, ALL) is pending",
-        ),
-    ],
-)
-def test_what_nothing_but_the_environment_could_help_is_a_deadlock(text, words):
-    found = deadlock(text)
-    assert list(kinds(found)) == ["deadlock"]
-    assert found.violations[0].message == f"nothing but the environment can move, and {words}"
-
-
-def details(text, number=0):
-    return deadlock(text).violations[number].details
 
 
 def agents(**bodies):
@@ -290,18 +238,9 @@ SENDS = 'send("go", b)'
     ],
 )
 def test_a_deadlock_is_told_with_its_causes(text, causes):
-    assert details(text) == causes
-
-
-def test_the_environment_moving_for_ever_is_no_help():
-    text = 'BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } }'
-    found = deadlock(text + "\nenvironment { uav0 leaves mesh and returns }")
-    assert kinds(found) == {"deadlock": 0}
-
-
-def test_another_agent_that_can_always_move_is_help_enough():
-    text = 'BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } }\n'
-    assert deadlock(text + WATCH).outcome is Outcome.HOLDS
+    (found,) = deadlock(text).violations
+    assert found.message.startswith("nothing but the environment can move, and ")
+    assert found.details == causes
 
 
 AT_REST = {
@@ -325,36 +264,29 @@ def twice() = { once() once() }
 """
 
 
-@pytest.mark.parametrize("body", AT_REST.values(), ids=AT_REST)
-def test_at_rest(body):
-    text = BEHAVIOURS + f"BigActor a hosted_at gcs0 with_behavior {{ {body} }}"
-    found = deadlock(text)
-    assert found.outcome is Outcome.HOLDS
-    assert found.examined > 0
+@pytest.mark.parametrize("body", [*AT_REST.values(), *NOT_AT_REST.values()], ids=[*AT_REST, *NOT_AT_REST])
+def test_an_agent_is_at_rest_where_it_waits_in_a_loop_for_what_begins_its_next_turn(body):
+    found = deadlock(BEHAVIOURS + f"BigActor a hosted_at gcs0 with_behavior {{ {body} }}")
+    assert list(kinds(found)) == (["deadlock"] if body in NOT_AT_REST.values() else [])
+    assert found.examined > 0 or found.violations
 
 
-@pytest.mark.parametrize("body", NOT_AT_REST.values(), ids=NOT_AT_REST)
-def test_not_at_rest(body):
-    text = BEHAVIOURS + f"BigActor a hosted_at gcs0 with_behavior {{ {body} }}"
-    assert list(kinds(deadlock(text))) == ["deadlock"]
+WAITS = 'BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } }\n'
+WAITS_TWICE = WAITS.replace("skip } }", 'skip } react { case "x" => skip } }')
+SERVES = 'BigActor b hosted_at gcs0 with_behavior { loop { react { case "x" => skip } } }\n'
+HELP = {
+    "a link that comes and goes": (WAITS + "environment { uav0 leaves mesh and returns }", {"deadlock": 0}),
+    "another that can always move": (WAITS + WATCH, {}),
+    "what may be said as often": (WAITS_TWICE + 'environment { says "x" to a at most 2 times }', {}),
+    "what may be said once": (WAITS_TWICE + 'environment { says "x" to a }', {"deadlock": 2}),
+    "what no case takes": (WAITS_TWICE + 'environment { says "y" to a }', {"deadlock": 0}),
+    "what is said to another": (WAITS + SERVES + 'environment { says "x" to b }', {"deadlock": 0}),
+}
 
 
-def test_a_case_that_someone_may_still_say_is_rest_until_it_was_said_too_often():
-    text = (
-        'BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } react { case "x" => skip } }\n'
-    )
-    assert deadlock(text + 'environment { says "x" to a at most 2 times }').outcome is Outcome.HOLDS
-    assert kinds(deadlock(text + 'environment { says "x" to a }')) == {"deadlock": 2}
-    assert kinds(deadlock(text + 'environment { says "y" to a }')) == {"deadlock": 0}
-
-
-def test_what_is_said_to_another_is_no_help():
-    text = """
-    BigActor a hosted_at gcs0 with_behavior { react { case "x" => skip } }
-    BigActor b hosted_at gcs0 with_behavior { loop { react { case "x" => skip } } }
-    environment { says "x" to b }
-    """
-    assert kinds(deadlock(text)) == {"deadlock": 0}
+@pytest.mark.parametrize(("text", "found"), HELP.values(), ids=HELP)
+def test_who_waits_is_helped_or_not_by(text, found):
+    assert kinds(deadlock(text)) == found
 
 
 def test_an_observation_that_an_ended_agent_did_not_receive_is_nothing():
@@ -371,55 +303,36 @@ def test_an_observation_that_no_case_takes_leaves_its_agent_waiting():
 # --- arrival --------------------------------------------------------------------------------------------------
 
 FLIGHT = moves("gate0", "a", "uav0") + "control timed\n"
+FAIR = "flights declared to arrive are fair"
 
 
 def test_a_flight_that_is_not_declared_to_arrive_is_reported_apart():
     report = checked(FLIGHT + "check { deadlock_freedom arrival }")
-    assert verdict_of(report, "deadlock_freedom").outcome is Outcome.HOLDS
     late = verdict_of(report, "arrival")
-    assert kinds(late) == {"not arrived": 2}
     assert late.violations[0].message == (
         "a run may wait here for ever for ⟨commit : FLY(a, MOVE_HOST_TO gate0)⟩"
     )
+    assert verdict_of(report, "deadlock_freedom").outcome is Outcome.HOLDS
     assert "declare that it arrives" in verdict_of(report, "deadlock_freedom").note
 
 
-def test_a_flight_that_is_declared_to_arrive_is_fair():
-    report = checked(FLIGHT + "environment { uav0 arrives }\ncheck { deadlock_freedom arrival }")
-    assert [v.outcome for v in report.verdicts[:2]] == [Outcome.HOLDS, Outcome.HOLDS]
-    assert verdict_of(report, "arrival").note == "flights declared to arrive are fair"
-    assert verdict_of(report, "deadlock_freedom").note == ""
-
-
-def test_the_declaration_of_another_entity_is_no_help():
-    late = verdict(FLIGHT + "environment { uav1 arrives }", "arrival")
-    assert kinds(late) == {"not arrived": 2}
-
-
-def test_another_agent_that_goes_on_leaves_nothing_waiting_for_a_flight():
-    assert verdict(FLIGHT + WATCH, "arrival").outcome is Outcome.HOLDS
-
-
-def test_what_takes_no_flight_is_vacuously_arrived():
-    found = verdict(moves("gate0", "a", "uav0"), "arrival")
-    assert (found.outcome, found.examined, found.note) == (Outcome.HOLDS, 0, "")
+@pytest.mark.parametrize(
+    ("text", "found", "note"),
+    [
+        (FLIGHT, {"not arrived": 2}, FAIR),
+        (FLIGHT + "environment { uav1 arrives }", {"not arrived": 2}, FAIR),
+        (FLIGHT + "environment { uav0 arrives }", {}, FAIR),
+        (FLIGHT + WATCH, {}, FAIR),
+        (moves("gate0", "a", "uav0"), {}, ""),
+    ],
+    ids=["undeclared", "declared of another", "declared", "another goes on", "no flight"],
+)
+def test_a_flight_arrives_if_it_is_declared_to_or_another_goes_on(text, found, note):
+    said = verdict(text, "arrival")
+    assert (kinds(said), said.note) == (found, note)
 
 
 # --- computation ----------------------------------------------------------------------------------------------
-
-
-def test_a_computation_that_fails_is_found_with_the_way_to_it():
-    text = """
-    BigActor a hosted_at uav0 with_behavior { observe(PARENT(HOST)) react { case o => display(first(o of Drifter)) } }
-    """
-    found = verdict_of(checked(text), "computation")
-    assert kinds(found) == {"fails": 3}
-    assert found.violations[0].message == "a: 'first' can't be computed of ({}): the set is empty"
-
-
-def test_a_computation_that_reaches_no_command_diverges():
-    text = "BigActor a hosted_at uav0 with_behavior { let x = 0 while true { x = 1 - x } }"
-    assert kinds(verdict_of(checked(text), "computation")) == {"diverges": 0}
 
 
 def test_one_agents_fault_does_not_stop_the_others():

@@ -1,10 +1,11 @@
 """Race-freedom by ownership: what it promises, the search never contradicts; and why it is not promised."""
 
 import pytest
-from checked_missions import WORLD, load, moves, start, verdict
+from checked_missions import WORLD, load, start, verdict
 from hypothesis import assume, event, given, reject
 from mission_texts import missions
-from scale import examples
+from scale import IS_WHOLE, examples
+from stale_missions import written
 
 from checker import Limits, explore, owned
 from checker.properties.races import ControlRaces, StaleObservationRaces
@@ -24,6 +25,8 @@ def races(c, most=1_500):
     return kinds if kinds or (found.complete and remembered.complete) else None
 
 
+A_ENTERS, B_ENTERS = "a@uav0: ENTER\n", "b@uav1: ENTER\n"
+
 # --- owned implies that the search finds nothing --------------------------------------------------------------
 
 
@@ -40,7 +43,7 @@ def test_what_is_owned_has_no_race(text):
         assert races(c) in (set(), None)
 
 
-@examples(30)
+@examples(30 if IS_WHOLE else 15)
 @given(initial_configurations())
 def test_what_is_owned_among_generated_configurations_has_no_race(c):
     assume(len(c.alpha.names()) > 1)
@@ -56,98 +59,64 @@ def test_what_is_owned_among_generated_configurations_has_no_race(c):
 
 
 OWNED = {
-    "one agent alone": """
-    BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) control(HAND uav0 TO gcs1) }""",
-    "each moves its own": moves("gate0", "a", "uav0") + moves("gate0", "b", "uav1"),
-    "each moves its own while the other looks at what nobody moves": moves("gate0", "a", "uav0")
-    + """
-    BigActor b hosted_at uav1 with_behavior {
-      observe(CHILDREN(gate0)) react { case o if gcs0 in o => control(MOVE_HOST_TO south0) case o => skip }
-    }""",
-    "one moves, one only looks": moves("gate0", "a", "uav0")
-    + "BigActor b hosted_at uav1 with_behavior { observe(ALL) react { case o if uav0 in o => display(o) } }",
-    "one moves what the other links": moves("gate0", "a", "uav0")
-    + "BigActor b hosted_at gcs1 with_behavior { control(HAND uav1 TO gcs2) }",
-    "each hands over its own": """
-    BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs2) }
-    BigActor b hosted_at gcs1 with_behavior { control(HAND uav1 TO gcs2) }
-    """,
-    "messages that rest on nothing": moves("gate0", "a", "uav0")
-    + 'BigActor b hosted_at uav1 with_behavior { control(MOVE_HOST_TO gate0) send("there", a) }',
+    "one agent alone": "a@gcs0: control(MOVE uav0 TO gate0) control(HAND uav0 TO gcs1)",
+    "each moves its own": f"{A_ENTERS}{B_ENTERS}",
+    "each moves its own while the other looks at what nobody moves": A_ENTERS
+    + "b@uav1: LOOKS react { case o if gcs0 in o => control(MOVE_HOST_TO south0) case o => skip }",
+    "one moves, one only looks": A_ENTERS
+    + "b@uav1: observe(ALL) react { case o if uav0 in o => display(o) }",
+    "one moves what the other links": f"{A_ENTERS}b@gcs1: control(HAND uav1 TO gcs2)",
+    "each hands over its own": "a@gcs0: control(HAND uav0 TO gcs2)\nb@gcs1: control(HAND uav1 TO gcs2)",
+    "messages that rest on nothing": A_ENTERS + 'b@uav1: ENTER send("there", a)',
 }
 
 
 @pytest.mark.parametrize("text", OWNED.values(), ids=OWNED)
 def test_owned(text):
-    assert owned(start(text))
-    assert races(start(text)) == set()
-    found = verdict(text, "race_freedom")
+    assert owned(start(written(text)))
+    assert races(start(written(text))) == set()
+    found = verdict(written(text), "race_freedom")
     assert found.outcome is Outcome.HOLDS
     assert found.note == "by ownership, without a search: no agent may write what another's control rests on"
 
 
 # --- why it is not owned --------------------------------------------------------------------------------------
 
-B_ENTERS = moves("gate0", "b", "uav1")
 
-
-def looking(query, test, host="uav0", control="control(MOVE_HOST_TO gate0)"):
-    return f"""
-    BigActor a hosted_at {host} with_behavior {{
-      observe({query}) react {{ case o if {test} => {control} case o => skip }}
-    }}
-    """
+def looking(query, test, host="uav0", does="ENTER"):
+    return f"a@{host}: observe({query}) react {{ case o if {test} => {does} case o => skip }}\n"
 
 
 NOT_OWNED = {
-    "two move one": """
-    BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }
-    BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }""",
-    "one moves another's host": moves("gate0", "a", "uav0")
-    + "BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }",
-    "one takes the other's authority": """
-    BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }
-    BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }""",
+    "two move one": "a@gcs0: control(MOVE uav0 TO gate0)\nb@gcs0: control(MOVE uav0 TO south0)",
+    "one moves another's host": A_ENTERS + "b@gcs0: control(MOVE uav0 TO south0)",
+    "one takes the other's authority": "a@gcs0: control(HAND uav0 TO gcs1)\nb@gcs0: control(MOVE uav0 TO south0)",
     "a test of what the other moves": looking("CHILDREN(gate0)", "not (uav1 in o)") + B_ENTERS,
     "a test of everything": looking("CHILDREN(gate0)", "size(o) < 2") + B_ENTERS,
     "a test of where it is": looking("PARENT(uav1)", "north0 in o") + B_ENTERS,
     "a test of a link": looking("LINKED_TO(HOST)", "uav0 in o", "gcs0", "control(MOVE uav0 TO gate0)")
-    + "BigActor b hosted_at uav1 with_behavior { control(DISCONNECT_HOST_FROM vessel0) }",
+    + "b@uav1: control(DISCONNECT_HOST_FROM vessel0)",
     "a test that a message carries": looking("CHILDREN(gate0)", "not (uav1 in o)", "gcs0", 'send("go", c)')
-    + 'BigActor c hosted_at uav0 with_behavior { react { case "go" => control(MOVE_HOST_TO south0) } }'
-    + B_ENTERS,
+    + f'c@uav0: react {{ case "go" => control(MOVE_HOST_TO south0) }}\n{B_ENTERS}',
     "an argument that is not known from the text": looking(
         "CHILDREN(gate0)", "gcs0 in o", "gcs0", "control(MOVE first(o) TO gate0)"
     )
     + B_ENTERS,
-    "a host that is not known from the text": """
-    BigActor a hosted_at uav0 with_behavior { migrate(vessel0) control(MOVE_HOST_TO gate0) }
-    """
-    + B_ENTERS,
-    "a carrier that another moves": """
-    BigActor a hosted_at vessel0 with_behavior { control(PUT drifter0 IN south0) }
-    BigActor b hosted_at vessel0 with_behavior { control(MOVE_HOST_TO north0) }""",
-    "a place closed to others": """
-    rule enter() { gate0 || HOST -> gate0.HOST }
-    BigActor a hosted_at uav0 with_behavior { control(enter()) }
-    """
-    + B_ENTERS,
-    "one that is yet to be spawned": """
-    def enter() = { control(MOVE_HOST_TO gate0) }
-    BigActor a hosted_at uav0 with_behavior { spawn d hosted_at uav1 with_behavior enter() }""",
-    "one alone in no line": """
-    BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO gate0) }
-    scheduler unordered""",
-}
+    "a host that is not known from the text": "a@uav0: migrate(vessel0) ENTER\n" + B_ENTERS,
+    "a place closed to others": "rule enter() { gate0 || HOST -> gate0.HOST }\na@uav0: control(enter())\n" + B_ENTERS,
+    "one that is yet to be spawned": "def enter() = { ENTER }\na@uav0: spawn d hosted_at uav1 with_behavior enter()",
+    "one alone in no line": "scheduler unordered\na@uav0: ENTER",
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("text", NOT_OWNED.values(), ids=NOT_OWNED)
 def test_not_owned(text):
-    assert not owned(start(text))
+    assert not owned(start(written(text)))
 
 
 def test_cargo_cannot_be_put_down_once_its_carrier_has_been_moved():
-    text = NOT_OWNED["a carrier that another moves"]
+    text = written("a@vessel0: control(PUT drifter0 IN south0)\nb@vessel0: NORTH")
+    assert not owned(start(text))
     message = verdict(text, "race_freedom").violations[0].message
     assert message == "serving CTR(b, MOVE_HOST_TO north0) disables CTR(a, PUT drifter0 IN south0)"
 

@@ -5,19 +5,17 @@ from math import inf
 
 import pytest
 from checked_missions import load
-from timed_missions import with_timing
+from timed_missions import SOUTH, with_timing
 
 from checker import Engine, check
 from checker.properties.schedule import EventDates
 from checker.reports.times import times_json, times_text
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
-from semantics.properties.propositions import Inside
 from semantics.timing.intervals import Interval
 from semantics.timing.timing import Motion, Timing
 from specs.elaboration import load_mission
 
-SOUTH = Inside("uav0", "south0", actually=True)
 TEXT = """BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO south0) control(MOVE_HOST_TO north0) }
 control timed
 scheduler fcfs"""

@@ -5,7 +5,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from checked_missions import load, start, verdict
+from checked_missions import BOTH_LOOK, load, start, verdict
+from stale_missions import written
+from swarms import swarm
 
 from checker import ReplayError, Trace, check, print_trace, replay, to_json
 from checker.properties.races import STALE
@@ -15,78 +17,35 @@ from checker.reports.comparison import comparison_text
 from checker.reports.lanes import LaneStep, Repetition, bounded, folded, lanes_of_trace, lanes_text
 from semantics.races.monitor import monitored
 
-LOOKS = """
-BigActor a hosted_at uav0 with_behavior {
-  observe(CHILDREN(gate0))
-  react { case obs if not (uav1 in obs) => control(MOVE_HOST_TO gate0) case obs => skip }
-}
-BigActor b hosted_at uav1 with_behavior {
-  observe(CHILDREN(gate0))
-  react { case obs if not (uav0 in obs) => control(MOVE_HOST_TO gate0) case obs => skip }
-}
-"""
-
-SCOUTED = """
-BigActor a hosted_at uav0 with_behavior {
-  observe(CHILDREN(gate0))
-  react { case obs =>
-    send "look" to scout
-    if not (uav1 in obs) { control(MOVE_HOST_TO gate0) }
-  }
-}
-BigActor scout hosted_at vessel0 with_behavior {
-  react { case "look" => observe(CHILDREN(gate0)) }
-  react { case obs => send "go" to b }
-}
-BigActor b hosted_at uav1 with_behavior { react { case "go" => control(MOVE_HOST_TO gate0) } }
-"""
-"""The scout asks the same as a, and later; b goes by the scout's word."""
-
-TOLD = """
-BigActor a hosted_at uav0 with_behavior { react { case "go" => control(MOVE_HOST_TO gate0) } }
-BigActor scout hosted_at vessel0 with_behavior {
-  observe(CHILDREN(gate0))
-  react { case obs => if not (uav1 in obs) { send "go" to a } }
-  observe(CHILDREN(gate0))
-  react { case obs => send "enter" to b }
-}
-BigActor b hosted_at uav1 with_behavior { react { case "enter" => control(MOVE_HOST_TO gate0) } }
-"""
-"""What a does rests on the scout's first look, and on none of its own."""
+ALIKE = swarm(
+    "observe(CHILDREN(room0)) react { case o => if size(o) == 1 { control(MOVE_HOST_TO room0) } }",
+    rest="check { race_freedom }",
+)
 
 
-ALIKE = """
-mission alike
-signature {
-  kind Place contains UAV
-  kind UAV driven
-}
-world {
-  p0: Place = box (0.0, 0.0) (0.1, 0.1)
-  p1: Place = box (0.0, 0.2) (0.1, 0.3)
-  u0: UAV = point (0.05, 0.05) linked net
-  u1: UAV = point (0.05, 0.05) linked net
-}
-BigActor a hosted_at u0 with_behavior {
-  observe(CHILDREN(p1)) react { case o => if size(o) == 0 { control(MOVE_HOST_TO p1) } }
-}
-BigActor b hosted_at u1 with_behavior {
-  observe(CHILDREN(p1)) react { case o => if size(o) == 0 { control(MOVE_HOST_TO p1) } }
-}
-check { race_freedom }
-"""
-
-
-def race_of(text, agent=None):
+def race_of(text, agent=""):
     """Return a stale race of a mission, that of an agent if one is named."""
-    found = verdict(text, "race_freedom").violations
-    return next(
-        each for each in found if each.kind == STALE and agent in (None, each.trace.steps[-1].label.agent)
-    )
+    found = (each for each in verdict(text, "race_freedom").violations if each.kind == STALE)
+    return next(each for each in found if agent in ("", each.trace.steps[-1].label.agent))
 
 
 def said(trace):
     return {role: str(trace.steps[number - 1].label) for number, role in trace.race.roles.items()}
+
+
+SCOUTED = written("""
+a@uav0: LOOKS react { case o => send "look" to scout if not (uav1 in o) { ENTER } }
+scout@vessel0: react { case "look" => LOOKS } react { case o => send "go" to b }
+b@uav1: react { case "go" => ENTER }
+""")
+"""The scout asks the same as a, and later; b goes by the scout's word."""
+
+TOLD = written("""
+a@uav0: react { case "go" => ENTER }
+scout@vessel0: LOOKS react { case o => if not (uav1 in o) { send "go" to a } } LOOKS react { case o => send "on" to b }
+b@uav1: react { case "on" => ENTER }
+""")
+"""What a does rests on the scout's first look, and on none of its own."""
 
 
 @pytest.mark.parametrize("scheduler", ["unordered", "program_order", "fcfs"])
@@ -106,25 +65,14 @@ def test_of_two_looks_of_one_agent_it_is_the_one_that_another_was_told_of():
 
 
 def test_a_trace_that_ends_in_no_race_has_no_such_steps():
-    trace = race_of(LOOKS).trace
+    trace = race_of(BOTH_LOOK).trace
     for steps in (trace.steps[:-1], trace.steps[:5], ()):
         assert stale_steps(trace.initial, steps) is None
-    assert stale_steps(start(LOOKS), trace.steps) is None  # nothing is remembered there
-
-
-def test_the_details_name_the_steps_that_the_trace_marks():
-    race = race_of(LOOKS)
-    sensed, changed, acted = race.trace.race
-    assert [line.partition(":")[0] for line in race.details] == [
-        f"sensed in step {sensed}",
-        f"changed by a in step {changed}",
-        f"acted on in step {acted}",
-    ]
-    assert (changed, acted) == (8, 12)
+    assert stale_steps(start(BOTH_LOOK), trace.steps) is None  # nothing is remembered there
 
 
 def test_the_text_the_lanes_and_the_comparison_mark_the_three_steps():
-    trace = race_of(LOOKS).trace
+    trace = race_of(BOTH_LOOK).trace
     marked = {number: f"[{role}]" for number, role in trace.race.roles.items()}
     lines = list(print_trace(trace, changes=False))
     for number, line in enumerate(lines, 1):
@@ -136,24 +84,24 @@ def test_the_text_the_lanes_and_the_comparison_mark_the_three_steps():
 
 
 def test_a_replayed_trace_has_the_same_steps_and_a_false_mark_is_refused():
-    trace = race_of(LOOKS).trace
+    trace = race_of(BOTH_LOOK).trace
     data = json.loads(json.dumps(to_json(trace, "small.mission", "sha256:0")))
     assert [each.get("role") for each in data["steps"] if "role" in each] == ["sensed", "changed", "acted"]
-    assert replay(start(LOOKS), data).race == trace.race
+    assert replay(start(BOTH_LOOK), data).race == trace.race
     for number, role in ((0, "sensed"), (trace.race.changed - 1, "acted"), (trace.race.acted - 1, ["acted"])):
         steps = [dict(each) for each in data["steps"]]
         steps[number]["role"] = role
         with pytest.raises(ValueError, match=f"step {number + 1} should have"):
-            replay(start(LOOKS), {**data, "steps": steps})
+            replay(start(BOTH_LOOK), {**data, "steps": steps})
     steps = [{key: each[key] for key in each if key != "role"} for each in data["steps"]]
-    assert replay(start(LOOKS), {**data, "steps": steps}).race is None
+    assert replay(start(BOTH_LOOK), {**data, "steps": steps}).race is None
 
 
 def test_a_mark_in_a_run_without_the_monitors_memory_is_refused():
-    trace = race_of(LOOKS).trace
+    trace = race_of(BOTH_LOOK).trace
     data = to_json(trace, "small.mission", "sha256:0") | {"monitored": False}
     with pytest.raises((ValueError, ReplayError), match="no 'role'"):
-        replay(start(LOOKS), data)
+        replay(start(BOTH_LOOK), data)
 
 
 @pytest.mark.parametrize(
@@ -161,7 +109,7 @@ def test_a_mark_in_a_run_without_the_monitors_memory_is_refused():
 )
 def test_under_a_reduction_the_marks_are_at_the_steps_of_the_run_that_is_shown(reduce):
     mission = load(ALIKE, "")
-    report = check(mission.initial, mission.properties, reduce=reduce)
+    report = check(mission, reduce=reduce)
     races = [each for each in report.verdicts["race_freedom"].violations if each.kind == STALE]
     assert races
     for each in races:
@@ -172,7 +120,7 @@ def test_under_a_reduction_the_marks_are_at_the_steps_of_the_run_that_is_shown(r
 
 
 def test_a_step_of_a_race_is_never_folded_nor_left_out():
-    lanes = lanes_of_trace(race_of(LOOKS).trace)
+    lanes = lanes_of_trace(race_of(BOTH_LOOK).trace)
     repeated = [replace(lanes.steps[0], number=number) for number in range(1, 101)]
     marked = replace(repeated[49], role="sensed")
     rows = list(folded([*repeated[:49], marked, *repeated[50:]]))
@@ -188,7 +136,7 @@ CASES = Path(__file__).parents[2] / "corpus" / "violated"
 def test_each_stale_race_of_the_corpus_has_its_three_steps(path):
     text = path.read_text(encoding="utf-8")
     mission = load(text, "")
-    report = check(mission.initial, mission.properties)
+    report = check(mission)
     races = [each for found in report.verdicts for each in found.violations if each.kind == STALE]
     assert races
     for each in races:

@@ -9,10 +9,10 @@ import operator
 from pathlib import Path
 
 import pytest
-from checked_missions import WORLD, checked, load, rules_of, verdict_of
+from checked_missions import WORLD, checked, load
 from hypothesis import given
 from hypothesis import strategies as st
-from scale import examples
+from scale import IS_WHOLE, examples
 
 from checker import Engine, Outcome, Reduction, RefusedError, check, explore, replay, to_json
 from checker.properties.inspections import Reachability
@@ -22,8 +22,7 @@ from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property, watching
 from semantics.properties.propositions import VariableIs
 from semantics.properties.temporal import Denied, Either, Globally, Now
-from specs import parse_bytes
-from specs.elaboration import elaborate, load_mission
+from specs.elaboration import load_mission
 
 MISSIONS = Path(__file__).parents[3] / "specs" / "missions"
 
@@ -270,11 +269,11 @@ def asked(invariant, reachable, claim):
         yield f'ltl "l": {written(claim)}'
 
 
-@examples(150)
+@examples(150 if IS_WHOLE else 75)
 @everything
 def test_verdicts_are_those_of_an_interpreter_that_forgets_nothing(block, invariant, reachable, claim):
     mission = mission_of(block, *asked(invariant, reachable, claim))
-    report = check(mission.initial, mission.properties, engine=Engine.REFERENCE)
+    report = check(mission, engine=Engine.REFERENCE)
     assert outcomes(report) == {**expected(block, invariant, reachable, claim), "computation": True}
     for each in report.verdicts:
         for trace in filter(None, (each.witness, *(found.trace for found in each.violations))):
@@ -286,60 +285,21 @@ def test_verdicts_are_those_of_an_interpreter_that_forgets_nothing(block, invari
 def test_the_fast_explorer_and_reductions_say_the_same(block, invariant, reachable, claim):
     wanted = expected(block, invariant, reachable, claim)
     mission = mission_of(block, *asked(invariant, reachable, claim))
-    slow, fast = (
-        check(mission.initial, mission.properties, engine=each) for each in (Engine.REFERENCE, Engine.FAST)
-    )
+    slow, fast = (check(mission, engine=each) for each in (Engine.REFERENCE, Engine.FAST))
     assert outcomes(fast) == {**wanted, "computation": True}
     assert [each.remarks for each in fast.verdicts] == [each.remarks for each in slow.verdicts]
     assert (fast.configurations, fast.transitions) == (slow.configurations, slow.transitions)
     mission = mission_of(block, *asked(invariant, reachable, None))
-    reduced = check(mission.initial, mission.properties, engine=Engine.REFERENCE, reduce=[Reduction.POR])
+    reduced = check(mission, engine=Engine.REFERENCE, reduce=[Reduction.POR])
     assert (outcomes(reduced)["i"], outcomes(reduced)["r"]) == (wanted["i"], wanted["r"])
 
 
 # --- as a reader expects it -----------------------------------------------------------------------------------
 
-COUNTED = """
-BigActor a hosted_at uav0 with_behavior {
-  let n = 0
-  n = n + 1
-  control(MOVE_HOST_TO gate0)
-  n = n + 1
-  control(MOVE_HOST_TO south0)
-}
-"""
 ALIKE = WORLD.replace("linked control:gcs1, mesh", "linked control:gcs0, mesh").replace(
     "uav1: UAV = point (36.98, -8.70)", "uav1: UAV = point (37.02, -8.70)"
 )
 """The two UAVs stand in one place, and are on the same links."""
-
-CLAIMS = {
-    'invariant "it": not a.n == 2': False,
-    'invariant "it": a.n != 2': False,
-    'invariant "it": a.n < 2': False,
-    'ltl "it": <> a.n == 2': True,
-    'ltl "it": <> [] a.n == 2': True,
-    'ltl "it": <> [] (ended a and a.n == 2)': True,
-    'ctl "it": AF AG a.n > 1': True,
-    'invariant "it": a.n == 0 or a.n == 1 or a.n == 2': True,
-    'invariant "it": a.n == 1 or a.n == 2': True,
-    'invariant "it": a.n > -1 and a.n <= 2': True,
-    'invariant "it": bound a.n': False,
-    'invariant "it": pending a -> bound a.n': True,
-    'reachable "it": a.n == 0': False,
-    'reachable "it": a.n != -3 and not bound a.n': False,
-    'reachable "it": not bound a.n': True,
-    'ltl "it": bound a.n leads to a.n == 2': True,
-    'ltl "it": a.n >= 1': False,
-    'ltl "it": X a.n >= 1': True,
-}
-
-
-@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
-def test_what_a_property_names_is_kept_to_the_end_of_the_run(engine):
-    for claim, holds in CLAIMS.items():
-        mission = load(f"{COUNTED} check {{ {claim} }}")
-        assert outcomes(check(mission.initial, mission.properties, engine=engine))["it"] is holds, claim
 
 
 EVERY_WAY = """
@@ -355,44 +315,26 @@ BigActor a hosted_at uav0 with_behavior {
 }
 environment { says ("go", -7) to a }
 """
+
+
 LAST = ("bound a.o", "a.f == 2", "a.c >= 3", "a.x == 5", "a.y == 6", "b.p == gate0", "a.m == -7")
 
 
 @pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
-@pytest.mark.parametrize("claim", LAST)
-def test_a_variable_is_kept_however_it_is_bound(engine, claim):
-    claims = f"""
-      reachable "at the end": {claim} and ended a and ended b
-      ltl "from then on": [] ({claim} -> [] {claim})
-    """
-    mission = load(f"{EVERY_WAY} check {{ {claims} }}")
-    report = check(mission.initial, mission.properties, engine=engine)
-    assert outcomes(report) == {"at the end": True, "from then on": True, "computation": True}
-    reduced = check(mission.initial, mission.properties, engine=engine, reduce=[Reduction.POR])
-    assert outcomes(reduced)["at the end"] is True
+def test_a_variable_is_kept_however_it_is_bound(engine):
+    ends = [f'reachable "{each}": {each} and ended a and ended b' for each in LAST]
+    stays = [f'ltl "{each}, then": [] ({each} -> [] {each})' for each in LAST]
+    later = 'ltl "next": X a.f < 1 ctl "later": AF AG (ended a -> a.y > 5)'
+    mission = load(f"{EVERY_WAY} check {{ {' '.join((*ends, *stays))} {later} }}")
+    report = check(mission, engine=engine)
+    assert {name for name, holds in outcomes(report).items() if not holds} == {"next"}
+    reduced = check(mission, engine=engine, reduce=[Reduction.POR])
+    assert all(outcomes(reduced)[each] for each in LAST)
     assert reduced.configurations < report.configurations
 
 
 FOUND = VariableIs(VariableOf("scout", ("found",)), Truth.TRUE)
 SEARCH = MISSIONS / "search_and_deploy.mission"
-
-
-@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
-def test_what_a_scout_has_found_is_seen_from_where_it_finds_it(engine):
-    """`found` is given and tested within one `fun`: nobody reads it any more when others can look."""
-    asked = {
-        "found": "reachable: scout.found == true",
-        "said": "invariant: pending SND scout -> scout.found == true",
-        "true": "invariant: scout.found != true or present oilSpill0",
-    }
-    claims = " ".join(claim.replace(":", f' "{name}":') for name, claim in asked.items())
-    text = SEARCH.read_text(encoding="utf-8").replace("check {", f"check {{ {claims}")
-    source, tree = parse_bytes("search.mission", text.encode())
-    mission = elaborate(tree, source, MISSIONS)
-    report = check(mission.initial, mission.properties, engine=engine)
-    assert [outcomes(report)[name] for name in asked] == [True, True, True]
-    rules = rules_of(verdict_of(report, "found").witness)
-    assert (len(rules), rules[-2:], rules.count("env")) == (8, ["rcv_obs", "fun"], 1)
 
 
 def test_properties_given_beside_a_configuration_keep_what_they_name():
@@ -442,9 +384,7 @@ def test_a_reduction_sees_what_is_given_to_variables(engine):
         f' reachable "{one} {other}": a.n == {one} and b.n == {other}' for one in (1, 2) for other in (1, 2)
     )
     first = {each: load(f"{text} check {{ {each} }}") for each in ("local_consistency", claims)}
-    plain, named = (
-        check(each.initial, each.properties, engine=engine, reduce=[Reduction.POR]) for each in first.values()
-    )
+    plain, named = (check(each, engine=engine, reduce=[Reduction.POR]) for each in first.values())
     assert set(outcomes(named).values()) == {True}
     assert plain.configurations < named.configurations
 
@@ -463,12 +403,10 @@ def test_agents_are_not_exchanged_where_a_property_names_a_variable_of_one():
     for claim in ('reachable "it": a.n == 1', 'ltl "it": <> a.n == 1'):
         one = load(f"{twins} check {{ {claim} }}", ALIKE)
         with pytest.raises(RefusedError, match=r"a property tells them apart: it names a\.n"):
-            check(one.initial, one.properties, reduce=[Reduction.SYMMETRY])
+            check(one, reduce=[Reduction.SYMMETRY])
     both = load(
         f'{twins} check {{ invariant "it": a.n != 1 or b.n != 1 reachable "r": a.n > 0 and b.n > 0 }}', ALIKE
     )
-    whole, reduced = (
-        check(both.initial, both.properties, reduce=reduce) for reduce in ((), (Reduction.SYMMETRY,))
-    )
+    whole, reduced = (check(both, reduce=reduce) for reduce in ((), (Reduction.SYMMETRY,)))
     assert outcomes(whole) == outcomes(reduced) == {"it": False, "r": True, "computation": True}
     assert (whole.configurations, reduced.configurations) == (5 * 5, 5 * 6 // 2)

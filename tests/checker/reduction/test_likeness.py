@@ -4,28 +4,27 @@ import random
 from contextlib import suppress
 from dataclasses import replace
 from itertools import combinations, product
-from pathlib import Path
 
 import pytest
-from checked_missions import load
+from checked_missions import load, visited
 from hypothesis import given
-from scale import examples, seeds
+from scale import IS_WHOLE, examples, seeds
 from shipped import UNTIMED
-from test_symmetry import swarm, swarms
+from swarms import swarms
 
 from checker import Engine, Limits, explore
 from checker.engines.fast.interchangeable import Likeness
 from checker.engines.fast.recording import ColumnQuestion
-from checker.engines.fast.rule_cache import Exchange, Lesson, Lessons, LessonStage, NoImage
+from checker.engines.fast.rule_cache import Exchange, NoImage
 from checker.reduction.configuration_renaming import Renaming
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Nodes, agent_key
+from semantics.behaviours.values import Text, show
 from semantics.state.cells import is_
+from semantics.state.configuration import Label
 from semantics.state.requests import OBS
 from semantics.state.signature import REGION
 from specs.elaboration import load_mission
-
-MISSIONS = Path(__file__).parents[3] / "specs" / "missions"
 
 FLEET = """mission fleet
 signature {{ kind Room contains Robot kind Robot driven }}
@@ -46,52 +45,33 @@ def fleet(robots, rest=""):
     return load(FLEET.format(robots=there, agents=agents, rest=rest), "").initial
 
 
-def both(initial, monkeypatch, **options):
-    """Explore as ever, and with nothing shared; return both."""
-    shared = explore(initial, engine=Engine.FAST, **options)
-    with monkeypatch.context() as patched:
+def both(initial, most):
+    """Explore as ever, and with nothing shared; return both, once they are alike."""
+    options = {"engine": Engine.FAST, "limits": Limits(configurations=most)}
+    shared = explore(initial, **options)
+    with pytest.MonkeyPatch.context() as patched:
         patched.setattr(Likeness, "models", lambda *_: {})
         patched.setattr(Likeness, "agents", {})
-        return shared, explore(initial, engine=Engine.FAST, **options)
-
-
-def assert_alike(shared, apart):
-    assert list(shared.configurations) == list(apart.configurations)
-    assert list(shared.origins) == list(apart.origins)
-    assert (shared.rules, shared.complete, shared.bounds) == (apart.rules, apart.complete, apart.bounds)
+        apart = explore(initial, **options)
+    assert visited(shared) == visited(apart)
+    return shared, apart
 
 
 @pytest.mark.parametrize("name", UNTIMED)
-def test_a_mission_that_ships_is_explored_as_if_nothing_were_shared(name, monkeypatch):
-    initial = load_mission(MISSIONS / f"{name}.mission").initial
-    assert_alike(*both(initial, monkeypatch, limits=Limits(configurations=3_000)))
-
-
-HOSTS = """
-control atomic
-scheduler unordered
-BigActor base hosted_at gcs0 with_behavior { observe(HOSTED_AT(ALL)) react { case o => skip } }
-environment { robot0 vanishes robot1 vanishes }
-"""
-
-
-def test_who_is_hosted_where_is_learned_agent_by_agent(monkeypatch):
-    assert_alike(*both(load(swarm("migrate(gcs0)", 2, HOSTS), "").initial, monkeypatch))
+def test_a_mission_that_ships_is_explored_as_if_nothing_were_shared(name):
+    both(load_mission(name).initial, 800)
 
 
 @given(text=swarms())
-@examples(40)
+@examples(40 if IS_WHOLE else 18)
 def test_generated_swarms_are_explored_as_if_nothing_were_shared(text):
-    with pytest.MonkeyPatch.context() as monkeypatch:
-        assert_alike(*both(load(text, "").initial, monkeypatch, limits=Limits(configurations=700)))
+    both(load(text, "").initial, 400)
 
 
-def test_a_fleet_three_times_as_large_takes_no_more_runs_of_rules(monkeypatch):
-    limits = Limits(configurations=500)
+def test_a_fleet_three_times_as_large_takes_no_more_runs_of_rules():
     runs = []
     for robots in (6, 18):
-        shared, apart = both(fleet(robots), monkeypatch, limits=limits)
-        assert_alike(shared, apart)
+        shared, apart = both(fleet(robots), 500)
         assert 5 * shared.rule_runs < apart.rule_runs
         runs.append(shared.rule_runs)
     assert runs[1] <= runs[0]
@@ -132,57 +112,26 @@ def test_a_question_is_renamed_in_all_that_it_is_about(ask, image):
     assert SWAP.inverse.ask(image) == ask
 
 
-def test_rules_go_through_names_in_their_order():
+@pytest.mark.parametrize(
+    "message", ["b", Text("b"), ("at", "b", Text('say "b" \\')), (Text("d"), ("b", Text("b")))]
+)
+def test_a_label_under_an_exchange_names_the_others_and_leaves_texts(message):
+    about, image = (f"send({show(each)}, a)" for each in (message, SWAP.renaming.value(message)))
+    assert SWAP.label(Label("req_snd", "b", about)) == Label("req_snd", "d", image)
+
+
+def test_what_has_an_order_of_its_own_or_may_be_no_name_is_not_renamed():
     assert SWAP.keeps_order({"a", "b"})
     assert not SWAP.keeps_order({"b", "c"})
     assert not SWAP.keeps_order({"b", "d"})
-
-
-def test_what_has_an_order_of_its_own_is_not_renamed():
     first, second = OBS("b", Nodes(("a",))), OBS("b", Nodes(("c",)))
     assert SWAP.value(("line", "b"), (first,)) == (OBS("d", Nodes(("a",))),)
     with pytest.raises(NoImage):
         SWAP.value(("line", "b"), (first, second))
     assert len(replace(SWAP, unordered=False).value(("line", "b"), (first, second))) == 2
-
-
-def test_a_word_that_is_displayed_may_not_be_a_name():
     assert SWAP.shown("at a") == "at a"
     with pytest.raises(NoImage):
         SWAP.shown("at b")
-
-
-CODE, STORE, LINKS = ColumnQuestion(("code", "a")), ColumnQuestion(("store", "a")), ("channels", "a")
-NOTHING = Lesson(0, (), frozenset(), {}, {}, frozenset())
-
-
-def found(lessons, answers, links=()):
-    return lessons.find(answers.__getitem__, {LINKS: links}.get)
-
-
-def test_what_follows_from_the_same_answers_is_known():
-    lessons = Lessons()
-    lessons.learn([LessonStage((), CODE, (1,)), LessonStage((), STORE, ()), LessonStage(())], NOTHING)
-    assert found(lessons, {CODE: (1,), STORE: ()}) is NOTHING
-    assert found(lessons, {CODE: (2,)}) is None
-
-
-def test_two_that_differ_in_what_is_never_written_may_ask_differently():
-    lessons, other = Lessons(), replace(NOTHING, flags=1)
-    lessons.learn([LessonStage(((LINKS, ("wifi",)),), CODE, (1,)), LessonStage(())], NOTHING)
-    lessons.learn([LessonStage(((LINKS, ()),))], other)
-    assert found(lessons, {CODE: (1,)}, ("wifi",)) is NOTHING
-    assert found(lessons, {}) is other
-    assert found(lessons, {}, ("mesh",)) is None
-
-
-@pytest.mark.parametrize("stages", [[CODE], [STORE, CODE], [], [CODE, STORE, LINKS]])
-def test_one_that_asks_in_another_order_is_learned_apart(stages):
-    lessons, answers = Lessons(), {CODE: (1,), STORE: ()}
-    lessons.learn([LessonStage((), CODE, (1,)), LessonStage((), STORE, ()), LessonStage(())], NOTHING)
-    asked = [LessonStage((), ask, answers.get(ask)) for ask in stages]
-    lessons.learn([*asked, LessonStage(())], replace(NOTHING, flags=1))
-    assert found(lessons, answers) is NOTHING
 
 
 QUERIES = (
@@ -248,11 +197,9 @@ scheduler {scheduler}
 
 @seeds(200, 8)
 def test_fleets_that_differ_in_what_is_looked_at_are_explored_as_by_the_reference(seed):
-    initial, limits = load(looking_fleet(seed), "").initial, Limits(configurations=1_000)
-    with pytest.MonkeyPatch.context() as monkeypatch:
-        shared, apart = both(initial, monkeypatch, limits=limits)
-    assert_alike(shared, apart)
-    reference = explore(initial, engine=Engine.REFERENCE, limits=limits)
+    initial = load(looking_fleet(seed), "").initial
+    shared, _ = both(initial, 500)
+    reference = explore(initial, engine=Engine.REFERENCE, limits=Limits(configurations=500))
     assert shared.complete is reference.complete
     if shared.complete:
         assert set(shared.configurations) == set(reference.configurations)
@@ -319,7 +266,7 @@ def test_a_rule_says_whom_it_tells_apart(rule, apart):
 
 @pytest.mark.parametrize("name", UNTIMED)
 def test_beliefs_are_sorted_so_nothing_is_below_a_node_whose_kind_holds_nothing(name):
-    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    initial = load_mission(name).initial
     signature, kind = initial.setting.signature, initial.setting.kind
     for c in explore(initial, engine=Engine.FAST, limits=Limits(configurations=2_000)).configurations:
         logical = c.structure.logical

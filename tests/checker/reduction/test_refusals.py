@@ -3,33 +3,23 @@
 import pytest
 from checked_missions import load
 from replaying import assert_replays
+from swarms import LOOKS, swarm
 
 from checker import Engine, Outcome, Reduction, check
 
-ROBOTS = """
-signature {
-  kind Room contains Robot
-  kind Robot driven
-}
-world {
-  hall: Room = box (37.1, -8.6) (37, -8.7)
-  room0: Room = box (37.3, -8.6) (37.2, -8.7)
-  robot0: Robot = point (37.05, -8.65) linked mesh
-  robot1: Robot = point (37.05, -8.65) linked mesh
-}
-def look() = { observe(PARENT(HOST)) react { case obs => control(MOVE_HOST_TO room0) } }
-BigActor a hosted_at robot0 with_behavior { look() }
-BigActor b hosted_at robot1 with_behavior { look() }
-check {
+ROBOTS = swarm(
+    LOOKS,
+    rest="""check {
   reachable "both inside": actually robot0 in room0 and actually robot1 in room0
   ctl "each robot may be the first to ask": forall x: agents . EX EX pending OBS x
-  ctl "each may be alone inside": forall u: Robot . EF (actually u in room0 and exists v: Robot . actually v in hall)
+  ctl "each may be alone inside": forall u: Robot . EF (actually u in room0 and exists v: Robot . actually v in dock0)
   ltl "who has ended has ended": forall x: agents . [] (ended x -> [] ended x)
   ltl "inside at last" under weak fairness of agents, rules: <> actually robot0 in room0
   progress
   deadlock_freedom
 }
-"""
+""",
+)
 TWO_APART = """
 signature standard
 world {

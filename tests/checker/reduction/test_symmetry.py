@@ -1,17 +1,16 @@
 """Symmetry: what is interchangeable is found, one configuration stands for its likes, and its runs replay."""
 
 from contextlib import suppress
+from functools import cache
 from itertools import combinations
-from math import comb
-from pathlib import Path
 
 import pytest
-from checked_missions import load
+from checked_missions import kinds, load
 from everything_found import everything
 from hypothesis import given
-from hypothesis import strategies as st
 from scale import examples
 from shipped import UNTIMED
+from swarms import LOOKS, ORBITS, mission, swarm, swarms
 
 from checker import Keeping, Limits, Outcome, Reduction, RefusedError, check, explore
 from checker.check import reductions_of
@@ -24,62 +23,11 @@ from semantics import Scheduler, control
 from semantics.properties.propositions import HasPending, Inside
 from semantics.races.monitor import monitored
 from semantics.state.configuration import Configuration
-from semantics.state.setting import Control
 from semantics.successors import expand
 from specs.elaboration import load_mission
 
-MISSIONS = Path(__file__).parents[3] / "specs" / "missions"
 SYMMETRY = (Reduction.SYMMETRY,)
 BOTH = (Reduction.POR, Reduction.SYMMETRY)
-
-WORLD = """
-signature {{
-  kind Room contains Robot, Station, Crate
-  kind Robot driven carries Crate
-  kind Station
-  kind Crate
-}}
-world {{
-  dock0: Room = box (37.01, -8.69) (36.99, -8.71)
-  room0: Room = box (37.05, -8.69) (37.03, -8.71)
-  gcs0: Station = point (37.04, -8.70) linked mesh
-{robots}
-}}
-"""
-
-
-def swarm(body, robots=2, rest="", places=None):
-    """Return a mission of robots that start in one place and run one behaviour."""
-    where = places or ["point (37.00, -8.70) linked mesh"] * robots
-    there = "\n".join(f"  robot{number}: Robot = {place}" for number, place in enumerate(where))
-    agents = "\n".join(f"BigActor r{i} hosted_at robot{i} with_behavior {{ visit() }}" for i in range(robots))
-    return f"{WORLD.format(robots=there)}def visit() = {{ {body} }}\n{agents}\n{rest}"
-
-
-def mission(*arguments, **more):
-    return load(swarm(*arguments, **more), "")
-
-
-LOOKS = "observe(PARENT(HOST)) react { case obs => control(MOVE_HOST_TO room0) }"
-TELLS = 'send ("here", HOST) to base control(MOVE_HOST_TO room0)'
-BASE = (
-    "BigActor base hosted_at gcs0 with_behavior "
-    '{ react { case ("here", who) => react { case ("here", again) => send ("come", again) to base } } }'
-)
-
-
-NAMED = "choose other in {dock0, room0} { control(MOVE_HOST_TO other) }"
-
-
-@pytest.mark.parametrize(
-    ("body", "sound"), [(LOOKS, ("por", "symmetry")), (NAMED, ("por",))], ids=["alike", "by name"]
-)
-def test_reductions_that_are_suggested_are_sound(body, sound):
-    loaded = mission(body)
-    allowed = reductions_of(loaded)
-    assert tuple(map(str, allowed)) == sound
-    assert check(loaded, reduce=allowed).complete
-
 
 # --- what is interchangeable ----------------------------------------------------------------------------------
 
@@ -156,21 +104,14 @@ def test_it_is_refused_with_the_reason(why):
     assert reason in str(refused.value)
 
 
-def test_it_is_refused_where_a_property_names_one_of_them():
+def test_it_is_refused_for_what_is_asked_of_one_or_remembered_of_each():
     initial = mission(LOOKS).initial
     with pytest.raises(RefusedError, match="a property tells them apart: robot1 in room0"):
         MissionSymmetry(initial, [Inside("robot1", "room0")])
-
-
-def test_it_is_refused_where_what_observations_rest_on_is_remembered():
     with pytest.raises(RefusedError, match="remembered by name"):
-        Reduced(monitored(mission(LOOKS).initial), SYMMETRY)
-
-
-def test_a_property_of_all_of_them_tells_nobody_apart():
-    asked = 'invariant "a": forall r: Robot . not (r in gcs0) reachable "b": exists r: Robot . r in room0'
-    loaded = mission(LOOKS, rest=f"check {{ {asked} }}")
-    assert MissionSymmetry(loaded.initial, [each.formula for each in loaded.properties]).classes
+        Reduced(monitored(initial), SYMMETRY)
+    with pytest.raises(RefusedError, match="nothing in the mission is interchangeable"):
+        MissionSymmetry(load_mission("rendezvous").initial)
 
 
 def test_containers_are_not_exchanged_since_the_smallest_is_found_by_name():
@@ -180,9 +121,17 @@ def test_containers_are_not_exchanged_since_the_smallest_is_found_by_name():
         MissionSymmetry(load(text.replace("}\ndef", f"{rafts}}}\ndef"), "").initial)
 
 
+def test_a_property_of_all_of_them_tells_nobody_apart():
+    asked = 'invariant "a": forall r: Robot . not (r in gcs0) reachable "b": exists r: Robot . r in room0'
+    loaded = mission(LOOKS, rest=f"check {{ {asked} }}")
+    assert MissionSymmetry(loaded.initial, [each.formula for each in loaded.properties]).classes
+    assert tuple(map(str, reductions_of(loaded))) == ("por", "symmetry")
+    assert tuple(map(str, reductions_of(mission("choose p in {dock0, room0} { skip }")))) == ("por",)
+
+
 @pytest.mark.parametrize("name", UNTIMED)
 def test_nothing_in_the_missions_that_ship_is_exchanged_without_being_alike(name):
-    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    initial = load_mission(name).initial
     with suppress(RefusedError):
         assert equivariant(initial, MissionSymmetry(initial), most=60)
 
@@ -216,15 +165,7 @@ def test_a_paranoid_check_notices_that_likes_are_not_alike(monkeypatch):
     asked = mission(LOOKS)
     monkeypatch.setattr("semantics.rules.realisations", of_one)
     with pytest.raises(Drift, match="r0, robot0 and r1, robot1 are not alike"):
-        check(asked.initial, asked.properties, reduce=SYMMETRY, keeping=Keeping(doubted=50))
-
-
-def test_a_paranoid_check_of_likes_ends_as_another():
-    asked = mission(LOOKS, robots=3)
-    reports = (
-        check(asked.initial, asked.properties, reduce=BOTH, keeping=Keeping(doubted=n)) for n in (0, 9)
-    )
-    assert len({(each.configurations, each.transitions, each.rules["actuate"]) for each in reports}) == 1
+        check(asked, reduce=SYMMETRY, keeping=Keeping(doubted=50))
 
 
 def orbits(initial, symmetry, most=20_000):
@@ -244,21 +185,6 @@ def orbits(initial, symmetry, most=20_000):
     return count
 
 
-LISTENS = """
-BigActor r hosted_at gcs0 with_behavior { react { case m: Message => skip } }
-environment { says "go" to r0 says "go" to r1 says "go" to r2 }
-"""
-ORBITS = {
-    "look": (LOOKS, "", 3),
-    "tell": (TELLS, BASE, 2),
-    "answered": (
-        'react { case ("come", who) => control(MOVE_HOST_TO room0) case "go" => send ("come", HOST) to r }',
-        LISTENS,
-        3,
-    ),
-}
-
-
 @pytest.mark.parametrize("name", ORBITS)
 def test_likes_have_one_representative(name):
     body, rest, robots = ORBITS[name]
@@ -266,51 +192,6 @@ def test_likes_have_one_representative(name):
     reduced = Reduced(initial, SYMMETRY)
     found = explore(initial, reduce=reduced)
     assert len(found.configurations) == orbits(initial, reduced.symmetry)
-
-
-def test_robots_apart_are_counted_as_a_multiset():
-    initial = mission(LOOKS, robots=3).initial
-    each = len(explore(mission(LOOKS, robots=1).initial).configurations)
-    assert len(explore(initial).configurations) == each**3
-    assert len(explore(initial, reduce=Reduced(initial, SYMMETRY)).configurations) == comb(each + 2, 3)
-
-
-STEPS = (
-    "control(MOVE_HOST_TO room0)",
-    "control(MOVE_HOST_TO dock0)",
-    "control(MOVE_HOST_TO dock0 VIA room0)",
-    "control(CONNECT_HOST_TO gcs0)",
-    "control(DISCONNECT_HOST_FROM gcs0)",
-    "observe(PARENT(HOST)) react { case o => skip }",
-    "observe(CHILDREN(dock0)) react { case o => send o to base }",
-    'send ("at", HOST, SELF) to base',
-    'react { case "go" => skip }',
-    "migrate(gcs0)",
-    "for p in [room0, dock0, room0] { control(MOVE_HOST_TO p) }",
-    "send [HOST, dock0] to base",
-    "let r = [HOST, gcs0] for h in r + [HOST] { observe(PARENT(h)) react { case o => skip } }",
-)
-BASES = (
-    "BigActor base hosted_at gcs0 with_behavior { loop { react { case m: Message => skip } } }",
-    'BigActor base hosted_at gcs0 with_behavior { react { case ("at", h, a) => send "go" to a } }',
-    "BigActor base hosted_at gcs0 with_behavior { observe(HOSTED_AT(ALL)) react { case o => skip } }",
-    "BigActor base hosted_at gcs0 with_behavior { observe(LINKED_TO(HOST)) react { case o: Observation => skip } }",
-)
-AROUND = (
-    "",
-    'environment { says "go" to r1 says "go" to r0 }',
-    "environment { mesh drops and returns }",
-    "environment { robot0 vanishes robot1 vanishes }",
-    "environment { robot0 leaves mesh and returns robot1 leaves mesh and returns }",
-)
-
-
-@st.composite
-def swarms(draw):
-    body = " ".join(draw(st.lists(st.sampled_from(STEPS), min_size=1, max_size=2)))
-    varied = f"control {draw(st.sampled_from(['atomic', 'timed']))}\n"
-    varied += f"scheduler {draw(st.sampled_from([each.value for each in Scheduler]))}\n"
-    return swarm(body, 2, varied + draw(st.sampled_from(BASES)) + "\n" + draw(st.sampled_from(AROUND)))
 
 
 @given(swarms())
@@ -340,9 +221,10 @@ check { local_consistency deadlock_freedom reachable "all": forall r: Robot . r 
 """
 
 
+@cache
 def checked(reductions, rest=LATE, robots=3) -> tuple[Configuration, object]:
     loaded = mission(LOOKS, robots, rest)
-    return loaded.initial, check(loaded.initial, loaded.properties, reduce=reductions)
+    return loaded.initial, check(loaded, reduce=reductions)
 
 
 @pytest.mark.parametrize("reductions", [SYMMETRY, BOTH], ids=["symmetry", "both"])
@@ -353,6 +235,9 @@ def test_runs_of_a_reduced_search_are_runs_of_the_mission_itself(reductions):
     for found, whole in zip(report.verdicts, full.verdicts, strict=True):
         assert found.outcome is whole.outcome
         assert {each.kind for each in found.violations} == {each.kind for each in whole.violations}
+        if reductions == SYMMETRY:
+            assert kinds(found) == kinds(whole)
+            assert all(each.trace.shortest for each in found.violations)
         runs = [(each.trace, each.message) for each in found.violations]
         runs += [(found.witness, "")] if found.witness else []
         for trace, message in runs:
@@ -361,41 +246,6 @@ def test_runs_of_a_reduced_search_are_runs_of_the_mission_itself(reductions):
                 host = message.split("(")[1].split(",")[0]
                 last = trace.configurations[-1]
                 assert any(each.request.agent == host for each in last.eta.all())
-
-
-def test_traces_under_symmetry_alone_are_still_shortest():
-    _, report = checked(SYMMETRY)
-    _, full = checked(())
-    for found, whole in zip(report.verdicts, full.verdicts, strict=True):
-        assert shortest_of_each_kind(found) == shortest_of_each_kind(whole)
-        assert all(each.trace.shortest for each in found.violations)
-
-
-def shortest_of_each_kind(verdict):
-    """Return the length of the first trace of each kind: one violation may stand for several alike."""
-    return {each.kind: len(each.trace) for each in reversed(verdict.violations)}
-
-
-def test_races_are_decided_under_symmetry():
-    rest = "check { race_freedom }"
-    assert [each.outcome for each in checked(SYMMETRY, rest, 2)[1].verdicts] == [
-        each.outcome for each in checked((), rest, 2)[1].verdicts
-    ]
-
-
-@pytest.mark.parametrize("control", Control)
-def test_both_reductions_together_visit_least(control):
-    loaded = mission(LOOKS, 3, f"control {control.value}\n")
-    counts = [
-        len(explore(loaded.initial, reduce=Reduced(loaded.initial, each) if each else None).configurations)
-        for each in ((), SYMMETRY, BOTH)
-    ]
-    assert counts[0] > counts[1] > counts[2]
-
-
-def test_robots_of_a_chain_are_not_interchangeable():
-    with pytest.raises(RefusedError, match="nothing in the mission is interchangeable"):
-        MissionSymmetry(load_mission(MISSIONS / "rendezvous.mission").initial)
 
 
 # --- what is put off ------------------------------------------------------------------------------------------
@@ -415,5 +265,5 @@ check { invariant "out": not (actually robot0 in room0) and not (actually robot1
 def test_who_waits_beside_its_like_that_circles_is_not_taken_for_it_under_both_reductions(ways, scheduler):
     body = "choose {{ {} }} or {{ {} }}".format(*ways)
     asked = mission(body, 2, f"{SENDS_ON}scheduler {scheduler}")
-    found = check(asked.initial, asked.properties, reduce=BOTH).verdicts
+    found = check(asked, reduce=BOTH).verdicts
     assert [each.outcome for each in found if each.property.name == "out"] == [Outcome.VIOLATED]

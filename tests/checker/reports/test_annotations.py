@@ -38,10 +38,6 @@ def read(*results):
     return found
 
 
-def test_what_holds_says_nothing():
-    assert read(result(ENTERS)) == []
-
-
 def test_what_holds_vacuously_and_what_is_never_reached_are_warnings():
     vacuous, gap = read(result(GAPS))
     assert vacuous == (
@@ -87,11 +83,6 @@ def test_a_mistake_has_line_and_column():
     assert unplaced[1] == {"file": "m.mission", "title": "m.mission: mistake"}
 
 
-def test_what_was_not_decided_is_a_warning_and_a_bug_an_error():
-    assert {command for command, _, _ in read(cut_off())} == {"warning"}
-    assert [command for command, _, _ in read(failed(NOT_BEGUN), failed(BUG))] == ["warning", "error"]
-
-
 def test_hostile_texts_stay_in_their_place():
     first, second = read(hostile())
     assert (first[1]["file"], first[2]) == (clean(HOSTILE), f"{clean(HOSTILE)}\n{clean(HOSTILE)}")
@@ -100,6 +91,9 @@ def test_hostile_texts_stay_in_their_place():
 
 
 def test_every_command_is_one_line_without_controls():
+    assert read(result(ENTERS)) == []
+    assert {command for command, _, _ in read(cut_off())} == {"warning"}
+    assert [command for command, _, _ in read(failed(NOT_BEGUN), failed(BUG))] == ["warning", "error"]
     lines = list(annotations(all_sorts()))
     assert len(lines) > 6
     for line in lines:

@@ -5,7 +5,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from checked_missions import checked, load, moves, start
+from checked_missions import PILOTS, checked, load, moves, start
 
 from checker import (
     Bound,
@@ -26,75 +26,19 @@ from semantics.properties.property import Property
 from semantics.state.setting import Control
 
 
-def lines(text, *, traces=False, limits=None):
+def lines(text, limits=None):
     mission = load(text)
-    report = check(mission.initial, mission.properties, limits)
-    return [re.sub(r"\d+\.\d\d s$", "T s", line) for line in report_text("m", report, traces=traces)]
+    report = check(mission, limits=limits)
+    return [re.sub(r"\d+\.\d\d s$", "T s", line) for line in report_text("m", report, traces=False)]
 
 
 ENTERS = moves("gate0", "a", "uav0")
-PILOTS = """
-BigActor a hosted_at gcs0 with_behavior { control(MOVE uav0 TO south0) }
-BigActor b hosted_at gcs0 with_behavior { control(MOVE uav0 TO gate0) }
-"""
 EVERYTHING = """
 check { local_consistency race_freedom deadlock_freedom arrival invariant "never": not (actually uav1 in gate0)
         reachable "in": actually uav0 in gate0 }
 """
 
-# --- text -----------------------------------------------------------------------------------------------------
-
-
-def test_what_holds_is_said_with_what_was_examined():
-    assert lines(ENTERS + EVERYTHING) == [
-        "m: 3 configurations, 2 transitions, depth 2, complete, T s",
-        "  ✓ local_consistency  holds; examined 1 control next in line, a witness of 2 steps",
-        (
-            "  ✓ race_freedom       holds; by ownership, without a search: no agent may write what another's control "
-            "rests on"
-        ),
-        "  ✓ deadlock_freedom   holds; examined 1 configuration at rest, a witness of 2 steps",
-        "  ✓ arrival            holds; vacuous: no flight ever ends",
-        (
-            "  ✓ never              holds; vacuous: nothing that it speaks of ever changes; examined 3 configurations, "
-            "a witness of 0 steps"
-        ),
-        "  ✓ in                 holds; examined 1, a witness of 2 steps",
-        "  ✓ computation        holds; no bigActor computes anything that could fail",
-        "  rules: actuate 1, req_ctr 1",
-    ]
-
-
-def test_what_never_rests_and_controls_nothing_is_said_so():
-    text = "BigActor a hosted_at gcs0 with_behavior { loop { observe(ALL) react { case o => display(o) } } }"
-    assert lines(text)[1:-1] == [
-        "  ✓ local_consistency  holds; vacuous: no control was ever next in line",
-        (
-            "  ✓ race_freedom       holds; by ownership, without a search: no agent may write what another's control "
-            "rests on"
-        ),
-        "  ✓ deadlock_freedom   holds; some bigActor can always move",
-        "  ✓ computation        holds; examined 1 internal step, a witness of 4 steps",
-    ]
-
-
-def test_flights_that_arrive_are_counted():
-    text = ENTERS + "control timed\nenvironment { uav0 arrives }\ncheck { arrival }"
-    assert lines(text)[1] == (
-        "  ✓ arrival      holds; flights declared to arrive are fair; examined 1 end of a flight, a witness of 3 steps"
-    )
-
-
-def test_a_search_says_over_how_much_it_went():
-    text = (
-        ENTERS
-        + 'BigActor b hosted_at gcs0 with_behavior { send("x", b) react { case o => control(MOVE uav0 TO south0) } }'
-    )
-    found = lines(text + "check { race_freedom }")
-    assert found[1] == (
-        "  ✓ race_freedom  holds; searched over 9 configurations with the monitor's memory; "
-        "examined 3 controls and pairs of controls, a witness of 2 steps"
-    )
+# --- text (of whole reports: `test_corpus_verdicts`) ------------------------------------------------------------
 
 
 def test_a_search_that_met_no_control_is_vacuous():
@@ -103,33 +47,6 @@ def test_a_search_that_met_no_control_is_vacuous():
         "  ✓ race_freedom  holds; searched over 1 configurations with the monitor's memory; "
         "vacuous: no control was ever served"
     )
-
-
-def test_what_is_violated_is_shown_with_a_shortest_trace():
-    assert lines(PILOTS + "check { race_freedom }", traces=True) == [
-        "m: 10 configurations, 12 transitions, depth 4, complete, T s",
-        "  ✗ race_freedom  violated; searched over 10 configurations with the monitor's memory; found once",
-        (
-            "      control race: CTR(a, MOVE uav0 TO south0) and CTR(b, MOVE uav0 TO gate0) end differently in the two "
-            "orders"
-        ),
-        "        enabled here: ⟨actuate : CTR(a, MOVE uav0 TO south0)⟩ and ⟨actuate : CTR(b, MOVE uav0 TO gate0)⟩",
-        "      a shortest trace, 2 steps:",
-        "        c0 --⟨req_ctr : a, control(MOVE uav0 TO south0)⟩--> c1",
-        "              α  a@gcs0 ended",
-        "              η  a: CTR(a, MOVE uav0 TO south0)",
-        "        c1 --⟨req_ctr : b, control(MOVE uav0 TO gate0)⟩--> c2",
-        "              α  b@gcs0 ended",
-        "              η  b: CTR(b, MOVE uav0 TO gate0)",
-        "  ✓ computation   holds; no bigActor computes anything that could fail",
-        "  rules: actuate 6, req_ctr 6",
-    ]
-
-
-def test_without_traces_only_their_lengths_are_shown():
-    found = lines(PILOTS + "check { race_freedom }")
-    assert "      a shortest trace, 2 steps" in found
-    assert not any("--⟨" in line for line in found)
 
 
 THREE_STALE = """
@@ -141,49 +58,13 @@ check { local_consistency }
 """
 
 
-def test_each_request_that_cannot_be_served_is_a_violation_of_its_own():
-    found = [line for line in lines(THREE_STALE) if line.startswith(("  ✗", "      "))]
-    assert [line for line in found if not line.startswith("        ")] == [
-        "  ✗ local_consistency  violated; found 69 times, 3 different",
-        "      unmatched: CTR(a, MOVE uav1 TO gate0) is unmatched: its redex matches nothing in L",
-        "      a shortest trace, 1 step",
-        "      unmatched: CTR(b, MOVE uav0 TO gate0) is unmatched: its redex matches nothing in L",
-        "      a shortest trace, 1 step",
-        (
-            "      inconsistent: CTR(c, MOVE_HOST_TO gate0) is inconsistent: L believes what P no longer shows: "
-            "nobody looked since"
-        ),
-        "      a shortest trace, 2 steps",
-    ]
-
-
 def test_only_so_many_violations_are_shown_and_the_others_counted():
     mission = load(THREE_STALE)
     for most, said in ((1, "3 different, of which 1 is shown"), (2, "3 different, of which 2 are shown")):
-        report = check(mission.initial, mission.properties, violations=most)
+        report = check(mission, violations=most)
         assert len(report.verdicts[0].violations) == most
         assert said in next(line for line in report_text("m", report) if "✗" in line)
-
-
-def test_each_kind_is_shown_before_a_second_of_any():
-    mission = load(THREE_STALE)
-    shown = check(mission.initial, mission.properties, violations=2).verdicts[0]
-    assert [each.kind for each in shown.violations] == ["unmatched", "inconsistent"]
-    assert shown.different == 3
-
-
-def test_findings_are_counted():
-    text = ENTERS + 'check { invariant "out": not (uav0 in gate0) invariant "north": actually uav0 in gate0 }'
-    found = lines(text)
-    assert found[1] == "  ✗ out          violated; found once"
-    assert found[4] == "  ✗ north        violated; found 2 times"
-    assert found[6] == "      a shortest trace, 0 steps"
-
-
-def test_what_is_nowhere_is_violated_without_a_trace():
-    found = lines(ENTERS + 'check { reachable "up": uav1 in gate0 }')
-    assert found[1] == "  ✗ up           violated; no reachable configuration satisfies: uav1 in gate0"
-    assert found[2].startswith("  ✓ computation")
+        assert [each.kind for each in report.verdicts[0].violations] == ["unmatched", "inconsistent"][:most]
 
 
 def test_what_was_cut_off_says_where_and_decides_nothing():
@@ -213,11 +94,6 @@ def test_what_was_found_before_the_end_stands():
     assert "  ✓ asked        holds; examined 1, a witness of 1 step" in found
 
 
-def test_of_what_is_reachable_it_is_told_how_often_it_is_true():
-    found = lines(ENTERS + 'check { reachable "there": present uav0 }')
-    assert "  ✓ there        holds; it is true from the start; examined 3, a witness of 0 steps" in found
-
-
 def test_the_notes_of_a_mission_come_last():
     report = replace(checked(ENTERS), notes=("borders are left out",))
     assert list(report_text("m", report))[-1] == "  note: borders are left out"
@@ -228,7 +104,7 @@ def test_the_notes_of_a_mission_come_last():
 
 def as_json(text, limits=None):
     mission = load(text)
-    report = check(mission.initial, mission.properties, limits, notes=("a note",))
+    report = check(mission, limits=limits, notes=("a note",))
     return json.loads(json.dumps(report_json("m", "sha256:0", report, mission.setting.control)))
 
 
@@ -304,7 +180,6 @@ def test_the_traces_among_the_data_replay():
 def test_the_rules_that_never_fired_depend_on_how_control_goes():
     atomic, timed = as_json(ENTERS), as_json(ENTERS + "control timed")
     assert "commit" not in atomic["rules_never_used"]
-    assert atomic["rules"] == {"actuate": 1, "req_ctr": 1}
     assert timed["rules"] == {"command": 1, "commit": 1, "req_ctr": 1}
     assert "actuate" in timed["rules_never_used"]
 
@@ -316,11 +191,6 @@ def test_the_data_of_what_was_cut_off_are_incomplete():
     verdicts = {each["name"]: each["verdict"] for each in data["properties"]}
     assert verdicts.pop("race_freedom") == "holds"
     assert set(verdicts.values()) == {"incomplete"}
-
-
-def test_a_vacuous_verdict_has_examined_nothing():
-    data = as_json("BigActor a hosted_at gcs0 with_behavior { }\ncheck { local_consistency }")
-    assert [(each["examined"], each["witness"]) for each in data["properties"]] == [(0, None), (0, None)]
 
 
 # --- exit codes -----------------------------------------------------------------------------------------------
@@ -346,14 +216,6 @@ def test_a_violation_goes_before_what_is_incomplete_and_that_before_success(outc
     report = Report(verdicts, configurations=1, transitions=0, depth=0, bounds=bounds)
     assert report.exit_code == code
     assert report.complete == (not bounds)
-
-
-def test_missions_have_exit_codes():
-    assert checked(ENTERS + EVERYTHING).exit_code == 0
-    assert checked(PILOTS + EVERYTHING).exit_code == 1
-    assert checked(ENTERS + EVERYTHING, limits=Limits(configurations=2)).exit_code == 3
-    violated = ENTERS + 'check { invariant "out": not (pending a) }'
-    assert checked(violated, limits=Limits(configurations=2)).exit_code == 1
 
 
 def test_a_verdict_and_its_violations_are_values():

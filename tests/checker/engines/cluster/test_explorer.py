@@ -1,11 +1,10 @@
 """Exploring with several workers, here in one process: the same as alone, whoever is lost on the way."""
 
-from pathlib import Path
-
 import pytest
+from checked_missions import visited
 from hypothesis import given
 from local_crew import LocalCrew
-from scale import examples
+from scale import IS_WHOLE, examples
 
 from checker import CheckpointError, Engine, Keeping, Limits, MachineError, explore
 from checker.engines.archive import read_archive, write_archive
@@ -21,13 +20,13 @@ from semantics import strategies
 from semantics.races.monitor import monitored
 from specs.elaboration import load_mission
 
-MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
-FEW = ("broken_unrealisable", "distributed_handover", "nomad", "takeover", "surveillance", "tanker")
+FEW = ("broken_unrealisable", "nomad", "surveillance", "tanker", "distributed_handover", "takeover")
+FEW = FEW if IS_WHOLE else FEW[:4]
 LIMITS = Limits(configurations=20_000)
 
 
 def start(name):
-    return load_mission(MISSIONS / f"{name}.mission").initial
+    return load_mission(name).initial
 
 
 @pytest.fixture
@@ -69,11 +68,7 @@ def collected(inspect, found):
     ]  # fmt: skip
 
 
-def whole(found):
-    return list(found.configurations), list(map(int, found.origins)), counted(found)
-
-
-@pytest.mark.parametrize(("name", "workers"), list(zip(FEW, (2, 3, 5, 2, 3, 5), strict=True)))
+@pytest.mark.parametrize(("name", "workers"), list(zip(FEW, (2, 5, 3, 2, 3, 5), strict=False)))
 @pytest.mark.usefixtures("small_rounds")
 def test_workers_visit_together_what_one_process_visits_alone(name, workers):
     for initial in (start(name), monitored(start(name))):
@@ -83,17 +78,12 @@ def test_workers_visit_together_what_one_process_visits_alone(name, workers):
         assert counted(found) == counted(alone)
         assert set(found.configurations) == set(alone.configurations)
         assert collected(other, found) == collected(one, alone)
+        lengths = [len(found.path(number)) for number in range(len(found.configurations))]
+        assert lengths == sorted(lengths)
+        assert lengths[-1] == found.depth + 1
         assert (other[0].codes, other[0].passed, other[0].happened) == (
             one[0].codes, one[0].passed, one[0].happened,
         )  # fmt: skip
-
-
-@pytest.mark.usefixtures("small_rounds")
-def test_each_configuration_is_one_step_behind_the_one_that_it_was_reached_from():
-    found = together(start("surveillance"), 3)
-    lengths = [len(found.path(number)) for number in range(len(found.configurations))]
-    assert lengths == sorted(lengths)
-    assert lengths[-1] == found.depth + 1
 
 
 @given(strategies.initial_configurations())
@@ -109,7 +99,7 @@ def test_workers_visit_of_generated_missions_what_one_process_visits(initial):
         assert collected(other, found) == collected(one, alone)
 
 
-@pytest.mark.parametrize("name", ["broken_deadlock", "nomad"])
+@pytest.mark.parametrize("name", ["two_gates", "nomad"])
 def test_the_graph_is_that_of_one_process_but_for_numbers(name):
     initial = start(name)
     graphs = []
@@ -123,7 +113,7 @@ def test_the_graph_is_that_of_one_process_but_for_numbers(name):
     assert graphs[0] == graphs[1]
 
 
-@pytest.mark.parametrize("most", [1, 2, 30, 100, 152])
+@pytest.mark.parametrize("most", [1, 30, 152])
 @pytest.mark.usefixtures("small_rounds")
 def test_no_more_configurations_are_visited_than_were_allowed(most):
     initial, limits = start("surveillance"), Limits(configurations=most)
@@ -131,10 +121,7 @@ def test_no_more_configurations_are_visited_than_were_allowed(most):
     assert (len(found.configurations), found.expanded, found.bounds) == (most, most, alone.bounds)
     assert not found.complete
     assert kept_graph(found).open.any()
-
-
-def test_as_many_as_there_are_is_no_limit():
-    assert together(start("surveillance"), 3, limits=Limits(configurations=153)).complete
+    assert together(initial, 3, limits=Limits(configurations=153)).complete  # as many as there are
 
 
 def test_without_time_or_memory_the_search_is_incomplete():
@@ -161,7 +148,7 @@ def test_an_interruption_keeps_what_is_whole_and_can_be_gone_on_from(tmp_path, w
     assert list(map(str, found.bounds)) == ["an interruption"]
     assert len(found.configurations) == told[-1].configurations < 153
     resumed = together(initial, 2, keeping=Keeping(str(tmp_path), resumed=True))
-    assert whole(resumed) == whole(together(initial, 2))
+    assert visited(resumed) == visited(together(initial, 2))
 
 
 class Interrupted(LocalCrew):
@@ -190,12 +177,12 @@ def test_what_is_interrupted_while_rows_are_on_their_way_is_not_kept(tmp_path):
 def test_whenever_a_worker_is_lost_nothing_is_lost_with_it(tmp_path, every):
     initial = start("broken_unrealisable")
     undisturbed = LocalCrew(initial, 3)
-    expected = whole(Expedition(undisturbed, initial, Options(LIMITS)).run(()))
+    expected = visited(Expedition(undisturbed, initial, Options(LIMITS)).run(()))
     for call in range(2, undisturbed.calls, 31):
         folder = tmp_path / str(call)
         crew = LocalCrew(initial, 3, dies=((call, call % 3),))
         keeping = Keeping(str(folder), every=every)
-        assert whole(Expedition(crew, initial, Options(LIMITS, keeping=keeping)).run(())) == expected
+        assert visited(Expedition(crew, initial, Options(LIMITS, keeping=keeping)).run(())) == expected
         assert crew.revived == 1
 
 
@@ -210,25 +197,25 @@ class Seldom(Expedition):
             super().save()
 
 
-@pytest.mark.parametrize("dies", [((60, 0),), ((60, 1),), ((25, 0), (110, 1), (170, 0), (250, 1))])
+@pytest.mark.parametrize("dies", [((60, 1),), ((25, 0), (110, 1), (170, 0), (250, 1))])
 @pytest.mark.usefixtures("small_rounds")
 def test_whoever_was_not_lost_at_first_may_be_lost_later(tmp_path, dies):
     initial = start("distributed_handover")
-    expected = whole(together(initial, 2))
+    expected = visited(together(initial, 2))
     crew = LocalCrew(initial, 2, dies=dies)
     found = Seldom(crew, initial, Options(LIMITS, keeping=Keeping(str(tmp_path), every=0.0))).run(())
-    assert whole(found) == expected
+    assert visited(found) == expected
     assert crew.revived == len(dies)
     again = together(initial, 2, keeping=Keeping(str(tmp_path), resumed=True))
-    assert whole(again) == expected
+    assert visited(again) == expected
 
 
 @pytest.mark.usefixtures("small_rounds")
 def test_a_crew_that_was_lost_altogether_is_followed_by_another(tmp_path, monkeypatch):
-    initial = start("distributed_handover")
+    initial = start("nomad")
     undisturbed = LocalCrew(initial, 2)
     found = Expedition(undisturbed, initial, Options(LIMITS)).run(())
-    expected, keeping = whole(found), LocalCrew(initial, 2)
+    expected, keeping = visited(found), LocalCrew(initial, 2)
     kept = Keeping(str(tmp_path / "kept"), every=0.0)
     Expedition(keeping, initial, Options(LIMITS, keeping=kept)).run(())
     for call in (30, 90, keeping.calls * 2 // 3):  # on a busy machine there are more or fewer calls
@@ -239,7 +226,7 @@ def test_a_crew_that_was_lost_altogether_is_followed_by_another(tmp_path, monkey
             Expedition(crew, initial, Options(LIMITS, keeping=Keeping(folder, every=0.0))).run(())
         crew = LocalCrew(initial, 2)
         resumed = Expedition(crew, initial, Options(LIMITS, keeping=Keeping(folder, resumed=True))).run(())
-        assert whole(resumed) == expected
+        assert visited(resumed) == expected
     rounds, again = (each.called[0].count("exchange") for each in (undisturbed, crew))
     assert again < rounds // 2
 
@@ -259,14 +246,14 @@ def test_what_was_found_under_a_limit_of_time_is_not_explored_otherwise(tmp_path
 
 @pytest.mark.usefixtures("small_rounds")
 def test_in_a_temporary_folder_nothing_is_kept_of_what_ends_before_a_checkpoint_is_due(tmp_path):
-    initial = start("distributed_handover")
-    expected = whole(together(initial, 2))
+    initial = start("broken_unrealisable")
+    expected = visited(together(initial, 2))
     crew = LocalCrew(initial, 2)
     options = Options(LIMITS, keeping=Keeping(str(tmp_path)))
     found = Expedition(crew, initial, options, is_temporary=True).run(())
     assert not list(tmp_path.rglob("*.checkpoint"))
     crew.lost = {1}
-    assert whole(found) == expected  # all was explored once more
+    assert visited(found) == expected  # all was explored once more
     assert crew.revived == 1
 
 
@@ -279,29 +266,14 @@ def kept(folder, workers=2, name="oil_spill", digest="d", limits=LIMITS, resumed
     return together(initial, workers, limits=limits, keeping=keeping)
 
 
-@pytest.mark.parametrize("other", [{"digest": "e"}, {"workers": 3}, {"limits": Limits(configurations=7)}])
+@pytest.mark.parametrize(
+    "other", [{"digest": "e"}, {"workers": 3}, {"limits": Limits(configurations=7)}, {"name": "tanker"}]
+)
 def test_a_checkpoint_of_something_else_is_refused(tmp_path, other):
     kept(tmp_path, resumed=False)
-    with pytest.raises(CheckpointError, match="of another mission, variation, limit, version or number of"):
+    said = "not what was learned" if "name" in other else "of another mission, variation, limit, version or"
+    with pytest.raises(CheckpointError, match=said):
         kept(tmp_path, **other)
-
-
-def test_a_checkpoint_of_another_missions_rows_is_refused(tmp_path):
-    kept(tmp_path, resumed=False)
-    with pytest.raises(CheckpointError, match="not what was learned"):
-        kept(tmp_path, name="tanker")
-
-
-@pytest.mark.parametrize("damage", [b"", b"no archive", b"PK\x03\x04 half", b"[]"])
-def test_a_damaged_checkpoint_is_refused(tmp_path, damage):
-    kept(tmp_path, resumed=False)
-    for file in sorted((tmp_path / "exploration-ray").iterdir()):
-        before = file.read_bytes()
-        file.write_bytes(damage)
-        with pytest.raises(CheckpointError, match="no checkpoint"):
-            kept(tmp_path)
-        file.write_bytes(before)
-    assert len(kept(tmp_path).configurations) == 34
 
 
 @pytest.mark.parametrize("part", ["rows", "origins", "packing", "places", "sizes", "digests", "learned"])

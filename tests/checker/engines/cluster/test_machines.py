@@ -77,17 +77,9 @@ def machines():
     try:
         run("ip", "netns", "add", names[1])
         run(
-            "ip",
-            "link",
-            "add",
-            "cable",
-            "netns",
+            *["ip", "link", "add", "cable", "netns"],
             names[0],
-            "type",
-            "veth",
-            "peer",
-            "cable",
-            "netns",
+            *["type", "veth", "peer", "cable", "netns"],
             names[1],
         )
         for name, host in zip(names, (HEAD, OTHER), strict=True):

@@ -1,7 +1,5 @@
 """A worker's shard: whose rows are, and what it needs to know to go back."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -10,11 +8,9 @@ from checker.engines.cluster.row_keys import Keys
 from checker.engines.cluster.shard import Shard
 from specs.elaboration import load_mission
 
-MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
-
 
 def start(name):
-    return load_mission(MISSIONS / f"{name}.mission").initial
+    return load_mission(name).initial
 
 
 def shard(name="surveillance", me=0, workers=1):

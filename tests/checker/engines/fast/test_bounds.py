@@ -27,20 +27,20 @@ from semantics.races.monitor import monitored
 from specs.elaboration import Variation, load_mission
 
 ROOT = Path(__file__).parents[4]
-MISSIONS = ROOT / "specs" / "missions"
 LIMITS = Limits(configurations=3_000)
 FEW = 12
 """Below so many configurations every size is cut at; then each that is a third larger."""
 
 IS_CHECKED = os.environ.get("NUMBA_BOUNDSCHECK") == "1"
-LONG = (pytest.mark.bounds, pytest.mark.skipif(not IS_CHECKED, reason="a long run: `make bounds`"))
 
 
 def checked(test):
     """Mark a test that runs where the loops are compiled with checks."""
-    for mark in LONG:
-        test = mark(test)
-    return test
+    return pytest.mark.bounds(pytest.mark.skipif(not IS_CHECKED, reason="a long run: `make bounds`")(test))
+
+
+def of_each_mission(test):
+    return checked(pytest.mark.parametrize("name", UNTIMED)(test))
 
 
 @pytest.fixture(autouse=True)
@@ -68,6 +68,11 @@ def fast(initial, **options):
     return explore(initial, engine=Engine.FAST, **{"limits": LIMITS, **options})
 
 
+def reduced(mission):
+    formulas = [each.formula for each in mission.properties if each.kind in {"invariant", "reachable"}]
+    return Reduced(mission.initial, [Reduction.POR], formulas)
+
+
 def goes_on_from_every_size(initial, folder):
     whole = seen(fast(initial))
     for size in sizes(whole[0]):
@@ -80,8 +85,8 @@ def goes_on_from_every_size(initial, folder):
 def initials(name):
     """Yield a mission's first configuration under each scheduler, and as races are looked for."""
     for scheduler in Scheduler:
-        yield load_mission(MISSIONS / f"{name}.mission", Variation(scheduler=scheduler)).initial
-    yield monitored(load_mission(MISSIONS / f"{name}.mission").initial)
+        yield load_mission(name, Variation(scheduler=scheduler)).initial
+    yield monitored(load_mission(name).initial)
 
 
 @checked
@@ -90,40 +95,35 @@ def test_the_loops_are_compiled_with_checks_of_bounds():
         kernel.first_turn(*(np.zeros(0, np.int32) for _ in range(2)), np.zeros(1, np.int32), 1)
 
 
-@checked
-@pytest.mark.parametrize("name", UNTIMED)
+@of_each_mission
 def test_searches_go_on_from_every_size(tmp_path, name):
     for number, initial in enumerate(initials(name)):
         goes_on_from_every_size(initial, tmp_path / str(number))
 
 
-@checked
+@of_each_mission
 @pytest.mark.parametrize("shallow", [8, 1], ids=["once", "twice"])
-@pytest.mark.parametrize("name", UNTIMED)
 def test_searches_of_folded_rows_go_on_from_every_size(tmp_path, monkeypatch, name, shallow):
     monkeypatch.setattr(space.Space, "PLAIN", 1)
     monkeypatch.setattr(space.Space, "COMPRESSED_FROM", 0)
     monkeypatch.setattr(tree_compression, "FIRST", 4)
     monkeypatch.setattr(tree_compression, "SHALLOW", shallow)
-    mission = load_mission(MISSIONS / f"{name}.mission")
+    mission = load_mission(name)
     goes_on_from_every_size(mission.initial, tmp_path)
     assert seen(fast(mission.initial, threads=3)) == seen(fast(mission.initial))
-    formulas = [each.formula for each in mission.properties if each.kind in {"invariant", "reachable"}]
-    fast(mission.initial, reduce=Reduced(mission.initial, [Reduction.POR], formulas))
+    fast(mission.initial, reduce=reduced(mission))
 
 
-@checked
-@pytest.mark.parametrize("name", UNTIMED)
+@of_each_mission
 def test_searches_stop_at_every_limit_of_configurations(name):
-    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    initial = load_mission(name).initial
     for size in sizes(len(fast(initial).configurations)):
         assert len(fast(initial, limits=Limits(configurations=size)).configurations) == size
 
 
-@checked
-@pytest.mark.parametrize("name", UNTIMED)
+@of_each_mission
 def test_searches_spill_at_every_size(tmp_path, monkeypatch, name):
-    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    initial = load_mission(name).initial
     whole = seen(fast(initial))
     spill, spilled = Rows.spill, []
 
@@ -147,10 +147,9 @@ def test_searches_spill_at_every_size(tmp_path, monkeypatch, name):
         assert seen(found) == whole, f"spilled at {size}"
 
 
-@checked
-@pytest.mark.parametrize("name", UNTIMED)
+@of_each_mission
 def test_searches_end_at_every_limit_of_memory(monkeypatch, name):
-    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    initial = load_mission(name).initial
     for size in sizes(len(fast(initial).configurations)):
         reached = [0]
         monkeypatch.setattr(checker.limits, "memory_taken", lambda reached=reached: reached[0])
@@ -163,30 +162,20 @@ def test_searches_end_at_every_limit_of_memory(monkeypatch, name):
         assert len(found.configurations) >= size
 
 
-@checked
-@pytest.mark.parametrize("name", UNTIMED)
-def test_all_that_is_decided_is_decided_within_bounds(name):
-    mission = load_mission(MISSIONS / f"{name}.mission")
-    wide = check(mission.initial, mission.properties, LIMITS, engine=Engine.FAST)
-    reference = check(mission.initial, mission.properties, LIMITS, engine=Engine.REFERENCE)
+@of_each_mission
+def test_all_that_is_decided_and_reduced_stays_within_bounds(name):
+    mission = load_mission(name)
+    wide = check(mission, limits=LIMITS, engine=Engine.FAST)
+    reference = check(mission, limits=LIMITS, engine=Engine.REFERENCE)
     assert [each.outcome for each in wide.verdicts] == [each.outcome for each in reference.verdicts]
-
-
-@checked
-@pytest.mark.parametrize("name", UNTIMED)
-def test_reduced_searches_stay_within_bounds(name):
-    mission = load_mission(MISSIONS / f"{name}.mission")
-    formulas = [each.formula for each in mission.properties if each.kind in {"invariant", "reachable"}]
-    reducer = Reduced(mission.initial, [Reduction.POR], formulas)
-    found = fast(mission.initial, reduce=reducer)
+    found = fast(mission.initial, reduce=reduced(mission))
     assert 1 <= len(found.configurations) <= len(fast(mission.initial).configurations)
 
 
-@checked
-@pytest.mark.parametrize("name", UNTIMED)
+@of_each_mission
 def test_workers_go_on_from_every_round(tmp_path, monkeypatch, name):
     monkeypatch.setattr(cluster, "ROUND", 7)
-    initial = load_mission(MISSIONS / f"{name}.mission").initial
+    initial = load_mission(name).initial
     whole = Expedition(LocalCrew(initial, 2), initial, Options(LIMITS)).run(())
     for size in sizes(len(whole.configurations)):
         folder = str(tmp_path / str(size))

@@ -14,7 +14,7 @@ from specs.elaboration import load_mission
 from specs.missions import shipped_missions
 mission = load_mission(shipped_missions()["oil_spill"])
 told = []
-check(mission.initial, mission.properties, report=told.append, engine=Engine.FAST)
+check(mission, report=told.append, engine=Engine.FAST)
 print(max((progress.compiling for progress in told), default=0))
 """
 NOWHERE = """
@@ -74,7 +74,7 @@ from checker import Engine, check
 from specs.elaboration import load_mission
 from specs.missions import shipped_missions
 mission = load_mission(shipped_missions()["oil_spill"])
-check(mission.initial, mission.properties, engine=Engine.FAST)
+check(mission, engine=Engine.FAST)
 print(njit(lambda a: np.cov(a))(np.array([1.0, 2.0, 3.0])))
 """
 

@@ -1,9 +1,6 @@
 """The fast explorer: it visits what the reference explorer visits, in the same order, and stops where that stops."""
 
-from pathlib import Path
-
-import pytest
-from checked_missions import load
+from checked_missions import load, timeless, visited
 from hypothesis import given
 from scale import crossed, examples
 from shipped import UNTIMED
@@ -14,56 +11,44 @@ from semantics import Control, Scheduler, strategies
 from semantics.races.monitor import monitored
 from specs.elaboration import Variation, load_mission
 
-MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
-FEW = Limits(configurations=400)
+FEW, CROWDED = Limits(configurations=400), Limits(configurations=100, pending=1)
 
 VARIATIONS = {
     "as written": Variation(),
     "timed": Variation(control=Control.TIMED),
     "unordered": Variation(scheduler=Scheduler.UNORDERED),
     "fcfs timed": Variation(scheduler=Scheduler.FCFS, control=Control.TIMED),
+    "monitored, or crowded": None,
 }
 
 ENGINES = (Engine.REFERENCE, Engine.FAST)
 """Those that give the same numbers to configurations; Ray's are in `tests/checker/engines/cluster`."""
 
 
-def told(report):
-    """Return what a report says, in a form in which a difference can be read."""
-    verdicts = [
-        (
-            each.property.name,
-            each.outcome,
-            [(v.kind, v.message, v.details, labels(v.trace)) for v in each.violations],
-            (each.count, each.different, each.examined),
-            labels(each.witness),
-            (each.note, each.remarks),
-        )
-        for each in report.verdicts
-    ]
-    sizes = (report.configurations, report.transitions, report.depth, report.bounds, report.rules)
-    return (*verdicts, sizes, report.coverage)
-
-
-def labels(trace):
-    return trace and [f"{step.label} {step.choice}" for step in trace.steps]
+def reported(mission, limits=None):
+    """Return the report that both engines come to."""
+    one, other = (timeless(check(mission, limits=limits, engine=engine)) for engine in ENGINES)
+    assert one == other
+    return one
 
 
 def explored(initial, engine, limits=FEW):
-    found = explore(initial, limits=limits, engine=engine)
-    visited = (list(found.configurations), list(map(int, found.origins)), found.depth, found.expanded)
-    return (*visited, found.transitions, found.rules, found.bounds)
+    """Return what was visited in which order, and the edges."""
+    found = explore(initial, limits=limits, engine=engine, edges=True)
+    graph = kept_graph(found)
+    return visited(found), graph.starts.tolist(), graph.targets.tolist(), actions(graph), graph.open.tolist()
+
+
+def actions(graph):
+    """Return who does what, edge by edge: the fast engine doesn't say which observation is received."""
+    labels = [(each.rule, each.agent) for each in graph.labels]
+    return [labels[action] for action in graph.actions]
 
 
 @crossed(UNTIMED, VARIATIONS)
 def test_a_mission_is_explored_alike_by_both_engines(name, variation):
-    initial = load_mission(MISSIONS / f"{name}.mission", variation).initial
-    assert explored(initial, Engine.FAST) == explored(initial, Engine.REFERENCE)
-
-
-@pytest.mark.parametrize("name", UNTIMED)
-def test_a_monitored_mission_is_explored_alike_by_both_engines(name):
-    initial = monitored(load_mission(MISSIONS / f"{name}.mission").initial)
+    initial = load_mission(name, variation or Variation()).initial
+    initial = initial if variation else monitored(initial)
     assert explored(initial, Engine.FAST) == explored(initial, Engine.REFERENCE)
 
 
@@ -76,25 +61,14 @@ def test_generated_missions_are_explored_alike_by_both_engines(initial):
 
 @crossed(UNTIMED, VARIATIONS)
 def test_both_engines_come_to_the_same_report(name, variation):
-    mission = load_mission(MISSIONS / f"{name}.mission", variation)
-    reports = [check(mission.initial, mission.properties, FEW, engine=engine) for engine in ENGINES]
-    assert told(reports[0]) == told(reports[1])
-
-
-@pytest.mark.parametrize("name", ["broken_deadlock", "two_gates"])
-def test_both_engines_examine_as_much_where_too_much_is_pending(name):
-    mission = load_mission(MISSIONS / f"{name}.mission")
-    limits = Limits(configurations=400, pending=1)
-    reports = [check(mission.initial, mission.properties, limits, engine=engine) for engine in ENGINES]
-    assert told(reports[0]) == told(reports[1])
+    mission = load_mission(name, variation or Variation())
+    reported(mission, FEW if variation else CROWDED)
 
 
 @given(strategies.missions())
 @examples(60)
 def test_generated_missions_are_judged_alike_by_both_engines(mission):
-    limits = Limits(configurations=60)
-    reports = [check(mission, limits=limits, engine=engine) for engine in ENGINES]
-    assert told(reports[0]) == told(reports[1])
+    reported(mission, Limits(configurations=60))
 
 
 ROUTES = """
@@ -120,47 +94,12 @@ check { race_freedom local_consistency reachable "back": b.way == [gate0, north0
 
 
 def test_routes_with_observations_in_them_are_judged_alike_by_both_engines():
-    mission = load(ROUTES)
-    reports = [check(mission.initial, mission.properties, engine=engine) for engine in ENGINES]
-    assert told(reports[0]) == told(reports[1])
-    assert (reports[0].configurations, reports[0].verdicts[2].outcome) == (310, Outcome.HOLDS)
+    report = reported(load(ROUTES))
+    assert (report.configurations, report.verdicts[2].outcome) == (310, Outcome.HOLDS)
 
 
 def test_the_rules_are_run_far_less_often_than_there_are_transitions():
-    found = explore(load_mission(MISSIONS / "rendezvous.mission").initial, engine=Engine.FAST)
+    found = explore(load_mission("rendezvous").initial, engine=Engine.FAST)
     assert (len(found.configurations), found.transitions) == (18_051, 73_275)
     assert found.rule_runs is not None
     assert found.rule_runs < 600
-
-
-@pytest.mark.parametrize("name", UNTIMED)
-def test_both_engines_keep_the_same_graph(name):
-    initial = load_mission(MISSIONS / f"{name}.mission").initial
-    graphs = [kept_graph(explore(initial, limits=FEW, engine=engine, edges=True)) for engine in ENGINES]
-    one, other = ((g.starts.tolist(), g.targets.tolist(), actions(g), g.open.tolist()) for g in graphs)
-    assert one == other
-
-
-def actions(graph):
-    """Return who does what, edge by edge: the fast engine doesn't say which observation is received."""
-    labels = [(each.rule, each.agent) for each in graph.labels]
-    return [labels[action] for action in graph.actions]
-
-
-SPELLED = """
-BigActor f[u] for u in UAV hosted_at u with_behavior {
-  send ("uav0", u) to gcs
-  send (u, {u, uav0, "uav1"}) to gcs
-  react { case "uav1" => control(MOVE_HOST_TO north0) case =u => control(MOVE_HOST_TO gate0) }
-}
-BigActor gcs hosted_at vessel0 with_behavior {
-  loop { react { case ("uav0", who) => send who to f[who] case (=uav0, all) => send "uav1" to f[uav0] } }
-}
-check { race_freedom local_consistency deadlock_freedom ltl "b": eventually uav1 in gate0 reachable "g": uav0 in gate0 }
-"""
-
-
-def test_texts_that_are_spelled_like_names_are_judged_alike_by_both_engines():
-    mission = load(SPELLED)
-    reports = [check(mission.initial, mission.properties, engine=engine) for engine in ENGINES]
-    assert told(reports[0]) == told(reports[1])

@@ -1,82 +1,33 @@
-"""Rows in files when memory ends: the same report, and nothing left in the folder."""
+"""Rows in files when memory ends: what bounds them, and what they take (the same reports: `pairs`)."""
 
 import errno
 import os
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-import checker.engines.fast.explorer
 import checker.limits
-from checker import Engine, Limits, check, explore
+from checker import Engine, Limits, explore
 from checker.engines.fast.mapped_arrays import Pages
 from checker.limits import memory_taken
 from specs.elaboration import load_mission
 
-MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
 MEGABYTE = 1_000_000
 
 linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is told of by /proc")
 
 
-class Memory:
-    """What the process is said to take: what anonymous pages would, as if each were a megabyte."""
-
-    def __init__(self, monkeypatch, tmp_path):
-        self.in_files = False
-        monkeypatch.setattr(checker.limits, "memory_taken", lambda: (1 if self.in_files else 3) * MEGABYTE)
-        spill = Pages.spill
-
-        def noted(pages, folder, used):
-            self.in_files = True
-            assert folder == tmp_path
-            spill(pages, folder, used)
-
-        monkeypatch.setattr(Pages, "spill", noted)
-
-
-def told(report):
-    return (
-        report.configurations,
-        report.transitions,
-        report.depth,
-        report.rules,
-        report.verdicts,
-        report.coverage,
-    )
-
-
-def test_with_files_an_exploration_comes_to_the_same_report(tmp_path, monkeypatch):
-    mission = load_mission(MISSIONS / "rendezvous.mission")
-    whole = check(mission.initial, mission.properties, engine=Engine.FAST)
-    memory = Memory(monkeypatch, tmp_path)
-    monkeypatch.setattr(checker.engines.fast.explorer, "CHUNK", 64)
-    limits = Limits(memory=2 * MEGABYTE)
-    assert not check(mission.initial, mission.properties, limits, engine=Engine.FAST).complete
-    limits = Limits(memory=2 * MEGABYTE, spill=str(tmp_path))
-    spilled = check(mission.initial, mission.properties, limits)
-    assert memory.in_files
-    assert spilled.complete
-    assert told(spilled) == told(whole)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_what_files_do_not_help_is_incomplete(tmp_path):
-    initial = load_mission(MISSIONS / "rendezvous.mission").initial
+def test_what_files_do_not_help_and_the_end_of_the_room_are_bounds(tmp_path, monkeypatch):
+    initial = load_mission("rendezvous").initial
     found = explore(initial, engine=Engine.FAST, limits=Limits(memory=1, spill=str(tmp_path)))
     assert list(map(str, found.bounds)) == ["the memory limit of 0 MB"]
-
-
-def test_the_end_of_the_room_is_a_bound(tmp_path, monkeypatch):
-    Memory(monkeypatch, tmp_path)
+    monkeypatch.setattr(checker.limits, "memory_taken", lambda: 3 * MEGABYTE)
 
     def full(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(os, "posix_fallocate", full)
-    initial = load_mission(MISSIONS / "rendezvous.mission").initial
     found = explore(initial, engine=Engine.FAST, limits=Limits(memory=2 * MEGABYTE, spill=str(tmp_path)))
     assert list(map(str, found.bounds)) == [f"the end of the room in {tmp_path}: No space left on device"]
     assert found.expanded < 18_051

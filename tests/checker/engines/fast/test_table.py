@@ -1,7 +1,5 @@
 """The visited set finds every row again, whatever its size, and takes little room."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -20,8 +18,6 @@ from checker.engines.fast.table import (
     slots_for,
 )
 from specs.elaboration import load_mission
-
-MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
 
 WIDTH = 2
 
@@ -74,7 +70,7 @@ def test_a_table_takes_at_most_nine_bytes_a_row_each_time_when_it_grows():
 @pytest.mark.parametrize("budget", range(100_000, 310_000, 30_000))
 def test_a_table_grows_by_less_where_memory_ends_so_that_rows_have_it(budget, monkeypatch):
     monkeypatch.setattr(spaces, "BATCH", 256)
-    initial = load_mission(MISSIONS / "rendezvous.mission").initial
+    initial = load_mission("rendezvous").initial
     space = Space(Learner(initial.setting, initial.state, Limits().pending), None)
     row = 8 * space.packing.words + 4
     space.left = lambda: budget - row * space.size - space.table.room.nbytes

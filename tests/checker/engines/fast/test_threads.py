@@ -1,32 +1,26 @@
 """Several threads: whatever they do at once, everything that one thread finds is found, with the same numbers."""
 
 import threading
-from dataclasses import replace
-from pathlib import Path
 
-import numpy as np
 import pytest
 from checked_missions import interrupted_at, load
 from hypothesis import given
 from hypothesis import strategies as st
-from scale import crossed, examples
+from scale import IS_WHOLE, crossed, examples
 from shipped import UNTIMED
 
 import checker.limits
 from bigactors.cli import main
-from checker import Engine, Keeping, Limits, check, explore, report_text
-from checker.engines.archive import read_archive
+from checker import Engine, Keeping, Limits, explore
 from checker.engines.contract import Options
 from checker.engines.fast import explorer, frontier_chunks, pipeline, space, tree_compression
-from checker.engines.fast.checkpoint import KINDS, SCHEMA
 from checker.engines.fast.explorer import explore_fast
 from checker.engines.fast.rows import Rows
 from semantics import strategies
 from semantics.races.monitor import monitored
 from specs.elaboration import load_mission
 
-MISSIONS = Path(__file__).parents[4] / "specs" / "missions"
-SOME = Limits(configurations=3_000)
+SOME = Limits(configurations=3_000 if IS_WHOLE else 600)
 SEVERAL = (2, 3, 4)
 
 
@@ -49,7 +43,7 @@ def kept(request, monkeypatch):
 
 
 def start(name):
-    return load_mission(MISSIONS / f"{name}.mission").initial
+    return load_mission(name).initial
 
 
 def seen(initial, threads, **options):
@@ -59,6 +53,10 @@ def seen(initial, threads, **options):
     rows = inner.rows.words[: inner.size * inner.rows.kept]
     numbers = (found.depth, found.expanded, found.transitions, found.rules, found.bounds, found.rule_runs)
     interned = [each.tolist() for each in inner.rows.interned]
+    targets = [each for _, _, each in inner.edges(range(inner.expanded))]
+    if found.complete:  # though rows were packed anew meanwhile, every transition leads to one
+        assert sum(map(len, targets)) == found.transitions
+        assert all((each >= 0).all() for each in targets)
     return (rows.tolist(), list(map(int, found.origins)), numbers, inner.learned, interned)
 
 
@@ -69,10 +67,10 @@ def test_a_mission_is_explored_alike_by_any_number_of_threads(name, variation):
 
 
 @pytest.mark.usefixtures("kept")
-@pytest.mark.parametrize("name", ["oil_spill", "takeover", "rendezvous"])
+@pytest.mark.parametrize("name", ["oil_spill", "takeover"])
 def test_a_monitored_mission_is_explored_alike_by_any_number_of_threads(name):
     initial = monitored(start(name))
-    assert [seen(initial, threads) for threads in SEVERAL] == [seen(initial, 1)] * len(SEVERAL)
+    assert seen(initial, 2) == seen(initial, 4) == seen(initial, 1)
 
 
 @given(strategies.initial_configurations(), st.sampled_from([1, 2]))
@@ -103,7 +101,7 @@ def fleet(uavs):
     return load("\n".join(lines), "mission fleet\n").initial
 
 
-@pytest.mark.parametrize("configurations", [40, 400, 2_000])
+@pytest.mark.parametrize("configurations", [40, 1_000])
 def test_wide_missions_are_explored_alike_by_any_number_of_threads(monkeypatch, configurations):
     """Most pieces of a row are met by slices before they have a number: they get it where the slices are stored."""
     monkeypatch.setattr(tree_compression, "SHALLOW", 1)
@@ -111,17 +109,8 @@ def test_wide_missions_are_explored_alike_by_any_number_of_threads(monkeypatch, 
     limits = Limits(configurations=configurations)
     alone = seen(fleet(12), 1, limits=limits)
     assert configurations == 40 or len(alone[-1][1]) > 2  # nodes: by then rows are folded twice
-    for threads in SEVERAL:
+    for threads in SEVERAL if IS_WHOLE else (3,):
         assert seen(fleet(12), threads, limits=limits) == alone
-
-
-@pytest.mark.parametrize("name", UNTIMED)
-def test_reports_are_the_same_for_any_number_of_threads(name):
-    mission = load_mission(MISSIONS / f"{name}.mission")
-    limits = Limits(configurations=1_000)
-    reports = [check(mission, limits=limits, engine=Engine.FAST, threads=threads) for threads in (1, 4)]
-    told = [list(report_text(name, replace(each, seconds=0.0))) for each in reports]
-    assert told[0] == told[1]
 
 
 def test_other_threads_expand_slices_and_sift_them(monkeypatch):
@@ -146,7 +135,7 @@ def test_other_threads_expand_slices_and_sift_them(monkeypatch):
 
 
 @pytest.mark.usefixtures("kept")
-@pytest.mark.parametrize("threads", SEVERAL)
+@pytest.mark.parametrize("threads", SEVERAL if IS_WHOLE else (3,))
 def test_rows_go_over_to_files_under_several_threads(tmp_path, monkeypatch, threads):
     spill, spilled, asked = Rows.spill, [], []
 
@@ -167,7 +156,7 @@ def test_rows_go_over_to_files_under_several_threads(tmp_path, monkeypatch, thre
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("threads", SEVERAL)
+@pytest.mark.parametrize("threads", SEVERAL if IS_WHOLE else (3,))
 def test_without_memory_several_threads_stop_and_say_so(monkeypatch, threads):
     asked = []
 
@@ -184,7 +173,7 @@ def test_without_memory_several_threads_stop_and_say_so(monkeypatch, threads):
 
 
 @pytest.mark.usefixtures("kept")
-@pytest.mark.parametrize(("before", "after"), [(1, 4), (4, 1), (3, 2)])
+@pytest.mark.parametrize(("before", "after"), [(1, 4), (4, 1), (3, 2)] if IS_WHOLE else [(1, 4), (3, 2)])
 def test_other_threads_go_on_from_a_checkpoint(tmp_path, before, after):
     initial = start("rendezvous")
     limits, stop = interrupted_at(4_000, Limits())
@@ -198,37 +187,11 @@ def test_other_threads_go_on_from_a_checkpoint(tmp_path, before, after):
 
 
 @pytest.mark.usefixtures("kept")
-def test_every_transition_leads_to_a_row_though_rows_were_packed_anew_meanwhile():
-    inner = explore(start("rendezvous"), engine=Engine.FAST).survey.space
-    found = [targets for _, _, targets in inner.edges(range(inner.expanded))]
-    assert sum(map(len, found)) == 73_275
-    assert all(np.all(targets >= 0) for targets in found)
-
-
-@pytest.mark.usefixtures("kept")
-def test_a_checkpoint_at_the_end_is_the_same_whoever_wrote_it(tmp_path):
-    read = []
-    for threads in (1, 4):
-        folder = tmp_path / str(threads)
-        keeping = Keeping(str(folder), digest="d")
-        explore(start("takeover"), engine=Engine.FAST, keeping=keeping, threads=threads, limits=SOME)
-        head, arrays = read_archive(folder / "exploration.checkpoint", SCHEMA, KINDS)
-        assert head.pop("seconds") > 0
-        read.append((head, {name: each.tolist() for name, each in arrays.items()}))
-    assert read[0] == read[1]
-
-
-@pytest.mark.usefixtures("kept")
 def test_a_row_with_more_successors_than_a_batch_holds_is_stored_in_its_turn(monkeypatch):
     monkeypatch.setattr(space, "BATCH", 4)
     few = [seen(start("oil_spill"), threads) for threads in (1, 3)]
     monkeypatch.setattr(space, "BATCH", 64)
     assert few == [seen(start("oil_spill"), 1)] * 2
-
-
-def test_threads_are_of_the_fast_explorer(capsys):
-    assert main(["check", "oil_spill", "--engine", "reference", "--threads", "2"]) == 2
-    assert "--threads is of the fast explorer\n  hint: leave --engine out" in capsys.readouterr().err
 
 
 def test_the_command_line_passes_the_number_of_threads_on(monkeypatch, capsys):
@@ -241,4 +204,5 @@ def test_the_command_line_passes_the_number_of_threads_on(monkeypatch, capsys):
     monkeypatch.setattr("checker.engines.fast.explorer.explore_fast", noted)
     main(["check", "oil_spill", "--engine", "fast", "--threads", "3", "--no-traces"])
     assert set(asked) == {3}
-    assert np.all(capsys.readouterr().out)
+    assert main(["check", "oil_spill", "--engine", "reference", "--threads", "2"]) == 2
+    assert "--threads is of the fast explorer\n  hint: leave --engine out" in capsys.readouterr().err

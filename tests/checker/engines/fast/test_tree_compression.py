@@ -2,21 +2,18 @@
 
 import numpy as np
 import pytest
-from checked_missions import interrupted_at
+from checked_missions import visited
 from hypothesis import given
 from hypothesis import strategies as st
 from scale import examples
 from shipped import UNTIMED
 
 from checker import Engine, Limits, explore
-from checker.engines.contract import Keeping
 from checker.engines.fast import tree_compression
 from checker.engines.fast.origins import Rising
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import Space
-from checker.reduction import Reduced, Reduction
 from specs.elaboration import load_mission
-from specs.missions import shipped_missions
 
 WORDS = st.integers(0, 2**64 - 1) | st.integers(0, 3)
 
@@ -49,20 +46,13 @@ def folded(whole):
 
 @examples(60)
 @given(rows())
-def test_what_is_kept_is_equal_exactly_where_rows_are(whole):
-    _, kept = folded(whole)
-    assert len(np.unique(kept.reshape(-1, tree_compression.PAIR), axis=0)) == len(np.unique(whole, axis=0))
-
-
-@examples(60)
-@given(rows())
-def test_rows_are_unfolded_as_they_were_in_any_order(whole):
+def test_what_is_kept_is_equal_exactly_where_rows_are_and_unfolds_to_them_in_any_order(whole):
     into, kept = folded(whole)
+    pairs = kept.reshape(-1, tree_compression.PAIR)
+    assert len(np.unique(pairs, axis=0)) == len(np.unique(whole, axis=0))
     words = np.zeros(whole.size, np.uint64)
     for order in (np.arange(len(whole)), np.arange(len(whole))[::-1]):
-        tree_compression.unfold_rows(
-            into.folded, kept.reshape(-1, tree_compression.PAIR)[order].ravel(), into.width, words
-        )
+        tree_compression.unfold_rows(into.folded, pairs[order].ravel(), into.width, words)
         assert np.array_equal(words.reshape(whole.shape), whole[order])
 
 
@@ -96,47 +86,9 @@ def test_many_pieces_and_nodes_find_room():
 
 @pytest.mark.parametrize("name", UNTIMED)
 def test_missions_whose_rows_are_all_folded_explore_as_before(name, monkeypatch):
-    initial, limits = load_mission(shipped_missions()[name]).initial, Limits(configurations=3_000)
+    initial, limits = load_mission(name).initial, Limits(configurations=600)
     plain = explore(initial, limits=limits, engine=Engine.FAST)
     monkeypatch.setattr(Space, "PLAIN", 1)
     monkeypatch.setattr(Space, "COMPRESSED_FROM", 0)
     found = explore(initial, limits=limits, engine=Engine.FAST)
-    assert (found.size, found.transitions, found.rules) == (plain.size, plain.transitions, plain.rules)
-    assert list(found.origins) == list(plain.origins)
-    some = range(0, found.size, max(found.size // 50, 1))
-    assert [found.configurations[k] for k in some] == [plain.configurations[k] for k in some]
-
-
-def by_por(initial, _folder):
-    return explore(initial, engine=Engine.FAST, reduce=Reduced(initial, [Reduction.POR], []))
-
-
-def by_threads(initial, _folder):
-    return explore(initial, engine=Engine.FAST, threads=3)
-
-
-def in_files(initial, folder):
-    return explore(initial, engine=Engine.FAST, limits=Limits(memory=1, spill=str(folder)))
-
-
-def resumed(initial, folder):
-    """Stop before rows are compressed, and go on beyond."""
-    limits, stop = interrupted_at(20, Limits())
-    few, rest = Keeping(str(folder), digest="d"), Keeping(str(folder), True, "d")
-    explore(initial, engine=Engine.FAST, limits=limits, keeping=few, report=stop, every=0.0)
-    return explore(initial, engine=Engine.FAST, keeping=rest)
-
-
-@pytest.mark.parametrize("way", [by_por, by_threads, in_files, resumed])
-@pytest.mark.parametrize("name", ["takeover", "rendezvous"])
-def test_rows_that_are_compressed_amid_a_search_are_those_of_a_search_without(
-    name, way, tmp_path, monkeypatch
-):
-    initial = load_mission(shipped_missions()[name]).initial
-    plain = way(initial, tmp_path / "plain")
-    monkeypatch.setattr(Space, "PLAIN", 1)
-    monkeypatch.setattr(Space, "COMPRESSED_FROM", 40)
-    found = way(initial, tmp_path / "compressed")
-    assert (found.size, found.transitions, found.rules) == (plain.size, plain.transitions, plain.rules)
-    assert list(found.origins) == list(plain.origins)
-    assert (found.survey.space.rows.folded is not None) == (found.size > 40)
+    assert visited(found) == visited(plain)

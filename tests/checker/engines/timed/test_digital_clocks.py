@@ -10,11 +10,11 @@ from checked_missions import load, rules_of
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from naive_time import Naive, TooLarge
-from scale import examples
+from scale import IS_WHOLE, examples
 from shipped import TIMED
-from timed_missions import timed_missions, timings, with_timing
+from timed_missions import ANSWERS, FLIGHT, SOUTH, timed_missions, timed_programs, with_timing, within
 
-from checker import Keeping, Limits, Reduction, RefusedError, check, replay
+from checker import Limits, Reduction, RefusedError, check, replay
 from checker.check import BY_LOOKING
 from checker.engines.choose import explore
 from checker.engines.contract import Engine, EngineError
@@ -30,10 +30,6 @@ from semantics.timing.timing import ClauseTimes, Endurance, Every, Motion, Sayab
 from specs.elaboration import load_mission
 from specs.missions import shipped_missions
 
-SOUTH = Inside("uav0", "south0", actually=True)
-FLIGHT = (
-    "BigActor a hosted_at uav0 with_behavior { control(MOVE_HOST_TO south0) }\ncontrol timed\nscheduler fcfs"
-)
 MINUTES = Timing(
     60_000,
     motions=(("uav0", Motion((18.0, 25.0))),),
@@ -72,10 +68,6 @@ def without_effort(note):
     return note.partition("in ticks")[2] or note
 
 
-def within(bound, formula=SOUTH, then=None):
-    return Property(PropertyKind.WITHIN, "within", formula, bound=bound, then=then)
-
-
 def when(formula=SOUTH):
     return Property(PropertyKind.TIME, "time", formula)
 
@@ -83,6 +75,12 @@ def when(formula=SOUTH):
 @pytest.fixture(scope="module")
 def flight():
     return timed(FLIGHT, MINUTES)
+
+
+@pytest.fixture
+def late(flight):
+    """Return the trace of a deadline that is not kept, as data."""
+    return to_json(decided(flight, within(7)).verdicts["within"].violations[0].trace, "flight", "")
 
 
 # At least 2.2 km at 25 m/s, 88 s; at most 5.9 km at 18 m/s, 326 s: 1 to 6 whole minutes, after two reactions.
@@ -114,10 +112,6 @@ def test_a_trace_has_dates_and_replays_with_them(flight):
     data = to_json(trace, "flight", "")
     assert [step["at"] for step in data["steps"]] == [60.0, 120.0]
     assert replay(flight, data) == trace
-
-
-def test_lanes_say_when(flight):
-    trace = decided(flight, within(7)).verdicts["within"].violations[0].trace
     assert [line.split()[-1] for line in lanes_text(lanes_of_trace(trace)) if "●" in line] == ["1:00", "2:00"]
 
 
@@ -129,20 +123,18 @@ def test_lanes_say_when(flight):
         ([120, 120], "something else has to be done by 1:00"),
     ],
 )
-def test_a_step_at_a_moment_that_the_clocks_do_not_allow_does_not_replay(flight, at, cause):
-    data = to_json(decided(flight, within(7)).verdicts["within"].violations[0].trace, "flight", "")
-    for step, seconds in zip(data["steps"], at, strict=True):
+def test_a_step_at_a_moment_that_the_clocks_do_not_allow_does_not_replay(flight, late, at, cause):
+    for step, seconds in zip(late["steps"], at, strict=True):
         step["at"] = seconds
     with pytest.raises(ReplayError, match=cause):
-        replay(flight, data)
+        replay(flight, late)
 
 
 @pytest.mark.parametrize("at", [-60, 61, "noon", True, None, 1e300])
-def test_a_date_is_a_whole_number_of_ticks(flight, at):
-    data = to_json(decided(flight, within(7)).verdicts["within"].violations[0].trace, "flight", "")
-    data["steps"][0]["at"] = at
+def test_a_date_is_a_whole_number_of_ticks(flight, late, at):
+    late["steps"][0]["at"] = at
     with pytest.raises(ValueError, match="step 1 should be taken 'at' a whole number of ticks of 60000 ms"):
-        replay(flight, data)
+        replay(flight, late)
 
 
 def test_a_vehicle_that_never_left_is_full_and_then_lasts_so_long(flight):
@@ -210,12 +202,6 @@ def test_a_destination_that_vanishes_on_the_way_and_comes_again_brings_nobody_th
         assert report.verdicts["time"].note.startswith("at 0:03 at the earliest")
 
 
-ANSWERS = """
-BigActor a hosted_at gcs0 with_behavior { observe(PARENT(uav0)) react { case obs => send("seen", b) } }
-BigActor b hosted_at gcs1 with_behavior { react { case "seen" => } }
-"""
-
-
 def test_a_response_is_bounded_by_all_that_it_takes():
     pending, over = HasPending("a"), Ended("b")
     timing = Timing(react=Interval(0, 1), sense=Interval(0, 5), messages=(("internet", Interval(1, 3)),))
@@ -224,11 +210,8 @@ def test_a_response_is_bounded_by_all_that_it_takes():
     assert report.verdicts["within"].outcome is Outcome.HOLDS
     assert report.verdicts["time"].note == "at 0:01 at the earliest, at 0:12 at the latest"
     assert decided(c, within(10, pending, over)).verdicts["within"].outcome is Outcome.VIOLATED
-
-
-def test_a_response_to_what_never_is_says_so():
-    report = decided(timed(ANSWERS, Timing()), within(3, Inside("uav0", "gate0"), Ended("b")))
-    assert report.verdicts["within"].remarks[0].startswith("vacuous: never true: ")
+    never = decided(c, within(3, Inside("uav0", "gate0"), over)).verdicts["within"]
+    assert never.remarks[0].startswith("vacuous: never true: ")
 
 
 def environment(clause, times, text='BigActor a hosted_at gcs0 with_behavior { react { case "go" => } }'):
@@ -307,12 +290,6 @@ def test_other_engines_and_reductions_are_refused_by_name(flight):
         check(flight, (when(),), reduce=(Reduction.POR,))
 
 
-def test_zones_keep_no_checkpoints(flight):
-    for more in ({"keeping": Keeping(doubted=5)}, {"limits": Limits(spill="rows")}):
-        with pytest.raises(EngineError, match="are explored in memory, without checkpoints"):
-            check(flight, (when(),), **more)
-
-
 def test_what_ticks_do_not_get_through_is_given_to_zones(flight, monkeypatch):
     monkeypatch.setattr(sys.modules["checker.check"], "PATIENCE", 0.0)
     report = check(flight, (when(),))
@@ -320,8 +297,9 @@ def test_what_ticks_do_not_get_through_is_given_to_zones(flight, monkeypatch):
     assert report.notes[0].startswith("searched over 4 zones, ")
 
 
-def test_a_limit_of_zones_is_said_and_nothing_holds(flight):
-    report = check(flight, (within(8), when()), Limits(configurations=1), engine=Engine.FAST)
+@pytest.mark.parametrize(("engine", "most"), [(Engine.FAST, 1), (Engine.REFERENCE, 5)])
+def test_a_limit_is_said_and_nothing_holds(flight, engine, most):
+    report = check(flight, (within(8), when()), Limits(configurations=most), engine=engine)
     assert not report.complete
     assert {each.outcome for each in report.verdicts} == {Outcome.INCOMPLETE}
 
@@ -352,11 +330,6 @@ def test_properties_of_runs_are_not_decided_with_times(flight):
     progress = Property(PropertyKind.PROGRESS, "progress")
     found = decided(flight, progress).verdicts["progress"]
     assert (found.outcome, found.note.partition(":")[0]) == (Outcome.INCOMPLETE, "not decided")
-
-
-def test_a_limit_is_said_and_nothing_holds(flight):
-    report = check(flight, (within(8), when()), Limits(configurations=5))
-    assert {each.outcome for each in report.verdicts} == {Outcome.INCOMPLETE}
 
 
 def test_without_timing_nothing_is_decided_of_times():
@@ -399,14 +372,18 @@ def agree(c, data, most):
 UNBOTHERED = list(HealthCheck)
 
 
-@settings(max_examples=6, deadline=None, suppress_health_check=UNBOTHERED)
+def tried(often):
+    return settings(max_examples=often, deadline=None, suppress_health_check=UNBOTHERED)
+
+
+@tried(12)
 @given(timed_missions(), st.data())
 def test_whole_ticks_agree_with_parts_of_ticks(c, data):
     agree(c, data, 100)
 
 
 @pytest.mark.long
-@settings(max_examples=150, deadline=None, suppress_health_check=UNBOTHERED)
+@tried(150)
 @given(timed_missions(), st.data())
 def test_whole_ticks_agree_with_parts_of_ticks_on_many_missions(c, data):
     agree(c, data, 1500)
@@ -434,50 +411,10 @@ def agree_with_zones(c, data, most):
     assert_alike(*(check(c, asked, engine=each, times=True) for each in (Engine.REFERENCE, Engine.FAST)))
 
 
-PROGRAMS = [
-    'BigActor a hosted_at gcs0 with_behavior { loop { send("on", a) react { case "on" => } } }',
-    """
-    BigActor a hosted_at gcs0 with_behavior { loop { send("on", b) react { case "off" => } } }
-    BigActor b hosted_at gcs0 with_behavior { loop { react { case "on" => send("off", a) } } }""",
-    """
-    BigActor a hosted_at gcs0 with_behavior { react { case "go" => loop { send("on", a) react { case "on" => } } } }
-    environment { someone says "go" to a }""",
-    """
-    BigActor a hosted_at gcs0 with_behavior { loop { observe(PARENT(uav0)) react { case obs => } } }
-    environment { mesh drops and returns }""",
-    """
-    BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) }
-    BigActor b hosted_at gcs0 with_behavior { react { case "go" => control(HAND uav0 TO gcs2) } }
-    environment { someone says "go" to b }""",
-    """
-    BigActor a hosted_at gcs0 with_behavior { control(HAND uav0 TO gcs1) control(HAND uav0 TO gcs2) }
-    BigActor b hosted_at gcs0 with_behavior { observe(ALL) react { case obs => control(HAND uav0 TO gcs2) } }""",
-    ANSWERS,
-    f"{FLIGHT}\nenvironment {{ drifter0 vanishes }}",
-]
-"""Agents that may stop time, that race, that fly and that answer."""
-
-
-@st.composite
-def timed_programs(draw):
-    c = load(draw(st.sampled_from(PROGRAMS))).initial
-    timing = draw(timings(c.setting, draw(st.sampled_from([1000, 60_000]))))
-    return with_timing(c, replace(timing, **ZEROS) if draw(st.booleans()) else timing)
-
-
-ZEROS = {"react": Interval(0, 0), "sense": Interval(0, 0), "messages": (("", Interval(0, 0)),)}
-
-
-@examples(240, deadline=None, suppress_health_check=UNBOTHERED)
-@given(timed_programs(), st.data())
+@tried(540 if IS_WHOLE else 36)
+@given(st.one_of(timed_programs(), timed_missions()), st.data())
 def test_zones_report_what_whole_ticks_report(c, data):
-    agree_with_zones(c, data, 300)
-
-
-@examples(300, deadline=None, suppress_health_check=UNBOTHERED)
-@given(timed_missions(), st.data())
-def test_zones_report_of_generated_missions_what_whole_ticks_report(c, data):
-    agree_with_zones(c, data, 60)
+    agree_with_zones(c, data, 100)
 
 
 @pytest.mark.long

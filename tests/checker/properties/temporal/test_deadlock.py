@@ -72,13 +72,13 @@ check {
 
 def decided(text, engine=Engine.REFERENCE, **more):
     mission = load(text)
-    return verdict_of(check(mission.initial, mission.properties, engine=engine, **more), "fair")
+    return verdict_of(check(mission, engine=engine, **more), "fair")
 
 
 @pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
 def test_where_only_a_promised_return_leads_on_is_no_deadlock(engine):
     mission = load(SENDS)
-    report = check(mission.initial, mission.properties, engine=engine)
+    report = check(mission, engine=engine)
     literal, fair = (verdict_of(report, name) for name in ("deadlock_freedom", "fair"))
     assert (literal.outcome, literal.count) == (Outcome.VIOLATED, 1)
     assert (fair.outcome, fair.note) == (Outcome.HOLDS, "under weak fairness of environment")

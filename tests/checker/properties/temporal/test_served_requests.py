@@ -75,7 +75,7 @@ def test_what_asks_nothing_of_runs_loads_no_library_for_them():
         from checker import check
         from specs.elaboration import load_mission
         mission = load_mission(Path("specs/missions/oil_spill.mission"))
-        assert check(mission.initial, mission.properties).complete
+        assert check(mission).complete
         print([name for name in ("scipy", "checker.properties.temporal") if name in sys.modules])
     """
     root = Path(__file__).parents[4]

@@ -21,7 +21,7 @@ from structures import (
     linear,
     truths,
 )
-from test_decide import ONCE, THERE_AND_BACK, verdict
+from test_decide import ONCE, verdict
 
 from checker import Engine, Outcome, check
 from checker.limits import Bound, BoundMet, Stop
@@ -181,32 +181,19 @@ def test_a_branching_formula_is_told_of_too():
     )
 
 
-def test_the_witness_of_each_engine_is_as_long():
-    mission = load(f'{THERE_AND_BACK} check {{ ltl "q": pending OBS g leads to not pending MGR g }}')
-    found = [
-        check(mission.initial, mission.properties, engine=engine).verdicts[0]
-        for engine in (Engine.REFERENCE, Engine.FAST)
-    ]
-    assert found[0] == found[1]
-    assert found[0].witness is not None
-
-
-def test_a_graph_that_is_too_large_is_not_gone_through_again(monkeypatch):
-    monkeypatch.setattr(vacuity, "MOST_EDGES", 1)
-    found = verdict(ONCE, 'ltl "q": uav0 in north0 or uav0 in vessel0')
-    assert (found.outcome, found.remarks, found.witness) == (Outcome.HOLDS, (), None)
-
-
-def test_where_the_time_ends_what_holds_still_does(monkeypatch):
+def test_where_the_time_ends_or_the_graph_is_too_large_what_holds_still_does(monkeypatch):
     def late(*_):
         raise BoundMet(Bound(Stop.TIME, (1.0,)))
 
-    monkeypatch.setattr(vacuity, "counterexample", late)
-    found = verdict(ONCE, 'ltl "q": uav0 in north0 or uav0 in vessel0')
-    assert (found.outcome, found.remarks, found.witness) == (Outcome.HOLDS, (), None)
+    for name, instead in (("MOST_EDGES", 1), ("counterexample", late)):
+        with monkeypatch.context() as patch:
+            patch.setattr(vacuity, name, instead)
+            found = verdict(ONCE, 'ltl "q": uav0 in north0 or uav0 in vessel0')
+        assert (found.outcome, found.remarks, found.witness) == (Outcome.HOLDS, (), None)
 
 
 NEVER_BOUND = """
+signature { kind OilTank }
 BigActor c hosted_at gcs0 with_behavior {
   let m = 0
   react { case ("never", x) => let n = 2 m = n }
@@ -222,20 +209,7 @@ UNCHANGING = {
     'ltl "q": [] c.m < 3': False,
     'ltl "q": [] (uav0 in gate0 -> c.n == 1)': False,
     'ltl "q": [] not taken migrate a': False,
-}
-
-
-@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
-@pytest.mark.parametrize("claim", UNCHANGING)
-def test_what_speaks_of_nothing_that_changes_is_vacuous_on_runs_as_in_configurations(claim, engine):
-    mission = load(f"{NEVER_BOUND} {ONCE} check {{ {claim} }}")
-    found = check(mission.initial, mission.properties, engine=engine).verdicts[0]
-    assert found.outcome is Outcome.HOLDS
-    assert (found.remarks == ("vacuous: nothing that it speaks of ever changes",)) is UNCHANGING[claim]
-
-
-NOTHING = {
-    'ltl "q": [] forall v: OilTank . present v': True,
+    'ltl "q": [] forall v: OilTank . present v': True,  # there is none
     'ltl "q": forall v: OilTank . [] present v': True,
     'ltl "q": (exists v: OilTank . present v) leads to false': True,
     'ctl "q": AG forall v: OilTank . EF present v': True,
@@ -246,9 +220,12 @@ NOTHING = {
 }
 
 
-@pytest.mark.parametrize("claim", NOTHING)
-def test_a_formula_over_a_kind_without_entities_is_vacuous(claim):
-    text = f"signature {{ kind OilTank }} {ONCE}"
-    found = verdict(text, claim)
-    assert found.outcome is Outcome.HOLDS
-    assert (found.remarks == ("vacuous: nothing that it speaks of ever changes",)) is NOTHING[claim]
+@pytest.mark.parametrize("engine", [Engine.REFERENCE, Engine.FAST])
+def test_what_speaks_of_nothing_that_changes_is_vacuous_on_runs_as_in_configurations(engine):
+    claims = [claim.replace('"q"', f'"{number}"') for number, claim in enumerate(UNCHANGING)]
+    mission = load(f"{NEVER_BOUND} {ONCE} check {{ {' '.join(claims)} }}")
+    found = check(mission, engine=engine).verdicts
+    for claim, said in zip(UNCHANGING, found, strict=False):
+        assert said.outcome is Outcome.HOLDS, claim
+        vacuous = said.remarks == ("vacuous: nothing that it speaks of ever changes",)
+        assert vacuous is UNCHANGING[claim], claim
