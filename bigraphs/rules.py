@@ -63,7 +63,7 @@ def rule(
         reactum = parallel(reactum, substitution(missing, ()))
     if instantiation is None and len(redex.sites) != len(reactum.sites):
         message = f"the redex has {len(redex.sites)} sites, the reactum {len(reactum.sites)}"
-        raise BigraphError("rule", message, "say what the reactum's sites hold with an instantiation map")
+        raise BigraphError("rule", message, "give the content of the reactum's sites by an instantiation map")
     order = tuple(range(len(redex.sites))) if instantiation is None else instantiation
     return ReactionRule(redex, reactum, order, name, node_variables, link_constants)
 

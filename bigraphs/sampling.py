@@ -32,7 +32,7 @@ MANY: Final = 200
 class End(Enum):
     """The reason for the end of a run."""
 
-    STUCK = "nothing can happen"
+    STUCK = "no rule applies"
     STEPS = "steps"
     TIME = "time"
 

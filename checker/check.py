@@ -50,7 +50,7 @@ BY_LOOKING: dict[PropertyKind, Callable[[int], Inspection]] = {
 PATIENCE = 1.0
 """Seconds after which the fast explorer takes over a mission from the reference explorer."""
 
-UNTIMED = "not decided: nothing says how long anything takes; give the mission a section `timing`"
+UNTIMED = "not decided: the mission has no durations; give it a section `timing`"
 
 
 class Checkable(Protocol):
@@ -113,7 +113,7 @@ def check(  # noqa: PLR0913 - independent options
     formulas, reductions = [each.formula for each in asked if each.kind.has_proposition], tuple(reduce)
     timed = initial.setting.timing is not None
     if timed and reductions:
-        raise RefusedError(reductions[0], "it is not proved sound where a mission says how long things take")
+        raise RefusedError(reductions[0], "it is not proved sound for missions with a section `timing`")
     reducer = _reduced(initial, reductions, formulas) if reductions else None
     if reducer is not None and engine is Engine.RAY:
         raise RefusedError(reducer.names[0], "the ray explorer does not reduce; leave --engine out")
@@ -143,7 +143,7 @@ def _asked(
         asked = start.properties if properties is None else tuple(properties)
         return start.initial, asked, notes or start.notes
     if properties is None:
-        raise TypeError("a configuration asks nothing: give the properties too, or a mission")
+        raise TypeError("a configuration has no properties: give them too, or a mission")
     return start, tuple(properties), notes
 
 
@@ -253,7 +253,7 @@ class _Check:
         try:
             return None if self.deadlines.stop is not None else self.deadlines.schedule(self.properties)
         except BoundMet as met:
-            self.unscheduled = (f"when flights begin and end was not worked out: {met.bound}",)
+            self.unscheduled = (f"the times of flights were not computed: {met.bound}",)
             return None
 
     def search(self) -> Exploration | None:
@@ -381,7 +381,7 @@ class _Check:
 
     def decide_races(self, asked: Property) -> Verdict:
         if self.owned:
-            note = "by ownership, without a search: no agent may write what another's control rests on"
+            note = "by ownership, without a search: no agent may change anything that another's control depends on"
             served = self.witness(self.collected(PropertyKind.LOCAL_CONSISTENCY), self.found)
             return Verdict(asked, Outcome.HOLDS, witness=served, note=note)
         violations = self.violations(self.races.collected, self.found)

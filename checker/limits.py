@@ -27,15 +27,15 @@ class Stop(Enum):
     MEMORY = "the memory limit of {:,.0f} MB"
     PENDING = "more than {} requests or messages of one agent pending"
     INTERRUPTION = "an interruption"
-    NO_MEMORY = "the end of the memory that there is"
-    NO_ROOM = "the end of the room in {}: {}"
+    NO_MEMORY = "the end of the available memory"
+    NO_ROOM = "the end of the free space in {}: {}"
     NO_CHECKPOINT = "a checkpoint that can't be written to {}: {}"
 
 
 class CheckPart(Enum):
     """The parts of a check in which bounds may be met, beside the exploration itself."""
 
-    LOOKING = "looking at what was explored"
+    LOOKING = "the examination of the explored configurations"
     SEARCHING = "the search for stale observations"
 
 
@@ -63,7 +63,7 @@ class Bound:
     @property
     def effect(self) -> str:
         """The consequence of the bound, in words."""
-        return f"stopped at {self}: what lies beyond was not explored"
+        return f"stopped at {self}: the rest was not explored"
 
 
 GRACE = 2.0

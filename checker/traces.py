@@ -272,7 +272,7 @@ def _race(initial: Configuration, trace: Sequence[Step], said: Sequence[Any]) ->
         if marked.get(number) != shown.get(number):
             right = f"the 'role' '{shown[number]}'" if number in shown else "no 'role'"
             raise ValueError(
-                f"step {number} should have {right}: the run itself shows what each step is in a race"
+                f"step {number} should have {right}: the run determines the role of each step in a race"
             )
     return race
 
@@ -342,7 +342,7 @@ def _closed(trace: Trace) -> Trace:
     expansion = expand(last)
     enabled = sorted({str(transition.label) for transition in expansion.transitions})
     if trace.loop == len(trace) and any(not is_unfair(last, each) for each in expansion.by_agents):
-        raise ReplayError(len(trace), "staying for ever", enabled, "something has to be done")
+        raise ReplayError(len(trace), "staying for ever", enabled, "some step has to be taken")
     if last != trace.configurations[trace.loop]:
         raise ReplayError(
             len(trace), f"coming round to c{trace.loop}", enabled, "its last step leads elsewhere"
@@ -350,7 +350,7 @@ def _closed(trace: Trace) -> Trace:
     return trace
 
 
-OUT_OF_TURN = "it is out of turn: 'scheduler fcfs' serves what was asked first"
+OUT_OF_TURN = "it is out of turn: 'scheduler fcfs' serves the oldest request first"
 
 
 def _cause(alike: int) -> str:

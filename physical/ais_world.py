@@ -84,7 +84,7 @@ def check_time(recording: AISRecording, time: float | None, time_to_live: float 
     if time is None or not times or min(times) <= time <= max(times) + time_to_live:
         return
     span = f"it runs from {moment_text(min(times))} to {moment_text(max(times))}"
-    message = f"the recording shows nothing at {moment_text(time)}: {span}"
+    message = f"the recording has no position at {moment_text(time)}: {span}"
     hint = "choose a time in between, or leave it out: the end is taken then"
     raise AisError("ais-time", message, hint)
 

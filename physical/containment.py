@@ -93,7 +93,7 @@ class Conflict:
     def hint(self) -> str:
         """A remedy."""
         if self.outer:
-            return f"what lies inside touches no border: make {self.outer} a little larger"
+            return f"a place inside another touches no border: make {self.outer} a little larger"
         return "places must nest or be apart: change one of the two"
 
 

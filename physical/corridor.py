@@ -36,7 +36,7 @@ def corridor(line: Sequence[Sequence[float]], width: float) -> Geometry:
     if strip.interiors:
         raise GeometryError(
             "hole",
-            f"the line comes back to itself: {width:g} m wide, it encloses what it does not cover",
+            f"the line comes back to itself: {width:g} m wide, it encloses an area that it does not cover",
             "split it, or write the whole as a Polygon",
         )
     border = (frame.position(x, y) for x, y in strip.exterior.coords)

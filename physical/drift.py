@@ -169,11 +169,11 @@ def _quotient(within: Geometry, shapes: Shapes) -> Quotient:
 
 def _check(mover: Geometry, within: Geometry, aboard: Aboard) -> None:
     if within.is_point:
-        raise GeometryError("drift", f"nothing can drift within {within!r}", "drift within a polygon")
+        raise GeometryError("drift", f"no entity can drift within {within!r}", "drift within a polygon")
     if not all(shape.is_point or is_convex(outline(template(shape))) for shape in (mover, *aboard)):
         raise GeometryError(
             "not-convex",
-            "what drifts within a place, and what it carries, is a point or convex: faces are known for those only",
+            "an entity that drifts within a place, and its cargo, is a point or convex: faces are known for those only",
             "list its placements (drifts among), or give its convex hull",
         )
 

@@ -140,7 +140,7 @@ def _features(collection: object) -> Sequence[object]:
             _fail(
                 "too-large",
                 f"the collection has over {MAX_FEATURES:,} features",
-                "leave out what plays no part",
+                "leave out features without a part in the mission",
             )
         if sum(map(_count, features)) > MAX_VERTICES:
             _fail("too-large", f"the collection has over {MAX_VERTICES:,} vertices", "simplify its borders")
@@ -300,8 +300,8 @@ def _corridor(coordinates: object, width: object) -> Geometry:
     if width is None:
         _fail(
             "width",
-            "a LineString is no place: nothing can be in it",
-            'write how wide it is into its properties: "width_m", in metres',
+            "a LineString is no place: it has no inside",
+            'write its width into its properties: "width_m", in metres',
         )
     return corridor(line, width)  # type: ignore[arg-type]  # corridor checks it
 
@@ -324,7 +324,7 @@ def _ring(value: object) -> list[tuple[float, float]]:
         _fail(
             "hole",
             f"the polygon has {len(rings) - 1} hole(s)",
-            "write what is in the hole as a place of its own",
+            "write the hole as a place of its own",
         )
     positions = [_position(vertex) for vertex in _list(rings[0] if rings else None)]
     if not positions or positions[0] != positions[-1]:

@@ -61,4 +61,6 @@ def _strange(mode: int) -> str:
 
 
 def _refused(path: str, strange: str) -> OSError:
-    return OSError(errno.EINVAL, f"this is {strange}, not a file: save what it yields, and give that", path)
+    return OSError(
+        errno.EINVAL, f"this is {strange}, not a file: save its content to a file, and give that", path
+    )

@@ -164,7 +164,7 @@ def read_mission(items: Sequence[MissionItem], beside: Mapping[str, int] = EMPTY
         counting.note("altitude above the terrain: it is not known above the sea", above_terrain)
     if unknown > above_terrain:
         counting.note(
-            "altitude above a home of which the file says none: it is not known", unknown - above_terrain
+            "altitude above a home without an altitude in the file: it is not known", unknown - above_terrain
         )
     return Read(places, (counting.tally(len(items) + sum(beside.values()), "item"),))
 

@@ -145,8 +145,8 @@ PREMISES: Final[Mapping[type[CTR | FLY], tuple[Premise, ...]]] = {
         Premise("S locally consistent w.r.t. m(R)", is_consistent, Obstacle.INCONSISTENT),
     ),
     FLY: (
-        Premise("m(R) in P, what travels in transit there", is_under_way, Obstacle.INCONSISTENT),
-        Premise("R still matches, but for where the moved node is now", still_matches, Obstacle.UNMATCHED),
+        Premise("m(R) in P, its travelling nodes in transit there", is_under_way, Obstacle.INCONSISTENT),
+        Premise("R still matches, except for the place of the moved node", still_matches, Obstacle.UNMATCHED),
         _FOREST,
         Premise("its unmoved part is consistent", is_unmoved_consistent, Obstacle.INCONSISTENT),
     ),

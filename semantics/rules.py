@@ -164,8 +164,8 @@ def command(c: Configuration, a: Name) -> Iterator[Transition]:
 def commit(c: Configuration, a: Name, reach: Reach | None = None) -> Iterator[Transition]:
     """Arrive (`control timed`): at the destination's current position, and R must still match.
 
-    FLY(a, m, R′) ∈ η, in line      m(R) in P, what travels in transit there
-    R still matches, but for where the moved node is now      L[m(R) ↦ m(R′)] a forest
+    FLY(a, m, R′) ∈ η, in line      m(R) in P, its travelling nodes in transit there
+    R still matches, except for the place of the moved node      L[m(R) ↦ m(R′)] a forest
     its unmoved part is consistent      drive(P, m(R′)) = P′
     ──────────────────────────────────────────────────────────────────────────────  ⟨commit : FLY(a, m, R′)⟩
     ⟨α | (L, P, β, γ) | η⟩  →  ⟨α | (L[m(R) ↦ m(R′)], P′, β, γ) | η − FLY(a, m, R′)⟩

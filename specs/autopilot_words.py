@@ -19,7 +19,7 @@ _FLIGHT: Final = (
 )
 _ORDER: Final = (
     "an operator orders that in flight, by bigactors hold or return; "
-    "a mission says where to fly: control(MOVE_HOST_TO place)"
+    "a mission gives the destination: control(MOVE_HOST_TO place)"
 )
 _PLACE: Final = (
     "a vehicle is sent to an entity: declare target: Kind = circle (37.08, -8.55) radius 100 m, "

@@ -63,7 +63,7 @@ class BuildBehaviour(Transformer[Token, s.Mission]):
             _refuse_after(
                 branches[1],
                 "a second 'after' branch",
-                "leave it out: a react waits as long as the first says",
+                "leave it out: the first sets the time limit of the react",
             )
         if branches and c[-2] is not branches[0]:
             _refuse_after(branches[0], "an 'after' branch before a case", "write it behind all cases")

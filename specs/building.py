@@ -110,7 +110,7 @@ def text(token: Token) -> TextLiteral:
             place = Span(span.start + 1 + backslash, span.start + 3 + backslash)
             hint = r"write \\ for a backslash; \n and \t are a line end and a tab"
             raise BuildingMistake(
-                Diagnostic(Code.BAD_ESCAPE, place, f"'\\{escaped}' means nothing in a string", hint)
+                Diagnostic(Code.BAD_ESCAPE, place, f"'\\{escaped}' is no escape of strings", hint)
             )
         pieces += [inner[at:backslash], _ESCAPES[escaped]]
         at = backslash + 2
@@ -174,8 +174,8 @@ def once(clauses: Children, owner: Token) -> dict[str, RuleResult]:
     found: dict[str, RuleResult] = {}
     for clause in clauses:
         if clause.word in found:
-            message = f"'{clause.word}' is said twice of '{_short(owner)}'"
-            hint = "write it once, behind what it is said of; lists are separated by commas"
+            message = f"'{_short(owner)}' has '{clause.word}' twice"
+            hint = "write it once, behind its name; lists are separated by commas"
             raise BuildingMistake(Diagnostic(Code.REPEATED_CLAUSE, clause.span, message, hint))
         found[clause.word] = clause
     return found

@@ -80,13 +80,12 @@ class Code(Enum):
     UNEXPECTED = (
         "LS101",
         "unexpected word",
-        """This word is not allowed here; the message lists what is. The mistake may be just before it.""",
+        """This word is not allowed here; the message lists the allowed ones. The mistake may be just before it.""",
     )
     UNEXPECTED_END = (
         "LS102",
         "the file ends too early",
-        """The file ends inside a declaration. Usually a closing brace is missing; the hint says which one
-        is open.""",
+        """The file ends inside a declaration. Usually a closing brace is missing; the hint names the open one.""",
     )
     UNCLOSED_BRACKET = (
         "LS103",
@@ -130,8 +129,8 @@ class Code(Enum):
     MISSPELT_KEYWORD = (
         "LS110",
         "no word of the language",
-        """This word means nothing here. It is close to one that does (upper and lower case differ), or it is what other
-        languages write: the hint says what is written here.""",
+        """This word is unknown here. It is close to a known one (upper and lower case differ), or it belongs to
+        another language: the hint gives the form of this language.""",
     )
     RESERVED_WORD = (
         "LS111",
@@ -223,8 +222,8 @@ class Code(Enum):
     )
     MISPLACED_VIA = (
         "LS127",
-        "'VIA' where nothing travels",
-        f"""Only what travels has a way: {_WAYS}. VIA stands once, behind the destination.""",
+        "'VIA' without a move",
+        f"""Only a move has a way: {_WAYS}. VIA stands once, behind the destination.""",
     )
     MISPLACED_AFTER = (
         "LS128",
@@ -250,8 +249,8 @@ class Code(Enum):
         "LS203",
         "name declared twice",
         """Entities, kinds, bigActors and channels all have different names; so do rules among each other, and
-        behaviours. `region` and `unknown` are reserved: an observation calls so the place of what
-        is in no place, and of what it did not see.""",
+        behaviours. `region` and `unknown` are reserved: they are an observation's words for the place of a node in
+        no place, and of an unseen node.""",
     )
     WRONG_SORT = (
         "LS204",
@@ -280,7 +279,7 @@ class Code(Enum):
     )
     BAD_CARRIER = (
         "LS303",
-        "nothing to be carried by",
+        "carrier that cannot carry",
         """A carrier must be in the world, and of a kind that carries the kind of its cargo: `kind Vessel carries
         Drifter`.""",
     )
@@ -298,8 +297,8 @@ class Code(Enum):
     BAD_FILE = (
         "LS306",
         "mistake in a world file",
-        """A file named with `from` has a mistake, or the clauses after it do not fit its format. The message
-        says which.""",
+        """A file named with `from` has a mistake, or the clauses after it do not fit its format. The message names
+        the mistake.""",
     )
     TOO_MANY_ENTITIES = (
         "LS307",
@@ -348,17 +347,17 @@ class Code(Enum):
     )
     WRONG_QUERY = (
         "LS406",
-        "query of what has no answer",
+        "query without an answer",
         """`HOSTED_AT(q)` yields bigActors, which have no parents, children or links. So it can only be the
         outermost relation of a query.""",
     )
     WRONG_VALUE = (
         "LS407",
         "value of another type",
-        """What stands here cannot take a value of this type: a condition is true or false, `size` counts a set or an
-        observation, `MOVE_HOST_TO` needs an entity, `send` a bigActor. Types are inferred through variables, arguments,
-        patterns and messages; a line in brackets gives the variable that value. It is a mistake only where no possible
-        value would do.""",
+        """A value of this type is not allowed here: a condition is true or false, `size` counts a set or an
+        observation, `MOVE_HOST_TO` needs an entity, `send` a bigActor. Types are inferred through variables,
+        arguments, patterns and messages; a line in brackets gives the variable that value. It is a mistake only
+        where no possible value is allowed.""",
     )
     BAD_FAMILY = (
         "LS408",
@@ -400,7 +399,7 @@ class Code(Enum):
     UNREALISABLE = (
         "LS506",
         "unrealisable control",
-        """The control can never be carried out: nothing can drive the node, or its new place may not contain its
+        """The control can never be carried out: the node is not driven, or its new place may not contain its
         kind or has no room for it.""",
     )
     KIND_MISMATCH = (
@@ -439,7 +438,7 @@ class Code(Enum):
     )
     NO_RECIPIENT = (
         "LS605",
-        "saying without a recipient",
+        "'says' without a recipient",
         """`says` needs `to` and a bigActor, unless there is exactly one bigActor.""",
     )
     REPEATED_SETTING = (
@@ -450,9 +449,9 @@ class Code(Enum):
     FORMULA_TOO_LARGE = (
         "LS607",
         "formula too large",
-        """Quantifiers are written out, and `<->` doubles its sides. After that, the properties of a mission may have at
-        most fifty thousand atoms. What `invariant`, `reachable` and `within` say of entities alone is not written out:
-        `forall x, y: UAV . x != y -> forall c: Cell . not (x in c and y in c)` may be asked of fifty
+        """Quantifiers are written out, and `<->` doubles its sides. After that, the properties of a mission may have
+         at most fifty thousand atoms. Parts of `invariant`, `reachable` and `within` about entities alone are not
+        written out: `forall x, y: UAV . x != y -> forall c: Cell . not (x in c and y in c)` may be asked of fifty
         vehicles on two hundred places, since each is in a few. It may ask two hundred thousand atoms of a
         configuration.""",
     )
@@ -465,8 +464,8 @@ class Code(Enum):
     NOT_CONSTANT = (
         "LS609",
         "value that is not constant",
-        """A message of `says`, what a pattern compares with (`=uav0`), and a value that a property compares a variable
-        with, is constant: a text, number, truth value, name, or a tuple or set of these.""",
+        """A message of `says`, the value behind `=` in a pattern (`=uav0`), and a value that a property compares a
+        variable with, is constant: a text, number, truth value, name, or a tuple or set of these.""",
     )
     TOO_MANY_MISTAKES = (
         "LS610",
@@ -484,7 +483,7 @@ class Code(Enum):
 
     NOT_COMPARABLE = (
         "LS613",
-        "comparison that says nothing",
+        "comparison without a meaning",
         """`<`, `<=`, `>` and `>=` compare numbers. If a variable only has values of one type, compare it with a value
         of that type.""",
     )
@@ -505,14 +504,14 @@ class Code(Enum):
     NO_BIGACTOR = (
         "LS615",
         "mission without a bigActor",
-        """A check is about what bigActors do. A mission without bigActors can be shown, and recordings can be replayed
-        in its places, but a verdict on it would say nothing.""",
+        """A check is about the steps of bigActors. A mission without bigActors can be shown, and recordings can be
+        replayed in its places, but a verdict on it would be empty.""",
     )
     # --- LS7: warnings
     NOTHING_QUANTIFIED = (
         "LS701",
         "quantifier over nothing",
-        """A property quantifies over a kind that has no entity, or over bigActors that there are none of: `forall` is
+        """A property quantifies over a kind that has no entity, or over bigActors that do not exist: `forall` is
         always true, `exists` never. Or a family goes through such a kind, and has no member. Declare one (an entity
         may be `absent` at first), or quantify over others.""",
     )
@@ -542,37 +541,37 @@ class Code(Enum):
         "LS706",
         "containment that the signature forbids",
         """A formula asks whether one entity is in another, and no entity of the one kind can ever be there: the other
-        kind neither contains nor carries it, nor what could contain it. So the claim is always false.""",
+        kind neither contains nor carries it, nor anything that could contain it. So the claim is always false.""",
     )
 
     PROBABLY_SWAPPED = (
         "LS705",
         "probably all swapped",
-        """All of a world seems to have latitude and longitude exchanged: whatever floats (a Vessel, a Boat) stands on
-        land, 100 km from any water, or everything is far out at sea, and exchanged it would be near a coast. Missions
-        use (latitude, longitude), GeoJSON uses [longitude, latitude]. Coasts and lakes are known to a kilometre, rivers
-        and canals are not: nearer to a coast, boats on land are taken to be on one.""",
+        """All of a world seems to have latitude and longitude exchanged: everything that floats (a Vessel, a Boat)
+        stands on land, 100 km from any water, or everything is far out at sea, and exchanged it would be near a
+        coast. Missions use (latitude, longitude), GeoJSON uses [longitude, latitude]. Coasts and lakes are known to
+        a kilometre, rivers and canals are not: nearer to a coast, boats on land are taken to be on one.""",
     )
 
     BOUNDS_NOTHING = (
         "LS707",
-        "bound that nothing can keep, or need",
-        """A line of `timing` is about a kind that has no entity; or a vehicle lasts for less than the shortest flight
-        from where it is restored to any other place.""",
+        "bound that is impossible or unused",
+        """A line of `timing` is about a kind that has no entity; or a vehicle lasts for less than the shortest
+        flight from its place of restoration to any other place.""",
     )
 
     NEVER_WAITS = (
         "LS708",
         "loop that asks and never waits",
-        """A loop asks for something in each turn and goes on at once, so what it asks for piles up. An exploration
-        stops at more than 64 requests of one bigActor (`--max-pending`). Let each turn wait for what it asks for.""",
+        """A loop makes a request in each turn and goes on at once, so its requests pile up. An exploration
+        stops at more than 64 requests of one bigActor (`--max-pending`). Let each turn wait for its answer.""",
     )
 
     MAY_CROSS = (
         "LS709",
         "flight that may cross a forbidden place",
         """An invariant keeps a vehicle out of a place, and the straight way of one of its flights may lead through it.
-        In transit a vehicle is in no place that it only crosses, so the invariant says nothing of that. Lead the flight
+        In transit a vehicle is in no place that it only crosses, so the invariant does not cover that. Lead the flight
         around by VIA, or in several moves.""",
     )
 
@@ -587,8 +586,8 @@ class Code(Enum):
     BAD_DURATION = (
         "LS801",
         "duration or speed out of bounds",
-        """Durations in `timing` and deadlines are whole numbers of ticks, and at most a week. A tick is a second unless
-        the section says otherwise, `tick 100 ms`: a whole number of milliseconds. Speeds are above 0 m/s.""",
+        """Durations in `timing` and deadlines are whole numbers of ticks, and at most a week. A tick is a second
+        unless the section sets another, `tick 100 ms`: a whole number of milliseconds. Speeds are above 0 m/s.""",
     )
     EMPTY_INTERVAL = (
         "LS802",
@@ -599,13 +598,13 @@ class Code(Enum):
     NOT_TIMED = (
         "LS803",
         "timing of control that takes no time",
-        """With `control atomic` a vehicle is at its destination at once, and no flight takes any time. A mission with
-        `timing` says `control timed`.""",
+        """With `control atomic` a vehicle is at its destination at once, and no flight takes any time. A mission
+        with `timing` needs `control timed`.""",
     )
     NO_TIMING = (
         "LS804",
         "property of time in a mission without timing",
-        """`within`, `endurance` and `time` ask when something happens. The section `timing` says how long things take.
+        """`within`, `endurance` and `time` ask when something happens. The section `timing` gives the durations.
         """,
     )
     UNTIMED_PROPERTY = (
@@ -616,18 +615,18 @@ class Code(Enum):
     )
     NOT_IN_ENVIRONMENT = (
         "LS806",
-        "time of what the environment never does",
-        """The section `environment` says what may happen, and `timing` how often, or when.""",
+        "time of an event that never happens",
+        """The section `environment` lists the possible events, and `timing` how often, or when, they happen.""",
     )
     NOT_DRIVEN = (
         "LS807",
-        "motion of what nothing drives",
+        "motion of an entity that is not driven",
         """Speeds and endurance are those of vehicles: of entities of a kind that is declared `driven`.""",
     )
     TAKES_ITS_WAY = (
         "LS808",
         "time of a flight",
-        """How long a flight takes follows from the distances on the map and from how fast the vehicle is: `UAV flies at
+        """The duration of a flight follows from the distances on the map and the speed of the vehicle: `UAV flies at
         18 m/s to 25 m/s`.""",
     )
 

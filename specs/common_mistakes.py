@@ -242,7 +242,7 @@ def misplaced_query(at: ParsePoint) -> Diagnostic | None:
             f"go where it was seen: observe(ALL) react {{ case obs: Observation if {who} in obs => {where} }}"
         )
         return at.mistake(Code.UNEXPECTED, "a query is observed, it has no value of its own", hint)
-    hint = f"write observe({at.found.text}...), and ask what is received: react {{ case obs if x in obs => ... }}"
+    hint = f"write observe({at.found.text}...), and test the answer: react {{ case obs if x in obs => ... }}"
     return at.mistake(Code.UNEXPECTED, "a query is observed, it has no value of its own", hint)
 
 
@@ -347,7 +347,7 @@ def misplaced_via(at: ParsePoint) -> Diagnostic | None:
         return None
     forms = [command.write(command.operands, WAY) for command in COMMANDS.values() if command.travels]
     hint = f"write {', or '.join(forms)}"
-    return at.mistake(Code.MISPLACED_VIA, "'VIA' stands where nothing travels, or has its way already", hint)
+    return at.mistake(Code.MISPLACED_VIA, "'VIA' stands without a move, or behind another 'VIA'", hint)
 
 
 def missing_arrow(at: ParsePoint) -> Diagnostic | None:
@@ -437,7 +437,7 @@ def unbracketed_route(at: ParsePoint) -> Diagnostic | None:
     if found is None:
         return None
     hint = f"write {found[1]} in [{found[2].strip()}] {{ ... }}"
-    return at.mistake(Code.UNEXPECTED, "what is gone through stands in brackets", hint)
+    return at.mistake(Code.UNEXPECTED, "the collection of a 'for' stands in brackets", hint)
 
 
 def missing_brace(at: ParsePoint) -> Diagnostic | None:
@@ -487,9 +487,7 @@ def missing_geometry(at: ParsePoint) -> Diagnostic | None:
 def missing_recipient(at: ParsePoint) -> Diagnostic | None:
     """`send b "yours"`, `emit ("found", place) to b`."""
     if at.found.text == "to" and at.at_statement:
-        return at.mistake(
-            Code.UNEXPECTED, "'to' stands behind what is sent", "write send message to bigActor"
-        )
+        return at.mistake(Code.UNEXPECTED, "'to' stands behind the message", "write send message to bigActor")
     if "to" in at.accepted and (at.found.is_name or at.found.text[:1] in ('"', "(")) and at.before.is_name:
         words = f"expected 'to' before {at.found.shown}"
         return at.mistake(Code.MISSING_RECIPIENT, words, "write send message to bigActor")
@@ -517,7 +515,7 @@ def someone_says(at: ParsePoint) -> Diagnostic | None:
     if at.found.text != "says" or not _in_environment(at) or not at.before.is_name:
         return None
     message = f"expected 'someone' before 'says', found {at.before.shown}"
-    hint = 'write someone says "go": operators and others who are no bigActors have no names'
+    hint = 'write someone says "go": operators and other people have no names'
     return Diagnostic(Code.UNEXPECTED, at.before.span, message, hint)
 
 
@@ -539,7 +537,7 @@ def missing_value(at: ParsePoint) -> Diagnostic | None:
     """`match { case ... }`."""
     if at.found.text == "case" and at.before.text == "{" and at.at_expression:
         before = word_before(at.prepared.text, at.before.span.start)
-        hint = "write match value { case ... }; what is received is told apart by react { case ... }"
+        hint = "write match value { case ... }; react { case ... } distinguishes received values"
         return Diagnostic(Code.UNEXPECTED, before.span, f"{before.shown} needs a value to look at", hint)
     return None
 
@@ -595,9 +593,7 @@ def drift_without_spot(at: ParsePoint) -> Diagnostic | None:
         line = at.prepared.text[at.found.span.start :].partition("\n")[0]
         named = _WHERE.search(line)
         where = named[1] if named else "place"
-        hint = (
-            f"write drifts within {where}, anywhere in which it may then be, or drifts among {where}, others"
-        )
+        hint = f"write drifts within {where}, for any position in it, or drifts among {where}, others"
         return at.mistake(Code.UNEXPECTED, "a drift has no distance and no direction", hint)
     where = at.following.text if at.following.is_name else "place"
     hint = f"write drifts within {where}, or drifts among {where}, others"
@@ -608,7 +604,9 @@ def missing_kind(at: ParsePoint) -> Diagnostic | None:
     """`uav0 = point (37.0, -8.5)`."""
     if at.accepted == {":"} and at.before.text in _GEOMETRIES:
         message = f"expected '=' before {at.before.shown}"
-        return Diagnostic(Code.MISSING_EQUALS, at.before.span, message, "write name: Kind = where it is")
+        return Diagnostic(
+            Code.MISSING_EQUALS, at.before.span, message, "write name: Kind = point (37.08, -8.55)"
+        )
     if at.accepted == {":"} and at.before.is_name:
         message = f"expected ':' and a kind behind {at.before.shown}, found {at.found.shown}"
         return at.mistake(Code.MISSING_KIND, message, "write name: Kind")

@@ -13,7 +13,9 @@ _BEHAVIOUR: Final = "a behaviour is defined by def name(parameters) = { ... }"
 _ACTOR: Final = "write BigActor name hosted_at host with_behavior { ... }"
 _VARIABLE: Final = "a variable is bound by let x = ..., and given another value by x = ..."
 _REACT: Final = "write react { case obs: Observation => ... case m: Message => ... }"
-_WAIT: Final = "time passes in a react: react { after 10 min => ... }, with cases for what may come earlier"
+_WAIT: Final = (
+    "time passes in a react: react { after 10 min => ... }, with cases for earlier messages and observations"
+)
 _SEND: Final = "write send message to bigActor"
 
 DECLARED: Final[Mapping[str, str]] = {
@@ -78,7 +80,7 @@ ASKED: Final[Mapping[str, str]] = {
 }
 OF_A_KIND: Final = dict.fromkeys(
     ("moves", "moving", "mobile", "movable", "drives", "flies"),
-    "what controls can move is driven: kind UAV driven",
+    "controls move driven kinds: kind UAV driven",
 )
 
 CLAIMED: Final[Mapping[str, str]] = {
@@ -114,7 +116,7 @@ HAPPENING: Final[Mapping[str, str]] = {
 
 WHEREABOUTS: Final = dict.fromkeys(
     ("in", "at", "on", "inside", "within"),
-    "write = point (37.08, -8.55): where it lies decides in which place it is; or carried by an entity",
+    "write = point (37.08, -8.55): its position decides its place; or carried by an entity",
 )
 ENTRIES: Final = dict.fromkeys(("link", "network", "radio", "comm", "bus"), "write channel name")
 GEOMETRIES: Final[Mapping[str, str]] = {
@@ -203,7 +205,9 @@ def foreign_operator(at: ParsePoint) -> Diagnostic | None:
     elif at.accepted == {"=", "("} and found in (".", "!"):
         hint = f"a message is sent: send message to {at.before.text}"
     elif found == "." and at.in_expression:
-        asked = "of an entity an observation tells: parent(uav0, obs); functions are called like size(obs)"
+        asked = (
+            "an observation gives an entity's place: parent(uav0, obs); functions are called like size(obs)"
+        )
         ranges = "there are no ranges of numbers: for goes through a set, {a, b}, or a route, [a, b]"
         hint = ranges if behind == "." else asked
     elif found == ">" and at.before.text == "=" and at.before.span.end == at.found.span.start:
@@ -233,15 +237,13 @@ def foreign_form(at: ParsePoint) -> Diagnostic | None:
     """`let o = observe(HOST)`, `send "x" -> b`, `for (p in route)`, `uav0: UAV = base0`, `point (0, 0) at 90 m`."""
     hint = ""
     if at.at_expression and at.found.text in ("observe", "react"):
-        hint = "what is observed comes to a react: observe(HOST) react { case obs: Observation => ... }"
+        hint = "a react receives the observation: observe(HOST) react { case obs: Observation => ... }"
     elif "to" in at.accepted and at.in_expression and at.found.text in ("->", "→", "=>"):
         hint = _SEND
     elif at.found.text == "(" and at.before.text in ("for", "choose") and at.sorts == {"NAME"}:
         hint = f"write {at.before.text} {at.following.text} in ..., without brackets"
     elif "polygon" in at.accepted and "someone" not in at.accepted and at.found.is_name:
-        hint = (
-            "write point (37.08, -8.55), box, circle or polygon: where it lies decides in which place it is"
-        )
+        hint = "write point (37.08, -8.55), box, circle or polygon: its position decides its place"
     elif "altitude" in at.accepted and at.found.text in ("at", "alt", "height") and at.following.is_number:
         hint = f"write altitude {at.following.text} m"
     return at.mistake(Code.UNEXPECTED, f"{at.found.shown} is not written here", hint) if hint else None

@@ -45,13 +45,13 @@ _GROUPS: Final[tuple[tuple[str, str, frozenset[str], frozenset[str]], ...]] = (
     ("invariant", "a property", first_words("_property") | _STANDARD, frozenset()),
     (
         "flies",
-        "what takes time (flies, lasts, within, takes, drifts, leaves, appears, vanishes)",
+        "a verb of time (flies, lasts, within, takes, drifts, leaves, appears, vanishes)",
         _TAKING,
         frozenset(),
     ),
     (
         "arrives",
-        "what happens (appears, arrives, drifts, drops, leaves, vanishes)",
+        "an event (appears, arrives, drifts, drops, leaves, vanishes)",
         _HAPPENINGS,
         frozenset(),
     ),
@@ -60,7 +60,7 @@ _FORMS: Final = (
     (frozenset({"directly", "linked"}), "a claim is written uav0 in place0, uav0 linked wifi or a.x == 3"),
     (
         frozenset({"arrives"}),
-        "what happens is written wifi drops, uav0 leaves wifi, boat0 drifts within place0, boat0 appears at place0",
+        "an event is written wifi drops, uav0 leaves wifi, boat0 drifts within place0, boat0 appears at place0",
     ),
     (frozenset({"weak", "strong"}), "write under weak fairness of environment, or of the name of a bigActor"),
     (

@@ -10,16 +10,16 @@ from specs.codes import Code
 from specs.diagnostics import Diagnostic
 from specs.parse_error import ParsePoint, Word, word_at, word_before
 
-_REACTING: Final = "of all bigActors together: agents react within 1 s"
-_FLYING: Final = "how long a flight takes follows from speeds: write flies at 18 m/s to 25 m/s"
+_REACTING: Final = "bigActors have one bound together: agents react within 1 s"
+_FLYING: Final = "the duration of a flight follows from speeds: write flies at 18 m/s to 25 m/s"
 _LASTING: Final = "write lasts 45 min, restored in airfield0 after 20 min"
-_CHANGING: Final = "how long a change takes is said in timing { ... }: wifi drops and returns within 5 min"
+_CHANGING: Final = "the duration of a change stands in timing { ... }: wifi drops and returns within 5 min"
 
 BEGINNING: Final[Mapping[str, str]] = {
     **dict.fromkeys(("observe", "sensing", "observation", "observations"), "write sense within 5 s"),
     "react": _REACTING,
     **dict.fromkeys(("send", "message"), "write messages over wifi within 5 s, or messages on one host"),
-    "control": "write how long a command takes by its first word: HAND within 10 s; of flights how fast they are",
+    "control": "write the duration of a command by its first word, HAND within 10 s, and the speed of flights",
 }
 """The hint for a bound that begins with a statement's name."""
 
@@ -54,7 +54,7 @@ def _upper_bound_alone(at: ParsePoint) -> Diagnostic | None:
     who = _back(at, 3)
     alone = "react within" if who.text == "agents" else "within"
     return at.mistake(
-        Code.UNEXPECTED, "what takes at most so long is within that", f"write {who.text} {alone} 5 s"
+        Code.UNEXPECTED, "an upper bound alone is written with 'within'", f"write {who.text} {alone} 5 s"
     )
 
 
@@ -73,7 +73,7 @@ def _restored(at: ParsePoint) -> Diagnostic | None:
         and _back(at, 3).text in ("in", ",")
     ):
         message = f"{at.before.shown} is not a word of the language here"
-        hint = f"write after {_duration_at(at, at.found)}: so long it has to be there"
+        hint = f"write after {_duration_at(at, at.found)}: it has to be there so long"
         return Diagnostic(Code.MISSPELT_KEYWORD, at.before.span, message, hint)
     return None
 

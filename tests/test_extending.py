@@ -156,7 +156,9 @@ def test_a_command_more_is_run_written_shown_and_hinted_at(swapping):
     assert "`SWAP`" in swapping["reference"].partition("## Words")[2]
     message = "LS111: 'SWAP' is a word of the language and cannot be a name; choose another name"
     assert swapping["named"][0] == message
-    assert swapping["place"] == ["LS506: nothing can drive 'west' (a Place); what is driven moves: u0, u1"]
+    assert swapping["place"] == [
+        "LS506: nothing can drive 'west' (a Place); these entities are driven: u0, u1"
+    ]
     assert swapping["half"] == [
         "LS109: expected 'WITH', found ')'; control actions are SWAP entity WITH other"
     ]

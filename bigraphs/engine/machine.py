@@ -201,6 +201,6 @@ class Machine:
             raise BigraphError(
                 "instantaneous",
                 f"the instantaneous rules {', '.join(names)} never come to rest",
-                "let each of them take away what it looks for",
+                "let each of them remove its own redex",
             )
         seen.add(key)

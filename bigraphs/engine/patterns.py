@@ -153,7 +153,7 @@ def check_solid(redex: Bigraph, what: str) -> None:
             )
     for site, parents in enumerate(redex.sites):
         if any(place < 0 for place in parents):
-            hint = "what stands beside a node in a region is kept anyway; put the site into a node"
+            hint = "the other content of a region is kept anyway; put the site into a node"
             raise BigraphError("redex", f"site {site} of {what} is directly in a region", hint)
         if redex.sites.index(parents) != site:
             first = redex.sites.index(parents)

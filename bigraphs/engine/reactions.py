@@ -202,7 +202,7 @@ class CompiledReaction:
         def places(written: tuple[int, ...]) -> tuple[int, ...]:
             found = [[slots[place]] if place >= 0 else regions[~place] for place in written]
             if not any(found):
-                message = f"rule '{self.rule.label}' puts something into a region that lies nowhere here"
+                message = f"rule '{self.rule.label}' puts a node into a region without a place here"
                 raise BigraphError("orphan", message, "give it a place in a node of the rule, too")
             return tuple(sorted({place for some in found for place in some}))
 

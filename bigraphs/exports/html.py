@@ -98,7 +98,7 @@ _KEY: Final = '<svg viewBox="0 0 20 14" aria-hidden="true"><circle cx="10" cy="7
 _KEYS: Final = (
     ("first", "the first state"),
     ("holds", "a predicate holds"),
-    ("end", "nothing can happen"),
+    ("end", "no transition"),
     ("open", "not explored"),
     ("on", "chosen: its arrows, and dashed those to it"),
 )
@@ -118,7 +118,7 @@ keys, plus, minus and 0"></svg>
 <input id="find" type="number" min="0" placeholder="go to state" aria-label="go to state"></div></main>
 <aside id="side" aria-label="One state"><h2 id="name" aria-live="polite"></h2><div id="labels"></div>
 <div id="picture" role="img" aria-label="the bigraph of the state"></div>
-<h2>what can happen</h2><ul id="moves"></ul><h2>a shortest way here</h2><ul id="path"></ul></aside>
+<h2>transitions</h2><ul id="moves"></ul><h2>a shortest way here</h2><ul id="path"></ul></aside>
 <footer>{keys}</footer>
 <script type="application/json" id="data">{data}</script>
 <script>{script}</script></body></html>

@@ -102,7 +102,7 @@ def _explain(found: UnexpectedInput, text: str, words: Mapping[str, str]) -> Not
         offset, length = found.pos_in_stream or 0, 1
         seen = f"found {_short(text[offset : offset + 1])!r}"
     expected = sorted({words[name] for name in names or () if name in words})
-    message = f"{seen}, expected {_one_of(expected)}" if expected else f"{seen}, which fits nothing here"
+    message = f"{seen}, expected {_one_of(expected)}" if expected else f"{seen}, which is not allowed here"
     return NotationError("syntax", message, text, offset, length=length)
 
 

@@ -75,11 +75,11 @@ def read_archive(path: Path, schema: str, kinds: Kinds) -> tuple[dict[str, Any],
 def _read(file: BinaryIO, schema: str, kinds: Kinds) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     first = FIRST.fullmatch(file.readline(MOST_FIRST))
     if first is None or int(first[2]) > MOST_ABOUT:
-        raise ValueError("it does not begin like one")
+        raise ValueError("its first line is not that of a checkpoint")
     about = file.read(int(first[2]))
     data = read_json(about, MOST_ABOUT)
     if not isinstance(data, dict):
-        raise ValueError("it does not say what it holds")
+        raise ValueError("its header is not an object")
     head, lengths = data["head"], data["lengths"]
     if not isinstance(head, dict) or head.get("schema") != schema:
         raise ValueError(f"it is not of the schema {schema}")
@@ -88,12 +88,12 @@ def _read(file: BinaryIO, schema: str, kinds: Kinds) -> tuple[dict[str, Any], di
     told = sum(count * np.dtype(kind).itemsize for kind, count in zip(kinds.values(), lengths, strict=True))
     rest = os.fstat(file.fileno()).st_size - file.tell()
     if told != rest:
-        raise ValueError(f"its arrays take {told:,} bytes, and {rest:,} are there")
+        raise ValueError(f"its arrays need {told:,} bytes, and it has {rest:,}")
     found, arrays = sha256(about), {}
     for (name, kind), count in zip(kinds.items(), lengths, strict=True):
         arrays[name] = np.empty(count, kind)
         file.readinto(arrays[name].view(np.uint8).data)  # type: ignore[attr-defined]  # a file that was opened has it
         found.update(arrays[name].view(np.uint8).data)
     if found.hexdigest().encode() != first[1]:
-        raise ValueError("its digest is not that of what it holds: it was altered")
+        raise ValueError("its digest differs from that of its content: it was altered")
     return head, arrays

@@ -98,5 +98,5 @@ def _explore_fast(initial: Configuration, inspect: tuple[Inspect, ...], options:
     except RuntimeError as error:
         if "locator" not in str(error):
             raise
-        raise CompilerError("there is no folder here in which numba may keep compiled loops") from error
+        raise CompilerError("numba has no writable folder here for its compiled loops") from error
     return explore_fast(initial, inspect, options)

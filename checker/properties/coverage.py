@@ -251,7 +251,7 @@ class ProgramCoverage:
             (If, 0): "this condition is never true",
             (If, 1): "this condition is never false",
             (While, 0): "this condition is never true",
-            (ForEach, 0): "there is never anything to go through",
-            (ChooseFrom, 0): "there is never anything to choose from",
+            (ForEach, 0): "the collection to go through is always empty",
+            (ChooseFrom, 0): "the collection to choose from is always empty",
         }[type(statement), rank]
         return Gap(self.program.line(number), "branch", message)

@@ -53,7 +53,7 @@ class Leg:
     def why(self) -> str:
         """The allowed duration, and its origin."""
         if not self.bound.words:
-            return "and nothing says how long that takes"
+            return "without an upper time bound"
         line = f", line {self.bound.line}" if self.bound.line else ""
         return f"{interval_text(self.interval, self.tick)} ({self.bound.words}{line})"
 

@@ -26,7 +26,7 @@ from semantics.timing.clocks import TimedView
 from semantics.timing.dates import clock_text, lapse_text
 from semantics.timing.timing import Timing
 
-REFUSED = "not decided: this is not known to be right for missions that say how long things take"
+REFUSED = "not decided: this is not known to be sound for missions with a section `timing`"
 
 
 class Deadlines:
@@ -87,7 +87,7 @@ class Deadlines:
         return (
             said,
             *(f"times rest on: {bound}" for bound in bounds),
-            *([f"nothing says how long some of these take: {', '.join(unsaid)}"] if unsaid else []),
+            *([f"some of these have no upper time bound: {', '.join(unsaid)}"] if unsaid else []),
         )
 
     def longest_flights(self) -> tuple[tuple[Name, float], ...]:
@@ -138,7 +138,7 @@ class Deadlines:
     def _unsaid(self, c: Configuration) -> Iterator[str]:
         """Yield in words the possible steps of a configuration without an upper time bound."""
         for words in dict.fromkeys(map(str, TimedView(c).unbounded())):
-            yield f"nothing says how long {words} takes"
+            yield f"{words} has no upper time bound"
 
     # --- first moments
 
@@ -163,7 +163,7 @@ class Deadlines:
         runs, count = self.times.exhausted()
         examined = len(self.times.situations)
         if not runs:
-            vacuous = () if self.timing.endurances else ("vacuous: nothing says how long any vehicle lasts",)
+            vacuous = () if self.timing.endurances else ("vacuous: no vehicle has a line `lasts`",)
             return Verdict(asked, self.outcome, examined=examined, remarks=vacuous)
         found = sorted(runs.items(), key=lambda each: (len(each[1].steps), each[0]))
         violations = tuple(self._exhausted(vehicle, run) for vehicle, run in found)
@@ -171,9 +171,7 @@ class Deadlines:
 
     def _exhausted(self, vehicle: str, run: TimedRun) -> Violation:
         lasts, trace = dict(self.timing.endurances)[vehicle].lasts, dated_trace(self.times, run)
-        message = (
-            f"{vehicle} lasts {self.text(lasts)}, and goes unrestored for longer at {self.clock(run.end)}"
-        )
+        message = f"{vehicle} lasts {self.text(lasts)}, and is unrestored for longer at {self.clock(run.end)}"
         details = tuple(self._unsaid(trace.configurations[-1]))
         since = run.end - lasts - 1
         path = self._path(run, lambda c: is_restored(c, vehicle), since)

@@ -90,7 +90,7 @@ def _promise(c: Configuration, here: Name, there: Name) -> str:
 
 def _awaited(c: Configuration, a: Name, react: React) -> str:
     if not react.cases:
-        return "nothing that could come"
+        return "nothing: it has no case"
     wanted = " or ".join(dict.fromkeys(_shown(case.pattern) for case in react.cases))
     there = ", ".join(map(show, _got(c, a)))
     refused = f"; no case takes {there}" if there else ""
@@ -104,7 +104,7 @@ def _from(c: Configuration, a: Name, patterns: Iterable[Pattern]) -> str:
     if senders:
         return f" from {' or '.join(senders)}"
     if any(not isinstance(each, Anything) or each.of != "observation" for each in patterns):
-        return ", which nobody is left to send"
+        return ", which no bigActor can send any more"
     asked = any(isinstance(each.request, OBS | READY) for each in c.eta.of(a))
     return "" if asked else ", which it has not asked for"
 

@@ -35,7 +35,7 @@ Wait = tuple[int, str]
 
 WORDS = {
     Obstacle.UNMATCHED: "its redex matches nothing in L",
-    Obstacle.INCONSISTENT: "L believes what P no longer shows: nobody looked since",
+    Obstacle.INCONSISTENT: "L no longer agrees with P: no observation followed the change",
     Obstacle.UNREALISABLE: "no physical change makes its reactum true",
 }
 
@@ -170,7 +170,7 @@ class DeadlockFreedom(Inspection):
     def judged(self, still: Iterable[Wait], c: Configuration | None = None, /) -> Iterator[Inspected]:
         """Yield a deadlock if anything is left to be done."""
         who = "; ".join(words for _, words in sorted(still, key=itemgetter(0)))
-        message = f"nothing but the environment can move, and {who}"
+        message = f"only the environment can move, and {who}"
         left = tuple(sorted(who.split("; ")))
         yield (
             Inspected(("deadlock", who), None, message, partial(_causes, c), lambda: left)

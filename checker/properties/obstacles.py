@@ -84,9 +84,9 @@ def _unrealised(c: Configuration, request: CTR | FLY) -> Iterator[str]:
             if node not in physical or (place != REGION and place not in physical):
                 yield f"P does not show {node if node not in physical else place}"
             elif place == REGION:
-                yield f"{node} is to be in no place: nothing is sent there"
+                yield f"{node} would be in no place: a vehicle needs a place to go to"
             elif not setting.signature[setting.kind(node)].driven:
                 by = physical.carrier(node)
                 yield f"nothing drives {node}" + (f", and {by}, which carries it, is not there" if by else "")
             else:
-                yield f"{node} can be put nowhere in {place} so that it is in {place}, and in no smaller place"
+                yield f"{place} has no position for {node} outside its smaller places"

@@ -142,7 +142,9 @@ class StaleObservationRaces(Inspection):
 def _resting_on(c: Configuration, stale: Dependency, by: Transition) -> Inspected:
     request = _request(by)
     changed = "that answer" if stale.stale else "a relation that it uses"
-    message = f"{request} rests on {asked_in_words(stale)}, and another agent has changed {changed} since it was sensed"
+    message = (
+        f"{request} depends on {asked_in_words(stale)}, and another agent has changed {changed} since then"
+    )
     return Inspected((STALE, str(request)), by, message, alike=lambda: common_sites(c, request))
 
 
@@ -152,7 +154,7 @@ _QUESTIONS: Final[Mapping[str, str]] = {
     "size": "how many names {seen} shows",
     "in": "whether {seen} shows {name}",
     "parent": "where {seen} shows {name}",
-    "children": "what {seen} shows in {name}",
+    "children": "the content of {name} in {seen}",
     "links": "the links on which {seen} shows {name}",
 }
 """The questions to an observation in words, by the first word of the key."""

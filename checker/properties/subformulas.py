@@ -23,7 +23,7 @@ Operand = tuple[Path, Formula]
 
 MOST_REMARKS: Final = 3
 
-STILL: Final = "vacuous: nothing that it speaks of ever changes"
+STILL: Final = "vacuous: none of its atoms ever changes"
 
 
 @dataclass(frozen=True, slots=True)

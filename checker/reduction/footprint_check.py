@@ -83,9 +83,9 @@ def outside(ample: Ample, c: Configuration) -> Iterator[str]:
     for actor, may in acting.items():
         yield from _Held(ample.actors, c, actor, may.now).outside()
         unheard = may.now.changes & ~ample.actors.everything.changes
-        yield from (f"{actor} changes {slot}, which nobody ever does" for slot in slots.named(unheard))
+        yield from (f"{actor} changes {slot}, which no footprint contains" for slot in slots.named(unheard))
         lasting = (slot for slot in slots.named(may.now.beyond(may.ever)) if slot[0] not in RECEIVED)
-        yield from (f"{actor} may do something to {slot} now, and never does" for slot in lasting)
+        yield from (f"{actor} may access {slot} now, and its whole footprint lacks it" for slot in lasting)
     yield from unheeded(c)
     for mover, step in _moves(ample.actors, c):
         yield from _beyond(ample.actors, acting, mover, step)
@@ -389,7 +389,7 @@ def unheeded(c: Configuration) -> Iterator[str]:
         told = possible_receivers(c.setting.program)
         sends = (each.request for each in c.eta.of(agent) if isinstance(each.request, SND))
         for send in (send for send in sends if told.isdisjoint({send.to, ANY})):
-            yield f"{send} lets '{send.to}' know of what is seen, which the race monitor forgets"
+            yield f"{send} passes an observation on to '{send.to}', which the race monitor forgets"
         for request in (each.request for each in c.eta.of(agent) if isinstance(each.request, CTR | FLY)):
             redex = request.reaction.redex
             for match in applicable(c, agent, request.reaction):

@@ -38,7 +38,7 @@ class Automorphisms:
         self._check_world(renaming)
         for each in self.properties:
             if not each.kept(renaming):
-                raise Unlike(f"a property tells them apart: {each.formula}")
+                raise Unlike(f"a property distinguishes them: {each.formula}")
         return renaming
 
     def of_setting(self, pairing: Pairing) -> Renaming:
@@ -108,16 +108,16 @@ class Automorphisms:
             partner, image = _stated_at(number, program.statements[number], renaming)
             if image != program.statements[partner]:
                 line = program.line(number)
-                raise Unlike(f"the text tells them apart{f' (line {line})' if line else ''}")
+                raise Unlike(f"the text distinguishes them{f' (line {line})' if line else ''}")
         for variable in sorted(program.watched, key=str):
             if renaming.value(variable) not in program.watched:
-                raise Unlike(f"a property tells them apart: it names {variable}")
+                raise Unlike(f"a property distinguishes them: it names {variable}")
         for each in program.behaviours.values():
             if (
                 Behaviour(each.name, restated(renaming, each.parameters), restated(renaming, each.body))
                 != each
             ):
-                raise Unlike(f"the behaviour '{each.name}' tells them apart")
+                raise Unlike(f"the behaviour '{each.name}' distinguishes them")
         for name, arguments in self._rules:
             self._check_rule(renaming, name, arguments)
 
@@ -126,13 +126,13 @@ class Automorphisms:
         mentions: Set[str] | None = getattr(make, "mentions", None)
         if mentions is not None:  # a rule from the mission's text; other functions are tried
             if not mentions.isdisjoint(renaming.names):
-                raise Unlike(f"the rule '{rule}' tells them apart")
+                raise Unlike(f"the rule '{rule}' distinguishes them")
             return
         if len(names) ** (arguments + 1) > MOST_ARGUMENTS:
             raise Unlike(f"the rule '{rule}' has too many arguments to be tried with all of them")
         for chosen in product(names, repeat=arguments + 1):
             if renaming.value(_made(make, chosen)) != _made(make, tuple(map(renaming.name, chosen))):
-                raise Unlike(f"the rule '{rule}' tells them apart")
+                raise Unlike(f"the rule '{rule}' distinguishes them")
 
     # --- the first configuration ------------------------------------------------------------------------------
 
@@ -154,7 +154,7 @@ class Automorphisms:
             partner, image = self._held_at(cell, state.read(cell), renaming)
             if state.read(partner) != image:
                 raise Unlike(
-                    DIFFERENCES.get(cell[0], f"what is said of '{cell[-1]}' at first ({cell[0]}) differs")
+                    DIFFERENCES.get(cell[0], f"the initial state of '{cell[-1]}' ({cell[0]}) differs")
                 )
 
 

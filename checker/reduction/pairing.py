@@ -96,7 +96,7 @@ class Pairing:
         elif isinstance(one, str) and isinstance(other, str) and {one, other} <= self.movable():
             self.pair(self.names, one, other)
         elif type(one) is not type(other) or one != other:
-            raise Unlike(f"the text of one says {show(one)} where the other's says {show(other)}")
+            raise Unlike(f"the text of one has {show(one)} where the other's has {show(other)}")
 
     def movable(self) -> frozenset[Name]:
         """Return the names that may be exchanged: of agents and of entities."""

@@ -48,7 +48,7 @@ def refuse_symmetry(c: Configuration) -> None:
     """
     if c.setting.monitored:
         reason = (
-            "what observations rest on is remembered by name; stale observations are searched for in full"
+            "the sources of observations are recorded by name; stale observations are searched for in full"
         )
         raise RefusedError(Reduction.SYMMETRY, reason)
 
@@ -62,6 +62,6 @@ def refuse_partial_order(c: Configuration) -> None:
     if c.setting.scheduler is Scheduler.FCFS:
         reason = (
             "under 'scheduler fcfs' all requests stand in one queue, so no two of them are independent; "
-            "check it under program_order: what holds of all runs there holds under fcfs too"
+            "check it under program_order: a property of all runs there holds under fcfs too"
         )
         raise RefusedError(Reduction.POR, reason)

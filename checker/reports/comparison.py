@@ -100,5 +100,5 @@ def _ends(found: Comparison) -> Iterator[str]:
     elif not found.ends:
         yield "they end in the same configuration"
     else:
-        yield "at the end of the second, not as at the end of the first:"
+        yield "the end of the second differs from the end of the first:"
         yield from (f"  {each}" for each in found.ends)

@@ -6,91 +6,85 @@ from typing import Final
 
 WORDS: Final[Mapping[str, str]] = {
     "holds": """
-        No configuration that the rules allow contradicts the property, and all of them were looked
-        at.""",
+        No reachable configuration contradicts the property, and all were explored.""",
     "violated": """
-        The property is false. A shortest trace shows how it comes to that: replay it with
+        The property is false. A shortest trace leads to the violation: replay it with
         `bigactors replay`, or step through its page (`check --trace DIR`).""",
     "incomplete": """
-        The search stopped at a limit (exit code 3). It is no success: raise the limit, bound the
-        mission's environment, or reduce what is explored with `--reduce`.""",
-    "complete": "Everything that the rules allow was explored.",
+    The search stopped at a limit (exit code 3). This is no success: raise the limit, bound the mission's environment,
+    or reduce the search with `--reduce`.""",
+    "complete": "All reachable configurations were explored.",
     "configuration": """
-        ⟨α | S | η⟩: the bigActors with what each has left to run, the logical and the physical
-        model, and the pending requests. `check` counts the different ones that can be reached.""",
+    ⟨α | S | η⟩: the bigActors with their remaining programs, the logical and the physical model, and the pending
+    requests. `check` counts the reachable ones.""",
     "transition": "A step from one configuration to another by one rule.",
     "depth": """
-        The number of steps from the first configuration to the last that was found, by the shortest
-        way.""",
+        The length of the shortest run to the configuration that was found last.""",
     "trace": """
-        A run, step by step: `c0 --⟨rule : agent, what⟩--> c1`. Those of violations are shortest
-        ones. A trace of `ltl` ends in a cycle, which repeats for ever.""",
+    A run, step by step: `c0 --⟨rule : agent, subject⟩--> c1`. Traces of violations are shortest ones. A trace of `ltl`
+    ends in a cycle, which repeats for ever.""",
     "witness": """
-        A trace to something that was examined and found good: the property is not true for want of
-        cases.""",
-    "examined": "What a property is about, as often as it was met and found good.",
+        A trace to an examined case that satisfies the property: so the property is not vacuous.""",
+    "examined": "The number of cases of a property that were met and satisfy it.",
     "vacuous": """
-        The property holds, but says less than it seems to: what it speaks of never happens, or a
-        part of it is never needed. Look for a mistake in it, or in the mission.""",
+    The property holds, but is weaker than it seems: its case never occurs, or one of its parts is never needed. Look
+    for a mistake in it, or in the mission.""",
     "never needed": """
-        The property holds whatever stands in the place of that part, so the part says nothing. Usually its condition
-        is never true, or another part says it already. Look for a mistake in it, or leave it out.""",
+    The property holds with any formula in the place of that part, so the part has no effect. Usually its condition is
+    never true, or another part implies it. Look for a mistake in it, or leave it out.""",
     "by ownership": """
-        Race-freedom was shown without a search: no bigActor may write what another's control reads,
-        tests or writes. It holds whatever the order of steps.""",
+    Race-freedom was shown without a search: no bigActor may write anything that another's control reads, tests or
+    writes. It holds whatever the order of steps.""",
     "at rest": """
-        Nothing but the environment can move. It is no deadlock if everybody has ended, or waits at
-        the `react` of an outermost `loop` or for what someone may still say.""",
+    Only the environment can move. This is no deadlock if each bigActor has ended, or waits at the `react` of an
+    outermost `loop` or for a message of `says`.""",
     "coverage": """
         The statements, branches and clauses of the environment that some run reaches. The rest is
         listed.""",
-    "never used": "A rule that no step of any run was taken by: the mission may not do what you think.",
-    "weak fairness": "What can be done without a break from some point on is done at some time.",
+    "never used": "A rule without a step in any run: the mission may differ from your intention.",
+    "weak fairness": "A step that is enabled without a break from some point on is taken at some time.",
     "strong fairness": """
-        What can be done again and again is done at some time, even if not without a break.""",
+        A step that is enabled again and again is taken at some time, even if it is disabled in between.""",
     "believed": """
-        What L says, which bigActors observe and act on: `uav0 in searchArea0`. `actually` asks P.""",
+        A claim about L, on which bigActors act: `uav0 in searchArea0`. `actually` asks P.""",
     "unmatched": """
-        A control is next in line, and its redex is nowhere in L: what it wants to change is not as
-        it assumes. Observe before it, and test what is seen.""",
+    A control is next in line, and its redex does not match L: its assumptions are wrong. Observe before it, and test
+    the observation.""",
     "inconsistent": """
-        A control is next in line, and L believes what P no longer shows, since nobody has looked
-        after the world had changed. Observe what the control uses just before it, or let nothing
-        change it.""",
+    A control is next in line, and L no longer agrees with P, since no observation followed the change. Observe the
+    nodes of the control just before it, or prevent the change.""",
     "unrealisable": """
-        A control is next in line, and no change of the world makes its reactum true: nothing can
-        drive the node, or its new place may not contain it or has no room.""",
+    A control is next in line, and no change of the world makes its reactum true: the node is not driven, or its new
+    place may not contain it or has no room.""",
     "control race": """
         Two controls are enabled, and serving one disables the other, or the two orders end
         differently. Let one bigActor do both, or let one wait for a message of the other.""",
     "stale-observation race": """
-        A control rests on the answer to an observation, and another bigActor's control has changed
-        that answer since. Both acted on what they had seen. Let one bigActor decide, or pass the
-        permission on by messages.""",
+    A control depends on the answer to an observation, and another bigActor's control has changed that answer since.
+    Both acted on old observations. Let one bigActor decide, or pass the permission on by messages.""",
     "deadlock": """
-        Nothing but the environment can move, and a request is pending or a bigActor waits. The
-        message says who waits for what: a message that nobody sends, or a link that is not there.""",
+    Only the environment can move, and a request is pending or a bigActor waits. The message names each waiting bigActor
+    and its cause: a message without a sender, or a missing link.""",
     "not arrived": """
-        Only flights are left, and nothing says that they end. Where they always do, the environment
-        says so: `uav0 arrives`.""",
+    Only flights are left, and they need not end. Where a vehicle always arrives, declare it in the environment: `uav0
+    arrives`.""",
     "unserved request": """
         A request is never served in some fair run. Its enabling condition may come and go: then
         only strong fairness serves it.""",
     "late": """
-        What `within` asks for is not true in time on some run. The *critical path* says what the time
-        went into; where nothing bounds a step of it, a line of `timing` is missing.""",
+    The formula of `within` is not true in time on some run. The *critical path* lists the steps that took the time;
+    where a step has no bound, a line of `timing` is missing.""",
     "exhausted": """
-        A vehicle is away from where it is restored for longer than it lasts. Shorten its way, let it
+        A vehicle is away from its place of restoration for longer than it lasts. Shorten its way, let it
         wait less, or restore it in between.""",
     "time stops": """
         Steps that take no time follow one another for ever: no later moment is reached. Give one
         of them a time: `agents take 1 s to 2 s`.""",
     "critical path": """
-        The steps one after the other that a date is made of: how long each was waited for, how long
-        that may take, and which line of `timing` says so.""",
+        The successive steps that add up to a date: the duration of each, its bound, and its line of `timing`.""",
     "zone": """
-        A set of ages of the clocks that run, in one configuration: how missions with `timing` are
-        explored where counting ticks takes long.""",
+    A set of ages of the running clocks, in one configuration. Missions with `timing` are explored by zones where
+    counting ticks takes long.""",
     "tick": """
         The unit of time, of which all durations of a mission are whole numbers: `tick 100 ms`, a second
         without it.""",
@@ -98,10 +92,10 @@ WORDS: Final[Mapping[str, str]] = {
         A computation reaches no command: a loop runs for ever without observing, controlling or
         receiving.""",
     "fails": """
-        A computation is given what it cannot take: the first member of an empty set, a `match`
+        A computation meets a wrong value: the first member of an empty set, a `match`
         without a case.""",
-    "L": "The logical model: the bigraph of what is believed. Observations bring it nearer to P.",
-    "P": "The physical model: where everything is, and on which channels.",
+    "L": "The logical model: the bigraph of the beliefs. Observations bring it nearer to P.",
+    "P": "The physical model: the true places and channels of all nodes.",
     "η": "The pending requests: OBS, READY, CTR, FLY, SND and MGR.",
     "OBS": "A pending observation: OBS(agent, query). `sense` answers it.",
     "READY": "An observation that was made and not yet received: a `react` takes it.",
@@ -114,8 +108,7 @@ WORDS: Final[Mapping[str, str]] = {
         in P.""",
     "MGR": "A bigActor that wants to move to another host: `migrate` serves it where the hosts are linked.",
     "redex": """
-        What a control needs to find, the left side of its reaction rule; the right side, the
-        reactum, is what it makes.""",
+        The left side of a control's reaction rule: its precondition. The right side, the reactum, is its effect.""",
 }
 """The words that are neither rules nor properties."""
 
@@ -124,14 +117,13 @@ SHORTEST: Final = 3
 
 PROPERTIES: Final[Mapping[str, str]] = {
     "local_consistency": """
-        Every control next in line can be served on what the world shows. Otherwise it is
-        *unmatched*, *inconsistent* or *unrealisable*; the usual remedy is to observe what a control
-        uses just before it.""",
+    Every control next in line can be served in the present world. Otherwise it is *unmatched*, *inconsistent* or
+    *unrealisable*; the usual remedy is to observe the nodes of a control just before it.""",
     "race_freedom": """
-        No bigActor changes what another's control rests on. Otherwise there is a *control race* or
+        No bigActor changes anything that another's control depends on. Otherwise there is a *control race* or
         a *stale-observation race*.""",
     "deadlock_freedom": """
-        Some bigActor can move wherever one has anything left to do. Otherwise there is a
+        Some bigActor can move as long as one has work left. Otherwise there is a
         *deadlock*.""",
     "arrival": "No run waits for ever for the end of a flight. Otherwise it has *not arrived*.",
     "computation": "No bigActor's computation *fails* or *diverges*. This is always checked.",
@@ -147,12 +139,11 @@ PROPERTIES: Final[Mapping[str, str]] = {
         each of `G`, `F`, `X` and `U` directly follows `A` or `E`.""",
     "progress": "Every request is served in every fair run. Otherwise there is an *unserved request*.",
     "within": """
-        A proposition becomes true in time on every run, counted from the start: `within 40 min
-        "name": formula`. With `F leads to G`, G follows in time whenever F is true. All bounds of
-        `timing` are assumptions that the verdict rests on.""",
+    A proposition becomes true in time on every run, counted from the start: `within 40 min "name": formula`. With `F
+    leads to G`, G follows in time whenever F is true. All bounds of `timing` are assumptions of the verdict.""",
     "endurance": """
-        No vehicle is ever away from where it is restored for longer than it lasts, as the section
-        `timing` says.""",
+    No vehicle is ever away from its place of restoration for longer than it lasts, by the bounds of the section
+    `timing`.""",
     "time": """
         The earliest and the latest moment at which a proposition first becomes true, or that it
         may never: `time "name": formula`.""",

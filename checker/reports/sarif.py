@@ -22,7 +22,7 @@ RULES = {
     **{str(kind): kind.about.says for kind in PropertyKind},
     "exploration": "Everything reachable is visited.",
     "coverage": "Some run reaches each statement, takes each branch, and meets each clause of the environment.",
-    "vacuity": "What holds does not hold for want of anything that could break it.",
+    "vacuity": "No property holds only because its cases never occur.",
 }
 """The description of each kind of property, and of other findings."""
 

@@ -15,7 +15,7 @@ def times_text(schedule: Schedule) -> Iterator[str]:
     first, *others = times_rows(schedule)
     rows = [first, *((f"  {name}", *cells) for name, *cells in others)]
     if not others:
-        yield "  times: it makes no flight, and asks for the time of nothing"
+        yield "  times: none; the mission has no flight and no property of times"
         return
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:

@@ -49,13 +49,13 @@ class _Reading:
             return
         messages = self.flow.messages(self.agent)
         if not all(self.names.fits(message, messages) for message in parcel.mail):
-            yield "it carries a message that nobody sends to it"
+            yield "it carries a message without a sender in this mission"
         if parcel.running is not None:
             yield from self._of_running(parcel.running)
 
     def _of_running(self, running: Running) -> Iterator[str]:
         if not is_point(self.program, self.role.starts, running.code):
-            yield "what it is to run is not in this mission"
+            yield "its remaining program is not in this mission"
             return
         if not self._fits(running.host, self.role.hosts):
             yield f"it never goes to {running.host:.60}"
@@ -71,7 +71,7 @@ class _Reading:
         kept = frozenset[str]().union(*self.program.kept.get(self.agent, {}).values())
         given = [name for name, _ in running.store]
         if given != sorted(set(given)) or not live <= set(given) <= live | kept:
-            yield "its variables are not those that it has there"
+            yield "its variables differ from those of its program there"
             return
         for name, value in running.store:
             if not self.names.fits(value, self.flow.variable(self.agent, name)):
@@ -83,7 +83,7 @@ class _Reading:
         ]
         fits = len(says) == len(clauses)
         if not fits or any(not 0 <= n <= each.times for n, each in zip(says, clauses, strict=True)):
-            yield "what may be said to it is not what this mission says"
+            yield "its counts of `says` differ from the clauses of this mission"
 
     # --- requests -------------------------------------------------------------------------------------------
 
@@ -100,12 +100,12 @@ class _Reading:
         for request in requests:
             makers = [number for number in taken if self._makes(number, request)]
             if not makers:
-                yield f"it asks for what no statement that it has passed asks for: {_shown(request):.100}"
+                yield f"no statement that it has passed makes this request: {_shown(request):.100}"
                 return
             if once.issuperset(makers):
                 single.append(makers)
         if not _have_each_their_own(single):
-            yield "it asks more often than its statements ask"
+            yield "it has more requests than its statements make"
 
     def _makes(self, number: int, request: Asked) -> bool:
         """Whether a statement can have made a request."""

@@ -89,21 +89,21 @@ class PropertyKind(StrEnum):
 
 ABOUT: Final = {
     PropertyKind.LOCAL_CONSISTENCY: About(
-        "Every control next in line can be served on what the world shows.",
+        "Every control next in line can be served in the present world.",
         RequestMode.BY_DEFAULT,
         ("control next in line", "controls next in line"),
         reducible=True,
         vacuous="no control was ever next in line",
     ),
     PropertyKind.RACE_FREEDOM: About(
-        "No bigActor changes what another's control rests on.",
+        "No bigActor changes anything that another's control depends on.",
         RequestMode.BY_DEFAULT,
         ("control or pair of controls", "controls and pairs of controls"),
         reducible=True,
         vacuous="no control was ever served",
     ),
     PropertyKind.DEADLOCK_FREEDOM: About(
-        "Some bigActor can move wherever one has anything left to do.",
+        "Some bigActor can move as long as one has work left.",
         RequestMode.BY_DEFAULT,
         ("configuration at rest", "configurations at rest"),
         reducible=True,
@@ -163,7 +163,7 @@ ABOUT: Final = {
         counted=False,
     ),
     PropertyKind.ENDURANCE: About(
-        "No vehicle is ever away from where it is restored for longer than it lasts.",
+        "No vehicle is ever away from its place of restoration for longer than it lasts.",
         RequestMode.OF_TIMED_MISSIONS,
         CONFIGURATIONS,
         reducible=False,

@@ -522,7 +522,7 @@ def _about_variable(atom: VariableIs | IsBound, c: Configuration) -> bool:
     variable = atom.variable
     if variable not in c.setting.program.watched:
         raise ValueError(
-            f"'{variable}' is forgotten once nobody reads it any more: begin with watching(initial, properties)"
+            f"'{variable}' is dropped once no statement reads it any more: begin with watching(initial, properties)"
         )
     return c.test(store_cell(variable.agent), is_true_of, atom)
 

@@ -73,7 +73,7 @@ def _write(item: Any) -> tuple[Cell, Any]:
             what in WRITABLE and whose and all(isinstance(w, str) for w in whose)
         ):
             return (what, *whose), _value(what, value)
-    raise ValueError(f"{item!r:.80} writes nothing that can be observed")
+    raise ValueError(f"{item!r:.80} is no observable relation")
 
 
 def _value(what: str, value: Any) -> Any:

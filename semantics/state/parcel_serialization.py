@@ -53,7 +53,7 @@ def elsewhere_of(data: Any) -> Elsewhere:
         case {"agent": str(agent), "station": str(station), "number": int(number)} if number > 0:
             parcel = parcel_of(data["parcel"]) if "parcel" in data else None
             return Passage(agent, station, number, parcel)
-    raise ValueError("what passes between stations has an agent, a station and a number, or a host")
+    raise ValueError("a parcel between stations has an agent, a station and a number, or a host")
 
 
 def parcel_json(parcel: Parcel) -> Any:
@@ -117,7 +117,7 @@ def _read(hint: Any, data: Any, depth: int) -> Any:
     if hint in (str, int, bool, type(None)):
         if type(data) is hint and (hint is not int or abs(data) <= LARGEST_NUMBER):
             return data
-        raise ValueError(f"{data!r:.60} stands where a {hint.__name__} should")
+        raise ValueError(f"{data!r:.60} should be a {hint.__name__}")
     if hint is QueryOperator:
         if data in list(QueryOperator):
             return QueryOperator(data)
@@ -130,7 +130,7 @@ def _object(kind: type, data: Any, depth: int) -> Any:
     match data:
         case {kind.__name__: list(values)} if len(data) == 1 and len(values) == len(hints):
             return kind(*(_read(hint, each, depth + 1) for hint, each in zip(hints, values, strict=True)))
-    raise ValueError(f"{data!r:.60} stands where {kind.__name__} should")
+    raise ValueError(f"{data!r:.60} should be {kind.__name__}")
 
 
 @cache
@@ -144,12 +144,12 @@ def _one_of(kinds: tuple[Any, ...], data: Any, depth: int) -> Any:
         named = isinstance(data, dict) and kind in TYPES.values() and kind.__name__ in data
         if named or type(data) is kind:
             return _read(kind, data, depth)
-    raise ValueError(f"{data!r:.60} stands where it should not")
+    raise ValueError(f"{data!r:.60} is not allowed there")
 
 
 def _tuple(kinds: tuple[Any, ...], data: Any, depth: int) -> tuple[Any, ...]:
     if not isinstance(data, list) or len(data) > MOST_ITEMS:
-        raise ValueError(f"{data!r:.60} stands where a list of at most {MOST_ITEMS:,} should")
+        raise ValueError(f"{data!r:.60} should be a list of at most {MOST_ITEMS:,}")
     if kinds[1:] == (...,):
         kinds = kinds[:1] * len(data)
     if len(kinds) != len(data):

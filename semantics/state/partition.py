@@ -197,9 +197,9 @@ def objection(c: Configuration, parcel: Parcel) -> str:
         if a in c.alpha and is_here(c, a) and c.alpha.code(a):
             return f"{a:.60} runs here already"
         if running.host not in c.setting.kinds:
-            return f"nothing is known of {running.host:.60} here"
+            return f"{running.host:.60} is unknown here"
         if c.read(station_cell(running.host)) != c.read(HERE):
-            return f"this station does not run what is hosted at {running.host:.60}"
+            return f"this station does not run the bigActors on {running.host:.60}"
     return text_objection(c.setting, flow_of(c.setting), parcel)
 
 

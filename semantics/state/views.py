@@ -29,5 +29,5 @@ class CellView:
         cells: Any = getattr(self, "cells", None)
         state = getattr(cells, "state", cells)  # the cells of a configuration, or the row itself
         if not isinstance(state, Row):
-            raise TypeError(f"{type(self).__name__} is compared within a rule: compare what it says there")
+            raise TypeError(f"{type(self).__name__} is compared within a rule: compare its values there")
         return {cell: value for cell, value in state.items() if cell[0] in self.SORTS and value is not None}

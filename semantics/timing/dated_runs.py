@@ -84,7 +84,7 @@ class DatedRun:
             for each in passage.ages(now)
         }
         if not ages:
-            raise UntimelyError(f"it may not be done as soon as at {self._moment(date)}")
+            raise UntimelyError(f"{self._moment(date)} is too early for it")
         self.situation, self.ages, self.now = after, ages, date
 
     def _waiting(self, date: int) -> Iterator[tuple[int, ...]]:
@@ -95,7 +95,7 @@ class DatedRun:
         slacks = {ages: self.situation.slack(ages) for ages in self.ages}
         if all(slack is not None and slack < ticks for slack in slacks.values()):
             latest = self.now + max(filter(None, slacks.values()), default=0)
-            raise UntimelyError(f"something else has to be done by {self._moment(latest)}")
+            raise UntimelyError(f"another step is due by {self._moment(latest)}")
         for ages, slack in slacks.items():
             if slack is None or slack >= ticks:
                 yield self.situation.later(ages, ticks)

@@ -19,7 +19,7 @@ def elaborate_beliefs(mission: s.Mission, names: Names) -> Beliefs:
         kind = names.entity(belief.entity)
         said: dict[str, object] = links if isinstance(belief, s.BelievedLinked) else parents  # type: ignore[assignment]  # only its keys are asked for
         if belief.entity.text in said:
-            message = f"two things are believed of '{belief.entity.text}'"
+            message = f"'{belief.entity.text}' has two beliefs"
             names.findings.add(Code.BAD_BELIEF, belief, message, "leave out one of the two")
         if isinstance(belief, s.BelievedLinked):
             links[belief.entity.text] = _links(belief, names)
@@ -88,11 +88,11 @@ def check_forest(mission: s.Mission, c: Configuration, names: Names) -> None:
             place = logical.parent(place)
         if place == start:
             message = f"cyclic nesting: '{start}' is believed inside itself"
-            hint = "what is in it has to be believed elsewhere"
+            hint = "its content has to be believed elsewhere"
             names.findings.add(Code.CYCLIC_NESTING, belief, message, hint)
         elif place is None:
             around = belief.place.text if belief.place else REGION
             message = f"'{start}' is believed in '{around}', which is not in L"
             names.findings.add(
-                Code.BAD_BELIEF, belief, message, f"say where it is believed: '{around} in region'"
+                Code.BAD_BELIEF, belief, message, f"give '{around}' a place too: '{around} in region'"
             )

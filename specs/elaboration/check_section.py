@@ -58,14 +58,14 @@ def _check_timed(item: s.Property, prop: Property, names: Names, *, is_timed: bo
         hint = 'ask for a bounded response: within 5 min "answered": F leads to G; or leave timing out'
         names.findings.add(Code.UNTIMED_PROPERTY, item, message, hint)
     if not is_timed and prop.kind.is_of_time:
-        message = f"'{prop.kind.value}' asks when, and nothing says how long anything takes"
+        message = f"'{prop.kind.value}' asks for times, and the mission has no durations"
         names.findings.add(Code.NO_TIMING, item, message, "give the mission a section: timing { ... }")
 
 
 def _only(named: tuple[D, ...], word: str, names: Names) -> D | None:
     for again in named[1:]:
         names.findings.add(
-            Code.REPEATED_SETTING, again, f"'{word}' is said twice", "leave one of the two out"
+            Code.REPEATED_SETTING, again, f"'{word}' is written twice", "leave one of the two out"
         )
     return named[0] if named else None
 

@@ -167,13 +167,13 @@ def _says(phase: _Clauses, clause: s.Says) -> Clause | None:
         if not known:
             several = f"there are {len(agents)} bigActors" if agents else "there is no bigActor"
             hint = f"write 'to' and one of {', '.join(sorted(agents)[:5])}" if agents else "declare one"
-            phase.names.findings.add(Code.NO_RECIPIENT, clause, f"nothing says to whom: {several}", hint)
+            phase.names.findings.add(Code.NO_RECIPIENT, clause, f"the recipient is missing: {several}", hint)
     return Says(message, agent, clause.times, phase.positions[id(clause)]) if known else None
 
 
 def _arrives(phase: _Clauses, clause: s.Arrives) -> None:
     kind = phase.names.entity(clause.entity)
     if kind is not None and not phase.names.signature[kind].driven:
-        message = f"'{clause.entity.text}' never flies: nothing can drive its kind {kind}"
+        message = f"'{clause.entity.text}' never flies: its kind {kind} is not driven"
         phase.names.findings.add(Code.POINTLESS_CLAUSE, clause, message, f"declare it: kind {kind} driven")
     phase.arriving.add(clause.entity.text)

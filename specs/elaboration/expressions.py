@@ -252,7 +252,10 @@ def elaborate_query(query: s.Query, scope: Scope, names: Names, *, inside: bool 
             if inside and relation == QueryOperator.HOSTED_AT:
                 hint = "bigActors have no parents, children or links: write HOSTED_AT outermost"
                 names.findings.add(
-                    Code.WRONG_QUERY, query, "HOSTED_AT gives bigActors, and these are asked further", hint
+                    Code.WRONG_QUERY,
+                    query,
+                    "HOSTED_AT gives bigActors, and the query goes on from them",
+                    hint,
                 )
             found = elaborate_query(argument, scope, names, inside=True)
             leaf = found.operator is None and found.argument is not None

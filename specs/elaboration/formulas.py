@@ -247,7 +247,7 @@ class FormulaElaborator:
         if (asked := _asked(body)) > MOST_ASKED:
             message = f"each configuration would be asked {asked:,} atoms, and {MOST_ASKED:,} is the most"
             hint = (
-                "quantify over fewer names, split it, or begin with what holds of few places: x in c -> ..."
+                "quantify over fewer names, split it, or begin with a condition on few places: x in c -> ..."
             )
             raise TooLarge(message, hint)
         return body
@@ -285,7 +285,7 @@ class FormulaElaborator:
                 return self._stored(node, around)
             case s.HasValue(agent, variable):
                 return IsBound(self._variable(agent, variable, bound))
-        message = "this is about runs, and here single configurations are looked at"
+        message = "this is about runs, and the property is about single configurations"
         hint = 'write within 5 min "name": F leads to G' if self.is_timed else "write it in ltl or ctl"
         self.names.findings.add(Code.WRONG_LOGIC, node, message, hint)
         return Always(True)
@@ -295,7 +295,7 @@ class FormulaElaborator:
 
     def _entity(self, name: s.Agent, bound: Mapping[str, str]) -> str:
         if isinstance(name, s.Member):
-            hint = "of its host is said: a hosted_at X"
+            hint = "of its host, write a hosted_at X"
             self.names.findings.add(
                 Code.WRONG_SORT, name, f"'{write(name)}' is a bigActor, and not an entity", hint
             )
@@ -303,7 +303,7 @@ class FormulaElaborator:
         if name.text not in bound:
             self.names.entity(name)
         elif bound[name.text] in self.names.agents:
-            hint = f"of its host is said: {name.text} hosted_at X"
+            hint = f"of its host, write {name.text} hosted_at X"
             message = f"'{name.text}' stands for a bigActor, and not for an entity"
             self.names.findings.add(Code.WRONG_SORT, name, message, hint)
         return self._stands_for(name, bound)
@@ -355,7 +355,7 @@ class FormulaElaborator:
     def _variable(self, agent: s.Agent, variable: s.Name, bound: Mapping[str, str]) -> VariableOf:
         if isinstance(agent, s.Name) and agent.text in self.names.kinds.keys() - bound:
             message = f"'{agent.text}' is an entity, and has no variables"
-            hint = f"only bigActors have; of an entity is asked: {agent.text} in place, {agent.text} linked channel"
+            hint = f"only bigActors have variables; write {agent.text} in place, {agent.text} linked channel"
             self.names.findings.add(Code.WRONG_SORT, agent, message, hint)
             return VariableOf(NOBODY, (variable.text,))
         whose, shown = self.agent(agent, bound), variable.text

@@ -15,7 +15,7 @@ def elaborate_live(mission: s.Mission, names: Names) -> LivePolicy:
     on_broken = [item for item in written if isinstance(item, s.OnBroken)]
     limits = [item for item in written if isinstance(item, s.TimeLimit)]
     for again in on_broken[1:]:
-        message = "'on broken assumption' is said twice"
+        message = "'on broken assumption' is written twice"
         names.findings.add(Code.REPEATED_SETTING, again, message, "leave one of the two out")
     fallback = Fallback(on_broken[0].fallback) if on_broken else Fallback.HOLD
     return LivePolicy(fallback, tuple(_limit(item, names) for item in _different(limits, names)))
@@ -32,7 +32,7 @@ def _different(limits: list[s.TimeLimit], names: Names) -> list[s.TimeLimit]:
     for node in limits:
         key = (node.request, node.agent, node.limit.seconds)
         if key in seen:
-            message = "this time limit is said twice"
+            message = "this time limit is written twice"
             names.findings.add(Code.REPEATED_SETTING, node, message, "leave one of the two out")
         seen.add(key)
     return limits

@@ -99,7 +99,7 @@ def warn_of_outliers(names: Names, world: InitialWorld, clauses: Iterable[tuple[
         swapped = is_swapped(geometries[span, words], rest, metres)
         hint = "are latitude and longitude swapped? exchanged, it would be near" if swapped else ""
         message = f"{words} lies {metres_text(metres)} from everything else"
-        hint = hint or "look at its coordinates: missions say (latitude, longitude)"
+        hint = hint or "check its coordinates: missions use (latitude, longitude)"
         names.findings.warn(Code.FAR_FROM_THE_REST, span, message, hint)
 
 
@@ -111,7 +111,7 @@ def _warn_of_all(names: Names, geometries: Mapping[tuple[s.Span, str], Geometry]
         on_land = where == ON_DRY_LAND
         span, words = afloat[0] if on_land else next(iter(geometries))
         what = f"{'whatever floats' if on_land else 'everything'} {where}"
-        hint = "are latitude and longitude swapped? missions say (latitude, longitude), GeoJSON [longitude, latitude]"
+        hint = "are latitude and longitude swapped? missions use (latitude, longitude), GeoJSON [longitude, latitude]"
         names.findings.warn(Code.PROBABLY_SWAPPED, span, f"{what}, such as {words}", hint)
 
 

@@ -91,9 +91,9 @@ class Names:
         problem = (
             f"is {a(WORDS[taken])} already"
             if taken is not None
-            else "is what lies around everything"
+            else "is reserved for the space around all places"
             if name == REGION and sort in EXCLUSIVE
-            else "is where an observation has not seen something"
+            else "is reserved for the place of an unseen node"
             if name in NO_ENTITIES and sort in EXCLUSIVE
             else ""
         )

@@ -253,8 +253,8 @@ class _Judge:
         for constant, there in compared(pattern, given):
             own = self.inference.constant(constant).sorts
             if own.isdisjoint(there) and ValueSort.TEXT in own | there <= NAMES | {ValueSort.TEXT}:
-                what = f"{show(constant)} is {_listed(own)}, and {_listed(there)} stands there"
-                message = f"nothing is taken here: {what}"
+                what = f"{show(constant)} is {_listed(own)}, and the value is {_listed(there)}"
+                message = f"this case is never taken: {what}"
                 hint = self.unquoted(where, "=") or requoted(constant)
                 self.findings.warn(Code.ALWAYS_THE_SAME, where, message, hint)
                 return

@@ -31,7 +31,7 @@ Leg = tuple[Name, tuple[Name, ...]]
 MOST_PARTS = 2_000
 """The most operands of a quantifier that are examined."""
 
-HINT = "an invariant is about where it is, not about its way; lead it around: MOVE_HOST_TO place VIA gate0, gate1"
+HINT = "an invariant is about its place, not its way; lead it around: MOVE_HOST_TO place VIA gate0, gate1"
 
 
 def warn_of_overflights(

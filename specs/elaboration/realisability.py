@@ -96,15 +96,15 @@ class Ground:
         kinds = self.names.kinds.items()
         driven = [name for name, kind in sorted(kinds) if self.names.signature[kind].driven]
         return (
-            f"what is driven moves: {', '.join(driven[:5])}"
+            f"these entities are driven: {', '.join(driven[:5])}"
             if driven
-            else "declare what moves: kind UAV driven"
+            else "declare a driven kind: kind UAV driven"
         )
 
     def bars(self, node: Someone, place: Someone) -> tuple[str, str] | None:
         """Return why a node can never pass a place on its way, and a hint; None if it may be possible."""
         if node.name is not None and node.name == place.name:
-            return f"'{node.name}' is what travels", "name the places that it passes"
+            return f"'{node.name}' is the moving node itself", "name the places that it passes"
         if node.kind is None or place.kind is None:
             return None
         if self.names.signature[place.kind].may_contain(node.kind):

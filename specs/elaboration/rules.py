@@ -107,7 +107,7 @@ def elaborate_rule(
     parents = (before.nested + places.redex, after.nested + places.reactum)
     for node in {index: node for node, index in reversed(places.unplaced)}.values():
         hint = "write it into a node, or beside one that stays where it is: b.(u | $0) -> b.$0 | u"
-        reading.mistake(Code.UNPLACED_NODE, node, f"nothing says where '{word_of(node)}' goes", hint)
+        reading.mistake(Code.UNPLACED_NODE, node, f"'{word_of(node)}' has no new place", hint)
     links = [tuple(_links(reading, side, body.term)) for side in (before, after)]
     if not reading.sound:
         return None
@@ -192,7 +192,7 @@ def _check_same_nodes(reading: _Reading, before: Side, after: Side) -> None:
     ):
         missing = [node for node in side.nodes if reading.terms[word_of(node)] not in set(other.terms)]
         for node in missing:
-            hint = f"controls move and link what is there: write '{word_of(node)}' in the {where} too"
+            hint = f"controls move and link existing nodes: write '{word_of(node)}' in the {where} too"
             reading.mistake(Code.CREATES_OR_DELETES, node, f"the rule {verb} '{word_of(node)}'", hint)
     for side in (before, after):
         seen: set[NodeTerm | None] = set()
@@ -215,12 +215,12 @@ def _check_sites(reading: _Reading, before: Side, after: Side, same: Mapping[int
         here = same.get(owner) if isinstance(owner, int) else owner
         if owners[site.index] != here or site.index in kept:
             hint = "write the site under the same node on both sides; move nodes by their names"
-            reading.mistake(Code.MOVED_CONTENT, site, f"the rule moves what {site} stands for", hint)
+            reading.mistake(Code.MOVED_CONTENT, site, f"the rule moves the content of {site}", hint)
         kept.add(site.index)
     for site, _ in before.sites:
         if site.index not in kept:
             hint = f"write {site} in the reactum too"
-            reading.mistake(Code.CREATES_OR_DELETES, site, f"the rule deletes what {site} stands for", hint)
+            reading.mistake(Code.CREATES_OR_DELETES, site, f"the rule deletes the content of {site}", hint)
 
 
 def _links(reading: _Reading, side: Side, rule: RuleTerm) -> Iterator[tuple[LinkTerm, NodeTerm]]:

@@ -110,8 +110,8 @@ class TemporalFormulas:
                 return self._quantified(node, around)
             case s.Taken(steps):
                 if self.logic == "ctl":
-                    message = "in ctl no step is taken: all that may follow are looked at"
-                    self._refuse(node, message, "write it in ltl, or say enabled")
+                    message = "ctl is about all possible steps, and so has no 'taken'"
+                    self._refuse(node, message, "write it in ltl, or write enabled")
                 self.formulas.count(1)
                 return t.Taken(self.steps(steps, around.names)[0])
             case s.Enabled(steps):
@@ -182,7 +182,7 @@ class TemporalFormulas:
     def _on_paths(self, node: s.PathQuantifier, around: Context) -> t.Temporal:
         path = node.operand
         if self.logic == "ltl":
-            message = f"ltl is about every run, and doesn't say '{node.quantifier}'"
+            message = f"ltl is about every run, and has no '{node.quantifier}'"
             self._refuse(node, message, "leave it out, or write it in ctl")
         if isinstance(path, s.PathPrefix | s.PathOperation):
             make = t.OnAllPaths if node.quantifier == "A" else t.OnSomePath

@@ -138,7 +138,7 @@ class _Said:
         if key not in self.seen:
             self.seen.add(key)
             return True
-        message = f"how long this takes is said twice: {' '.join(pieces(node))}"
+        message = f"this has two bounds: {' '.join(pieces(node))}"
         self.findings.add(Code.REPEATED_SETTING, node, message, "leave one of the two out")
         return False
 
@@ -162,7 +162,7 @@ def elaborate_timing(
     if control is not Control.TIMED:
         message = "a mission with 'timing' has control that takes time"
         says_timed = any(each.name == Control.TIMED.value for each in mission.each(s.ControlMode))
-        hint = "it says so itself: leave --control atomic out" if says_timed else "write: control timed"
+        hint = "the mission sets it: leave --control atomic out" if says_timed else "write: control timed"
         names.findings.add(Code.NOT_TIMED, _head(sections[0]), message, hint)
     bounds = [each for section in sections for each in section.bounds]
     said = _Said(names, world, TickConversion(_tick(bounds, names.findings), names.findings), clauses, whole)
@@ -204,7 +204,7 @@ def _is_of_one(said: _Said, bound: s.Bound) -> bool:
 def _tick(bounds: Iterable[s.Bound], findings: Findings) -> int:
     written = [bound for bound in bounds if isinstance(bound, s.Tick)]
     for again in written[1:]:
-        findings.add(Code.REPEATED_SETTING, again, "'tick' is said twice", "leave one of the two out")
+        findings.add(Code.REPEATED_SETTING, again, "'tick' is written twice", "leave one of the two out")
     if not written:
         return SECOND
     milliseconds = milliseconds_of(written[0].duration)
@@ -230,14 +230,14 @@ def _vehicles(said: _Said, name: s.Name, what: str) -> tuple[str, ...]:
         names.findings.unknown(name, among, sort="vehicle or kind of vehicles", otherwise=otherwise)
         return ()
     if not names.signature[kind].driven:
-        message = f"'{name.text}' {what}, and nothing drives {a(kind)}"
+        message = f"'{name.text}' {what}, and {a(kind)} is not driven"
         names.findings.add(Code.NOT_DRIVEN, name, message, f"declare it: kind {kind} driven")
         return ()
     if name.text in names.kinds:
         return (name.text,)
     found = tuple(sorted(each for each, of in names.kinds.items() if of == kind))
     if not found:
-        message = f"there is no entity of kind {kind}: this bounds nothing"
+        message = f"there is no entity of kind {kind}: this bound has no effect"
         names.findings.warn(Code.BOUNDS_NOTHING, name, message, "declare one, or leave this out")
     return found
 
@@ -284,9 +284,7 @@ def _warn_of_short_endurances(said: _Said, written: list[s.Lasting]) -> None:
         found = said.endurances.get(vehicle)
         needed = _shortest_flight(said, vehicle, found.places) if found is not None else None
         if found is not None and needed is not None and found.lasts * said.ticks.tick < needed * SECOND:
-            message = (
-                f"'{vehicle}' lasts {write(node.lasts)}, and no flight from where it is restored is so short"
-            )
+            message = f"'{vehicle}' lasts {write(node.lasts)}, and every flight from its place of restoration is longer"
             hint = f"the nearest other place is {duration_text(round(needed))} away at its greatest speed"
             said.findings.warn(Code.BOUNDS_NOTHING, node, message, hint)
 
@@ -337,8 +335,8 @@ def _step_time(said: _Said, node: s.StepTime) -> None:
     word = node.word.text
     command = COMMANDS.get(word)
     if command is not None and command.travels:
-        message = f"how long {word} takes follows from the way"
-        hint = "say how fast it flies: UAV flies at 18 m/s to 25 m/s; and until it begins: agents react within 1 s"
+        message = f"the duration of {word} follows from the way"
+        hint = "give its speed: UAV flies at 18 m/s to 25 m/s; and until it begins: agents react within 1 s"
         said.findings.add(Code.TAKES_ITS_WAY, node, message, hint)
     elif command is None and word not in (*OTHER_STEPS, *said.names.rules):
         among = [
@@ -357,9 +355,9 @@ def _meant(names: Names, word: str) -> str:
     if word in names.channels:
         return f"write messages over {word} within 5 s"
     if word in names.behaviours:
-        return "how long a behaviour takes follows from its steps: agents react within 1 s, sense within 5 s"
+        return "the duration of a behaviour follows from its steps: agents react within 1 s, sense within 5 s"
     if word == "FLY":
-        return "say how fast it flies: UAV flies at 18 m/s to 25 m/s"
+        return "give its speed: UAV flies at 18 m/s to 25 m/s"
     return BEGINNING.get(word, "")
 
 
@@ -458,7 +456,7 @@ def _say_time(said: _Said, node: s.SayTime) -> None:
             lambda clause: (
                 isinstance(clause, Says) and clause.message == message and agent in (None, clause.agent)
             ),
-            f"nobody ever says {show(message)}{to}",
+            f"no clause of the environment says {show(message)}{to}",
             f"says {write(node.message)}{to}",
             ClauseTimes(Sayable(*said.ticks.ordered(node, node.after, node.until))),
         )

@@ -100,7 +100,7 @@ def _check_size(entries: list[s.WorldEntry], names: Names) -> None:
                 f"{len(names.kinds):,} entities and {places:,} places are more than {MOST_PAIRS:,} pairs"
             )
         names.findings.add(
-            Code.TOO_MANY_ENTITIES, entries[0], message, "keep what matters: within, keep, limit"
+            Code.TOO_MANY_ENTITIES, entries[0], message, "reduce the file: within, keep, limit"
         )
 
 
@@ -134,11 +134,11 @@ def _whereabouts(entry: s.Entity) -> tuple[str, str] | None:
     if entry.absent and (entry.placement or entry.carrier):
         return (
             f"'{name}' is absent and yet somewhere",
-            f"say where it may appear: environment {{ {name} appears at ... }}",
+            f"give its possible placements: environment {{ {name} appears at ... }}",
         )
     if not entry.absent and entry.placement is None and entry.carrier is None:
         return (
-            f"nothing says where '{name}' is",
+            f"'{name}' has no placement",
             "write '= point (latitude, longitude)', 'carried by' or 'absent'",
         )
     return None

@@ -236,7 +236,7 @@ other where that is not meant
         )
         assert code == 0
         assert out.startswith("decay.big: 200 runs of seed 0, ")
-        assert "went on to time 9" in out or "ended where nothing can happen" in out
+        assert "went on to time 9" in out or "ended where no rule applies" in out
         assert re.search(
             r"\n  gone +[\d.]+ % of the runs \([\d.]+ to [\d.]+\), first at [\d.]+ \([\d.]+ to [\d.]+\)", out
         )

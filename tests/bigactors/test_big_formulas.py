@@ -52,11 +52,11 @@ def test_formulas_are_read_as_in_missions(logic, text, written):
 
 MISTAKES = r"""
 ltl <> bal  # 4+3 unknown predicate 'bal' | did you mean 'ball'?
-ltl A ball  # 1+1 ltl is about every run, and doesn't say 'A' | leave it out, or ask with --ctl
+ltl A ball  # 1+1 ltl is about every run, and has no 'A' | leave it out, or ask with --ctl
 ctl E ball  # 3+4 'E' needs an operator of paths | write AG, EF, AX or A (F U G)
 ctl [] ball  # 1+7 in ctl an operator of paths stands directly behind A or E | write AG, EF, AX or A (F U G)
 ctl ball or X ball  # 9+6 in ctl an operator of paths stands directly behind A or E | write AG, EF, AX or A (F U G)
-ctl taken put  # 7+3 in ctl no step is taken: all that may follow are looked at | write it in ltl, or say enabled
+ctl taken put  # 7+3 ctl is about all possible steps, and so has no 'taken' | write it in ltl, or write enabled
 ctl A infinitely often ball  # 3+16 'infinitely often' is two operators of paths | write AG AF F
 ltl taken clear
     # 7+5 the rule 'clear' is instantaneous, so no step is its own | name the ordinary rule that it follows

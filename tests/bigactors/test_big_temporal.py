@@ -181,13 +181,13 @@ begin brs init off; rules = [ {press, release, mend} ]; preds = { off, on, broke
 
 def test_fairness_to_what_never_is_is_told():
     found = decided(NEVER_MENDED, "ltl", "under weak fairness of mend, press: []<> on")
-    assert found.remarks == ("weak fairness of mend is about no step that ever is",)
+    assert found.remarks == ("weak fairness of mend covers no step of any run",)
 
 
 @pytest.mark.parametrize(
     ("logic", "text", "remark"),
     [
-        ("ltl", "broken leads to tool", "vacuous: nothing that it speaks of ever changes"),
+        ("ltl", "broken leads to tool", "vacuous: none of its atoms ever changes"),
         ("ltl", "broken leads to on", "vacuous: 'broken' is never true, so that '<> on' is never needed"),
         ("ctl", "AG (broken -> AF on)", "vacuous: 'broken' is never true, so that 'A <> on' is never needed"),
         ("ctl", "AG (off -> EF on)", "'off' is never needed: it holds without"),
@@ -196,7 +196,7 @@ def test_fairness_to_what_never_is_is_told():
             "[] (enabled mend -> X off)",
             "vacuous: 'enabled mend' is never true, so that 'X off' is never needed",
         ),
-        ("ltl", "[] (tool or broken or not tool)", "vacuous: nothing that it speaks of ever changes"),
+        ("ltl", "[] (tool or broken or not tool)", "vacuous: none of its atoms ever changes"),
         ("ltl", "[] (off -> X on)", None),
     ],
 )

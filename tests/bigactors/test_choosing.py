@@ -115,7 +115,7 @@ def test_with_times_it_is_shown_from_when_to_when_a_step_may_be_taken(chosen_in_
     ("moment", "why"),
     [
         ("0:05", "a tick is 10 s"),
-        ("0:20", "something else has to be done by 0:10"),
+        ("0:20", "another step is due by 0:10"),
         ("soon", "write minutes and seconds, 1:30, or seconds, 90"),
     ],
 )

@@ -85,7 +85,7 @@ def test_a_feed_from_a_pipe_is_refused(there, refused, feed):
     os.mkfifo(there / "feed.geojson")
     told = refused("run", "oil_spill", "--unverified", UAV, f"--feed={feed}=file:feed.geojson")
     assert "feed.geojson: " in told
-    assert "this is a pipe, not a file: save what it yields, and give that" in told
+    assert "this is a pipe, not a file: save its content to a file, and give that" in told
 
 
 def test_a_vehicle_that_is_not_heard_ends_the_run_which_leaves_no_recording(there, capsys):

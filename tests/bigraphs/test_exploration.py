@@ -419,7 +419,7 @@ big left = share (A || id) by ([{0, 1}, {0}], 2) in (Range || id);
 react spill = left --> Range.(A | id) || B;
 begin brs init start; rules = [ {spill} ]; end
 """
-    with pytest.raises(BigraphError, match="rule 'spill' puts something into a region that lies nowhere"):
+    with pytest.raises(BigraphError, match="rule 'spill' puts a node into a region without a place"):
         run(text)
 
 

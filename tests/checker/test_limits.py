@@ -74,7 +74,9 @@ def test_what_was_explored_and_not_looked_at_does_not_hold(clock, monkeypatch):
     clock.jumps_before(monkeypatch, checker.engines.fast.explorer, "inspect_fast")
     clock.now = checker.engines.fast.explorer.time.monotonic()
     report = check(mission.initial, mission.properties, DAY, engine=Engine.FAST)
-    assert "the time limit of 86400 s, in looking at what was explored" in map(str, report.bounds)
+    assert "the time limit of 86400 s, in the examination of the explored configurations" in map(
+        str, report.bounds
+    )
     assert (report.configurations, report.transitions) == (whole.configurations, whole.transitions)
     decided_by_text = {each.property for each in report.verdicts if "by ownership" in each.note}
     outcomes = {each.outcome for each in report.verdicts if each.property not in decided_by_text}
@@ -116,7 +118,7 @@ def test_an_interruption_in_looking_at_what_was_explored_ends_the_check(monkeypa
     mission, limits = load_mission("oil_spill"), Limits()
     wishing_before(monkeypatch, checker.engines.fast.explorer, "inspect_fast", limits)
     report = check(mission, limits=limits, engine=Engine.FAST)
-    assert str(report.bounds[0]) == "an interruption, in looking at what was explored"
+    assert str(report.bounds[0]) == "an interruption, in the examination of the explored configurations"
     assert report.exit_code == 3
 
 

@@ -49,7 +49,7 @@ def test_a_mission_is_checked_for_what_it_asks_with_its_notes():
 
 
 def test_a_configuration_is_not_checked_for_nothing():
-    with pytest.raises(TypeError, match="a configuration asks nothing"):
+    with pytest.raises(TypeError, match="a configuration has no properties"):
         check(load_mission("handover").initial)
 
 

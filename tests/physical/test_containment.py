@@ -115,7 +115,7 @@ def test_a_conflict_names_both_places_and_says_why(a, b, reason):
 def test_a_place_that_touches_the_border_of_the_one_around_it_is_told_to_make_that_larger():
     (found,) = check_places({"cell": box((0, 0), (1, 1)), "area": box((0, 0), (2, 2))})
     assert found == Conflict("area", "cell", "share a border: neither is inside the other", "area")
-    assert found.hint == "what lies inside touches no border: make area a little larger"
+    assert found.hint == "a place inside another touches no border: make area a little larger"
 
 
 @pytest.mark.parametrize(

@@ -282,11 +282,11 @@ def test_points_among_the_places_cut_nothing():
 
 def test_a_drift_of_what_is_not_convex_is_refused_with_its_reason():
     hook = polygon([(0, 0), (0, 0.001), (0.0002, 0.001), (0.0002, 0.0002), (0.001, 0.0002), (0.001, 0)])
-    with pytest.raises(GeometryError, match="and what it carries, is a point or convex") as caught:
+    with pytest.raises(GeometryError, match="and its cargo, is a point or convex") as caught:
         drift_faces(hook, box((0, 0), (1, 1)), {})
     assert caught.value.hint == "list its placements (drifts among), or give its convex hull"
 
 
 def test_nothing_drifts_within_a_point():
-    with pytest.raises(GeometryError, match="nothing can drift within point"):
+    with pytest.raises(GeometryError, match="no entity can drift within point"):
         drift_faces(POINT, point(1, 1), {})

@@ -207,7 +207,7 @@ def problem(text):
         (feature("MultiLineString", [[[0, 0], [1, 1]]] * 2), "a MultiLineString is not read"),
         (feature("GeometryCollection", None), "a GeometryCollection is not read"),
         (feature([], None), "a [] is not read"),
-        (feature("LineString", [[0, 0], [1, 1]]), "a LineString is no place: nothing can be in it"),
+        (feature("LineString", [[0, 0], [1, 1]]), "a LineString is no place: it has no inside"),
         (feature(width_m=4), "only a LineString can have a width_m"),
         (feature("LineString", [[0, 0], [1, 1]], radius_m=4), "only a Point can have a radius_m"),
         (feature("LineString", 3, width_m=4), "3 is no list of coordinates"),
@@ -219,7 +219,7 @@ def problem(text):
         (feature("LineString", [[0, 0], [0, 9]], width_m=9), "the line reaches over 300 km from its middle"),
         (
             feature("LineString", SQUARE[0], width_m=9),
-            "the line comes back to itself: 9 m wide, it encloses what it does not cover",
+            "the line comes back to itself: 9 m wide, it encloses an area that it does not cover",
         ),
         (feature("LineString", [[0, 0]] * 1_001, width_m=9), "the line has 1,001 positions, more than 1,000"),
         (

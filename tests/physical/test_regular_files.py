@@ -38,7 +38,7 @@ def endless(path):
 )
 def test_what_is_no_file_is_refused(tmp_path, make, called):
     make(tmp_path / "x")
-    expected = f"this is {called}, not a file: save what it yields, and give that"
+    expected = f"this is {called}, not a file: save its content to a file, and give that"
     with pytest.raises(OSError, match=expected if called else "Is a directory"):
         open_file(tmp_path / "x")
 

@@ -170,7 +170,7 @@ DENTED = "= polygon (0.01, 0.01) (0.01, 0.03) (0.015, 0.015) (0.03, 0.01) carrie
         (
             DENTED,
             "Vessel = point (0.2, 0.2)",
-            "what drifts within a place, and what it carries, is a point or convex: faces are known for those only",
+            "an entity that drifts within a place, and its cargo, is a point or convex: faces are known for those only",
         ),
     ],
 )

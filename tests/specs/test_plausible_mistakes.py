@@ -168,7 +168,7 @@ environment { wifi:land drop and returns }  # drop | did you mean 'drops'?
 def f() = { contol(MOVE_HOST_TO r0) }  # contol | write control(MOVE_HOST_TO place)
 def f() = { let n = 2 * 3 }  # * | numbers are only added and subtracted: + and -
 def f(t) = { if x in (CHILDREN(t)) { skip } }
-    # CHILDREN | write observe(CHILDREN...), and ask what is received: react { case obs if x in obs => ... }
+    # CHILDREN | write observe(CHILDREN...), and test the answer: react { case obs if x in obs => ... }
 BigActor q hosted_at uav with_behavior { let who = uav react { case ("clear", =who) => skip } }
     # =who | take the value, and compare it in a guard: case x if x == who => ...
 world { lake: Lake = point (37.1, -8.6) }  # Lake | declare it: signature { kind Lake }
@@ -191,23 +191,23 @@ BigActor q hosted_at uav with_behavior { display(nothing) }
 BigActor q hosted_at uav with_behavior { control(MOVE_HOST_TO gcs) }
     # MOVE_HOST_TO gcs | name a place that may contain a UAV: base, sea
 world { cell: Location = box (37.13, -8.5) (37.08, -8.6) }
-    # cell | what lies inside touches no border: make sea a little larger
+    # cell | a place inside another touches no border: make sea a little larger
 BigActor q hosted_at uav with_behavior { for c in base, sea { skip } }  # , | write for c in [base, sea] { ... }
 BigActor q hosted_at uav with_behavior { choose c in base, sea { skip } }  # , | write choose c in [base, sea] { ... }
 environment { vhf drops and comes back }  # comes | write returns instead of comes back
 environment { vhf drops and recovers }  # recovers | write returns instead of recovers
 world { raft: Drifter carried_by boat }  # carried_by | write carried by
 BigActor q hosted_at uav with_behavior { wait 10 min }
-    # wait | time passes in a react: react { after 10 min => ... }, with cases for what may come earlier
+    # wait | time passes in a react: react { after 10 min => ... }, with cases for earlier messages and observations
 BigActor q hosted_at uav with_behavior { sleep 10 s }
-    # sleep | time passes in a react: react { after 10 min => ... }, with cases for what may come earlier
+    # sleep | time passes in a react: react { after 10 min => ... }, with cases for earlier messages and observations
 world { cell: Location = rect (37.1, -8.6) (37.0, -8.5) }  # rect | write box (37.13, -8.5) (37.05, -8.7): two corners
 BigActor q hosted_at uav with_behavior { print(3) }  # print | write display(value)
 environment { boat drifts to sea }  # to | write drifts within sea, or drifts among sea, others
 environment { boat appears in sea }  # in | write at instead of in
 environment { boat moves }  # moves | write drifts within place0, or drifts among place0, place1
 environment { boat drops vhf }
-    # } | what happens is written wifi drops, uav0 leaves wifi, boat0 drifts within place0, boat0 appears at place0
+    # } | an event is written wifi drops, uav0 leaves wifi, boat0 drifts within place0, boat0 appears at place0
 BigActor q hosted_at uav with_behavior { observe(NEIGHBOURS(base)) }
     # NEIGHBOURS | queries are PARENT(...), CHILDREN(...), LINKED_TO(...), HOSTED_AT(...), HOST and ALL
 BigActor q hosted_at uav with_behavior { react { timeout 10 s => skip } }
@@ -215,9 +215,9 @@ BigActor q hosted_at uav with_behavior { react { timeout 10 s => skip } }
 BigActor q hosted_at uav with_behavior { for c in Location { skip } }
     # Location | list those that are meant: {base, sea}
 BigActor q hosted_at base with_behavior { control(MOVE_HOST_TO sea) }
-    # MOVE_HOST_TO sea | what is driven moves: boat, uav
+    # MOVE_HOST_TO sea | these entities are driven: boat, uav
 world { x: UAV in base }
-    # in | write = point (37.08, -8.55): where it lies decides in which place it is; or carried by an entity
+    # in | write = point (37.08, -8.55): its position decides its place; or carried by an entity
 check { invariant "i": uav inside sea }  # inside | write in: uav0 in place0
 check { invariant "i": uav in sea implies boat in sea }  # implies | write ->
 check { invariant "i": for all u: UAV . u in sea }  # for | write forall u: Kind . formula
@@ -228,7 +228,7 @@ BigActor q hosted_at uav with_behavior { control(MOVE_HOST_TO PARENT(boat)) }
     # PARENT | go where it was seen: observe(ALL) react { case obs: Observation if boat in obs =>
     control(MOVE_HOST_TO parent(boat, obs)) }
 check { invariant "i": uav.altitude < 100 }
-    # uav | only bigActors have; of an entity is asked: uav in place, uav linked channel
+    # uav | only bigActors have variables; write uav in place, uav linked channel
 check { invariant "i": ended uav }  # uav | name the bigActor that it hosts: p
 check { invariant "i": forall u: UAV u in base }  # u | write forall u: UAV . formula
 check { invariant "i": exists u: UAV, u in base }  # , | write exists u: UAV . formula

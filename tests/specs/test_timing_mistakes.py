@@ -48,19 +48,19 @@ check {
 """
 TOLD = r"""
 Drone flies at ~> Drone moves at
-    # moves | how long a flight takes follows from speeds: write flies at 18 m/s to 25 m/s
+    # moves | the duration of a flight follows from speeds: write flies at 18 m/s to 25 m/s
 Drone flies at 8 m/s to 12 m/s ~> drone arrives within 2 min
-    # arrives | how long a flight takes follows from speeds: write flies at 18 m/s to 25 m/s
+    # arrives | the duration of a flight follows from speeds: write flies at 18 m/s to 25 m/s
 12 m/s\n ~> 12 m/s, circles at 20 m\n  # at | leave it out
 lasts 25 min, restored ~> lasts 25 min restored  # restored | write , restored in yard
-yard after 10 min ~> yard within 10 min  # within | write after 10 min: so long it has to be there
+yard after 10 min ~> yard within 10 min  # within | write after 10 min: it has to be there so long
 lasts 25 ~> endurance 25  # endurance | write lasts 45 min, restored in airfield0 after 20 min
 lasts 25 ~> lasts for 25  # for | write lasts 5 min
 lasts 25 min ~> lasts 1 h 25 min  # 25 | write 85 min
 lasts 25 min ~> lasts "25 min"  # "25 min" | write lasts 5 min
-agents react ~> sprayer reacts  # reacts | of all bigActors together: agents react within 1 s
-agents react ~> BigActors react  # react | of all bigActors together: agents react within 1 s
-agents react within 1 s ~> react within 1 s  # react | of all bigActors together: agents react within 1 s
+agents react ~> sprayer reacts  # reacts | bigActors have one bound together: agents react within 1 s
+agents react ~> BigActors react  # react | bigActors have one bound together: agents react within 1 s
+agents react within 1 s ~> react within 1 s  # react | bigActors have one bound together: agents react within 1 s
 agents react within 1 s ~> agents take at most 1 s  # most | write agents react within 5 s
 sense takes 2 s to 5 s ~> sense takes at most 5 s  # most | write sense within 5 s
 sense takes 2 s to 5 s ~> sense takes up to 5 s  # up | write sense within 5 s
@@ -71,13 +71,13 @@ messages over radio ~> radio  # radio | write messages over radio within 5 s
 1 s to 2 s ~> 1 s, 2 s  # , | write 1 s to 2 s
 messages over radio ~> send  # send | write messages over wifi within 5 s, or messages on one host
 sense takes ~> spray takes
-    # spray | how long a behaviour takes follows from its steps: agents react within 1 s, sense within 5 s
-sense takes ~> FLY takes  # FLY | say how fast it flies: UAV flies at 18 m/s to 25 m/s
+    # spray | the duration of a behaviour follows from its steps: agents react within 1 s, sense within 5 s
+sense takes ~> FLY takes  # FLY | give its speed: UAV flies at 18 m/s to 25 m/s
 within 1 s ~> within 400 ms  # 400 ms | round it, or give timing a shorter tick: tick 200 ms
 and returns } ~> and returns within 5 min }
-    # within | how long a change takes is said in timing { ... }: wifi drops and returns within 5 min
+    # within | the duration of a change stands in timing { ... }: wifi drops and returns within 5 min
 and returns } ~> at most every 5 min }
-    # at | how long a change takes is said in timing { ... }: wifi drops and returns within 5 min
+    # at | the duration of a change stands in timing { ... }: wifi drops and returns within 5 min
 after 30 min => ~> case after 30 min =>  # case | write after 10 min => statements
 after 30 min => ~> after (30 min) =>  # ( | write after 5 min
 within 25 min "there" ~> within "there" 25 min  # "there" | the duration comes first: within 25 min "there": formula
@@ -94,7 +94,7 @@ control timed\n ~>   # timing | write: control timed
 
 def test_control_that_takes_no_time_is_refused_by_who_asked_for_it():
     (found,) = mistakes(ORCHARD, variation=Variation(control=Control.ATOMIC))
-    assert found.hint == "it says so itself: leave --control atomic out"
+    assert found.hint == "the mission sets it: leave --control atomic out"
 
 
 def test_a_channel_may_be_declared_behind_what_is_linked_to_it():

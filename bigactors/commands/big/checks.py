@@ -134,7 +134,7 @@ def _run_lines(found: TransitionSystem, run: WitnessRun) -> Iterator[str]:
         if step.rules:
             yield f"        and again from state {step.state}, by --{_rules(step)}-->"
         else:
-            yield f"        and stays in state {step.state}, where nothing can happen"
+            yield f"        and stays in state {step.state}, where no rule applies"
 
 
 def _strategy(chosen: Mapping[int, str]) -> str:
@@ -148,7 +148,7 @@ def _strategy(chosen: Mapping[int, str]) -> str:
 
 
 def _rules(step: WitnessStep) -> str:
-    rules = ", ".join(step.rules) or "nothing can happen"
+    rules = ", ".join(step.rules) or "no rule applies"
     chance = "" if step.chance is None else f", {step.chance:.6g}"
     return f"{step.action + ': ' if step.action else ''}{rules}{chance}"
 

@@ -147,8 +147,8 @@ class _Elaboration:
 
     def taken(self, at: s.Term, word: s.FormulaWord) -> _Part:
         if self.logic == "ctl":
-            message = "in ctl no step is taken: all that may follow are looked at"
-            raise self.wrong("logic", message, word, "write it in ltl, or say enabled")
+            message = "ctl is about all possible steps, and so has no 'taken'"
+            raise self.wrong("logic", message, word, "write it in ltl, or write enabled")
         return _part(t.Taken(self.steps(word)), at)
 
     def enabled(self, at: s.Term, word: s.FormulaWord) -> _Part:
@@ -220,7 +220,7 @@ class _Elaboration:
     def quantified(self, at: s.Term, quantifier: s.FormulaWord, inner: _Part) -> _Part:
         letter, operator = quantifier.text[0], quantifier.text[1:]
         if self.logic == "ltl":
-            message = f"ltl is about every run, and doesn't say '{letter}'"
+            message = f"ltl is about every run, and has no '{letter}'"
             raise self.wrong("logic", message, quantifier, "leave it out, or ask with --ctl")
         make = t.OnAllPaths if letter == "A" else t.OnSomePath
         if operator:

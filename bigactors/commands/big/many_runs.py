@@ -102,7 +102,7 @@ def lines(
         yield f"  interrupted: {options.runs - len(samples):,} more were wanted"
     ends = Counter(each.end for each in samples)
     for end, words in (
-        (End.STUCK, "ended where nothing can happen"),
+        (End.STUCK, "ended where no rule applies"),
         (End.TIME, f"went on to time {options.until or 0:g}"),
         (End.STEPS, f"ended after {counted(options.steps, 'step')}, as --steps says"),
     ):

@@ -147,7 +147,7 @@ class Decider:
         """Yield each declared fairness without any step; none if the system is incomplete, as a step may follow."""
         for each in declared if self.found.complete else ():
             if not any(self.graph.taken(labels).any() for labels in classes(each, self.graph.labels)):
-                yield f"{each} is about no step that ever is"
+                yield f"{each} covers no step of any run"
 
     def run(self, lasso: Lasso) -> WitnessRun:
         """Return a lasso of edges as a run."""

@@ -143,7 +143,7 @@ def _colon(named: re.Match[str], text: str) -> NotationError:
     name, meant, at = named["name"], named["meant"], named.start("colon")
     port = text.rfind("[", 0, at) > text.rfind("]", 0, at)
     if port and meant in _LINK_KINDS:
-        message = f"'{name}:{meant}' says what link it is, as another dialect of .bgm does"
+        message = f"'{name}:{meant}' gives the kind of a link, as another dialect of .bgm does"
         hint = f"write the link alone, '{name}'"
     else:
         what = "port" if port else "node"

@@ -60,7 +60,7 @@ class _Queries:
             case Scoped(scope, operand):
                 return self.scoped(scope, operand)
             case Count():
-                self.wrong("a number is nothing that holds", query, "compare it: size() < 5")
+                self.wrong("a number is neither true nor false", query, "compare it: size() < 5")
                 return None
 
     def comparison(self, symbol: str, operands: Sequence[Query]) -> Formula | None:
@@ -82,7 +82,7 @@ class _Queries:
         if found is None:
             return None
         if scope in ("pred", "succ") and _looks_further(operand):
-            self.wrong(f"of the states that ${scope} means, only patterns and sizes are known", operand)
+            self.wrong(f"${scope} takes only patterns and sizes", operand)
             return None
         return Within(StateScope(scope), found)
 
@@ -97,7 +97,7 @@ class _Queries:
             case "empty":
                 return Compare("==", Size(), 0)
             case "size":
-                self.wrong("a size is nothing that holds", ask, "compare it: size() < 5")
+                self.wrong("a size is neither true nor false", ask, "compare it: size() < 5")
                 return None
             case _:
                 return self.of_term(ask, ask.term or ())

@@ -170,7 +170,7 @@ class Evaluation:
             return None
         if content.regions != 1:
             found = f"'{ion.control}' has room for one region, this has {content.regions}"
-            self.scope.add("interface", found, inside.span, frame, "put '|' between what is in it")
+            self.scope.add("interface", found, inside.span, frame, "join its contents by '|'")
             return None
         return algebra.nest(around, content)
 
@@ -185,7 +185,7 @@ class Evaluation:
         names = wire.names if isinstance(wire, Close) else wire.inner
         missing = sorted(set(names) - set(body.outer_names))
         if missing:
-            shown = f"what follows shows {', '.join(body.outer_names) or 'no names'}"
+            shown = f"the expression behind it has {', '.join(body.outer_names) or 'no names'}"
             self.scope.add("name", f"there is no outer name '{missing[0]}' here", wire.span, frame, shown)
         elif isinstance(wire, Substitute) and wire.outer in set(body.outer_names) - set(names):
             hint = f"to join them, write {wire.outer}/{{{', '.join((wire.outer, *names))}}}"
@@ -251,10 +251,10 @@ class Evaluation:
             found = f"this has {len(where.sites)} sites, and the placing is over {by.regions}"
             self.scope.add("interface", found, share.where.span, frame)
         elif lacking := sorted({name for name, _ in where.inner_links} - set(what.outer_names)):
-            found = f"this waits for the name '{lacking[0]}', which what is shared does not have"
+            found = f"this needs the name '{lacking[0]}', which the shared bigraph lacks"
             self.scope.add("interface", found, share.where.span, frame)
         elif stuck := sorted(set(what.outer_names) - {name for name, _ in where.inner_links}):
-            found = f"this does not pass on the name '{stuck[0]}' of what is shared"
+            found = f"this does not pass on the name '{stuck[0]}' of the shared bigraph"
             self.scope.add(
                 "interface", found, share.where.span, frame, f"write '|| id{{{', '.join(stuck)}}}' in it"
             )
@@ -297,7 +297,7 @@ def _itself(bigraph: Bigraph) -> Bigraph:
 def _misfit(context: Bigraph, content: Bigraph) -> tuple[str, str] | None:
     if context.inner == content.outer:
         return None
-    found = f"this shows {content.outer}, and what it is put into is for {context.inner}"
+    found = f"this shows {content.outer}, and its context is for {context.inner}"
     return found, "extend one of them with an identity such as id(1, {x})"
 
 

@@ -220,7 +220,7 @@ class SyntaxWalk:
         self.counted(ion.control, len(control.parameters), len(ion.arguments), ion.span)
         if control.arity is not None and len(ion.links) != control.arity:
             found = f"'{ion.control}' has {_many(control.arity, 'port')}, this has {_many(len(ion.links), 'link')}"
-            hint = f"its declaration says {control.arity}; every port needs a link"
+            hint = f"its declaration gives {control.arity}; every port needs a link"
             self.findings.add("arity", found, ion.span, hint)
 
     def nest(self, ion: Ion, inside: Expression) -> None:
@@ -229,10 +229,8 @@ class SyntaxWalk:
         self.expression(inside)
         control = self.names.controls.get(ion.control)
         if control is not None and control.status == "atomic":
-            hint = "leave out what follows the dot, or the 'atomic' in its declaration"
-            self.findings.add(
-                "atomic", f"'{ion.control}' is atomic, so there is nothing in it", ion.span, hint
-            )
+            hint = "leave out the content behind the dot, or the 'atomic' in its declaration"
+            self.findings.add("atomic", f"'{ion.control}' is atomic, so it has no content", ion.span, hint)
 
     def values(self, values: Iterable[ValueExpression]) -> None:
         """Check several values."""

@@ -123,8 +123,10 @@ class RuleElaborator:
             name = reactum.inner_links[0][0]
             self.scope.add("rule", f"the reactum has the inner name '{name}'", react.reactum.span, frame)
         if () in reactum.sites:
-            message = f"site {reactum.sites.index(())} of the reactum is in no region, so what is in it had no place"
-            hint = "leave it out, and say with '@ [...]' what each of the others holds"
+            message = (
+                f"site {reactum.sites.index(())} of the reactum is in no region, so its content has no place"
+            )
+            hint = "leave it out, and list the content of each of the others with '@ [...]'"
             self.scope.add("rule", message, react.reactum.span, frame, hint)
         self._check_sites(react, len(redex.sites), len(reactum.sites), frame)
         return len(self.scope.findings) == before
@@ -149,10 +151,10 @@ class RuleElaborator:
         sites = react.instantiation
         if sites is None and given != wanted:
             found = f"the redex has {_sites(given)}, the reactum {wanted}"
-            hint = "say with '@ [...]' what each site of the reactum holds"
+            hint = "list the content of each site of the reactum with '@ [...]'"
             self.scope.add("rule", found, react.reactum.span, frame, hint)
         elif sites is not None and len(sites) != wanted:
-            found = f"the reactum has {_sites(wanted)}, the map speaks of {len(sites)}"
+            found = f"the reactum has {_sites(wanted)}, the map lists {len(sites)}"
             self.scope.add("rule", found, react.reactum.span, frame)
         elif sites is not None and sites and max(sites) >= given:
             found = f"the redex has {_sites(given)}, there is no site {max(sites)}"

@@ -30,7 +30,7 @@ def faults(redex: Bigraph) -> Iterator[tuple[str, str]]:
 def _faults_of_sites(redex: Bigraph) -> Iterator[tuple[str, str]]:
     for site, parents in enumerate(redex.sites):
         if not parents or any(parent < 0 for parent in parents):
-            hint = "leave it out: what is beside the redex stays as it is"
+            hint = "leave it out: the context of the redex stays as it is"
             yield f"site {site} of the redex is in no node", hint
     for place, sites in sorted(sites_in(redex).items()):
         if place >= 0 and len(sites) > 1:

@@ -52,8 +52,8 @@ class _Sorts:
 
     def place(self, place: PlaceDeclaration) -> None:
         if place.control in self.places:
-            hint = "put all that it holds into one"
-            self.findings.add("name", f"what '{place.control}' holds is declared twice", place.span, hint)
+            hint = "put its whole content into one"
+            self.findings.add("name", f"the content of '{place.control}' is declared twice", place.span, hint)
         if self.known(place.control, place.span):
             self.places[place.control] = self.resolved(place.content, place.span)
 

@@ -91,7 +91,7 @@ def read_latest(folder: Path, digest: str, workers: int) -> Latest | None:
         raise CheckpointError(f"{path}: {ANOTHER}")
     latest = Latest(head.get("number", -1), head.get("layer", -1), head.get("seconds", -1))
     if not latest.is_sound:
-        raise CheckpointError(f"{path}: this checkpoint is damaged: its numbers are none of a checkpoint")
+        raise CheckpointError(f"{path}: this checkpoint is damaged: its counters are not valid")
     return latest
 
 

@@ -110,7 +110,7 @@ class Worker:
                 break
             if recalled == before:
                 raise CheckpointError(
-                    f"{folder}: what is learned from this checkpoint is not what was learned"
+                    f"{folder}: the rules learned from this checkpoint differ from those recorded in it"
                 )
         loading.finish()
         if not all(self.told(self._fits(layer, self.told(shard.boundaries)))):

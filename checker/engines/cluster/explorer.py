@@ -163,7 +163,7 @@ class Expedition:
     def begin(self) -> None:
         """Begin the exploration, or return to the last checkpoint."""
         if self.bounds and not self.is_kept:
-            raise MachineError("a worker was lost when a bound was met, and where they were was not kept")
+            raise MachineError("a worker was lost when a bound was met, and its rows were not kept")
         self.crew.revive()
         if self.latest is None:
             self.layer, self.standings = 0, self.crew.every("start")

@@ -275,7 +275,9 @@ def _connect(cluster: Cluster) -> None:
         signal.signal(signal.SIGTERM, before)  # Ray's handler would exit at once
     if cluster.address is None and not ray.util.get_node_ip_address().startswith("127."):
         ray.shutdown()
-        raise ClusterError("Ray was loaded before and would listen to others: let the checker load it")
+        raise ClusterError(
+            "Ray is loaded already and accepts connections from outside: let the checker load it"
+        )
 
 
 def _is_here(address: str | None) -> bool:
@@ -309,7 +311,7 @@ def explore_with_ray(initial: Configuration, inspect: tuple[Inspect, ...], optio
     connect(cluster)
     crew = RayCrew(initial, options.limits.pending, cluster.workers)
     if keeping.doubted:
-        raise ClusterError("only the fast explorer can be doubted: --paranoid goes with --engine fast")
+        raise ClusterError("only the fast explorer can be cross-checked: --paranoid goes with --engine fast")
     is_temporary = keeping.folder is None and cluster.address is None
     if is_temporary:
         folder = tempfile.mkdtemp(prefix="bigactors-")

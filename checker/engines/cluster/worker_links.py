@@ -148,7 +148,7 @@ def _prove(link: socket.socket, secret: bytes, me: int, peer: int) -> None:
     link.sendall(challenge)
     link.sendall(_proof(secret, me, bytes(_received(link, PROOF))))
     if not hmac.compare_digest(_received(link, PROOF), _proof(secret, peer, challenge)):
-        raise ConnectionError("it is none of this crew")
+        raise ConnectionError("it does not belong to this crew")
     link.settimeout(None)
     link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     link.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)

@@ -116,7 +116,7 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
         learned = arrays["learned"].reshape(-1, 4).tolist()
         where = Packing(head["words"], arrays["packing"])
         if not where.is_sound:
-            raise ValueError("its columns stand nowhere in its rows")
+            raise ValueError("its rows lack some of its columns")
         size = int(arrays["state"][1])
         kept = (arrays[each] for each in ("rows", "origins", "pieces", "nodes"))
         rows = Rows.of(where.words, size, *kept)
@@ -131,7 +131,9 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
     except (ValueError, IndexError, KeyError, TypeError) as error:
         raise CheckpointError(f"{path}: this checkpoint is damaged: {error}") from error
     if _digest_of_columns(space) != head["columns"]:
-        raise CheckpointError(f"{path}: what is learned from this checkpoint is not what was learned")
+        raise CheckpointError(
+            f"{path}: the rules learned from this checkpoint differ from those recorded in it"
+        )
     return journey
 
 
@@ -142,16 +144,16 @@ def _check(arrays: dict[str, NDArray[Any]], journey: Journey, limit: int) -> Non
         raise ValueError("its layers and rows do not fit together")
     begin = journey.layer_end - journey.layers[-1]
     if not begin <= expanded <= journey.layer_end <= size <= limit:
-        raise ValueError("it has come to no row of its last layer")
+        raise ValueError("its last expanded row is outside its last layer")
     if cut < 0 or (cut and size != limit) or not 0 <= crowded <= expanded:
-        raise ValueError("it left out what it can't have left out")
+        raise ValueError("its counts of omitted steps are not possible")
 
 
 def _check_counts(space: Space, counts: NDArray[np.int64], state: NDArray[np.int64]) -> None:
     """Raise ValueError unless the counts are possible: a row takes each transition at most once."""
     expanded, size = int(state[0]), int(state[1])
     if len(counts) != len(space.learner.leaves.rule) or np.any(counts < 0) or np.any(counts > expanded):
-        raise ValueError("its transitions were not taken so often")
+        raise ValueError("its counts of transitions are wrong")
     if int(counts.sum()) < size - 1:
         raise ValueError("it has more rows than transitions")
 
@@ -171,14 +173,14 @@ def _recount(space: Space, counts: NDArray[np.int64], state: NDArray[np.int64]) 
         taken = np.bincount(steps)
         found.update({int(step): int(taken[step]) for step in np.flatnonzero(taken)})
         if not cut and np.any(targets < 0):
-            raise ValueError("it lacks what follows from its rows")
+            raise ValueError("it lacks successors of its rows")
         reached[targets[targets >= 0]] = True
     rest = expanded - sum(map(len, parts))
     told, again = _by_label(space, dict(enumerate(counts.tolist()))), _by_label(space, found)
     if told != again and not (rest and told >= again):
-        raise ValueError("its transitions were not taken so often")
+        raise ValueError("its counts of transitions are wrong")
     if not rest and not reached.all():
-        raise ValueError("some row follows from none before it")
+        raise ValueError("some row is no successor of an earlier row")
 
 
 def _by_label(space: Space, counts: Mapping[int, int]) -> Counter[tuple[int, str]]:

@@ -95,7 +95,7 @@ class EffectWriter:
         for cell, value in merged(family[name] for family in found.families if name in family).items():
             self._write(cell, value, inner)
         if inner.said or inner.edits or inner.effect.copies:
-            raise LearningError(f"what {found.step.label} writes about {name} has parts of its own")
+            raise LearningError(f"the writes of {found.step.label} about {name} are nested")
         return writes + inner.effect.writes
 
     def edit(self, edited: Edited, value: Any) -> Writes:

@@ -347,7 +347,7 @@ class Space:
         first = self.codes(0)
         for row, tree, node, code in learned:
             if not 0 <= row < size:
-                raise ValueError("it learned from no row")
+                raise ValueError("it learned from a row that it does not have")
             self.learned.append((row, tree, node, code))
             self._learn_again(where, rows.row(row), tree, node, code)
             self._agents(self._groups())  # plants the trees of new agents, in the same order
@@ -358,13 +358,13 @@ class Space:
             kernel.mark_used(words, where.words, where.columns, begins, used)
             for _, words in rows.blocks(size)
         ):
-            raise ValueError("it has other columns, or values that they do not take")
+            raise ValueError("it has other columns, or values outside of theirs")
         self.rows = rows
         self._pack_as(where, BATCH)
         self.state[SIZE] = size
         begun = self.codes(0)
         if begun[: len(first)] != first or any(begun[len(first) :]):
-            raise ValueError("it begins elsewhere")
+            raise ValueError("it begins with another configuration")
         self._rebuild(slots_for(size))
         self._make_room(BATCH)
         self._see()
@@ -375,7 +375,7 @@ class Space:
         """Learn again from a row of another space; raise ValueError if that space can't have learned there."""
         trees = self.learner.trees
         if not (0 <= tree < len(trees.root) and UNPLANTED <= node < len(trees.asks)):
-            raise ValueError("it learned of what no rule asks")
+            raise ValueError("it learned an answer to a question of no rule")
         try:
             if not self._settles(node, code):
                 self._learn_from(where, words, tree)

@@ -101,7 +101,7 @@ class Search:
 
     def learn(self) -> None:
         """Work out the edges of reached locations."""
-        raise AssertionError("nobody knows what leads from some location")
+        raise AssertionError("the transitions of some location are unknown")
 
     def waiting(self) -> NDArray[np.int64]:
         """Return the locations of unexpanded zones whose edges are unknown."""

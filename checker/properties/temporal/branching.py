@@ -177,7 +177,7 @@ def core(formula: Temporal) -> Temporal:
             return _on_some(path)
         case OnAllPaths(path):
             return Denied(_on_some(denied(path)))
-    raise ValueError(f"what only a path has, without a quantifier before it: {formula}")
+    raise ValueError(f"a path operator without a quantifier before it: {formula}")
 
 
 def _on_some(path: Temporal) -> Temporal:

@@ -141,7 +141,7 @@ class TemporalDecider:
             return self.unviolated(asked, found)
         shown = tuple(self.pauses(found.run))
         if not len(found.run):
-            shown = ("no single run shows it: it is about all that may follow",)
+            shown = ("no single run shows it: it is about all continuations",)
         return self.violated(asked, f"false at c0: {asked.shown}", found.run, shown)
 
     def unviolated(self, asked: Property, found: Decision) -> Verdict:
@@ -203,7 +203,7 @@ class TemporalDecider:
                 "now and then it could be served, but not all the time: only strong fairness serves it"
             )
         elif not details:
-            details.append("nothing that would serve it is enabled from then on")
+            details.append("no step that would serve it is enabled from then on")
         message, trace = f"{request} is never served", self.trace(starved.run)
         return Violation(f"unserved {sort}", message, trace, tuple(details), str(request))
 
@@ -257,7 +257,7 @@ class TemporalDecider:
         """Yield the assumptions without any step; none if the exploration is incomplete."""
         for each in declared if self.found.complete else ():
             if not any(True for _ in classes(each, self.graph.labels, self.setting.arriving)):
-                yield f"{each} is about no step that ever is"
+                yield f"{each} covers no step of any run"
 
     def unless_violated(self) -> Outcome:
         """Return the outcome for a property without a violation."""

@@ -58,7 +58,7 @@ class FormulaDecider:
             return Decision(Outcome.INCOMPLETE, note=f"not decided: {error}; split the formula")
         if lasso is not None:
             if lasso.loop and is_true_on(lasso, formula, self.truth):
-                raise AssertionError(f"the counterexample is none: {formula}")
+                raise AssertionError(f"the counterexample satisfies the formula: {formula}")
             return Decision(Outcome.VIOLATED, 1, lasso)
         size = self.truth.graph.size
         if not self.complete:

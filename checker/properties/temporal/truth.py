@@ -86,7 +86,7 @@ class FormulaTruth:
                 return self.here(left) & self.here(right)
             case Either(left, right):
                 return self.here(left) | self.here(right)
-        raise ValueError(f"more than the configuration is asked for: {formula}")
+        raise ValueError(f"a configuration alone does not decide the formula: {formula}")
 
     def joined(self, how: np.ufunc, neutral: bool, formulas: Iterable[Proposition]) -> Bools:
         """Return for each configuration the value of a connective of propositions."""

@@ -78,7 +78,7 @@ def judge_linear(truth: FormulaTruth, formula: Temporal, fairness: Conditions, r
     except BoundMet:
         return Judged(remarks)
     if witness is not None and not is_true_on(witness, formula, truth):
-        raise AssertionError(f"a run violates what holds: {formula}")
+        raise AssertionError(f"a run violates a formula that holds: {formula}")
     return Judged(remarks, witness)
 
 

@@ -136,7 +136,7 @@ def test_a_parcel_that_cannot_enter_is_said_once_and_nothing_after_it_enters():
     run.turn(1.0, reports=[bad, message(2)])
     assert run.rules == []
     assert run.messages() == [
-        "parcel 1 of gcs0 cannot enter, nor what comes after it: {'Parcel': 'x'} stands where Parcel should"
+        "parcel 1 of gcs0 cannot enter, nor what comes after it: {'Parcel': 'x'} should be Parcel"
     ]
     stranger = at("gcs1")
     stranger.turn(0.0, reports=[message(1, agent="nobody")])

@@ -41,7 +41,7 @@ def test_rules_make_what_the_algebra_makes_of_every_match(rule, target):
 
 
 def or_orphan(code, made):
-    """Return what is made, canonical; a word where that puts something into a region that lies nowhere."""
+    """Return what is made, canonical; a word where that puts a node into a region without a place."""
     try:
         return canonical(made())
     except BigraphError as error:

@@ -80,7 +80,7 @@ TESTS = {
     "if 2 < 1 {\ndisplay(1)\n}": [(2, "this condition is never true")],
     "if 2 < 1 {\ndisplay(1)\n} else {\ndisplay(2)\n}": [(2, "this condition is never true")],
     "while 2 < 1 {\ndisplay(1)\n}": [(2, "this condition is never true")],
-    "for x in {} {\ndisplay(x)\n}": [(2, "there is never anything to go through")],
+    "for x in {} {\ndisplay(x)\n}": [(2, "the collection to go through is always empty")],
     "match 1 {\ncase 2 => display(1)\ncase x => display(x)\n}": [(3, "this case is never taken")],
     "choose {\ndisplay(1)\n} or {\ndisplay(2)\n}": [],
     "choose x in {uav0, uav1} {\nif x == uav1 {\ndisplay(x)\n}\n}": [],

@@ -65,7 +65,7 @@ def test_an_exhausted_vehicle_has_the_path_of_the_time_that_it_was_aloft():
 def test_what_nothing_bounds_is_said_to_be_unbounded():
     timing = replace(MINUTES, react=Interval(), lines=LINES[:1])
     (late,) = report_on(flight(timing), within(6)).verdicts[0].violations
-    assert [str(leg).rpartition(", ")[2] for leg in late.path] == ["and nothing says how long that takes"]
+    assert [str(leg).rpartition(", ")[2] for leg in late.path] == ["without an upper time bound"]
 
 
 def test_time_that_stops_has_the_path_to_that_moment():

@@ -222,7 +222,7 @@ SENDS = 'send("go", b)'
         ),
         (
             agents(a=("gcs0", 'react { case ("seen", x) => skip }'), b=("gcs1", "send(2, a)")),
-            ('a waits for ("seen", x), which nobody is left to send; no case takes 2',),
+            ('a waits for ("seen", x), which no bigActor can send any more; no case takes 2',),
         ),
         (
             agents(a=("gcs0", "react { case o: Observation => skip }")),
@@ -239,7 +239,7 @@ SENDS = 'send("go", b)'
 )
 def test_a_deadlock_is_told_with_its_causes(text, causes):
     (found,) = deadlock(text).violations
-    assert found.message.startswith("nothing but the environment can move, and ")
+    assert found.message.startswith("only the environment can move, and ")
     assert found.details == causes
 
 

@@ -77,7 +77,10 @@ def test_owned(text):
     assert races(start(written(text))) == set()
     found = verdict(written(text), "race_freedom")
     assert found.outcome is Outcome.HOLDS
-    assert found.note == "by ownership, without a search: no agent may write what another's control rests on"
+    assert (
+        found.note
+        == "by ownership, without a search: no agent may change anything that another's control depends on"
+    )
 
 
 # --- why it is not owned --------------------------------------------------------------------------------------

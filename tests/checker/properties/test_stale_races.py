@@ -183,8 +183,8 @@ def test_two_that_look_before_they_enter_are_racing_though_their_moves_commute(s
 def test_a_stale_observation_is_told_with_the_query_and_the_test_and_a_shortest_trace():
     race = violation(verdict(BOTH_LOOK, "race_freedom"), STALE)
     assert race.message == (
-        "CTR(b, MOVE_HOST_TO gate0) rests on whether observe(CHILDREN(gate0)) shows uav0, "
-        "and another agent has changed that answer since it was sensed"
+        "CTR(b, MOVE_HOST_TO gate0) depends on whether observe(CHILDREN(gate0)) shows "
+        "uav0, and another agent has changed that answer since then"
     )
     assert race.details == (
         "sensed in step 7: ⟨sense : OBS(b, CHILDREN(gate0))⟩",
@@ -193,7 +193,7 @@ def test_a_stale_observation_is_told_with_the_query_and_the_test_and_a_shortest_
     )
     assert len(race.trace) == 12  # each looks and asks in 5 steps, and both are served
     pilot = violation(verdict(MOVED_BY_A_PILOT, "race_freedom"), STALE)
-    assert pilot.message.endswith("another agent has changed a relation that it uses since it was sensed")
+    assert pilot.message.endswith("another agent has changed a relation that it uses since then")
 
 
 @pytest.mark.parametrize("operator", sorted(OPERATORS))

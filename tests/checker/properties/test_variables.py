@@ -402,7 +402,7 @@ def test_agents_are_not_exchanged_where_a_property_names_a_variable_of_one():
     )
     for claim in ('reachable "it": a.n == 1', 'ltl "it": <> a.n == 1'):
         one = load(f"{twins} check {{ {claim} }}", ALIKE)
-        with pytest.raises(RefusedError, match=r"a property tells them apart: it names a\.n"):
+        with pytest.raises(RefusedError, match=r"a property distinguishes them: it names a\.n"):
             check(one, reduce=[Reduction.SYMMETRY])
     both = load(
         f'{twins} check {{ invariant "it": a.n != 1 or b.n != 1 reachable "r": a.n > 0 and b.n > 0 }}', ALIKE

@@ -186,7 +186,7 @@ def test_what_more_a_property_reads_is_noticed(monkeypatch):
 UNHEEDED = {
     "what is asked": ("_asked", lambda _: (), "'a' may ask for ('in', 'uav1')"),
     "which slots are used": ("_slots", lambda *_: frozenset(), "may ask for ('slot parent', 'uav0')"),
-    "who is told": ("_whom", lambda _: frozenset(), "lets 'c' know of what is seen"),
+    "who is told": ("_whom", lambda _: frozenset(), "passes an observation on to 'c'"),
 }
 
 
@@ -203,7 +203,7 @@ def test_it_is_noticed_that_the_race_monitor_forgets_what_may_be_asked(forgotten
 
 
 FORGOTTEN = {
-    "what comes of a program": ("actors.Actors._asked_by", NOTHING, "which nobody ever does"),
+    "what comes of a program": ("actors.Actors._asked_by", NOTHING, "which no footprint contains"),
     "what a look adds": ("footprints.Footprints.telling", NOTHING, "writes ('ready', 'a')"),
     "who waits for mail": ("footprints.Footprints.waiting", NOTHING, "reads ('mailbox', 'c')"),
     "whom mail wakes": ("footprints.Footprints.mail", (), "writes ('mail', 'c'"),

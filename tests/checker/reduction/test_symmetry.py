@@ -87,7 +87,7 @@ REFUSED = {
     ),
     "named by another": (
         {"body": LOOKS, "rest": "BigActor base hosted_at gcs0 with_behavior { observe(PARENT(robot1)) }"},
-        "since the text tells them apart",
+        "since the text distinguishes them",
     ),
     "moved by the environment": (
         {"body": LOOKS, "rest": "environment { robot1 drifts among room0 }"},
@@ -106,9 +106,9 @@ def test_it_is_refused_with_the_reason(why):
 
 def test_it_is_refused_for_what_is_asked_of_one_or_remembered_of_each():
     initial = mission(LOOKS).initial
-    with pytest.raises(RefusedError, match="a property tells them apart: robot1 in room0"):
+    with pytest.raises(RefusedError, match="a property distinguishes them: robot1 in room0"):
         MissionSymmetry(initial, [Inside("robot1", "room0")])
-    with pytest.raises(RefusedError, match="remembered by name"):
+    with pytest.raises(RefusedError, match="recorded by name"):
         Reduced(monitored(initial), SYMMETRY)
     with pytest.raises(RefusedError, match="nothing in the mission is interchangeable"):
         MissionSymmetry(load_mission("rendezvous").initial)

@@ -88,7 +88,7 @@ def test_a_comparison_as_text():
         "  > c2 --⟨actuate : CTR(b, MOVE uav0 TO gate0)⟩--> c3",
         "  = c2 --⟨actuate : CTR(a, MOVE uav0 TO south0)⟩--> c3 (c4 there)",
         "  < c3 --⟨actuate : CTR(b, MOVE uav0 TO gate0)⟩--> c4",
-        "at the end of the second, not as at the end of the first:",
+        "the end of the second differs from the end of the first:",
         "  L  uav0 : gate0 ↦ south0",
         "  P  uav0 : in gate0 ↦ in south0",
     ]

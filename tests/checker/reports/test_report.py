@@ -71,11 +71,11 @@ def test_what_was_cut_off_says_where_and_decides_nothing():
     found = lines(ENTERS + EVERYTHING, limits=Limits(configurations=2))
     assert found[:-1] == [
         "m: 2 configurations, 2 transitions, depth 1, INCOMPLETE, T s",
-        "  stopped at the limit of 2 configurations: what lies beyond was not explored",
+        "  stopped at the limit of 2 configurations: the rest was not explored",
         "  ? local_consistency  incomplete; examined 1 control next in line, a witness of 2 steps",
         (
-            "  ✓ race_freedom       holds; by ownership, without a search: no agent may write what another's control "
-            "rests on"
+            "  ✓ race_freedom       holds; by ownership, without a search: no agent may change anything that "
+            "another's control depends on"
         ),
         "  ? deadlock_freedom   incomplete; nothing against it so far",
         "  ? arrival            incomplete; nothing against it so far",

@@ -236,13 +236,13 @@ def forged(**changes):
             {"requests": [{"SND": ["scout", "op0", [{"text": "round"}, 1, {"route": ["danger0"]}]]}]},
             "no statement that",
         ),
-        ({"host": "gcs0"}, "does not run what is hosted at gcs0"),
+        ({"host": "gcs0"}, "does not run the bigActors on gcs0"),
         ({"host": "gcs1"}, "it never goes to gcs1"),
-        ({"code": [0, 0]}, "what it is to run"),
-        ({"code": [-1]}, "what it is to run"),
-        ({"store": []}, "its variables are not"),
+        ({"code": [0, 0]}, "its remaining program"),
+        ({"code": [-1]}, "its remaining program"),
+        ({"store": []}, "its variables differ"),
         ({"store": [["n", "danger0"]]}, "its variable"),
-        ({"says": [2]}, "what may be said"),
+        ({"says": [2]}, "its counts of `says`"),
     ],
 )
 def test_what_the_text_cannot_have_produced_is_refused(changes, why):
@@ -258,7 +258,7 @@ def test_what_a_statement_outside_of_all_loops_asks_for_comes_once():
     begun = {"SND": ["scout", "op0", {"text": "begun"}]}
     assert objection(forged(requests=[begun])[0], forged(requests=[begun])[3]) == ""
     there, *_, parcel = forged(requests=[begun, begun])
-    assert objection(there, parcel) == "it asks more often than its statements ask"
+    assert objection(there, parcel) == "it has more requests than its statements make"
 
 
 def test_what_a_statement_that_is_still_to_come_asks_for_does_not_enter():

@@ -276,11 +276,11 @@ HANDS = Controls("nomad", "HAND", "gcs0", ("gcs1", "gcs2"))
         (Parcel("nobody", ("x",)), "no bigActor nobody"),
         (Parcel("op1", (), running()), "runs here already"),
         (Parcel("nomad", (), running(code=(10_000,))), "not in this mission"),
-        (Parcel("nomad", (), running(says=())), "what may be said to it"),
-        (Parcel("nomad", (), running(host="gcs9")), "nothing is known of gcs9"),
+        (Parcel("nomad", (), running(says=())), "its counts of `says`"),
+        (Parcel("nomad", (), running(host="gcs9")), "gcs9 is unknown"),
         (Parcel("nomad", (), running(requests=(MGR("op1", "gcs1"),))), "another agent"),
         (Parcel("nomad", (), running(requests=(MGR("nomad", "gcs8"),))), "no statement that it has passed"),
-        (Parcel("nomad", (), running(host="gcs2")), "does not run what is hosted at gcs2"),
+        (Parcel("nomad", (), running(host="gcs2")), "does not run the bigActors on gcs2"),
         (Parcel("nomad", (), running(requests=(HANDS,))), "no statement that it has passed"),
     ],
 )
@@ -294,7 +294,9 @@ def test_a_parcel_is_read_as_it_was_written():
     whole = Parcel("nomad", ("gcs1", Text("gcs1")), running(requests=(HANDS,)))
     assert parcel_in(json.loads(json.dumps(parcel_json(whole)))) == whole
     assert objection(parted(FIRST, parting("gcs1")), Parcel("nomad", (Text("come"),), running())) == ""
-    assert "nobody sends" in objection(parted(FIRST, parting("gcs1")), Parcel("nomad", ("come",), running()))
+    assert "without a sender" in objection(
+        parted(FIRST, parting("gcs1")), Parcel("nomad", ("come",), running())
+    )
 
 
 def test_a_route_is_read_as_it_was_written_and_as_no_tuple():

@@ -135,7 +135,11 @@ MISTAKES = [
     ("syntax", "%binding Bind;", "'%binding' is a word of another dialect of .bgm"),
     ("syntax", "%ltlSpec G!(a);", "'%ltlSpec' is a word of another dialect of .bgm"),
     ("syntax", "%agnet UAV[x, y];", "'%agnet' is no word of .bgm"),
-    ("syntax", "%agent UAV[idle, x:edge];", "'x:edge' says what link it is, as another dialect of .bgm does"),
+    (
+        "syntax",
+        "%agent UAV[idle, x:edge];",
+        "'x:edge' gives the kind of a link, as another dialect of .bgm does",
+    ),
     (
         "syntax",
         "%rule r UAV[x, y] -> UAV[x, y]{n > 3};",
@@ -158,8 +162,8 @@ MISTAKES = [
     ("rule", "a; a || a -> a;", "the redex has 2 regions, the reactum 1"),
     ("rule", "a; %active b : 1; a -> b[x];", "the redex lacks the name 'x' of the reactum"),
     ("initial", "a; %inner x;", "a first state has no inner names"),
-    ("property", "a; %property p size();", "a size is nothing that holds"),
-    ("property", "a; %property p 3;", "a number is nothing that holds"),
+    ("property", "a; %property p size();", "a size is neither true nor false"),
+    ("property", "a; %property p 3;", "a number is neither true nor false"),
     ("property", "a; %property p empty() == 1;", "only numbers and size() can be compared"),
     ("property", "a; %property p matches();", "'matches' takes a term"),
     ("property", "a; %property p equal(a.$0);", "a state has no holes"),
@@ -167,7 +171,7 @@ MISTAKES = [
     (
         "property",
         "a; %property p $pred->terminal();",
-        "of the states that $pred means, only patterns and sizes are known",
+        "$pred takes only patterns and sizes",
     ),
     ("too-large", "%active b : 99999999; b;", "a node of more than 20000 ports"),
     ("too-large", "%active b : 15000; b | b;", "a bigraph of more than 20000 parts"),

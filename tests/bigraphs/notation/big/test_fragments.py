@@ -33,7 +33,7 @@ def test_share_puts_one_node_into_several_places():
         ("unknown", "unknown bigraph 'unknown'"),
         ("Q", "unknown control 'Q'"),
         ("B", "'B' has 1 port, this has no links"),
-        ("Z{x}.1", "'Z' is atomic, so there is nothing in it"),
+        ("Z{x}.1", "'Z' is atomic, so it has no content"),
         ("/q A", "there is no outer name 'q' here"),
         ("7", "a number is no bigraph"),
         (

@@ -25,7 +25,7 @@ MISTAKES = [
     ("arguments", "big b = A(1);", "'A' takes no arguments, this has 1"),
     ("arguments", "big b = s(1);", "'s' takes no arguments, this has 1"),
     ("arguments", "fun react r(i) = A --> A;", "'r' takes 1 argument, this has 0", {"rules": "{r}"}),
-    ("atomic", "big b = Z{x}.1;", "'Z' is atomic, so there is nothing in it"),
+    ("atomic", "big b = Z{x}.1;", "'Z' is atomic, so it has no content"),
     ("type", 'int n = "a";', 'an int was expected, this is the string "a"'),
     ("type", "int n = 1.5;", "an int was expected, this is the float 1.5"),
     ("type", 'int n = 1 + "a";', "'+' takes numbers, not strings"),
@@ -56,7 +56,7 @@ MISTAKES = [
     ("number", "int n = 2 ^ -1;", "the result is too large, or no number"),
     ("number", "", "a step is more than 0, this is 0", {"block": "int n = [1 : 0 : 3];"}),
     ("number", "big b = par(-1, s);", "it is repeated -1 times, not a whole number"),
-    ("interface", "big b = A * (s || s);", "this shows <2, {x}>, and what it is put into is for <1, {}>"),
+    ("interface", "big b = A * (s || s);", "this shows <2, {x}>, and its context is for <1, {}>"),
     ("interface", "big b = Z{x} + Z{x};", "the outer name 'x' is on both sides"),
     ("interface", "big b = /x || y/{x};", "the inner name 'x' is on both sides"),
     ("interface", "big b = A.(s || s);", "'A' has room for one region, this has 2"),
@@ -65,13 +65,13 @@ MISTAKES = [
     (
         "interface",
         "big b = share Z{x} by ([{0, 1}], 2) in (A.id | A.id);",
-        "this does not pass on the name 'x' of what is shared",
+        "this does not pass on the name 'x' of the shared bigraph",
     ),
     ("interface", "big b = share s by ([{0, 1}], 2) in A;", "this has 1 sites, and the placing is over 2"),
     (
         "interface",
         "big b = share s by ([{0}], 1) in (A || id{q});",
-        "this waits for the name 'q', which what is shared does not have",
+        "this needs the name 'q', which the shared bigraph lacks",
     ),
     ("parent", "big b = ([{3}], 1);", "site 0 is in region 3, which the bigraph does not have"),
     ("syntax", "big b = 2;", "a number is no bigraph"),
@@ -89,7 +89,7 @@ MISTAKES = [
     ("rule", "react r = Z{x} --> 1;", "the reactum lacks the name 'x' of the redex"),
     ("rule", "react r = A --> A | {y};", "the redex lacks the name 'y' of the reactum"),
     ("rule", "react r = A --> A | A;", "the redex has 1 site, the reactum 2"),
-    ("rule", "react r = A --> A @ [0, 0];", "the reactum has 1 site, the map speaks of 2"),
+    ("rule", "react r = A --> A @ [0, 0];", "the reactum has 1 site, the map lists 2"),
     ("rule", "react r = A --> A @ [3];", "the redex has 1 site, there is no site 3"),
     ("rule", "react r = A --> A || /v;", "the reactum has the inner name 'v'"),
     ("pattern", "big p = id;", "this has no node, so it would always occur", {"preds": "p"}),
@@ -166,7 +166,7 @@ def test_all_mistakes_are_told_at_once_by_position():
         "rooms.big:4:20: 'Person' has 1 port, this has 2 links\n"
         "    4 | react leave = Room.Person{x, y} --> Room.1;\n"
         "      |                    ^^^^^^^^^^^^\n"
-        "hint: its declaration says 1; every port needs a link\n"
+        "hint: its declaration gives 1; every port needs a link\n"
         "\n"
         "rooms.big:5:30: unknown rule 'leav'\n"
         "    5 | begin brs init s; rules = [ {leav} ]; end\n"

@@ -236,7 +236,7 @@ def test_what_was_found_under_a_limit_of_time_is_not_explored_otherwise(tmp_path
     crew = LocalCrew(initial, 2)
     found = Expedition(crew, initial, Options(limits)).run(())
     crew.lost = {0, 1}
-    with pytest.raises(MachineError, match="where they were was not kept"):
+    with pytest.raises(MachineError, match="its rows were not kept"):
         list(found.configurations)
     crew = LocalCrew(initial, 2)
     found = Expedition(crew, initial, Options(limits, keeping=Keeping(str(tmp_path)))).run(())
@@ -271,7 +271,11 @@ def kept(folder, workers=2, name="oil_spill", digest="d", limits=LIMITS, resumed
 )
 def test_a_checkpoint_of_something_else_is_refused(tmp_path, other):
     kept(tmp_path, resumed=False)
-    said = "not what was learned" if "name" in other else "of another mission, variation, limit, version or"
+    said = (
+        "differ from those recorded in it"
+        if "name" in other
+        else "of another mission, variation, limit, version or"
+    )
     with pytest.raises(CheckpointError, match=said):
         kept(tmp_path, **other)
 

@@ -62,7 +62,7 @@ def test_where_nothing_compiled_can_be_kept_the_remedy_is_told():
     found = run(NOWHERE)
     assert (found.returncode, found.stdout) == (3, "")
     assert found.stderr.splitlines() == [
-        "oil_spill: there is no folder here in which numba may keep compiled loops",
+        "oil_spill: numba has no writable folder here for its compiled loops",
         "  hint: set NUMBA_CACHE_DIR to a folder that you may write, or add --engine reference",
     ]
 

@@ -134,5 +134,5 @@ def test_where_the_system_gives_no_more_memory_the_search_is_incomplete_and_says
         timeout=300,
     )
     assert ran.returncode == 0, ran.stderr
-    assert "stopped at the end of the memory that there is: what lies beyond" in ran.stdout
+    assert "stopped at the end of the available memory: the rest" in ran.stdout
     assert "? local_consistency  incomplete" in ran.stdout

@@ -29,7 +29,9 @@ def test_what_files_do_not_help_and_the_end_of_the_room_are_bounds(tmp_path, mon
 
     monkeypatch.setattr(os, "posix_fallocate", full)
     found = explore(initial, engine=Engine.FAST, limits=Limits(memory=2 * MEGABYTE, spill=str(tmp_path)))
-    assert list(map(str, found.bounds)) == [f"the end of the room in {tmp_path}: No space left on device"]
+    assert list(map(str, found.bounds)) == [
+        f"the end of the free space in {tmp_path}: No space left on device"
+    ]
     assert found.expanded < 18_051
 
 

@@ -118,9 +118,9 @@ def test_a_trace_has_dates_and_replays_with_them(flight):
 @pytest.mark.parametrize(
     ("at", "cause"),
     [
-        ([0, 120], "something else has to be done by 1:00"),
+        ([0, 120], "another step is due by 1:00"),
         ([60, 0], "it is 1:00 already"),
-        ([120, 120], "something else has to be done by 1:00"),
+        ([120, 120], "another step is due by 1:00"),
     ],
 )
 def test_a_step_at_a_moment_that_the_clocks_do_not_allow_does_not_replay(flight, late, at, cause):
@@ -140,7 +140,7 @@ def test_a_date_is_a_whole_number_of_ticks(flight, late, at):
 def test_a_vehicle_that_never_left_is_full_and_then_lasts_so_long(flight):
     endurance = Property(PropertyKind.ENDURANCE, "endurance")
     found = decided(flight, endurance).verdicts["endurance"]
-    assert found.violations[0].message == "uav0 lasts 6 min, and goes unrestored for longer at 7:00"
+    assert found.violations[0].message == "uav0 lasts 6 min, and is unrestored for longer at 7:00"
     exactly = MINUTES.endurances[0][1]
     places = (*exactly.places, "south0")
     home = with_timing(load(FLIGHT).initial, replaced(endurances=(("uav0", Endurance(7, places, 20)),)))
@@ -162,7 +162,7 @@ def test_what_is_not_said_is_not_assumed_and_a_late_deadline_says_so():
     late = decided(with_timing(load(FLIGHT).initial, replaced(motions=())), within(7)).verdicts["within"]
     assert late.violations[0].details == (
         "it may stay so for ever",
-        "nothing says how long ⟨commit : FLY(a, MOVE_HOST_TO south0)⟩ takes",
+        "⟨commit : FLY(a, MOVE_HOST_TO south0)⟩ has no upper time bound",
     )
 
 
@@ -285,7 +285,7 @@ def test_other_engines_and_reductions_are_refused_by_name(flight):
     ):
         check(flight, (when(),), engine=Engine.RAY)
     with pytest.raises(
-        RefusedError, match="the reduction 'por' is refused: it is not proved sound where a mission"
+        RefusedError, match="the reduction 'por' is refused: it is not proved sound for missions"
     ):
         check(flight, (when(),), reduce=(Reduction.POR,))
 
@@ -334,7 +334,7 @@ def test_properties_of_runs_are_not_decided_with_times(flight):
 
 def test_without_timing_nothing_is_decided_of_times():
     found = decided(load(FLIGHT).initial, within(8)).verdicts["within"]
-    assert found.note.endswith("give the mission a section `timing`")
+    assert found.note.endswith("give it a section `timing`")
 
 
 # --- the naive interpreter

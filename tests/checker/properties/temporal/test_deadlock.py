@@ -90,7 +90,7 @@ def test_where_nothing_promised_leads_on_is_a_deadlock_with_its_run_and_its_caus
     found = decided(SENDS.replace(" and returns", ""), engine)
     (violation,) = found.violations
     assert violation.message == (
-        'nothing but the environment can move, and SND(a, b, "go") is pending; b waits at a react, '
+        'only the environment can move, and SND(a, b, "go") is pending; b waits at a react, '
         "and no promised step leads on"
     )
     assert violation.details == (

@@ -147,7 +147,7 @@ def test_a_violation_within_what_was_explored_is_one():
 
 def test_fairness_to_what_never_is_is_pointed_out():
     found = verdict(ONCE, 'ltl "q" under strong fairness of sense a: <> ended a')
-    assert found.remarks == ("strong fairness of sense a is about no step that ever is",)
+    assert found.remarks == ("strong fairness of sense a covers no step of any run",)
 
 
 def test_a_formula_that_is_too_large_is_not_decided():
@@ -180,7 +180,7 @@ def test_a_run_that_does_not_come_round_there_is_refused(loop_data):
 
 
 def test_a_run_that_has_to_go_on_cannot_stay(loop_data):
-    with pytest.raises(ReplayError, match="staying for ever is not enabled: something has to be done"):
+    with pytest.raises(ReplayError, match="staying for ever is not enabled: some step has to be taken"):
         replay(load(THERE_AND_BACK).initial, loop_data | {"loop": 9})
 
 
