@@ -140,12 +140,12 @@ class AisFeed(Feed):
     def _leave(self, kind: str) -> None:
         """Count a valid line without a position; its kind is reported once, and its number at the end."""
         if kind not in self._counting.left_out:
-            self._troubles.note(f"{kind}: such are not read", "how many there were is told at the end")
+            self._troubles.note(f"{kind}: not read", "their number is reported at the end")
         self._counting.leave(kind)
 
     def _tell_unread(self) -> None:
         for kind, count in sorted(self._counting.left_out.items()):
-            self._troubles.note(f"{kind}, not read in all", "", count)
+            self._troubles.note(f"{kind}: not read, in total", "", count)
         self._counting = Counting()
 
     def _position(self, report: PositionReport, now: float) -> None:

@@ -129,7 +129,7 @@ class Detections(Feed):
         for kind, count in sorted(counting.asides.items()):
             if kind not in self._unread:
                 self._unread.add(kind)
-                self._troubles.note(kind, "it is not told again", count)
+                self._troubles.note(kind, "it is reported only once", count)
 
     def _check(self, feature: PhysicalProperty) -> None:
         if self._kinds is not None and feature.kind not in self._kinds:

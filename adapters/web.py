@@ -65,7 +65,7 @@ async def serve(handler: Handler, where: Listen) -> AsyncIterator[int]:
         assert door is not None
         door.has_come(request.transport)
         if body is None:
-            status, text = refused or (400, "what is sent is not what its headers say")
+            status, text = refused or (400, "the body does not match its headers")
         else:
             status, text = await handler(request.method, request.path, body)
         response = web.Response(status=status, text=text + "\n")
@@ -156,7 +156,7 @@ def _refusal(request: Any, where: Listen) -> tuple[int, str] | None:
         )
     token = where.token
     if token is not None and request.headers.get("Authorization") != f"Bearer {token}":
-        return 401, "say who you are: Authorization: Bearer TOKEN"
+        return 401, "send the token: Authorization: Bearer TOKEN"
     if request.method == "POST" and request.content_type not in JSON:
         return 415, f"send {' or '.join(JSON)}"
     if (request.content_length or 0) > MAX_BODY:

@@ -45,7 +45,7 @@ REFUSALS: dict[type[Exception], tuple[Exit, str]] = {
         "set NUMBA_CACHE_DIR to a folder that you may write, or add --engine reference",
     ),
     TickError: (Exit.MISTAKE, "give timing a larger tick, or shorter times"),
-    EngineError: (Exit.MISTAKE, "leave out --engine, and what only that engine keeps or doubts"),
+    EngineError: (Exit.MISTAKE, "leave out --engine, or the options that it refuses"),
     RefusedError: (Exit.MISTAKE, "check it without, or with the other reduction alone"),
     MachineError: (Exit.INCOMPLETE, "try again when less else runs here, or leave --engine out"),
     MemoryError: (Exit.INCOMPLETE, "explore less: --max-memory SIZE, --max-configurations N"),
@@ -166,11 +166,9 @@ def check_mission(
 def _check_times(name: str, mission: ElaboratedMission, report: Report) -> None:
     """Explain a report without the times that the user asked for."""
     if mission.setting.timing is None:
-        tell(
-            f"{name}: it has no times: nothing says how long anything takes; write a section timing {{ ... }}"
-        )
+        tell(f"{name}: it has no times: no duration is given; write a section timing {{ ... }}")
     elif report.schedule is None:
-        tell(f"{name}: it has no times: time stops, as the verdict on computation says")
+        tell(f"{name}: it has no times: time stops; see the verdict on computation")
 
 
 def _of_this(keeping: Keeping, mission: ElaboratedMission, limits: Limits) -> Keeping:

@@ -16,4 +16,4 @@ def short_limits(mission: ElaboratedMission, flights: Mapping[Name, float]) -> I
         for agent, seconds in sorted(flights.items()):
             if limit.covers("FLY", agent) and limit.seconds < seconds:
                 given, most = (lapse_text(round(1000 * each)) for each in (limit.seconds, seconds))
-                yield f"live lets {agent} fly for {given}, and the times let a flight of it take {most}"
+                yield f"live lets {agent} fly for {given}, but by the times its flight may take {most}"

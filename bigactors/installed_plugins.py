@@ -42,7 +42,7 @@ def make_vehicles(scheme: str, name: str, address: str, vehicles: tuple[Assigned
     plugin, blame = _made(VEHICLES, scheme, (name, address, vehicles))
     missing = [each.entity for each in vehicles if not plugin.owns(each.entity)]
     if missing:
-        raise blame(f"does not own {', '.join(missing)}, which it shall drive")
+        raise blame(f"does not own {', '.join(missing)}, which it should drive")
     return plugin
 
 
@@ -64,7 +64,7 @@ def require_known(word: str, group: str, ours: Collection[str], message: str) ->
     known = [*ours, *dict.fromkeys(entry.name for entry in installed(group))]
     if word not in known:
         hint = suggestion(word, known) or f"there are {', '.join(known) or 'none'}"
-        raise Mistake(message, f"{hint}; bigactors plugins lists what is installed")
+        raise Mistake(message, f"{hint}; bigactors plugins lists those installed")
 
 
 def _only(group: str, called: str) -> EntryPoint:

@@ -67,7 +67,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
     parser.addini(
         "mission_violated",
-        "patterns of tests whose property has to be violated, such as missions/broken.mission::race_freedom",
+        "patterns of tests that expect a violated property, such as missions/broken.mission::race_freedom",
         "linelist",
     )
 

@@ -70,7 +70,7 @@ def parting_of(recording: Recording) -> Parting | None:
             counts = [*sent.values(), *took.values()]
             if all(isinstance(word, str) for word in words) and all(type(count) is int for count in counts):
                 return Parting(here, hosts, sent, took)
-    raise Mistake("its run does not say which station's it is")
+    raise Mistake("its run does not name its station")
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +109,9 @@ def resume(path: str, mission: ElaboratedMission) -> Resumed:
     recording = open_recording(path)
     if recording.run["digest"] != digest_of(mission):
         raise Mistake(
-            "it records another mission, or another version flew it", "resume it with what it records", path
+            "it records another mission, or another version flew it",
+            "resume it with the mission and the version that it records",
+            path,
         )
     try:
         trace = trace_of(recording, mission)

@@ -34,7 +34,7 @@ MOST_BYTES: Final = 10_000
 PUBLIC: Final = ".pub"
 _PUBLIC_PEM, _SECRET_PEM = b"PUBLIC KEY-----", b"PRIVATE KEY-----"
 _GIVE_SECRET: Final = f"give FILE of the pair FILE and FILE{PUBLIC}, which bigactors keygen FILE makes"
-_GIVE_PUBLIC: Final = f"give the FILE{PUBLIC} of the one who signs, which bigactors keygen FILE makes"
+_GIVE_PUBLIC: Final = f"give the FILE{PUBLIC} of the signer, which bigactors keygen FILE makes"
 
 
 def new_pair(path: Path) -> Path:
@@ -94,7 +94,7 @@ def signature_json(key: SigningKey, text: bytes) -> dict[str, str]:
 
 def check_signature(signature: Any, text: bytes, trusted: TrustedKey, path: str) -> None:
     """Raise Mistake unless the signature is the trusted key's, with the reason."""
-    hint = "the one who is trusted signs it: bigactors check --verdict FILE --sign KEY"
+    hint = "the owner of the trusted key signs it: bigactors check --verdict FILE --sign KEY"
     match signature:
         case {"key": str(whose), "ed25519": str(value)} if _ED25519.fullmatch(value):
             pass

@@ -54,7 +54,7 @@ def only_socket(given: str | None) -> Path:
     if not found:
         raise Mistake("no mission runs here", "start one with `bigactors run`, or give its --socket")
     names = ", ".join(map(str, found))
-    raise Mistake(f"{len(found)} missions run here: {names}", "say which: --socket FILE")
+    raise Mistake(f"{len(found)} missions run here: {names}", "choose one: --socket FILE")
 
 
 def check_texts(what: str, name: str, by: str, *more: str) -> None:

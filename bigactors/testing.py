@@ -55,10 +55,10 @@ class Clause(Enum):
     """A clause of the contract, in the words of its documentation page."""
 
     INTERFACE = "it has all of the interface, and a printable name"
-    STAMPED = "each publication is stamped, never in the future, and says its source"
-    REFUSES = "it refuses a command for what it does not own, by name, and reports nothing of it"
+    STAMPED = "each publication is stamped, never in the future, and names its source"
+    REFUSES = "it refuses a command for an entity that it does not own, by name, and reports nothing of it"
     JUNK = "unusable input does not end it, and is reported as a Trouble with its name"
-    REPORTS = "what it reports fits the recording, and a vehicle's Status comes at most once a second"
+    REPORTS = "its reports fit the recording, and a vehicle's Status comes at most once a second"
     ENDS = "cancelled, it ends, leaves no task behind, publishes nothing more, and can run again"
     DRIVES = "a vehicle's state confirms a command: Accepted, then Arrived, from inside the place"
 
@@ -183,7 +183,7 @@ async def _heard(clause: Clause, world: World) -> None:
     try:
         await until(lambda: world.published)
     except AssertionError:
-        raise ContractBrokenError(clause, "nothing is published in ten minutes of what it was fed") from None
+        raise ContractBrokenError(clause, "nothing of its input is published in ten minutes") from None
 
 
 class PluginContract:
@@ -264,7 +264,7 @@ class PluginContract:
                     sources = {report.source for report in troubles}
                     require(Clause.JUNK, sources == {plugin.name}, f"the sources are {sorted(sources)}")
                     counted = all(report.what and report.count > 0 for report in troubles)
-                    require(Clause.JUNK, counted, f"one says not what, or how often: {troubles}")
+                    require(Clause.JUNK, counted, f"one lacks its name or its count: {troubles}")
                     async with connection.fed():
                         await _heard(Clause.JUNK, world)
 

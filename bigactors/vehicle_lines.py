@@ -60,7 +60,7 @@ def situation(plan: Plan, state: LiveState, said: Mapping[Name, Status], now: fl
         if times
     ]
     served = ["no more controls are served: an assumption broke"] if state.overrides.suspended else []
-    parts = {"vehicles": vehicles, "requests": requests, "may be said": may, "suspended": served}
+    parts = {"vehicles": vehicles, "requests": requests, "permitted messages": may, "suspended": served}
     return "\n".join(
         line for title, lines in parts.items() if lines for line in (title, *(f"  {each}" for each in lines))
     )

@@ -139,15 +139,15 @@ def licence_for(
     scheduler = _scheduler_of(data, path)
     differing = _differing(data, mission.under(scheduler, Control.TIMED))
     if differing:
-        raise Mistake(f"the verdict is of another mission: {differing}", _hint(name, path), path)
+        raise Mistake(f"the verdict belongs to another mission: {differing}", _hint(name, path), path)
     if data.get("holds") is not True or data.get("complete") is not True:
         raise Mistake(
-            "the verdict is not that everything holds", f"bigactors check {name} says what fails", path
+            "the verdict does not confirm every property", f"bigactors check {name} prints the failures", path
         )
     if data.get("seal") != _seal(data):
         raise Mistake("the verdict was changed after it was reached", _hint(name, path), path)
     for short in short_limits(mission, _flights_of(data)):
-        raise Mistake(f"{short}: it would be given up though all goes well", "lengthen the limit", name)
+        raise Mistake(f"{short}: a normal flight would be given up", "lengthen the limit", name)
     properties = data.get("properties")
     listed = [each for each in properties if isinstance(each, dict)] if isinstance(properties, list) else []
     resting = tuple(str(each.get("name")) for each in listed if each.get("rests_on") == "environment")
@@ -183,7 +183,7 @@ def _differing(data: dict[str, Any], mission: ElaboratedMission) -> str:
     others = [called for part, called in PARTS.items() if parts.get(part) != parts_of(mission)[part]]
     if others:
         return f"changed since: {', '.join(others)}"
-    return "" if data.get("digest") == digest_of(mission) else "its digest is another"
+    return "" if data.get("digest") == digest_of(mission) else "its digest differs"
 
 
 def _hint(name: str, path: str) -> str:

@@ -74,10 +74,10 @@ class Terminal:
         if len(told) > MOST_BREACHES:
             tell(f"  and {len(told) - MOST_BREACHES:,} more")
         if told:
-            tell("  it goes on where the world is as the mission says again, or by --unverified")
+            tell("  it goes on once the world is as the mission assumes again, or with --unverified")
         for vehicle, how in sorted(taken.items()):
             tell(
-                f"{vehicle}: {how}; nobody here commands it until `bigactors give-back {vehicle}`",
+                f"{vehicle}: {how}; this run does not command it until `bigactors give-back {vehicle}`",
                 "taken over:",
             )
 

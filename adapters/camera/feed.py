@@ -146,7 +146,7 @@ class CameraFeed(Feed):
             if at - self._newest < self._camera.every:
                 continue
             if len(self._waiting) == MOST_WAITING:
-                self._leave_out("more than could be looked at")
+                self._leave_out("more than the detector can process")
             self._newest = at
             self._waiting.append(Shot(at, shot.name, shot.pixels))
 
@@ -160,7 +160,7 @@ class CameraFeed(Feed):
             pose = self._poses.at(shot.time)
             if pose is not None:
                 return shot, pose
-            self._leave_out(f"where {self._camera.vehicle} was, and how it lay, is not known")
+            self._leave_out(f"the position and attitude of {self._camera.vehicle} are not known")
         return None
 
     async def _look(self, world: World, shot: Shot, pose: Pose) -> None:

@@ -78,18 +78,18 @@ def fallen_back(facts: Facts) -> str:
     if ALL not in facts.stopped:
         return ""
     told = STOPPING[facts.stopped[ALL]]
-    return f"all vehicles were told to {told}; the mission commands nothing any more"
+    return f"all vehicles were commanded to {told}; the mission sends no more commands"
 
 
 def grounded(agent: str) -> str:
     """Return the consequence of an agent's fallback."""
-    return f"nothing that {agent} orders is carried out any more"
+    return f"no command of {agent} is carried out any more"
 
 
 def vanity(facts: Facts | Draft, agent: str) -> str | None:
     """Return why a message to an agent has no effect; None while the mission still commands vehicles for it."""
     if ALL in facts.stopped:
-        return "the mission has fallen back and commands nothing any more: what is said moves no vehicle"
+        return "the mission has fallen back and sends no more commands: messages move no vehicle"
     return f"the mission has fallen back: {grounded(agent)}" if agent in facts.stopped else None
 
 
@@ -99,7 +99,7 @@ def _consequence(facts: Facts, alert: Json) -> str:
     if whole := fallen_back(facts):
         return whole
     if fallback in STOPPING:
-        return f"its vehicles were told to {STOPPING[fallback]}; {grounded(alert['about'])}"
+        return f"its vehicles were commanded to {STOPPING[fallback]}; {grounded(alert['about'])}"
     return "the mission goes on" if fallback else ""
 
 

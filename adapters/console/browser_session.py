@@ -43,9 +43,9 @@ STALLED: Final = 30.0
 MOST_REQUESTS: Final = 50
 """Requests of one connection in a second."""
 
-NO_ACTIONS: Final = "this console only watches: nothing runs here that would hear it"
+NO_ACTIONS: Final = "this console only watches: no run receives its actions"
 WATCHING: Final = "this link only watches: open the one that may act"
-NAMELESS: Final = "say who you are first: each action is recorded with a name"
+NAMELESS: Final = "enter your name first: each action is recorded with a name"
 NOT_BEGUN: Final = "the run has not begun to write its recording"
 
 
@@ -203,7 +203,7 @@ class Looker:
             case Live():
                 self.playhead = Playhead()
             case Hello():
-                await self._complain("hello was said already")
+                await self._complain("hello was sent already")
                 return
         self._changed.set()
 

@@ -228,7 +228,7 @@ def _reasons(
     yield from _of_assumptions(facts, name)
     for station in facts.authority.get(name, UNTOLD).stations:
         if facts.stations.get(station, {}).get("reached") is False:
-            yield Reason(WRONG, f"{station}, which it obeys, is not reached")
+            yield Reason(WRONG, f"its station {station} is not reached")
     away = name in facts.taken or name in facts.standing_orders
     yield from _of_request(asked, now, idle=away)
     yield from _of_falling_back(facts, asked)
@@ -241,7 +241,7 @@ def _reasons(
     if battery is not None and battery["percent"] is not None and battery["percent"] < LOW:
         yield Reason(WRONG, f"its battery has less than {LOW} %")
     if where.differs and destination(facts, name) is None:
-        yield Reason(WATCHED, "where it is believed to be and where it is differ")
+        yield Reason(WATCHED, "its believed and its actual position differ")
 
 
 def _of_link(link: Link, now: float) -> Iterator[Reason]:
@@ -271,16 +271,16 @@ def _of_request(asked: Asked | None, now: float, *, idle: bool) -> Iterator[Reas
         return
     stood, limit = now - asked.waiting.since, asked.limit.seconds
     if stood >= limit:
-        yield Reason(WRONG, f"its request stands for longer than {duration_text(limit)}")
+        yield Reason(WRONG, f"its request is pending for longer than {duration_text(limit)}")
     elif stood > limit / 2:
-        yield Reason(WATCHED, f"its request stands for more than half of {duration_text(limit)}")
+        yield Reason(WATCHED, f"its request is pending for more than half of {duration_text(limit)}")
     if idle and stood < limit and not asked.given_up:
         then = (
             ""
             if asked.limit.fallback is Fallback.CONTINUE
             else f"; then {grounded(asked.waiting.request.agent)}"
         )
-        yield Reason(WATCHED, f"the {duration_text(limit)} of its request run on meanwhile{then}")
+        yield Reason(WATCHED, f"the time limit of its request, {duration_text(limit)}, still runs{then}")
 
 
 def _of_falling_back(facts: Facts, asked: Asked | None) -> Iterator[Reason]:
@@ -302,6 +302,6 @@ def _of_idleness(facts: Facts) -> Iterator[Reason]:
         f"{name} {each['state']}" for name, each in states.items() if each["state"].startswith("waits")
     ]
     if waiting:
-        yield Reason(WELL, f"nothing is asked of it: {waiting[0]}")
+        yield Reason(WELL, f"it has no request: {waiting[0]}")
     elif states:
-        yield Reason(WATCHED, "nothing will be asked of it any more: every bigActor of the mission has ended")
+        yield Reason(WATCHED, "it will get no more requests: every bigActor of the mission has ended")

@@ -28,7 +28,7 @@ def take_order(draft: Draft, time: float, data: Any) -> None:
             named = [each for each in requests.items() if isinstance(each[1], str)][:MOST_NAMED]
             name, by = data.get("vehicle"), text(data.get("by"))
             for vehicle, _ in named:
-                end(draft, time, vehicle, f"then it was told to {order}")
+                end(draft, time, vehicle, f"then it was ordered to {order}")
             number = act(draft, time, data, order, text(name) if isinstance(name, str) else "all", "asked")
             for vehicle, request in named:
                 draft.taken.pop(vehicle, None)  # the order overrules the take-over

@@ -77,7 +77,7 @@ def _begin(draft: Draft, message: Message, opening: Opening) -> None:
     try:
         rules = opening(run)
     except Unreplayable as error:
-        tell(draft, f"what is believed is not known: {error}")
+        tell(draft, f"the logical model is not known: {error}")
         return
     first = rules.initial
     draft.standing = Standing(rules, first, Change(0, first, first), heads_of(first, {}, message.time))

@@ -38,15 +38,15 @@ def of_return(facts: Facts, name: Name) -> str | None:
     return (
         None
         if left is None
-        else f"takes it out of {left}, which breaks what the mission assumes: {_then(standing.rules)}"
+        else f"takes it out of {left}, which breaks an assumption of the mission: {_then(standing.rules)}"
     )
 
 
 def _then(rules: Rules) -> str:
     if rules.on_broken is Fallback.CONTINUE:
-        return "that is reported, and the mission goes on"
+        return "this is reported, and the mission goes on"
     told = STOPPING[rules.on_broken.value]
-    return f"all vehicles are told to {told}, and the mission commands nothing any more"
+    return f"all vehicles are commanded to {told}, and the mission sends no more commands"
 
 
 @lru_cache(maxsize=256)

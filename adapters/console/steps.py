@@ -68,7 +68,7 @@ def _followed(draft: Draft, standing: Standing, number: int, time: float, data: 
     try:
         label, after = standing.rules.follow(before, data)
     except Unreplayable as error:
-        tell(draft, f"what is believed is not known any more: {error}")
+        tell(draft, f"the logical model is not known any more: {error}")
         draft.standing = None
         return None
     change = Change(number, before, after) if is_structural(before, after) else standing.change

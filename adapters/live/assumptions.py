@@ -30,7 +30,7 @@ def broken_by_place(
     before = c.structure.physical.placement(entity)
     if seen is None:
         allowed = _clause(plan, Vanishes, entity) is not None
-        return "" if allowed else f"{entity} is not seen any more; the mission does not say that it vanishes"
+        return "" if allowed else f"{entity} is not seen any more; the mission does not let it vanish"
     now = relations(c, entity, seen)
     if before is None:
         return _broken_by_appearing(plan, c, entity, now)
@@ -45,8 +45,8 @@ def broken_by_place(
     if isinstance(drift, Drifts):
         return f"{where}; the mission lets it drift among {', '.join(drift.names)}"
     if entity in plan.vehicles:
-        return f"{where}; it was not sent there, and has not stayed where it was: {cause}"
-    return f"{where}; the mission does not say that it drifts, and it was not sent"
+        return f"{where}; it was not sent there, and has left its place: {cause}"
+    return f"{where}; the mission does not let it drift, and it was not sent there"
 
 
 def _broken_by_appearing(plan: Plan, c: Configuration, entity: Name, now: Relations) -> str:
@@ -60,11 +60,7 @@ def _broken_by_appearing(plan: Plan, c: Configuration, entity: Name, now: Relati
         *(clause.placements if isinstance(clause, Appears) else ()),
     )
     allowed = [relations(c, entity, place) for place in places]
-    return (
-        ""
-        if now in allowed
-        else f"{entity} appears in {where}; the mission does not say that it appears there"
-    )
+    return "" if now in allowed else f"{entity} appears in {where}; the mission does not let it appear there"
 
 
 def relations(c: Configuration, entity: Name, placement: Placement) -> Relations:

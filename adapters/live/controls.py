@@ -103,7 +103,7 @@ def _hears(turning: Turning, node: Name) -> bool:
     owner = turning.plan.vehicles.get(node)
     if owner is None or owner == turning.plan.peers:
         here = "" if owner is None else " at this station"
-        message = f"no vehicle takes commands as {node}{here}: say --vehicle {node}=..."
+        message = f"no vehicle takes commands as {node}{here}: give --vehicle {node}=..."
         turning.find("blocked", node, message, once=True)
         return False
     heard = node in turning.sightings.newest and node not in turning.sightings.lost

@@ -30,10 +30,10 @@ def fall_back(turning: Turning, fallback: Fallback, entities: tuple[Name, ...]) 
         if not answers_for(turning, entity):
             continue
         if fallback is Fallback.HOLD and flies_home(turning, entity):
-            message = f"{entity} is not told to hold: it was told to return before"
+            message = f"{entity} is not commanded to hold: it was commanded to return before"
             turning.find("trouble", entity, message, once=True)
         elif entity in turning.overrides.taken:
-            message = f"{entity} is not told to {fallback.value}: {_override(turning, entity)}"
+            message = f"{entity} is not commanded to {fallback.value}: {_override(turning, entity)}"
             turning.find("taken over", entity, message, once=True)
         else:
             _command(turning, fallback, entity)

@@ -234,7 +234,7 @@ def off_channel(turning: Turning, entity: Name, channel: Name, what: str) -> Non
         cell = channels_cell(entity)
         first = turning.sightings.missing.get(cell, before)
         turning.sightings = turning.sightings.with_missing(cell, first)
-        breaks(turning, f"{what}; the mission does not say that it leaves it, or that it drops", entity)
+        breaks(turning, f"{what}; the mission does not let it leave or drop", entity)
 
 
 def _on_channel(turning: Turning, entity: Name, channel: Name) -> None:
@@ -255,7 +255,7 @@ def _on_channel(turning: Turning, entity: Name, channel: Name) -> None:
     if observe(turning, sight, happening(turning.c, sight)) and not back:
         breaks(
             turning,
-            f"{entity} is on {channel}; it was not handed there, and no clause lets it return",
+            f"{entity} is on {channel}; it was not handed over there, and the mission does not let it return",
             entity,
         )
 

@@ -101,7 +101,7 @@ class NotHeard(Exception):
         silent = [name for name in vehicles if name not in lacking]
         words = [f"nothing was heard of {', '.join(silent)}"] if silent else []
         words += [
-            f"{name} is heard, and {why or 'does not tell yet what it is'}" for name, why in lacking.items()
+            f"{name} is heard, and {why or 'has not reported its type yet'}" for name, why in lacking.items()
         ]
         super().__init__("; ".join(words))
         self.vehicles = tuple(vehicles)
@@ -167,7 +167,7 @@ class Inbox:
         if not all(map(is_text, said.texts)):
             answer.set_result(Answer(said, "this is no text in valid Unicode"))
         elif len(self.sayings) >= MOST_SAYINGS:
-            answer.set_result(Answer(said, "too much is being said at once; say it again"))
+            answer.set_result(Answer(said, "too many messages at once; send it again"))
         else:
             self.sayings.append((said, answer))
             self.awake.set()
@@ -331,7 +331,7 @@ class LiveRun:
             if until(self.state):
                 return Ending("the mission has ended", self.state)
             if again is None and is_refused(self.state):
-                return Ending("what was left to be done was refused", self.state)
+                return Ending("all remaining requests were refused", self.state)
             if end is not None and elapsed() >= end:
                 return Ending("the time is over", self.state)
 

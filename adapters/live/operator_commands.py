@@ -60,7 +60,7 @@ def order(turning: Turning, said: Ordering) -> Answer:
     notes = tuple(note for entity in ordered for note in _notes(turning, entity, said.fallback))
     requests = {entity: _order_one(turning, entity, said) for entity in ordered}
     who, are = ", ".join(ordered), "is" if len(ordered) == 1 else "are"
-    message = f"{who} {are} told to {said.fallback.value} by {operator(said.by)}"
+    message = f"{who} {are} ordered to {said.fallback.value} by {operator(said.by)}"
     back = f"until `bigactors give-back {said.vehicle or 'VEHICLE'}`"
     rest = "; ".join([*notes, *left_out.values(), f"the mission does not command {_it(ordered)} {back}"])
     turning.find("ordered", said.vehicle or "", f"{message}; {rest}")
@@ -85,7 +85,7 @@ def _objection(turning: Turning, entity: Name, said: Ordering) -> str:
         return ""
     why = turning.overrides.taken[entity]
     if said.vehicle is None:
-        return f"{entity} was taken over, and is not overruled: {why}"
+        return f"{entity} was taken over, and an order to all does not overrule that: {why}"
     if turning.before.overrides.taken.get(entity) != why:
         return f"{entity} was taken over just now: {why}; order it again to overrule that"
     return ""
@@ -101,9 +101,9 @@ def _authority(turning: Turning, entity: Name) -> str:
 def _notes(turning: Turning, entity: Name, what: Fallback) -> Iterator[str]:
     """Yield remarks to the operator on a vehicle that gets an order."""
     if turning.overrides.is_foreign(entity):
-        yield f"that overrules who took {entity} over: {turning.overrides.taken[entity]}"
+        yield f"this order overrules the take-over of {entity}: {turning.overrides.taken[entity]}"
     if entity in turning.sightings.lost or entity not in turning.sightings.newest:
-        yield f"{entity} is not heard: it is told as soon as it is, unless it was taken over by then"
+        yield f"{entity} is silent: it gets the order once it is heard, unless it was taken over by then"
     if what is Fallback.RETURN:
         yield from _of_leaving(turning, entity)
 
@@ -118,7 +118,7 @@ def _of_leaving(turning: Turning, entity: Name) -> Iterator[str]:
     place = physical.abstract_parent(entity)
     if place != turning.plan.first.structure.physical.abstract_parent(entity):
         stays = f"the mission assumes that {entity} stays in {place}"
-        yield f"{stays}: when it leaves, all vehicles are told to {then.value}"
+        yield f"{stays}: when it leaves, all vehicles are commanded to {then.value}"
 
 
 def _order_one(turning: Turning, entity: Name, said: Ordering) -> str:
@@ -167,7 +167,7 @@ def _give_back(turning: Turning, said: GivingBack) -> Answer:
     if then is Fallback.CONTINUE:
         turning.find("given back", entity, f"{given}, and is commanded again")
         return Answer(said)
-    note = f"what it was to do was given up: it is told to {then.value}"  # no one else flies it
+    note = f"its task was given up: it is commanded to {then.value}"  # no one else flies it
     turning.find("given back", entity, f"{given}; {note}")
     fall_back(turning, then, (entity,))
     return Answer(said, notes=(note,))
@@ -178,7 +178,9 @@ def say_to(turning: Turning, saying: Saying) -> None:
     agents = turning.c.alpha
     if saying.agent in agents and not is_here(turning.c, saying.agent):
         there = station_of(turning.c, saying.agent)
-        turning.answer(Answer(saying, f"{saying.agent} runs at {there or 'no station'}: say it there"))
+        turning.answer(
+            Answer(saying, f"{saying.agent} runs at {there or 'no station'}: send the message there")
+        )
         return
     clauses = [each for each in turning.c.setting.environment if isinstance(each, Says)]
     for clause in _meant(saying, clauses):
@@ -192,8 +194,8 @@ def say_to(turning: Turning, saying: Saying) -> None:
     is_vehicle = saying.agent in turning.plan.vehicles
     nobody = f"there is no bigActor '{saying.agent:.60}'{', which is a vehicle' if is_vehicle else ''}; "
     who = "" if saying.agent in agents else nobody
-    what = f"what may be said now: {', '.join(left)}" if left else "nothing may be said any more"
-    turning.answer(Answer(saying, f"{who}the mission does not say that this is said; {what}"))
+    what = f"permitted now: {', '.join(left)}" if left else "no message is permitted any more"
+    turning.answer(Answer(saying, f"{who}the mission does not permit this message; {what}"))
 
 
 def _meant(saying: Saying, clauses: Iterable[Says]) -> Iterator[Says]:
@@ -219,9 +221,7 @@ def _rebind(turning: Turning, entity: Name, at: str) -> str:
             f"'{at:.60}' is no HOST:PORT with HOST as a number, such as 192.168.1.7:14555 or [fd00::7]:14555"
         )
     if entity not in turning.sightings.lost:
-        return (
-            f"the link to {entity} is not lost; it can be believed elsewhere once it is silent where it was"
-        )
+        return f"the link to {entity} is not lost; another address is accepted once the known one is silent"
     turning.command(Rebind(turning.request_of("operator"), entity, at))
     return ""
 

@@ -128,7 +128,7 @@ async def _answer(
         return {"refusal": "", "fates": dict(fates())}
     said = _said(line)
     if said is None:
-        return {"refusal": f"this is no saying: {EXPECTED}, was expected"}
+        return {"refusal": f"this is no request: expected {EXPECTED}"}
     answer = await listener(said)
     more = {"left_out": dict(answer.left_out), "notes": [*answer.notes]}
     return {"refusal": answer.refusal, **{name: each for name, each in more.items() if each}}
@@ -215,7 +215,7 @@ async def status(path: Path) -> str:
     match await _asked(path, ASKED):
         case {"status": str(text)}:
             return text
-    raise NobodyListens(f"the run at {path} is of a version that does not tell how it stands")
+    raise NobodyListens(f"the run at {path} is of a version that reports no status")
 
 
 async def fates(path: Path) -> Fates:
@@ -226,7 +226,7 @@ async def fates(path: Path) -> Fates:
                 (name, each) for name, each in found.items() if isinstance(each, list) and len(each) == 2
             )
             return {name: (str(fate), str(words)) for name, (fate, words) in pairs}
-    raise NobodyListens(f"the run at {path} is of a version that does not tell what becomes of orders")
+    raise NobodyListens(f"the run at {path} is of a version that reports no progress of orders")
 
 
 def _outcome(answer: dict[str, Any]) -> Outcome:
@@ -253,7 +253,7 @@ async def _asked(path: Path, line: bytes) -> dict[str, Any]:
         answer: Any = read_json(await _exchange(path, line), MOST_ANSWER)
         if isinstance(answer, dict) and isinstance(answer.get("refusal"), str):
             return answer
-    raise NobodyListens(f"what listens at {path} is no run of bigactors")
+    raise NobodyListens(f"the listener at {path} is no run of bigactors")
 
 
 async def _exchange(path: Path, line: bytes) -> bytes:

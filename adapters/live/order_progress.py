@@ -44,7 +44,7 @@ def refused(turning: Turning, entity: Name, request: str, reason: str) -> bool:
         turning.wake(again)
         if reason != order.refusal:
             what = f"{entity} refuses to {order.action}, as {order.orderer} ordered: {reason}"
-            turning.find("refused", entity, f"{what}; it is told again until it does")
+            turning.find("refused", entity, f"{what}; the order is repeated until it obeys")
     return found
 
 

@@ -81,16 +81,14 @@ def unshown(c: Configuration, request: CTR, found: Realisation, vehicles: frozen
     travelling = {node for node, _ in found.flying}
     for node, place in moved(request.reaction, found.match):
         if node not in travelling:
-            return f"nothing shows that {node} is put into {place}"
+            return f"no report can confirm that {node} is put into {place}"
     for node, lost, gained in relinked(request.reaction, found.match, c.structure.logical):
         handed = node in vehicles and all(map(is_authority, lost | gained)) and len(lost) == len(gained) == 1
         if not lost and gained.issubset(c.structure.logical.links(node)):
             continue
         if not handed or travelling:
             while_flying = " while others travel" if travelling else ""
-            return (
-                f"nothing shows that {node} joins or leaves {', '.join(sorted(lost | gained))}{while_flying}"
-            )
+            return f"no report can confirm that {node} joins or leaves {', '.join(sorted(lost | gained))}{while_flying}"
     return ""
 
 

@@ -69,7 +69,7 @@ def _take_in(turning: Turning, delivered: Delivered) -> None:
 
 
 def _refuse(turning: Turning, station: str, number: int, why: str) -> None:
-    message = f"parcel {number} of {station} cannot enter, nor what comes after it: {why}"
+    message = f"parcel {number} of {station} cannot enter, nor any later one: {why}"
     turning.find("trouble", station, message, once=True)
 
 
@@ -82,7 +82,7 @@ def _fly(turning: Turning, entity: Name, to: Name) -> None:
     if entity in turning.commanded.flights or entity not in turning.plan.vehicles:
         return
     if to and answers_for(turning, entity):
-        message = f"another station says that it has sent {entity} to {to}, but {entity} obeys this one"
+        message = f"another station reports that it has sent {entity} to {to}, but {entity} obeys this one"
         turning.find("trouble", entity, message, once=True)
         return
     if _may_hold(turning, to, entity) and isinstance(here, Placed | InTransit):

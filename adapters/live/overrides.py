@@ -68,7 +68,7 @@ class StandingOrder:
             return f"{'held' if self.action == 'hold' else 'sent home'} by {self.orderer}"
         if self.refusal:  # also while it is repeated
             return f"refuses to {self.action}, as {self.orderer} ordered: {self.refusal}"
-        return f"told to {self.action} by {self.orderer}, not confirmed yet"
+        return f"ordered to {self.action} by {self.orderer}, not confirmed yet"
 
 
 def operator(by: str) -> str:

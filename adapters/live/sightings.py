@@ -111,12 +111,12 @@ def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) ->
     if owner is not None and heard.plugin not in (owner, plan.peers):
         return Refusal(
             observed.entity,
-            f"'{heard.plugin}' speaks of {observed.entity}, which is the vehicle of '{owner}'",
+            f"'{heard.plugin}' reports {observed.entity}, which is the vehicle of '{owner}'",
         )
     if observed.entity in plan.first.alpha or observed.entity in _no_entities(plan.first.setting):
         return Refusal(
             observed.entity,
-            f"'{heard.plugin}' speaks of {observed.entity}, which the mission has as no entity",
+            f"'{heard.plugin}' reports {observed.entity}, which is no entity of the mission",
         )
     kind = plan.first.setting.kinds.get(observed.entity) or (
         known.property.kind if known is not None else None
@@ -124,7 +124,7 @@ def sighting_of(heard: Heard, known: Sighting | None, plan: Plan, now: float) ->
     if kind is not None and not isinstance(observed, Gone) and observed.kind != kind:
         return Refusal(
             observed.entity,
-            f"'{heard.plugin}' speaks of {observed.entity} as {observed.kind}, and it is of kind {kind}",
+            f"'{heard.plugin}' reports {observed.entity} as {observed.kind}, but it is of kind {kind}",
         )
     time = now if observed.time is None else observed.time
     if not math.isfinite(time) or time > now + MOST_AHEAD:

@@ -118,7 +118,7 @@ def _forward(turning: Turning, agent: Name | None) -> None:
         return
     if station_of(turning.c, agent) is None:
         host = turning.c.alpha.host(agent)
-        message = f"no station runs what is hosted at {host}, and so {agent} does not go on"
+        message = f"no station runs the bigActors of {host}, so {agent} does not go on"
         remedy = f"add {host} to the hosts of a station in the peers file"
         turning.find("blocked", agent, f"{message}: {remedy}", once=True)
     for left in leave(turning.c, agent):

@@ -248,9 +248,9 @@ class Autopilot:
             others.add(remote)
             entity, there = pilot.craft.entity, _shown(remote)
             detail = (
-                f"{entity} is believed from {_shown(bound)} alone, and something speaks for it from {there}"
+                f"{entity} is accepted from {_shown(bound)} alone, but packets in its name come from {there}"
             )
-            remedy = f"if it has moved, say so once it is silent: bigactors give-back {entity} --at {there}"
+            remedy = f"if it has moved, run this once it is silent: bigactors give-back {entity} --at {there}"
             self._troubles.note(f"second source of {entity}", f"{detail}; {remedy}")
         return False
 
@@ -260,7 +260,9 @@ class Autopilot:
         bound = self._routes.get(pilot.system)
         entity = pilot.craft.entity
         if self._keeper is not None:
-            self._troubles.note("source kept", f"{entity} signs, and is believed from any address")
+            self._troubles.note(
+                "source kept", f"{entity} signs its packets, and is accepted from any address"
+            )
         elif bound is None or not pilot.link.lost:
             at = "nowhere as yet" if bound is None else f"from {_shown(bound)}"
             self._troubles.note("source kept", f"{entity} is heard {at}; it can move when it is silent")
@@ -284,7 +286,7 @@ class Autopilot:
         """Report that another ground station sends to a vehicle of ours; items that it may change are read again."""
         pilot = self._addressed(message)
         if message.system not in self._own and pilot is not None:
-            self._troubles.note("second ground station", f"system {message.system} says {message.name}")
+            self._troubles.note("second ground station", f"system {message.system} sends {message.name}")
             self._pilots[pilot.craft.entity] = overheard(pilot, message)
 
     def _is_for_us(self, message: Message) -> bool:

@@ -51,11 +51,11 @@ def _found(known: Telemetry, blind: float | None, now: float) -> Iterator[str]:
 def _words(before: Condition, after: Condition, known: Telemetry, now: float) -> Iterator[tuple[str, str]]:
     come, gone = after.reported - before.reported, before.reported - after.reported
     if NO_POSITION in come:
-        yield NO_POSITION, f"{known.lacks(now)}; nobody sees where it is"
+        yield NO_POSITION, f"{known.lacks(now)}; its position is unknown"
     if NO_POSITION in gone:
-        yield "position again", "its position counts again"
+        yield "position again", "its position is valid again"
     if HOME_MOVED in come:
-        told = f"{known.home_moved}, by itself or told by someone else; `return` leads there"
+        told = f"{known.home_moved}, by itself or by a command from elsewhere; `return` leads there"
         yield HOME_MOVED, f"{told}, and heights of the mission stay above the home before"
     for text in sorted(come):
         if text.startswith(REFUSES_TO_ARM):

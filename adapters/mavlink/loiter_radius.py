@@ -62,6 +62,6 @@ def cramped(command: GoTo | Follow, craft: Craft, profile: Profile, known: Telem
         return f"{small}, and to stay in it the {profile.kind} needs {needed}"
     clear = widest(mover, place, command.around)
     return (
-        f"{name} leaves too little room beside what reaches into it: the widest circle that crosses no border has "
-        f"{clear:.0f} m, and to stay there the {profile.kind} needs {needed}"
+        f"{name} leaves too little room beside places that reach into it: the widest circle that crosses no border "
+        f"has {clear:.0f} m, and to stay there the {profile.kind} needs {needed}"
     )

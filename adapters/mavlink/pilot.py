@@ -493,7 +493,7 @@ def _deaf(pilot: Pilot) -> str:
         return ""
     if pilot.known.signs and not pilot.signs:
         return "it asks for signed packets: give its key, --key FILE"
-    return "it does not tell which station it obeys: it may obey another"
+    return "it does not report which station it obeys: it may obey another"
 
 
 def _unknown(pilot: Pilot, task: Task, now: float) -> Progress:
@@ -550,7 +550,7 @@ def _authority_trouble(pilot: Pilot, now: float) -> tuple[Report, ...]:
         return ()
     entity = pilot.craft.entity
     if authority is None:
-        return (Trouble(entity, now, "authority not told", _deaf(pilot)),)
+        return (Trouble(entity, now, "authority not reported", _deaf(pilot)),)
     parameter = pilot.known.authority_parameter
     by = "" if parameter is None else f" ({parameter})"
     which = f"{entity} obeys system {authority}{by}, which is no station of the mission"

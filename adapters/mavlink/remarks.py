@@ -23,7 +23,7 @@ def remarks_on_board(
     """Yield remarks on the items on board a vehicle; `unread` kinds could not be read."""
     missing = [kind.name.lower() for kind in unread if kind not in on_board]
     if missing:
-        yield f"does not tell what is on board: {', '.join(missing)}"
+        yield f"does not report its contents on board: {', '.join(missing)}"
     yield from _of_mission(on_board.get(MissionType.MISSION, ()), known)
     yield from _of_fence(craft, known, on_board)
     rally = rally_points(on_board)
@@ -38,9 +38,9 @@ def _of_mission(found: Items, known: Telemetry) -> Iterator[str]:
     if any(item.command not in _OURS for item in rest):
         yield f"has a mission of {len(found) - int(first)} items on board, which the flights of this mission replace"
     if kept:
-        yield f"keeps its landing sequence: the last {len(kept)} items of the mission on board follow each of this one"
+        yield f"keeps its landing sequence: each upload ends with the last {len(kept)} items of the mission on board"
     if known.parameters.get("RTL_AUTOLAND") in RETURNS_BY_LANDING and not kept:
-        yield "has no landing sequence on board, which its RTL_AUTOLAND asks for: when it returns, it circles"
+        yield "has no landing sequence on board, which its RTL_AUTOLAND needs: when it returns, it circles"
 
 
 def _of_fence(craft: Craft, known: Telemetry, on_board: OnBoard) -> Iterator[str]:

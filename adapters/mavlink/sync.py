@@ -39,8 +39,8 @@ class Sync:
         if isinstance(self.doing, writing.Upload) and self.doing.refusal is not None:
             return f"the vehicle refuses the {self.kind.name.lower()}: {_named(self.doing.refusal)}"
         if self.rounds >= ROUNDS:
-            no = f", which it answers {self.objection}" if self.objection else ""
-            return f"what is on board differs from the {self.kind.name.lower()} after {ROUNDS} uploads{no}"
+            no = f", and the vehicle answers {self.objection}" if self.objection else ""
+            return f"the {self.kind.name.lower()} on board still differs after {ROUNDS} uploads{no}"
         return None
 
     @property

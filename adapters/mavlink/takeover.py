@@ -98,7 +98,7 @@ def _otherwise(helm: Helm, known: Telemetry, profile: Profile, command: Command 
         return ""
     if known.mode in _allowed(helm, profile, command):
         return ""
-    return f"it is in {profile.mode_name(known.mode)}, by itself or told by someone else"
+    return f"it is in {profile.mode_name(known.mode)}, by itself or by a command from elsewhere"
 
 
 def _allowed(helm: Helm, profile: Profile, command: Command | None) -> frozenset[int]:

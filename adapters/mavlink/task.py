@@ -124,8 +124,8 @@ def undone(task: Task, step: Step, boots: int) -> str:
     if not task.accepted or boots != task.boots or isinstance(step, Underway | Wait):
         return ""
     if isinstance(step, Load):
-        return f"the {step.what} on board is not the one that it was given: somebody has changed it"
-    return f"it does not do any more what it was told: it would have to be told {step.why}"
+        return f"the {step.what} on board is not the one sent: somebody has changed it"
+    return f"it has left its task: it would need the command {step.why}"
 
 
 def seen(task: Task, vehicle: Vehicle) -> Task:
@@ -144,10 +144,10 @@ def _complained(progress: Progress, vehicle: Vehicle, now: float) -> Progress:
     if not no or task.complained or progress.report or not isinstance(step, Tell | Load):
         return progress
     words = vehicle.known.last_words(now)
-    was_told = f"was told {step.why}" if isinstance(step, Tell) else f"was given its {step.what}"
-    again = "told again for" if isinstance(step, Tell) else "given it again, for at most"
-    detail = f"it {was_told}, and answers {no}{words}; it is {again} {PATIENCE:.0f} s"
-    report = Trouble(task.command.entity, now, "not now", detail)
+    was_told = f"was commanded {step.why}" if isinstance(step, Tell) else f"was sent its {step.what}"
+    again = "the command is repeated for" if isinstance(step, Tell) else "the upload is repeated for at most"
+    detail = f"it {was_told}, and answers {no}{words}; {again} {PATIENCE:.0f} s"
+    report = Trouble(task.command.entity, now, "refused for now", detail)
     return replace(progress, task=replace(task, complained=True), report=report)
 
 
@@ -249,7 +249,7 @@ def _failure(step: Step, task: Task, vehicle: Vehicle) -> str:
         case Tell():
             no = task.doing.objection if isinstance(task.doing, telling.Telling) else ""
             answer = f", but answered {no}" if no else ""
-            return f"it was told {step.why}, and did not in {PATIENCE:.0f} s{answer}{other}"
+            return f"it was commanded {step.why}, and did not obey in {PATIENCE:.0f} s{answer}{other}"
         case Load():
             no = (
                 f", but answered {task.doing.objection}"

@@ -176,11 +176,11 @@ class Telemetry:
         if self.is_placed(now):
             return ""
         said = [
-            f"GPS{f' {number}' if number > 1 else ''} fix {fix if now - time <= FIX_SECONDS else 'not told any more'}"
+            f"GPS{f' {number}' if number > 1 else ''} fix {fix if now - time <= FIX_SECONDS else 'no longer reported'}"
             for number, (fix, time) in sorted(self.fixes.items())
         ]
         own = [] if self.estimate is None else ["its own estimate is not good"]
-        return f"it has no position: {', '.join([*said, *own]) or 'it tells of no GPS'}"
+        return f"it has no position: {', '.join([*said, *own]) or 'it reports no GPS'}"
 
     def unready(self, now: float) -> tuple[str, ...]:
         """Return its recent reasons why it cannot be armed."""

@@ -225,7 +225,7 @@ def _command(data: Json) -> Line:
 
 
 def _saying(data: Json) -> Line:
-    return _spoken(data, data["agent"], f"told {data['message']!r}")
+    return _spoken(data, data["agent"], f"the message {data['message']!r}")
 
 
 def _given_back(data: Json) -> Line:

@@ -240,12 +240,12 @@ def _opened(content: bytes) -> bytes:
     (length,) = COUNT.unpack_from(content, at)
     data = content[at + COUNT.size :]
     if length != len(data) or size > MOST_CHUNK:
-        raise ValueError(f"it declares {length:,} bytes, and {size:,} that they yield")
+        raise ValueError(f"it declares {length:,} bytes, and {size:,} after decompression")
     found = opened(compression, data, size)
     if len(found) != size:
-        raise ValueError(f"it yields other than the {size:,} bytes that it declares")
+        raise ValueError(f"it does not decompress to the {size:,} bytes that it declares")
     if checksum and zlib.crc32(found) != checksum:
-        raise ValueError("its checksum is not that of what it yields")
+        raise ValueError("its checksum does not match its content")
     return found
 
 

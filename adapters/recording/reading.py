@@ -85,5 +85,5 @@ def checked_run(run: dict[str, Any] | None) -> dict[str, Any]:
     if run.get("schema") != f"bigactors.run/{VERSION}":
         raise RecordingError(f"its schema is {run.get('schema')!r:.60}, not 'bigactors.run/{VERSION}'")
     if not all(isinstance(run.get(key), str) for key in ("mission", "text", "digest")):
-        raise RecordingError("its run does not say what was flown")
+        raise RecordingError("its run lacks the mission's name, text or digest")
     return run

@@ -18,12 +18,12 @@ REPORTS: Final = tuple(kind for kind in get_args(Report) if kind not in get_args
 _TEXT: Final = {"type": "string"}
 _NUMBER: Final = {"type": "number"}
 _OPTIONAL: Final = {"type": ["string", "null"]}
-_BY: Final = {**_TEXT, "description": "Who said so; empty if unknown."}
+_BY: Final = {**_TEXT, "description": "The operator's name; empty if unknown."}
 _TIME: Final = {**_NUMBER, "description": "In seconds since 1970 UTC."}
 _TEXTS: Final = {"type": "array", "items": _TEXT}
 _OBSERVED: Final = {
     "type": "object",
-    "description": "What the world decided: the cells of P that were written, as [cell, value].",
+    "description": "The choice of the world: the cells of P that it wrote, as [cell, value].",
     "required": ["words", "writes"],
     "properties": {
         "words": _TEXT,
@@ -32,14 +32,17 @@ _OBSERVED: Final = {
             "type": "object",
             "description": "Entities that the mission does not name, with their kinds.",
         },
-        "agent": {**_TEXT, "description": "Who left for another station, has entered, or was learned of."},
-        "station": {**_TEXT, "description": "Where to, or where from."},
+        "agent": {
+            **_TEXT,
+            "description": "The agent that left for another station, entered, or was heard of.",
+        },
+        "station": {**_TEXT, "description": "Its destination, or its origin."},
         "number": {"type": "integer", "minimum": 1},
-        "parcel": {"type": "object", "description": "What has entered (docs/how-to/stations.md)."},
+        "parcel": {"type": "object", "description": "The parcel that entered (docs/how-to/stations.md)."},
         "host": {**_TEXT, "description": "Where the agent is hosted."},
-        "node": {**_TEXT, "description": "Of what another station has written into L,"},
+        "node": {**_TEXT, "description": "The node of L that another station has written,"},
         "slot": {"enum": ["parent", "links"], "description": "in which slot,"},
-        "names": {**_TEXTS, "description": "and what is there now."},
+        "names": {**_TEXTS, "description": "and the new names in it."},
     },
 }
 
@@ -78,7 +81,7 @@ RUN: Final = _object(
     fences={"type": "object", "description": "For each vehicle that has a fence its ring."},
     limits={
         "type": "array",
-        "description": "How long requests may stand at the head of a line, and what happens then.",
+        "description": "Time limits of requests at the head of a line, with their fallbacks.",
         "items": {
             "type": "object",
             "required": ["request", "agent", "seconds", "fallback"],
@@ -135,16 +138,16 @@ STEP: Final = _object(
     label={**_TEXT, "description": "The transition, such as ⟨sense : OBS(a, ALL)⟩."},
     choice={"type": "integer", "minimum": 0},
     observed=_OBSERVED,
-    shown={**_TEXTS, "description": "What `display` showed."},
+    shown={**_TEXTS, "description": "The output of `display`."},
     date={
         "type": "number",
-        "description": "When another station did what it is, by the clock here, in seconds since 1970 UTC.",
+        "description": "The time of another station's step, by the clock here, in seconds since 1970 UTC.",
     },
     digest={**_TEXT, "description": "Of the cells that it wrote, with their values."},
 )
 
 DEADLINE: Final = _object(
-    "Until when an agent at a `react` with an `after` branch waits: written when that changes.",
+    "The deadline of an agent at a `react` with an `after` branch: written when it changes.",
     ("agent", "until"),
     agent=_TEXT,
     until={
@@ -154,11 +157,11 @@ DEADLINE: Final = _object(
 )
 
 CLOCKS: Final = _object(
-    "By what the clocks of a mission with `timing` are counted: written before the next step, when that changes.",
+    "The reference of all clocks of a mission with `timing`: written before the next step, when it changes.",
     ("began", "rested"),
     began={
         "type": "number",
-        "description": "When the mission began, in seconds since 1970 UTC, later by what was spent without listening.",
+        "description": "The start of the mission, in seconds since 1970 UTC, plus the time without listening.",
     },
     rested={
         "type": "number",
@@ -167,7 +170,7 @@ CLOCKS: Final = _object(
 )
 
 FLIGHT: Final = _object(
-    "How long a flight takes by what the mission says of times: written when that changes.",
+    "The duration of a flight by the mission's times: written when it changes.",
     ("vehicle", "takes"),
     vehicle=_TEXT,
     takes={
@@ -228,7 +231,7 @@ GIVEN_BACK: Final = _object(
     by=_BY,
     notes={
         **_TEXTS,
-        "description": "What else its operator should know, such as that its flight was given up.",
+        "description": "Notes for the operator, such as a flight that was given up.",
     },
     refusal=_TEXT,
 )
@@ -240,9 +243,9 @@ ORDER: Final = _object(
     order={"type": "string", "enum": ["hold", "return"]},
     vehicle={**_OPTIONAL, "description": "Null for all."},
     by=_BY,
-    requests={"type": "object", "description": "The request of each vehicle that was told."},
-    left_out={"type": "object", "description": "Why each other vehicle was not told, of an order to all."},
-    notes={**_TEXTS, "description": "What else its operator should know, such as who was overruled."},
+    requests={"type": "object", "description": "The request of each vehicle that got the order."},
+    left_out={"type": "object", "description": "The reason for each vehicle that an order to all left out."},
+    notes={**_TEXTS, "description": "Notes for the operator, such as a take-over that was overruled."},
     refusal=_TEXT,
 )
 
@@ -254,13 +257,13 @@ ACKNOWLEDGED: Final = _object(
 )
 
 STATUS: Final = _object(
-    "What a vehicle says of itself, at most once a second; null is not told.",
+    "A vehicle's report on itself, at most once a second; null is not reported.",
     ("plugin", "entity", "time", "mode", "armed", "battery", "heading", "authority", "heard"),
     **members_of(Status, nulls=True) | {"time": _TIME},
 )
 
 STATUS_TEXT: Final = _object(
-    "A text that a vehicle has said.",
+    "A text that a vehicle has sent.",
     ("entity", "time", "text", "severity"),
     **members_of(StatusText, nulls=True)
     | {
@@ -281,7 +284,7 @@ PRESENCE: Final = _object(
 )
 
 PREFLIGHT: Final = _object(
-    "What is checked before the start of a run that waits for an operator, when that changes.",
+    "The checks before the start of a run that waits for an operator, when they change.",
     ("state", "items", "by"),
     state={"enum": ["waits", "ready", "begun"], "description": "`ready`: it begins when Start is pressed."},
     items={
@@ -300,7 +303,7 @@ FINDING: Final = _object(
     "A message to the operator: a broken assumption, a refusal, a lost link, a request that takes too long.",
     ("kind", "about", "message"),
     **members_of(Finding) | {"time": _TIME},
-    verdicts={**_TEXTS, "description": "The properties whose verdicts depend on the broken assumption."},
+    verdicts={**_TEXTS, "description": "The properties with verdicts that depend on the broken assumption."},
 )
 
 END: Final = _object("How the run ended.", ("reason",), reason=_TEXT)

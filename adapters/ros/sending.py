@@ -41,7 +41,7 @@ class RosSending:
         address: The Zenoh router's, `tcp:HOST:PORT[?domain=N]`.
     """
 
-    name = "what is published for ROS"
+    name = "the publication for ROS"
 
     def __init__(self, address: str) -> None:
         where, self._domain = read_address(address)

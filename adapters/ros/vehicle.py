@@ -103,7 +103,7 @@ class RosVehicles:
     def __init__(self, name: str, address: str, vehicles: tuple[Assigned, ...]) -> None:
         where, self._domain, options = read_options(address, OPTIONS, HINT)
         if where.scheme != "tcp":
-            raise PhysicalError("address", f"{address!r:.100}: nobody is commanded there", HINT)
+            raise PhysicalError("address", f"{address!r:.100}: no robot is commanded there", HINT)
         self._name = name
         self._robots = {each.entity: Robot(each, _names(each.entity, options)) for each in vehicles}
         names = [topic for robot in self._robots.values() for topic in robot.names.values()]
@@ -233,12 +233,12 @@ class RosVehicles:
             return
         elif now - errand.began >= PATIENCE:
             robot.errand = None
-            reason = self._objection(robot, order) or "it does not come nearer to where it was sent"
+            reason = self._objection(robot, order) or "it does not come nearer to its destination"
             world.report(Rejected(order.request, order.entity, now, reason))
             return
         robot.errand = replace(errand, sent=now)
         if objection := self._objection(robot, order):
-            self._troubles.note("nobody takes the goal", objection)
+            self._troubles.note("no robot accepts the goal", objection)
         height = math.nan if robot.at is None else robot.at.height
         raw = (
             write_goal(*waypoints(order)[0], now, height)
@@ -329,7 +329,7 @@ def _check(order: GoTo | Follow, robot: Robot) -> None:
     fence, entity = robot.assigned.fence, robot.assigned.entity
     if order.altitude is not None:
         raise Refused(
-            f"{entity} cannot be sent to a height: ROS tells heights above the ellipsoid, missions above sea level"
+            f"{entity} cannot be sent to a height: ROS heights are above the ellipsoid, the mission's above sea level"
         )
     if fence is not None and not all(contains(fence, point(*each)) for each in waypoints(order)):
         raise Refused(f"{order.name or 'the way'} is outside the fence of {entity}")

@@ -253,7 +253,7 @@ def entry_of(station: str, data: Any) -> Entry:
     number = typed(data, _Numbered).n
     kind = next((kind for member, kind in _KINDS.items() if member in data), None)
     if kind is None:
-        raise ValueError("an entry says or does none of what stations do")
+        raise ValueError("an entry is of no known kind")
     if kind is _Seen and data.get("gone") is True:
         kind = _Ended
     plain: _Data = typed(data, kind)

@@ -176,7 +176,7 @@ class Journal:
                 if number <= BEGINNING or self._file.tell() < size:
                     raise JournalError(
                         f"{self.path}:{number}: the log is damaged: {error}: "
-                        "move it away, and the station begins another above its numbers"
+                        "move it away, and the station begins another with higher numbers"
                     ) from error
                 self.dropped = f"{self.path}:{number}: the last entry was dropped: {error}"
         return schema == SCHEMA
@@ -189,7 +189,7 @@ class Journal:
         if is_summed:
             found = zlib.crc32(text, self._sum)
             if line[8:9] != b" " or said != b"%08x" % found:
-                raise ValueError("its checksum is not that of what it says")
+                raise ValueError("its checksum does not match its content")
             self._sum = found
         try:
             return read_json(text, 2 * MOST_BYTES)
@@ -207,7 +207,7 @@ class Journal:
                 if isinstance(entry.content, Posted) and schema != SCHEMA:
                     raise ForeignLog(
                         f"{self.path} has parcels of an earlier version: move it away, "
-                        "and the station begins another above its numbers"
+                        "and the station begins another with higher numbers"
                     )
                 self._keep(entry)
 

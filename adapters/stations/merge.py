@@ -79,7 +79,7 @@ class Merge:
         if known is None:
             count = self._counts.get(entry.station, 0)
             if count >= MOST_ENTITIES:
-                raise ValueError(f"it speaks of more than {MOST_ENTITIES:,} entities")
+                raise ValueError(f"it reports more than {MOST_ENTITIES:,} entities")
             self._counts[entry.station] = count + 1
         elif newer(known, entry) is known:
             return False

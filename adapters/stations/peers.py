@@ -149,13 +149,11 @@ def _peer(name: str, table: Any, scheme: str) -> Peer:
         raise _mistake(f"[{name}] has {strange[0]!r:.60}", f"it may have {', '.join(sorted(TABLES))}")
     connect = _endpoints(name, table, "connect", scheme)
     if not connect:
-        raise _mistake(
-            f"[{name}] does not say where it is reached", f'write connect = ["{scheme}/HOST:PORT"]'
-        )
+        raise _mistake(f"[{name}] has no address to connect to", f'write connect = ["{scheme}/HOST:PORT"]')
     listen = _endpoints(name, table, "listen", scheme)
     if not listen and any(_host(each) not in LOOPBACK for each in connect):
         raise _mistake(
-            f"[{name}] is reached over a network, but does not say where it listens",
+            f"[{name}] is reached over a network, but has no address to listen at",
             f'write listen = ["{scheme}/0.0.0.0:PORT"], or one address of it',
         )
     return Peer(name, listen or connect, connect, _words(name, table, "hosts"))

@@ -143,7 +143,7 @@ class Sharing:
 
     async def command(self, command: Command) -> None:
         """Refuse: commands go over a vehicle's own link."""
-        raise Refused(f"{command.entity} is another station's", f"say --vehicle {command.entity}=...")
+        raise Refused(f"{command.entity} is another station's", f"give --vehicle {command.entity}=...")
 
     async def run(self, world: World) -> None:
         """Share until cancelled."""
@@ -230,7 +230,7 @@ class Sharing:
             return True
         if len(told) >= MOST_STRANGERS:
             self._troubles.note(
-                "not told", f"'{plugin}': over {MOST_STRANGERS:,} entities that the mission does not name"
+                "not shared", f"'{plugin}': over {MOST_STRANGERS:,} entities that the mission does not name"
             )
             return False
         told.add(entity)
@@ -361,7 +361,7 @@ class Sharing:
         match entry.content:
             case Said(_, _, owned) as said:
                 if said.entity in self._vehicles and not owned:
-                    detail = f"{entry.station} speaks of {said.entity}, which is a vehicle, without its link"
+                    detail = f"{entry.station} reports {said.entity}, which is a vehicle, without its link"
                     self._troubles.note("not its vehicle", detail)
                 elif self._join(entry):
                     self._show(self._world, said.entity)
@@ -402,9 +402,7 @@ class Sharing:
         said, now = entry.content, self._world.now()
         if isinstance(said, Said) and said.time > now + MOST_AHEAD:
             self._ahead.add(said.entity)
-            detail = (
-                f"{entry.station} says of {said.entity} what is {said.time - now:.0f} s ahead: set its clock"
-            )
+            detail = f"{entry.station} reports {said.entity} with a time {said.time - now:.0f} s ahead: set its clock"
             self._troubles.note("time stamp in the future", detail)
         return True
 
@@ -459,7 +457,7 @@ class Sharing:
             where = ", ".join(self._peers.others[station].connect)
             waiting = self._journal.waiting(station)
             kept = f"; {waiting:,} parcels wait for it" if waiting else ""
-            detail = f"nothing of {station} at {where} for {silent:.0f} s; it is tried on{kept}"
+            detail = f"nothing from {station} at {where} for {silent:.0f} s; attempts go on{kept}"
             world.report(Trouble(NAME, world.now(), f"{station} is not reached", detail))
 
     def _found(self, world: World, station: str, other: Other, theirs: float, asked: float) -> None:

@@ -67,7 +67,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Raise a parsing error as a mistake of the user."""
-        raise Mistake(message, f"{self.prog} --help shows what can be written")
+        raise Mistake(message, f"{self.prog} --help shows the possible arguments")
 
 
 @runtime_checkable

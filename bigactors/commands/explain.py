@@ -34,7 +34,7 @@ def run(options: Namespace) -> Exit:
         for code in sorted(Code, key=lambda code: code.number):
             say(f"{code.number}  {code.title}")
         say(f"\nwords of reports: {', '.join(ALL)}")
-        say("\nbigactors explain CODE, or a word, says more of each")
+        say("\nbigactors explain CODE, or a word, explains each")
         return Exit.HOLDS
     asked = " ".join(options.code)
     found, word = find_code(asked), find_word(asked)

@@ -63,7 +63,7 @@ def run(options: Namespace) -> Exit:
     mission = open_mission(options.file, variation_of(options))
     if mission.initial.setting.timing is None:
         raise Mistake(
-            f"{options.file} says nothing of times",
+            f"{options.file} has no times",
             "only missions with a section `timing` have timed automata",
         )
     # numba is slow to load: a mission without times is refused before

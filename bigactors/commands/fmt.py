@@ -61,7 +61,7 @@ def formatted(path: str) -> tuple[str, str]:
         mission = parse(source)
         result = format_mission(source.text, path)
         if parse(Source(path, result)) != mission:
-            raise AssertionError(f"formatting {path} would change what it says; it is left alone")
+            raise AssertionError(f"formatting {path} would change its meaning; it is left as it is")
     except MissionError as error:
         raise as_mistake(error) from error
     return data.decode("utf-8"), result

@@ -44,8 +44,8 @@ def run(options: Namespace) -> Exit:
     check_texts("a vehicle or an address", vehicle, options.by, at)
     refusal, _, notes = heard_at(options.socket, lambda path: give_back(path, vehicle, at, options.by))
     if refusal:
-        raise Mistake(refusal, "`bigactors status` says which vehicles were taken over, or are silent")
+        raise Mistake(refusal, "`bigactors status` lists the vehicles that were taken over, or are silent")
     for note in notes:
         tell(note, "note:")
-    say(f"{vehicle} is believed at {at} from now on" if at else f"{vehicle} is given back")
+    say(f"{vehicle} is accepted at {at} from now on" if at else f"{vehicle} is given back")
     return Exit.HOLDS

@@ -62,10 +62,10 @@ def run(options: Namespace) -> Exit:
     check_texts("a vehicle", vehicle or "", options.by)
     refusal, left_out, notes = heard_at(options.socket, lambda path: order(path, what, vehicle, options.by))
     if refusal:
-        raise Mistake(refusal, "`bigactors status` says how the run stands")
+        raise Mistake(refusal, "`bigactors status` prints the state of the run")
     for note in (*left_out.values(), *notes):
         tell(note, "note:")
-    say(f"told to {what}: {vehicle or 'all vehicles of this station'}")
+    say(f"ordered to {what}: {vehicle or 'all vehicles of this station'}")
     return _concluded(_awaited(options.socket, vehicle, left_out))
 
 
@@ -107,6 +107,6 @@ def _lines(found: Fates) -> Iterator[str]:
     from adapters.live.overrides import Fate
 
     for name, (fate, words) in sorted(found.items()):
-        again = "; it is told again until it does" if fate == Fate.REFUSED else ""
-        later = "" if _is_settled(fate) else "; the run says when it is"
+        again = "; the order is repeated until it obeys" if fate == Fate.REFUSED else ""
+        later = "" if _is_settled(fate) else "; the run reports the confirmation"
         yield f"{name} {words}{again}{later}"

@@ -36,5 +36,5 @@ def run(options: Namespace) -> Exit:
 
     public = new_pair(Path(options.file))
     say(f"{options.file}: the key to sign with (check --sign); keep it to yourself")
-    say(f"{public}: what others trust (run --trust): {fingerprint(load_trusted(str(public)))}")
+    say(f"{public}: the key that others trust (run --trust): {fingerprint(load_trusted(str(public)))}")
     return Exit.HOLDS

@@ -38,7 +38,7 @@ def run(options: Namespace) -> Exit:
     _write(path, new_mission(path.stem))
     say(f"{path} is written. Next:")
     say(
-        f"  bigactors check --watch {path}  its properties hold; break it as it says, save, and see what fails"
+        f"  bigactors check --watch {path}  its properties hold; break one as its comment shows, save, and see it fail"
     )
     say(f"  bigactors show {path}           draws it, as a bigraph and on a map")
     return Exit.HOLDS

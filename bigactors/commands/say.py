@@ -31,9 +31,9 @@ def run(options: Namespace) -> Exit:
     from adapters.live.operator_socket import say as send
     from bigactors.sockets import check_texts, heard_at
 
-    check_texts("what is said", options.agent, options.by, options.message)
+    check_texts("a message", options.agent, options.by, options.message)
     refusal = heard_at(options.socket, lambda path: send(path, options.agent, options.message, options.by))
     if refusal:
-        raise Mistake(refusal, "the environment section of the mission says what may be said")
+        raise Mistake(refusal, "the environment section of the mission lists the permitted messages")
     say(f"said to {options.agent}: {options.message}")
     return Exit.HOLDS

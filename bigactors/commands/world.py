@@ -78,7 +78,7 @@ def run(options: Namespace) -> Exit:
         tell(f"warning: {doubt}")
     for conflict in world.conflicts:
         tell(
-            f"warning: {conflict}; what is in both is put into the smaller one, and a mission would refuse them"
+            f"warning: {conflict}; entities in both are put into the smaller one, and a mission would refuse them"
         )
     if options.output and Path(options.output).suffix.lower() in GEOJSON:
         write_text(options.output, write_geojson(world.properties))

@@ -27,7 +27,7 @@ def renamable(reading: Reading, offset: int) -> Span:
         raise Refused(f"'{found.symbol.name}' is not declared in this file")
     if reading.recovered.mistakes:
         raise Refused(
-            "the file has mistakes of syntax: mend them first, since names may stand in what cannot be read"
+            "the file has syntax errors: correct them first, since the unreadable parts may contain names"
         )
     return found.span
 

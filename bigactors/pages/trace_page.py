@@ -212,8 +212,8 @@ def _stage(told: Telling) -> str:
     panels = dict(sorted((panel.key, panel) for panel in drawn if panel is not None))
     models = element(
         "div",
-        _model("L", "the logical model: what is believed", [p for p in panels.values() if p.key[0] == "L"]),
-        _model("P", "the physical model: what is", [p for p in panels.values() if p.key[0] == "P"]),
+        _model("L", "the logical model: beliefs", [p for p in panels.values() if p.key[0] == "L"]),
+        _model("P", "the physical model: reality", [p for p in panels.values() if p.key[0] == "P"]),
         class_="models",
     )
     believed = dict.fromkeys(frame.c.structure.logical.bigraph() for frame in frames)

@@ -127,7 +127,7 @@ def _write_line(page: Page, x: float, y: float, line: str) -> None:
 
 
 def _draw_logical(page: Page, c: Configuration, top: float, look: Look) -> None:
-    page.heading(MARGIN, top + 8, "L", "the logical model: what is believed")
+    page.heading(MARGIN, top + 8, "L", "the logical model: beliefs")
     canvas = draw_logical(c.structure.logical.bigraph(), look)
     scale = min(PANEL / canvas.width, PANEL_HEIGHT / canvas.height, LARGEST)
     left = MARGIN + (PANEL - canvas.width * scale) / 2
@@ -142,7 +142,7 @@ def draw_logical(bigraph: Bigraph, look: Look) -> Canvas:
 
 def _draw_physical(page: Page, c: Configuration, top: float, look: Look) -> None:
     left = MARGIN + PANEL + GUTTER
-    page.heading(left, top + 8, "P", "the physical model: what is")
+    page.heading(left, top + 8, "P", "the physical model: reality")
     canvas = draw_map(
         map_entities(c),
         (PANEL, PANEL_HEIGHT),

@@ -212,7 +212,7 @@ async def test_a_coarse_position_does_not_move_who_was_heard_finely():
         await say(COARSE, FINE, COARSE, FINE, COARSE)
     tens = [round(published.property.geometry.vertices[0][0], 4) for published in world.published]
     assert tens == [53.545, 53.5446, 53.5446]
-    what = "position to a tenth of a minute, of a station with a finer one, not read in all"
+    what = "position to a tenth of a minute, of a station with a finer one: not read, in total"
     assert troubles(world)[what] == 2
 
 
@@ -221,9 +221,9 @@ async def test_what_brings_no_position_is_told_by_kind_at_once_and_in_all_at_the
     async with listening() as (world, _, say):
         await say(BINARY, VESSEL, BINARY, b"$GPGSV,3,1,10*00", b"# a comment", BINARY)
     told = troubles(world)
-    assert told["message of type 8, without a position of its sender: such are not read"] == 1
-    assert told["message of type 8, without a position of its sender, not read in all"] == 3
-    assert told["sentence GPGSV, not read in all"] == 1
+    assert told["message of type 8, without a position of its sender: not read"] == 1
+    assert told["message of type 8, without a position of its sender: not read, in total"] == 3
+    assert told["sentence GPGSV: not read, in total"] == 1
     assert len(told) == 4
 
 

@@ -111,12 +111,14 @@ async def test_an_answer_that_is_no_last_no_is_said_at_once_and_again_when_it_is
     await known(f)
     f.vehicle.fences = Fence.CIRCLE  # by a switch on its transmitter: nothing shows which are on
     await f.plugin.command(GoTo("r1", "uav0", FAR))
-    (trouble,) = await until(lambda: f.world.of(Trouble, what="not now"))
-    assert trouble.detail == "it was told to go there, and answers FAILED; it is told again for 45 s"
+    (trouble,) = await until(lambda: f.world.of(Trouble, what="refused for now"))
+    assert (
+        trouble.detail == "it was commanded to go there, and answers FAILED; the command is repeated for 45 s"
+    )
     end = await f.ended("r1")
     assert isinstance(end, Rejected)
-    assert end.reason == "it was told to go there, and did not in 45 s, but answered FAILED"
-    assert f.world.of(Trouble, what="not now") == [trouble]
+    assert end.reason == "it was commanded to go there, and did not obey in 45 s, but answered FAILED"
+    assert f.world.of(Trouble, what="refused for now") == [trouble]
 
 
 @flown()

@@ -62,7 +62,10 @@ def test_a_mode_that_nobody_ordered_counts_once_heartbeats_have_shown_it_for_a_w
     assert watched(GUIDED, GUIDED).held
     doubted = watched(GUIDED, RTL, RTL, RTL, RTL)
     assert (doubted.held, doubted.taken) == (False, "")
-    assert watched(GUIDED, RTL, RTL, RTL, RTL, RTL).taken == "it is in RTL, by itself or told by someone else"
+    assert (
+        watched(GUIDED, RTL, RTL, RTL, RTL, RTL).taken
+        == "it is in RTL, by itself or by a command from elsewhere"
+    )
     late = watched(GUIDED, RTL, shows(RTL, 2 * STRANGE))
     assert late.taken
 
@@ -191,7 +194,7 @@ def test_a_vehicle_that_someone_else_sends_elsewhere_is_taken_over():
     elsewhere = replace(flown.pilot.known, target=(37.1, -8.6))
     flown.pilot = replace(flown.pilot, known=elsewhere)
     (report,) = flown.goes_on(GUIDED, 6).of(TakenOver)
-    assert report.reason == "it does not do any more what it was told: it would have to be told to go there"
+    assert report.reason == "it has left its task: it would need the command to go there"
 
 
 def test_a_command_that_meets_a_fail_safe_is_not_told():
@@ -229,7 +232,7 @@ def test_the_last_words_of_a_vehicle_stand_with_why_it_was_taken_over():
         flown.take(pilot.hear(flown.pilot, replace(said, system=1, component=1), flown.now))
     (report,) = flown.goes_on(RTL, 6).of(TakenOver)
     assert report.reason == (
-        "it is in RTL, by itself or told by someone else; its last words: 'Battery 1 is low 29.90V used 12 mAh'"
+        "it is in RTL, by itself or by a command from elsewhere; its last words: 'Battery 1 is low 29.90V used 12 mAh'"
     )
 
 

@@ -131,7 +131,7 @@ async def test_a_mission_that_somebody_loads_while_ours_is_flown_is_a_take_over(
     await f.accepts(Follow("r1", "uav0", WAY))
     theirs(f, path)
     (report,) = await until(lambda: f.world.of(TakenOver), 30)
-    assert report.reason.startswith("the mission on board is not the one that it was given")
+    assert report.reason.startswith("the mission on board is not the one sent")
     assert isinstance(await f.ended("r1"), Rejected)
     items = mission(f)
     await asyncio.sleep(60)
@@ -163,7 +163,7 @@ async def test_a_mission_that_is_set_back_is_a_take_over(f):
     await asyncio.sleep(5)
     f.vehicle.current = 2
     (report,) = await until(lambda: f.world.of(TakenOver), 30)
-    assert "it would have to be told to fly to item 3 of its mission, not to item 2" in report.reason
+    assert "it would need the command to fly to item 3 of its mission, not to item 2" in report.reason
 
 
 @flown()
@@ -191,7 +191,7 @@ async def test_a_fence_that_somebody_clears_while_others_are_on_is_noticed_and_i
         f.vehicle.store.items[MissionType.FENCE] = ()
         assert f.vehicle.fences & f.vehicle.configured  # it says that it keeps within a fence
         (report,) = await until(lambda: f.world.of(TakenOver), 60)
-        assert report.reason.startswith("the fence on board is not the one that it was given")
+        assert report.reason.startswith("the fence on board is not the one sent")
         await f.plugin.command(GiveBack("r2", "uav0"))
         await f.accepts(GoTo("r3", "uav0", WAY[-1]))
         assert f.vehicle.fence is not None
@@ -284,7 +284,7 @@ async def test_a_landing_sequence_stays_on_board_behind_each_mission_and_brings_
     theirs(f, more=LANDING)
     await until(f.plugin.is_known, 60)
     (kept,) = [each for each in f.plugin.remarks() if "landing sequence" in each]
-    assert kept.startswith("uav0 keeps its landing sequence: the last 4 items")
+    assert kept.startswith("uav0 keeps its landing sequence: each upload ends with the last 4 items")
     await f.accepts(GoTo("r1", "uav0", AREA))
     assert [item.command for item in mission(f)[-4:]] == [item.command for item in LANDING]
     await f.accepts(Follow("r2", "uav0", WAY))
@@ -300,7 +300,7 @@ async def test_a_landing_sequence_stays_on_board_behind_each_mission_and_brings_
         (
             {"RTL_AUTOLAND": 2.0},
             None,
-            "uav0 has no landing sequence on board, which its RTL_AUTOLAND asks for: when it returns, it circles",
+            "uav0 has no landing sequence on board, which its RTL_AUTOLAND needs: when it returns, it circles",
         ),
         (
             {},
@@ -405,7 +405,7 @@ async def test_a_fence_of_more_corners_than_the_vehicle_holds_is_refused_in_seco
         assert end.reason.startswith("the vehicle refuses the fence: NO_SPACE; its last words: ")
         assert "Only 84 items are supported" in end.reason
         assert end.time - told < 15
-        (trouble,) = f.world.of(Trouble, what="not now")
+        (trouble,) = f.world.of(Trouble, what="refused for now")
         assert trouble.time - told < 5
 
 
@@ -414,8 +414,8 @@ async def test_a_fence_that_is_never_written_is_refused_with_the_vehicles_answer
     f.vehicle.store.refuses[MissionType.FENCE] = MissionResult.ERROR
     await f.plugin.command(GoTo("r1", "uav0", AREA))
     end = await f.ended("r1")
-    assert "after 5 uploads, which it answers ERROR" in end.reason
-    assert end.time - f.world.of(Trouble, what="not now")[0].time < PATIENCE
+    assert "after 5 uploads, and the vehicle answers ERROR" in end.reason
+    assert end.time - f.world.of(Trouble, what="refused for now")[0].time < PATIENCE
 
 
 @pytest.mark.parametrize(

@@ -164,7 +164,7 @@ def test_a_step_that_is_never_taken_is_told_again_and_again_and_then_rejected_wi
     (end,) = ended(reports)
     assert (
         end.reason
-        == "it was told to change to LOITER, and did not in 45 s; its last words: 'Mode change failed'"
+        == "it was commanded to change to LOITER, and did not obey in 45 s; its last words: 'Mode change failed'"
     )
 
 

@@ -42,7 +42,7 @@ def filters(flags):
 @pytest.mark.parametrize(
     ("messages", "lacks"),
     [
-        ((), "it has no position: it tells of no GPS"),
+        ((), "it has no position: it reports no GPS"),
         ((receiver("GPS_RAW_INT", NO_FIX),), "it has no position: GPS fix 1"),
         ((receiver("GPS_RAW_INT", FIX),), ""),
         ((receiver("GPS_RAW_INT", NO_FIX), receiver("GPS2_RAW", FIX)), ""),
@@ -76,7 +76,7 @@ def test_a_position_that_a_filter_predicts_counts_until_the_vehicle_is_armed(bas
 def test_what_a_receiver_does_not_tell_any_more_does_not_count():
     known = told(receiver("GPS_RAW_INT", FIX))
     assert known.lacks(10.0) == ""
-    assert known.lacks(11.0) == "it has no position: GPS fix not told any more"
+    assert known.lacks(11.0) == "it has no position: GPS fix no longer reported"
 
 
 @flown(Kind.PLANE, second=True)
@@ -95,7 +95,7 @@ async def test_a_vehicle_that_loses_its_position_in_flight_is_said_to_have_none_
     await asyncio.sleep(42)
     (lost,) = f.world.of(Trouble, what="no position")
     why = "it has no position: GPS fix 1, its own estimate is not good"
-    assert lost.detail == f"{why}; nobody sees where it is"
+    assert lost.detail == f"{why}; its position is unknown"
     last = f.world.published[-1]  # it says (0, 0) now, and what was published last ages
     assert f.world.now() - last.property.time > 20
     assert all(published.property.geometry.vertices[0][0] > 36 for published in f.world.published)
@@ -135,7 +135,9 @@ async def test_a_home_that_is_moved_is_said_and_the_next_leg_is_flown_above_the_
     before = altitude + f.vehicle.target.height
     f.vehicle.set_home(latitude, longitude, altitude + 300.0)
     (moved,) = await until(lambda: f.world.of(Trouble, what="home moved"), 20)
-    assert moved.detail.startswith("its home was moved by 0 m and +300 m in height, by itself or told")
+    assert moved.detail.startswith(
+        "its home was moved by 0 m and +300 m in height, by itself or by a command"
+    )
     await f.completes(GoTo("r2", "uav0", point(37.004, -8.6), band))
     assert f.vehicle.home[2] + f.vehicle.target.height == pytest.approx(before, abs=0.2)
     assert f.world.of(TakenOver) == []

@@ -130,7 +130,7 @@ def test_a_real_px4_copter_that_another_station_sends_home_is_taken_over(tmp_pat
             await other_station(PX4_COPTER.home)
             await until(lambda: world.of(TakenOver))
             assert world.of(TakenOver)[0].reason.startswith(
-                "it is in AUTO.RTL, by itself or told by someone else"
+                "it is in AUTO.RTL, by itself or by a command from elsewhere"
             )
             with pytest.raises(Refused, match="it was taken over"):
                 await plugin.command(GoTo("r2", "uav0", AREA))

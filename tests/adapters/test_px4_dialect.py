@@ -61,5 +61,5 @@ async def test_a_fence_that_stops_it_is_a_take_over_although_its_mode_stays_the_
     await asyncio.sleep(30.0)
     f.vehicle.stay()  # as at a fence with GF_ACTION 2
     await until(lambda: f.world.of(TakenOver))
-    assert "it would have to be told to go there" in f.world.of(TakenOver)[0].reason
+    assert "it would need the command to go there" in f.world.of(TakenOver)[0].reason
     assert distance(here(f), point(37.0, -8.6)) < 400

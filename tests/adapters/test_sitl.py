@@ -246,7 +246,7 @@ def test_a_real_plane_that_flies_home_unasked_arrives_nowhere_and_is_not_called_
     ending, known, seen = flown_by_run(ROUND, "plane", tmp_path, foe, 1_200)
     assert ending.reason == "the time is over"
     assert seen.rules.count("commit") == legs
-    assert "it is in RTL, by itself or told by someone else" in ending.state.overrides.taken["uav0"]
+    assert "it is in RTL, by itself or by a command from elsewhere" in ending.state.overrides.taken["uav0"]
     assert words in ending.state.overrides.taken["uav0"]
     assert known.mode == PLANE.home
     home = circle((37.0, -8.6), 300.0)

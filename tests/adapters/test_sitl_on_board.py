@@ -129,7 +129,7 @@ def test_a_fence_that_somebody_clears_is_noticed_and_is_on_the_real_plane_again_
         async with flying(tmp_path, GoTo("r1", "uav0", WAY[-1]), FENCED, ALL_FENCES) as (world, plugin):
             load((), MissionType.FENCE)
             (taken,) = await until(lambda: world.of(TakenOver), 120)
-            assert taken.reason.startswith("the fence on board is not the one that it was given")
+            assert taken.reason.startswith("the fence on board is not the one sent")
             await plugin.command(GiveBack("r2", "uav0"))
             await plugin.command(GoTo("r3", "uav0", WAY[-1]))
             await until(lambda: world.of(Accepted, request="r3"), 400)

@@ -56,7 +56,7 @@ async def test_what_another_address_says_for_a_vehicle_is_reported_once_and_chan
     assert f.world.property("uav0").channels == ("control:gcs0",)
     (detail,) = details(f, "second source of uav0")
     assert detail.endswith(
-        f"if it has moved, say so once it is silent: bigactors give-back uav0 --at {there}"
+        f"if it has moved, run this once it is silent: bigactors give-back uav0 --at {there}"
     )
 
 

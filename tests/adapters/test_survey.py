@@ -198,7 +198,7 @@ async def test_a_station_that_only_writes_is_heard_as_a_second_one(f):
         port.send(Encoder(252, 190).pack(count), None)
         await until(lambda: f.plugin.pilot("uav0").survey.read[MISSION] > before, 5)
     (trouble,) = await until(lambda: f.world.of(Trouble, what="second ground station"))
-    assert trouble.detail == "system 252 says MISSION_COUNT"
+    assert trouble.detail == "system 252 sends MISSION_COUNT"
 
 
 # --- what is kept -------------------------------------------------------------------------------------

@@ -53,7 +53,7 @@ def test_a_number_takes_a_step_and_u_takes_it_back(chosen):
 def test_another_answer_is_told_what_could_be_answered(chosen, answer):
     _, out, _ = chosen(f"{answer}\n")
     assert out[-2] == (
-        f"{answer[:40]!r} is no choice here: answer a number from 1 to 2, r, u, s, f, q, or ? for what they do"
+        f"{answer[:40]!r} is no choice here: answer a number from 1 to 2, r, u, s, f, q, or ? for their meaning"
     )
 
 
@@ -84,7 +84,7 @@ def test_where_nothing_is_enabled_a_step_can_only_be_taken_back(bigactors, monke
     monkeypatch.setattr("sys.stdin", io.StringIO("r\n" * 30))
     out = bigactors("simulate", "holds.mission", "--choose")[1].splitlines()
     assert "nothing more is enabled" in out
-    assert out[-2] == "'r' is no choice here: answer u, s, f, q, or ? for what they do"
+    assert out[-2] == "'r' is no choice here: answer u, s, f, q, or ? for their meaning"
 
 
 @pytest.fixture

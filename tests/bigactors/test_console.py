@@ -297,7 +297,7 @@ def test_a_console_says_that_its_run_was_killed_and_ends_with_it(tmp_path):
         await ana.until(lambda state: state["vehicles"]["uav0"]["order"] is not None)
         process.kill()
         await ana.until(lambda state: state["clock"]["ended"] is not None)
-        assert ana.state["clock"]["ended"].startswith("the run ended without a word")
+        assert ana.state["clock"]["ended"].startswith("the run ended without a message")
         await ana.until(lambda state: state["vehicles"]["uav0"]["word"] == "unknown")
 
     with flying(tmp_path, "--record", tmp_path / "run.mcap") as process:

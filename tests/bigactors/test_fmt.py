@@ -58,7 +58,7 @@ def test_a_formatter_that_would_change_what_is_said_is_our_bug_and_destroys_noth
     monkeypatch.setattr(specs, "format_mission", lambda *_: "mission other\n")
     code, _, err = bigactors("fmt", "ugly.mission")
     assert code == 4
-    assert "would change what it says" in err
+    assert "would change its meaning" in err
     assert ugly.read_text() == UGLY
 
 

@@ -21,11 +21,11 @@ check .  # .: this is a folder, not a mission
 check --watch --json - holds.mission  # --watch prints its reports
 check --trace race.mission holds.mission  # race.mission: there is a file where a folder should be
 check race.mission --engine ray --reduce por  # the ray explorer does not reduce
-check race.mission --engine reference --paranoid 1  # --paranoid is of the fast explorer and of reductions
-check race.mission --reduce por --checkpoint there  # --checkpoint is of the fast explorer
+check race.mission --engine reference --paranoid 1  # --paranoid works with the fast engine and with reductions only
+check race.mission --reduce por --checkpoint there  # --checkpoint works with the fast engine only
 check race.mission --hash-compact 32  # it is gone, since a configuration takes some 24 bytes: --max-memory
-check race.mission --spill there  # --spill is for when memory ends
-check race.mission --spill there --max-memory 1G --engine reference  # --spill is of the fast explorer
+check race.mission --spill there  # --spill needs a limit on memory
+check race.mission --spill there --max-memory 1G --engine reference  # --spill works with the fast engine only
 check race.mission --spill holds.mission --max-memory 1G  # there is a file where a folder should be
 check oil_spill --reduce por --scheduler fcfs  # 'por' is refused: under 'scheduler fcfs'
 check rendezvous --reduce symmetry  # the reduction 'symmetry' is refused: nothing in the mission is
@@ -71,7 +71,7 @@ replay run.json --waypoints uav9=x.plan  # the mission has no entity 'uav9'
 replay run.json --waypoints base0=x.plan  # nothing sends 'base0' anywhere
 replay run.json --waypoints uav0  # is not VEHICLE=FILE
 simulate handover --choose --json -  # --choose talks on standard output
-export --format tchecker oil_spill  # oil_spill says nothing of times
+export --format tchecker oil_spill  # oil_spill has no times
 export --format tchecker endurance --property endurence  # did you mean 'endurance'?
 export --format tchecker endurance --property race_freedom  # only deadlines and endurance are exported
 show oil_spill --timeline  # write a section timing
@@ -94,7 +94,7 @@ explain deadlok  # bigactors: there is no code and no word 'deadlok'\n  hint: di
 check --sign own.key oil_spill  # --sign signs a verdict
 run oil_spill --vehicle=uav0=udp:127.0.0.1:0 --unverified --trust own.key.pub  # --trust for a signed one
 check --verdict v oil_spill handover  # one mission
-run oil_spill --unverified  # vehicles that are not given: uav0
+run oil_spill --unverified  # vehicles of the mission have no address: uav0
 run oil_spill --unverified --vehicle=uav9=udp:127.0.0.1:0  # no entity 'uav9'
 run oil_spill --unverified --vehicle=gcs0=udp:127.0.0.1:0  # 'gcs0' is no vehicle
 run oil_spill --unverified --vehicle=uav0=carrier-pigeon  # no way to connect

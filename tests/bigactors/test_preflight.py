@@ -50,9 +50,9 @@ def line(folder, *statements):
 @pytest.mark.parametrize(
     ("statement", "reason"),
     [
-        ("control(MOVE_HOST_TO ship0)", "nothing shows that uav0 is aboard ship0"),
-        ("control(PUT buoy0 IN west0)", "nothing shows that buoy0 is put into west0"),
-        ("control(CONNECT_HOST_TO mast0)", "nothing shows that uav0 joins or leaves a channel"),
+        ("control(MOVE_HOST_TO ship0)", "no report can confirm that uav0 is aboard ship0"),
+        ("control(PUT buoy0 IN west0)", "no report can confirm that buoy0 is put into west0"),
+        ("control(CONNECT_HOST_TO mast0)", "no report can confirm that uav0 joins or leaves a channel"),
         (
             "control({ HOST[c].$0 || gcs1[d].$1 || east0.$2 -> gcs1[d].$1 || east0.(HOST[d].$0 | $2) })",
             "uav0 joins or leaves a channel",  # handed over and moved at once
@@ -65,7 +65,7 @@ def test_what_nothing_would_ever_confirm_is_refused_before_anything_is_heard(
 ):
     assert main([*line(tmp_path, statement), "--wait", "0.1"]) == 2
     told = capsys.readouterr().err
-    assert "carrier.mission:24: a would ask for what cannot be flown" in told
+    assert "carrier.mission:24: a would request an impossible flight" in told
     assert reason in told
     assert "nothing was heard" not in told
 
@@ -76,7 +76,7 @@ def test_what_only_may_be_asked_for_is_a_warning(tmp_path, capsys):
     )
     prepare(options)
     told = capsys.readouterr().err
-    assert "warning: a may ask for what cannot be flown: MOVE_HOST_TO ship0" in told
+    assert "warning: a may request an impossible flight: MOVE_HOST_TO ship0" in told
 
 
 async def flown(flight, vehicle):

@@ -138,7 +138,7 @@ def test_a_run_that_is_asked_to_end_closes_its_recording(there, number, shell):
         run.send_signal(number)
         told = run.communicate(timeout=120)[1]
     assert run.returncode == 3
-    assert "interrupted: vehicles go on as they were told last" in told
+    assert "interrupted: vehicles go on with their last command" in told
     recording = open_recording("run.mcap")
     assert not recording.torn
     assert [message.data for message in recording.of("end")] == [{"reason": "interrupted"}]
@@ -197,7 +197,7 @@ def test_a_recording_of_others_is_shown_step_by_step_as_traces_are(there, capsys
     assert main(["show", "harbour_watch", "--trace", path, "--step", "2", "--output", "c2.svg"]) == 0
     assert (there / "c2.svg").exists()
     capsys.readouterr()
-    assert "nothing is sent anywhere" in refused(
+    assert "has no destinations" in refused(
         "replay", path, "--mission", "harbour_watch", "--waypoints", "uav0=x.plan"
     )
 
@@ -240,8 +240,8 @@ TAKEN = {"uav0": "it is in RTL"}
     ("reason", "taken", "broken", "code", "more"),
     [
         ("the mission has ended", {}, False, 0, ""),
-        ("the mission has ended", {}, True, 1, "; not all was as the mission says"),
-        ("what was left to be done was refused", {}, False, 3, ""),
+        ("the mission has ended", {}, True, 1, "; an assumption was broken"),
+        ("all remaining requests were refused", {}, False, 3, ""),
         ("the time is over", TAKEN, False, 3, "; uav0 was taken over: it is in RTL"),
         ("the mission has ended", TAKEN, False, 3, "; uav0 was taken over: it is in RTL"),
     ],
@@ -256,8 +256,8 @@ BREACH = Finding("broken assumption", "boat0", "boat0 is seen in east0", 1.0, "r
 RESUMED = """\
 broken assumption, before it was resumed: boat0 is seen in east0; vehicles return, as the mission says
 late, before it was resumed: CTR(a, MOVE_HOST_TO p) waits for 9 s; vehicles hold, as the mission says
-  it goes on where the world is as the mission says again, or by --unverified
-taken over: uav0: it is in RTL; nobody here commands it until `bigactors give-back uav0`
+  it goes on once the world is as the mission assumes again, or with --unverified
+taken over: uav0: it is in RTL; this run does not command it until `bigactors give-back uav0`
 """
 
 
@@ -285,7 +285,7 @@ def test_a_run_that_goes_on_from_a_recording_without_a_beginning_says_that_its_c
     recorded(*line, "--record", "first.mcap")  # as one that was killed before it began
     assert "clocks" not in capsys.readouterr().err
     assert main([*line, "--resume", "first.mcap"]) == 2
-    said = "the recording does not say when the mission began: all clocks begin anew"
+    said = "the recording lacks the start of the mission: all clocks begin anew"
     assert said in capsys.readouterr().err
 
 

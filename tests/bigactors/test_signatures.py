@@ -33,7 +33,7 @@ TRUSTING = (*RUN, "--trust", "own.key.pub")
 MALFORMED = """\
 v.json: the verdict's signature is malformed: \
 it should be an object with 'key' and 'ed25519', which is 64 bytes in base64
-  hint: the one who is trusted signs it: bigactors check --verdict FILE --sign KEY
+  hint: the owner of the trusted key signs it: bigactors check --verdict FILE --sign KEY
 """
 
 
@@ -92,7 +92,9 @@ def test_who_trusts_the_key_flies_and_so_does_who_asks_for_no_signature(bigactor
 def test_a_verdict_that_was_changed_and_sealed_again_does_not_fly(there, refused):
     changed(there / "v.json", engine="reference")
     assert "nothing was heard of uav0" in refused(*RUN)  # a seal alone doesn't show it
-    said = "v.json: the verdict was changed after it was signed\n  hint: the one who is trusted signs it"
+    said = (
+        "v.json: the verdict was changed after it was signed\n  hint: the owner of the trusted key signs it"
+    )
     assert refused(*TRUSTING).startswith(said)
     changed(there / "v.json", signature=None)
     assert "the verdict bears no signature" in refused(*TRUSTING)
@@ -129,9 +131,9 @@ KEYS = """
 --sign own.key.pub: this is a public key, and the secret one signs: give FILE of the pair
 --sign wide.key: its mode is 0640: chmod 600 wide.key; if others did,
 --sign locked.key: this is no key to sign with: it needs a passphrase: give FILE of the pair
---trust none: this is no public key: it is not in PEM, or is damaged: give the FILE.pub of the one
---trust rsa.key.pub: this is no public key: it is of another kind than Ed25519: give the FILE.pub of the one
---trust own.key: this is a secret key, and the public one is trusted: give the FILE.pub of the one
+--trust none: this is no public key: it is not in PEM, or is damaged: give the FILE.pub of the signer
+--trust rsa.key.pub: this is no public key: it is of another kind than Ed25519: give the FILE.pub of the signer
+--trust own.key: this is a secret key, and the public one is trusted: give the FILE.pub of the signer
 """
 
 

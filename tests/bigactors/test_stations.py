@@ -107,7 +107,7 @@ def test_a_recording_has_no_steps_of_bigactors_that_run_elsewhere():
     "wrong", [{"here": 3}, {"hosts": {"gcs0": 1}}, {"sent": {"gcs1": "x"}}, {"took": None}]
 )
 def test_a_recording_that_does_not_say_whose_it_is_is_a_mistake(wrong):
-    with pytest.raises(Mistake, match="which station's"):
+    with pytest.raises(Mistake, match="does not name its station"):
         parting_of(Flown("gcs0").recording(**wrong))
 
 

@@ -78,7 +78,7 @@ def test_no_flight_may_be_given_up_before_it_takes_too_long(verdict, capsys, lim
     text = shipped_missions()["endurance"].read_text(encoding="utf-8")
     Path("limited.mission").write_text(f"{text}\nlive {{ {limit}: return }}\n", encoding="utf-8")
     path = verdict("limited.mission")
-    said = "live lets patrol fly for 5 min, and the times let a flight of it take "
+    said = "live lets patrol fly for 5 min, but by the times its flight may take "
     assert (f"limited.mission: {said}" in capsys.readouterr().err) == short
     validate(json.loads(Path(path).read_text()))
     if short:
@@ -92,8 +92,8 @@ def test_no_flight_may_be_given_up_before_it_takes_too_long(verdict, capsys, lim
     ("checked", "flown", "says"),
     [
         ("oil_spill", "oil_spill", "control atomic"),
-        ("broken_inconsistent --control timed", "broken_inconsistent", "not that everything holds"),
-        ("oil_spill --control timed --max-configurations 5", "oil_spill", "not that everything holds"),
+        ("broken_inconsistent --control timed", "broken_inconsistent", "does not confirm every property"),
+        ("oil_spill --control timed --max-configurations 5", "oil_spill", "does not confirm every property"),
         ("oil_spill --control timed", "spill_watch", "text, the places that never move, the entities"),
     ],
 )
@@ -114,7 +114,7 @@ def test_a_verdict_that_not_everything_holds_under_timed_control_of_this_mission
         ({"digest": "sha256:0"}, "digest"),
         ({"schema": "other"}, "no verdict"),
         ({"scheduler": "random"}, "no scheduler"),
-        ({"holds": 1}, "not that everything holds"),
+        ({"holds": 1}, "does not confirm every property"),
         ({"engine": "reference"}, "changed after it was reached"),
         ({"properties": []}, "changed after it was reached"),
         ({"seal": None}, "changed after it was reached"),
@@ -174,7 +174,7 @@ def test_a_mission_swapped_between_reading_and_licensing_does_not_fly(
         return find_verdict(*asked)
 
     monkeypatch.setattr(run, "find_verdict", swapping)
-    with pytest.raises(Mistake, match="the verdict is of another mission"):
+    with pytest.raises(Mistake, match="the verdict belongs to another mission"):
         run.prepare(options)
 
 

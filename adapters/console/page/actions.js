@@ -17,7 +17,7 @@ export function Actions({ app }) {
     ${act ? html`
       <h3>Say</h3>
       ${sayings.size === 0 && html`<p class="none">The mission lets nobody say anything now.</p>`}
-      ${sayings.size > 0 && mission.get("fallen_back") && html`<p class="none bad">The mission has fallen back: ${mission.get("fallen_back")}. What is said to its agents moves no vehicle.</p>`}
+      ${sayings.size > 0 && mission.get("fallen_back") && html`<p class="none bad">The mission has fallen back: ${mission.get("fallen_back")}. Messages to its agents move no vehicle.</p>`}
       <ul class="sayings">${[...sayings].sort(([a], [b]) => byName(a, b)).map(([key, saying]) => html`<${Saying} key=${key} app=${app} saying=${saying} over=${agents.get(saying.agent)?.state === "has ended"} fallen=${Boolean(mission.get("fallen_back"))} />`)}</ul>
       ${vehicles.size > 1 && html`<h3>All ${vehicles.size} vehicles</h3>
       <div class="buttons">

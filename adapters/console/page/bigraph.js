@@ -51,9 +51,9 @@ function sizeOf(root) {
 
 /** The caption with the picture's step, which may be earlier than the moment's: L is drawn at most once a second. */
 function captionOf(pictured, step) {
-  if (pictured === null) return "what is believed";
+  if (pictured === null) return "the logical model";
   const later = step !== null && step !== pictured ? `; the moment shown is after step ${step}, which is not drawn yet` : "";
-  return `what is believed, after step ${pictured}${later}`;
+  return `the logical model, after step ${pictured}${later}`;
 }
 
 export function Bigraph({ app }) {

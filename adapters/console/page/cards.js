@@ -241,6 +241,6 @@ const Entity = memo(({ app, name, entity }) => html`<article class="card entity 
       <span class="quiet">${entity.source}</span></h3>
     <dl><dt>Place</dt><dd><${Place} card=${entity} /></dd>
       <dt>Position</dt><dd>${position(entity.at)}</dd>
-      <dt>Motion</dt><dd>${isNumber(entity.course) ? `course ${angle(entity.course)}` : "course not told"} · ${isNumber(entity.speed) ? speed(entity.speed) : "speed not told"}</dd>
+      <dt>Motion</dt><dd>${isNumber(entity.course) ? `course ${angle(entity.course)}` : "course not reported"} · ${isNumber(entity.speed) ? speed(entity.speed) : "speed not reported"}</dd>
       <dt>Seen</dt><dd><${Age} clock=${app.clock} time=${entity.seen} /> ago</dd></dl>
   </article>`);

@@ -24,7 +24,7 @@ export function shortcuts(app) {
     ["a", "to the alert", () => document.querySelector(".acknowledge, .others")?.focus()],
     ["m", "to the map", () => app.focusMap()],
     ["f", "fit the map", () => app.map?.fit()],
-    ["i", "what the chart's signs mean", () => app.map?.toggleLegend()],
+    ["i", "the legend of the chart", () => app.map?.toggleLegend()],
     ["o", "follow the chosen, or the only one", () => app.following.set(!app.following.value)],
     ["r", "measure on the map", () => app.measuring.set(!app.measuring.value)],
     ["e", "enlarge the panel, or not", () => app.enlarged.set(!app.enlarged.value)],

@@ -12,7 +12,7 @@ export function Steps({ app }) {
   const lanes = agents.slice(0, LANES).join("\n");
   const shown = [...steps].filter(([, step]) => all || step.told).sort(([a], [b]) => b - a);
   return html`<div class="steps">
-    <p class="tools"><label><input type="checkbox" checked=${all} onChange=${(event) => setAll(event.currentTarget.checked)} /> each step, not only what the terminal tells</label>
+    <p class="tools"><label><input type="checkbox" checked=${all} onChange=${(event) => setAll(event.currentTarget.checked)} /> each step, not only those in the terminal</label>
       <span class="quiet">${shown.length} of the last ${steps.size}</span></p>
     ${shown.length === 0 && html`<p class="none">No step yet.</p>`}
     <ol>${shown.map(([number, step]) => html`<${Step} key=${number} app=${app} number=${number} step=${step} lanes=${lanes} />`)}</ol>

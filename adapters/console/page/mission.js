@@ -46,10 +46,10 @@ function doubtedBy(alerts) {
 
 function Verdict({ verified, verdicts, doubted, digest, scheduler }) {
   const wrong = verdicts.filter(({ property }) => doubted.has(property)).length;
-  return html`<details class=${`verdict ${!verified ? "not" : wrong ? "doubted" : "ok"}`}><summary aria-label=${verified ? "verified" : "not verified"}>${verified ? "✓" : "✗"}<span class="word"> ${verified ? "verified" : "not verified"}</span>${verdicts.length > 0 && html`<span class="many"> · ${verdicts.length} ${verdicts.length === 1 ? "property" : "properties"}${wrong ? `, ${wrong} on what proved wrong` : ""}</span>`}</summary>
+  return html`<details class=${`verdict ${!verified ? "not" : wrong ? "doubted" : "ok"}`}><summary aria-label=${verified ? "verified" : "not verified"}>${verified ? "✓" : "✗"}<span class="word"> ${verified ? "verified" : "not verified"}</span>${verdicts.length > 0 && html`<span class="many"> · ${verdicts.length} ${verdicts.length === 1 ? "property" : "properties"}${wrong ? `, ${wrong} on a broken assumption` : ""}</span>`}</summary>
     <div class="sheet">
       <table><thead><tr><th scope="col">Property</th><th scope="col">Verdict</th><th scope="col">Rests on</th></tr></thead>
-      <tbody>${verdicts.map((each) => html`<tr key=${each.property}><th scope="row">${each.property}</th><td>${each.verdict}${doubted.has(each.property) ? ", but rests on what has proved wrong" : ""}</td>
+      <tbody>${verdicts.map((each) => html`<tr key=${each.property}><th scope="row">${each.property}</th><td>${each.verdict}${doubted.has(each.property) ? ", but rests on a broken assumption" : ""}</td>
         <td>${each.rests_on.length ? html`<ul>${each.rests_on.map((text) => html`<li key=${text}>${text}</li>`)}</ul>` : html`<span class="quiet">nothing assumed</span>`}</td></tr>`)}</tbody></table>
       <p class="quiet">${scheduler && `scheduler ${scheduler}`}${digest && html` · mission <code>${digest.slice(0, 16)}</code>`}</p>
     </div></details>`;
@@ -81,13 +81,13 @@ export function NotConnected({ app }) {
   const seen = useWatched(app.link.welcome);
   const [clock] = useSections(app.store, ["clock"], 200);
   const unread = clock.get("unread");
-  if (state.state === "open" && unread) return html`<div role="status" class="offline"><b>What is shown is old</b>, of ${utc(clock.get("head"))} UTC: the recording cannot be read any further (${unread}). The run may go on, and hears what you order.</div>`;
+  if (state.state === "open" && unread) return html`<div role="status" class="offline"><b>This view is old</b>, of ${utc(clock.get("head"))} UTC: the recording cannot be read any further (${unread}). The run may go on, and receives your orders.</div>`;
   if (state.state === "open" || (state.state === "connecting" && !seen && Date.now() / 1000 - state.since < 1)) return html`<div role="status"></div>`;
   if (state.state === "early") return html`<div role="status" class="offline"><b>Connected, and waiting:</b> ${state.why}.</div>`;
   const ended = app.clock.get("ended");
-  if (state.state === "refused") return html`<div role="status" class="offline"><b>What is shown is old</b>, of ${utc(app.clock.now)} UTC: another console is at this address now. The link that its program has printed opens it.</div>`;
-  if (ended && app.clock.get("broken_off")) return html`<div role="status" class="offline"><b>The run broke off, and this console with it:</b> ${ended}. What is shown is of ${utc(app.clock.now)} UTC.</div>`;
+  if (state.state === "refused") return html`<div role="status" class="offline"><b>This view is old</b>, of ${utc(app.clock.now)} UTC: another console is at this address now. The link that its program has printed opens it.</div>`;
+  if (ended && app.clock.get("broken_off")) return html`<div role="status" class="offline"><b>The run broke off, and this console with it:</b> ${ended}. This view is of ${utc(app.clock.now)} UTC.</div>`;
   if (ended) return html`<div role="status" class="offline"><b>The run has ended, and this console with it</b> (${ended}). <code>bigactors console</code> shows its recording again.</div>`;
-  return html`<div role="status" class="offline"><b>Not connected</b> for <${Ticking} clock=${app.clock} apply=${forHowLong(state.since)} />: ${app.clock.now === null ? "is the program running?" : `what is shown is of ${utc(app.clock.now)} UTC.`} Trying again.
+  return html`<div role="status" class="offline"><b>Not connected</b> for <${Ticking} clock=${app.clock} apply=${forHowLong(state.since)} />: ${app.clock.now === null ? "is the program running?" : `this view is of ${utc(app.clock.now)} UTC.`} Trying again.
     <button type="button" onClick=${() => app.link.connect()}>Try now</button></div>`;
 }

@@ -79,7 +79,7 @@ const FALLBACKS = { hold: "then it holds", return: "then it returns home", conti
 /** The words for the fallback after a request's time limit. */
 export const fallbackWords = (fallback) => FALLBACKS[fallback] ?? "";
 
-const FALLEN_BACK = { hold: "vehicles were told to hold", return: "vehicles were told to return home", continue: "the mission goes on" };
+const FALLEN_BACK = { hold: "vehicles were commanded to hold", return: "vehicles were commanded to return home", continue: "the mission goes on" };
 
 /** A finding, and the run's fallback after it. */
 export const findingWords = ({ message, fallback }) => [message, FALLEN_BACK[fallback]].filter(Boolean).join(" · ");
@@ -93,7 +93,7 @@ const OURS = /^(say|give back|acknowledge|start)/;
  */
 export function fateOf({ what, state, vain, fates, answered }) {
   if (state === "confirmed" && OURS.test(what)) return vain ? `heard, but ${vain}` : "done";
-  if (state === "refused" && isOwed({ fates, answered })) return "refused, and told again";
+  if (state === "refused" && isOwed({ fates, answered })) return "refused, and repeated";
   if (["asked", "sent"].includes(state) && answered) return `${state}, never confirmed`;
   return FATES[state] ?? state;
 }
@@ -105,4 +105,4 @@ const isOwed = ({ fates, answered }) => !answered && Object.keys(fates ?? {}).le
 export const eachFate = ({ fates }) => (Object.keys(fates ?? {}).length > 1 ? Object.entries(fates).map(([name, { state, why }]) => `${name}: ${FATES[state]}${why ? `: ${why}` : ""}`) : []);
 
 /** An operator's order to a vehicle, and its state. */
-export const orderedWords = ({ order, by, state, why }) => `to ${order}, by ${by || "someone"}: ${state === "refused" ? `refused, and told again: ${why}` : FATES[state]}`;
+export const orderedWords = ({ order, by, state, why }) => `to ${order}, by ${by || "someone"}: ${state === "refused" ? `refused, and repeated: ${why}` : FATES[state]}`;

@@ -99,17 +99,17 @@ def lines(
     runs = f"{counted(len(samples), 'run')} of seed {options.seed}"
     yield f"{Path(options.file).name}: {runs}, {seconds:.2f} s"
     if len(samples) < options.runs:
-        yield f"  interrupted: {options.runs - len(samples):,} more were wanted"
+        yield f"  interrupted: {options.runs - len(samples):,} more were asked for"
     ends = Counter(each.end for each in samples)
     for end, words in (
         (End.STUCK, "ended where no rule applies"),
         (End.TIME, f"went on to time {options.until or 0:g}"),
-        (End.STEPS, f"ended after {counted(options.steps, 'step')}, as --steps says"),
+        (End.STEPS, f"ended after {counted(options.steps, 'step')}, the limit of --steps"),
     ):
         if ends[end]:
             yield f"  {ends[end]:,} {words}"
     if ends[End.STEPS] and options.until is not None:
-        yield "  warning: what --steps cuts off before --until counts as never true; raise --steps"
+        yield "  warning: predicates count as never true after --steps cuts off a run before --until; raise --steps"
     width = max(len(label) for label in (STEPS, *(each.label for each in found)))
     yield f"  {STEPS.ljust(width)}  {_estimated(mean([float(each.steps) for each in samples]))} on average"
     for each in found:

@@ -94,7 +94,7 @@ def check_queries(queries: Sequence[str], system: System) -> None:
         _refuse(text, reply)
         if KINDS[system.kind] is MarkovKind.MDP and not reply["directed"]:
             asked, kind = " ".join(text.split()), system.kind.value
-            message = f"'{asked}' has many values, for in a system of kind {kind} what happens is chosen"
+            message = f"'{asked}' has many values, since a system of kind {kind} has choices"
             raise Mistake(message, "ask for the least or the greatest: Pmin=?, Pmax=?, Rmin=?, ...")
 
 

@@ -92,7 +92,7 @@ def _divergence_lines(file: str, found: Divergence) -> Iterator[str]:
     yield f"  {where} makes in the end {state_line(found.other.outcome)}"
     hint = f"a run takes the first rule of the class that applies, again and again, here {found.taken.rule}"
     if found.other.rule == found.taken.rule:
-        hint += ", and of its places the one whose result is least in a canonical order"
+        hint += ", at the place with the least result in a canonical order"
     yield f"hint: {hint}; let the rules exclude each other where that is not meant"
 
 
@@ -157,7 +157,9 @@ def sim(options: Namespace) -> Exit:
 
         return Exit.HOLDS if many_runs(options, system) else Exit.INCOMPLETE
     if options.plot:
-        raise Mistake("--plot shows what many runs say", "give --runs, such as --runs 1000", options.file)
+        raise Mistake(
+            "--plot draws statistics of many runs", "give --runs, such as --runs 1000", options.file
+        )
     from bigraphs.simulation import Bounds, simulate  # only this task simulates
 
     stages = []

@@ -118,7 +118,7 @@ def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
 def remedies(mission: ElaboratedMission, report: Report) -> str:
     """Return remedies for an exploration that a limit cut off."""
     if all(bound.stop is Stop.PENDING for bound in report.bounds):
-        waits = "let each loop wait for what it asks for (LS708 names those that don't)"
+        waits = "let each loop wait for its requests (LS708 names the loops that don't)"
         return f"{waits}, or raise the limit that stopped it: --max-pending"
     less: tuple[str, ...] = ()
     if mission.setting.timing is not None:
@@ -160,7 +160,7 @@ def _check_verdict(options: Namespace) -> SigningKey | None:
     """Return the key that signs the verdict, if any; raises Mistake before the exploration."""
     if options.verdict is None:
         if options.sign is not None:
-            raise Mistake("--sign signs a verdict", "say where it is written: --verdict FILE")
+            raise Mistake("--sign signs a verdict", "give its file: --verdict FILE")
         return None
     if len(options.files) > 1:
         raise Mistake("--verdict writes the verdict of one mission", "check the missions one by one")

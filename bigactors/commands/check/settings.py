@@ -15,7 +15,7 @@ MOST, MOST_OF_REFERENCE = 100_000_000, 2_000_000
 def how_of(options: Namespace) -> How:
     """Return the way in which missions are explored."""
     if options.times and options.engine not in (None, "reference"):
-        raise Mistake("--times is of the reference explorer", "leave --engine out")
+        raise Mistake("--times works with the reference engine only", "leave --engine out")
     return How(
         options.engine and Engine(options.engine),
         options.violations,
@@ -31,9 +31,9 @@ def limits_of(options: Namespace) -> Limits:
     """Return the limits of the exploration."""
     if options.spill is not None:
         if options.max_memory is None:
-            raise Mistake("--spill is for when memory ends", "say when that is: --max-memory SIZE")
+            raise Mistake("--spill needs a limit on memory", "give it: --max-memory SIZE")
         if options.engine in ("reference", "ray"):
-            raise Mistake("--spill is of the fast explorer", "leave --engine out")
+            raise Mistake("--spill works with the fast engine only", "leave --engine out")
         make_folder(options.spill)
     most, memory = most_of(options), options.max_memory
     pending = options.max_pending or MOST_PENDING
@@ -51,7 +51,7 @@ def cluster_of(options: Namespace) -> Cluster | None:
     if options.engine != "ray":
         if options.workers is not None or options.address is not None:
             raise Mistake(
-                "--workers and --address are of the Ray explorer", "add --engine ray, or leave them out"
+                "--workers and --address work with the Ray engine only", "add --engine ray, or leave them out"
             )
         return None
     return Cluster(options.workers or Cluster().workers, options.address)
@@ -61,7 +61,8 @@ def threads_of(options: Namespace) -> int | None:
     """Return the most threads of the exploration; None without the option."""
     if options.threads is not None and options.engine in ("reference", "ray"):
         raise Mistake(
-            "--threads is of the fast explorer", "leave --engine out, or say --workers with --engine ray"
+            "--threads works with the fast engine only",
+            "leave --engine out, or give --workers with --engine ray",
         )
     threads: int | None = options.threads
     return threads
@@ -70,11 +71,11 @@ def threads_of(options: Namespace) -> int | None:
 def keeping_of(options: Namespace) -> Keeping | None:
     """Return the options on checkpoints and re-checking; None without any."""
     if options.resume and options.checkpoint is None:
-        raise Mistake("--resume goes on from a checkpoint", "say where it is: --checkpoint DIR")
+        raise Mistake("--resume goes on from a checkpoint", "give its folder: --checkpoint DIR")
     if options.checkpoint is None and options.paranoid is None:
         return None
     if options.checkpoint is not None and (options.engine == "reference" or options.reduce):
-        raise Mistake("--checkpoint is of the fast explorer", "leave --engine and --reduce out")
+        raise Mistake("--checkpoint works with the fast engine only", "leave --engine and --reduce out")
     if options.paranoid is not None and options.engine not in (None, "fast") and not options.reduce:
-        raise Mistake("--paranoid is of the fast explorer and of reductions", "leave --engine out")
+        raise Mistake("--paranoid works with the fast engine and with reductions only", "leave --engine out")
     return Keeping(options.checkpoint, options.resume, every=options.every, doubted=options.paranoid or 0)

@@ -84,10 +84,10 @@ READING: Final = 2.0
 """Seconds to read the last records of a run after its end."""
 
 KILLED: Final = (
-    "the run ended without a word: it was killed, or has crashed; vehicles go on as they were told last"
+    "the run ended without a message: it was killed, or has crashed; vehicles go on with their last command"
 )
 
-UNKNOWN: Final = "the run has ended, and how is not known: the recording cannot be read any further"
+UNKNOWN: Final = "the run has ended for an unknown reason: the recording cannot be read any further"
 
 PMTILES: Final = b"PMTiles"
 
@@ -115,12 +115,10 @@ def _check(options: Namespace) -> None:
 
     if lacks_parts():
         raise Mistake(
-            "the console's page is not whole: npm has not fetched its parts", "say `make parts` in the clone"
+            "the console's page is not whole: npm has not fetched its parts", "run `make parts` in the clone"
         )
     if options.socket is not None and not options.follow:
-        raise Mistake(
-            "nobody hears what is said in a recording that has ended", "give --follow with --socket"
-        )
+        raise Mistake("a recording that has ended receives no actions", "give --follow with --socket")
     host = LOOPBACK if options.listen is None else options.listen[0]
     if not (_is_near(host) or options.tls or options.insecure):
         hint = "give --tls CERT KEY, or listen on this machine only and come by ssh -L; or --insecure"

@@ -108,13 +108,13 @@ def show_foreign(options: Namespace) -> Exit:
 
     if options.waypoints:
         raise Mistake(
-            "nothing is sent anywhere in a recording of others", "leave out --waypoints", options.trace
+            "a recording by other programs has no destinations", "leave out --waypoints", options.trace
         )
     _, shown = watched_in(options.trace, options.mission, opening(variation_of(options)), dict(options.name))
     for line in paced(shown.trace, shown.times, options.speed, stepwise=options.step):
         say(line)
     for finding in shown.findings:
-        tell(finding.message, "not as the mission says:")
+        tell(finding.message, "assumption broken:")
     say(f"c{len(shown.trace)} shows")
     say(indent(draw_text(all_as_it_is(shown.trace.configurations[-1]).structure.logical.bigraph()), "  "))
     changes = counted(len(shown.trace), "change")

@@ -59,7 +59,7 @@ def watched_in(
 ) -> tuple[ElaboratedMission, ForeignRecording]:
     """Return a foreign recording in the places of a mission; raises Mistake without a mission."""
     if mission_file is None:
-        hint = "say in which mission's places it is to be seen: replay --mission FILE, show FILE"
+        hint = "give a mission for its places: replay --mission FILE, show FILE"
         raise Mistake("this is no trace of ours", hint, path)
     mission = open_mission(mission_file)
     return mission, watched(path, mission, names)
@@ -85,7 +85,7 @@ def read_trace(
     data = read_json(path)
     named = data.get("mission") if isinstance(data, dict) else None
     if mission_file is None and not isinstance(named, str):
-        raise Mistake("the file says no mission: it is no trace", "give the mission with --mission", path)
+        raise Mistake("the file names no mission: it is no trace", "give the mission with --mission", path)
     mission = open_mission(mission_file or _beside(path, str(named)))
     _warn_of_another(path, data, mission, mission_file or str(named))
     try:

@@ -25,7 +25,8 @@ def poses_for(cameras: Iterable[Namespace], vehicles: Iterable[str]) -> dict[str
     for name in carriers:
         if name not in given:
             raise Mistake(
-                f"'{name:.60}' carries a camera, and is not given", f"give it with --vehicle {name:.60}=..."
+                f"'{name:.60}' carries a camera, but its address is not given",
+                f"give it with --vehicle {name:.60}=...",
             )
     return {name: PoseLog() for name in carriers}
 
@@ -65,6 +66,6 @@ def _kind(kind: str, mission: ElaboratedMission) -> str:
     known = mission.setting.signature.kinds
     if kind not in known or known[kind].driven:
         others = ", ".join(each for each in known if not known[each].driven)
-        hint = f"say what is looked for: kind=KIND, one of {others}"
+        hint = f"give the kind to look for: kind=KIND, one of {others}"
         raise Mistake(f"'{kind:.60}' is no kind of the mission that a camera could find", hint)
     return kind

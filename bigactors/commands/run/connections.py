@@ -199,8 +199,8 @@ def _check_all_driven(options: Namespace, mission: ElaboratedMission) -> None:
     """
     missing = sorted(driven(mission) - {name for name, _, _ in options.vehicle})
     if missing and own_station(options) is None:
-        hint = f"say where it is: --vehicle {missing[0]}=udp:127.0.0.1:14550"
-        raise Mistake(f"the mission has vehicles that are not given: {', '.join(missing)}", hint)
+        hint = f"give its address: --vehicle {missing[0]}=udp:127.0.0.1:14550"
+        raise Mistake(f"vehicles of the mission have no address: {', '.join(missing)}", hint)
 
 
 def _stations(options: Namespace, mission: ElaboratedMission) -> Stations:

@@ -53,7 +53,7 @@ def console_beside(options: Namespace, recording: Path | None, socket: Path) -> 
     threading.Thread(target=_relay, args=(process, links), daemon=True).start()
     if not _has_started(links):
         _end(process, 0)
-        hint = "it has said why; nothing has been commanded. Mend that, or leave --console out"
+        hint = "its own message gives the reason; nothing has been commanded. Correct that, or leave --console out"
         raise Mistake("the console does not start", hint)
     threading.Thread(target=_watch, args=(process, leaving), daemon=True).start()
     try:

@@ -102,7 +102,7 @@ def _detections(name: str, address: str, hearing: Hearing) -> Plugin:
         return _detector(name, hearing, folder=Path(rest))
     at = parse_address(address.replace("http:", "tcpin:", 1))
     if at.host != LOOPBACK and hearing.token is None:
-        hint = "say which token posts must carry: --token FILE"
+        hint = "give the token that posts must carry: --token FILE"
         raise Mistake(f"anyone who reaches {at.host} could post detections", hint, address)
     return _detector(name, hearing, listen=Listen(at.port, at.host, hearing.token))
 

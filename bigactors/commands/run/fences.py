@@ -80,7 +80,7 @@ def _placements(place: Name, mission: ElaboratedMission) -> Iterator[Placed]:
 def _box(grounds: tuple[Geometry, ...]) -> Geometry:
     latitudes, longitudes = zip(*(vertex for ground in grounds for vertex in ground.vertices), strict=True)
     if max(longitudes) - min(longitudes) > 180.0:
-        hint = f"say which place it is: --fence PLACE, or --fence {NONE}"
+        hint = f"name a place: --fence PLACE, or --fence {NONE}"
         raise Mistake(
             "there is no box around the world of this mission: it is on both sides of 180 degrees", hint
         )

@@ -95,7 +95,7 @@ def _run(flight: Flight, options: Namespace) -> Exit:
     if flight.resumed is not None:
         terminal.goes_on(flight.resumed.broken, flight.resumed.taken)
         if flight.mission.setting.timing is not None and flight.resumed.timers is None:
-            tell("the recording does not say when the mission began: all clocks begin anew")
+            tell("the recording lacks the start of the mission: all clocks begin anew")
     try:
         with record(flight) as tape, _published(options.publish) as ros:
             lookers = (
@@ -113,14 +113,14 @@ def _run(flight: Flight, options: Namespace) -> Exit:
     except (NotAsAssumed, NotHeard, PluginFailed) as error:
         return _not_begun(error)
     except KeyboardInterrupt:
-        tell(f"interrupted: vehicles go on as they were told last{standing(terminal.state or flight.state)}")
+        tell(f"interrupted: vehicles go on with their last command{standing(terminal.state or flight.state)}")
         return Exit.INCOMPLETE
     return conclude(ending, broken=terminal.broken)
 
 
 def conclude(ending: Ending, *, broken: bool) -> Exit:
     """Print the end of a run, and return its exit code."""
-    breach = "; not all was as the mission says" if broken else ""
+    breach = "; an assumption was broken" if broken else ""
     say(f"{ending.reason} after {ending.state.number} steps{breach}{standing(ending.state)}")
     if broken:
         return Exit.VIOLATED
@@ -335,7 +335,7 @@ async def fly(
 def _not_begun(error: Exception) -> Exit:
     if isinstance(error, NotAsAssumed):
         for finding in error.findings:
-            tell(finding.message, "not as the mission says:")
+            tell(finding.message, "assumption broken:")
         tell("the run has not begun: put the world or the mission right, or give --unverified")
         return Exit.VIOLATED
     silent = isinstance(error, NotHeard) and not error.heard

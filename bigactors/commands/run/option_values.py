@@ -114,7 +114,7 @@ def camera(word: str) -> argparse.Namespace:
     unknown = re.search(r",(\w+)=[^,/]*\Z", rest)
     if not (re.fullmatch(r"\w+", vehicle) and equals and rest) or unknown:
         what = f"'{unknown[1]}' is no setting of a camera" if unknown else f"'{word:.60}' is no camera"
-        expected = f"write VEHICLE=SOURCE, and of {', '.join(SETTINGS)} and level what differs"
+        expected = f"write VEHICLE=SOURCE, then any of {', '.join(SETTINGS)} and level"
         raise argparse.ArgumentTypeError(f"{what}: {expected}")
     found.source = rest
     return found

@@ -45,7 +45,7 @@ def check_idle(live: LiveRun, *, takes_over: bool) -> None:
     for name in sorted(obeying(live.plan, live.state)):
         if name in said and said[name].follows:
             found = f"{name} is under way already, in {said[name].mode}"
-            message = f"{found}: it flies a mission that this run did not give it"
+            message = f"{found}: it flies a mission that this run did not send"
             hint = "land it, or take it over: --take-over; a run that was interrupted goes on with --resume"
             raise Mistake(message, hint)
 
@@ -113,12 +113,12 @@ def _judge(mission: ElaboratedMission, objection: Objection) -> None:
         reasons = {str(reaction): objection(reaction) for reaction in reactions}
         bad = [f"{control}: {reason}" for control, reason in reasons.items() if reason]
         if bad and len(bad) == len(reasons):
-            hint = "nothing has been commanded; change the mission, or what flies it"
+            hint = "nothing has been commanded; change the mission, or its vehicles"
             raise Mistake(
-                f"{agent} would ask for what cannot be flown: {bad[0]}", hint, _place(mission, line)
+                f"{agent} would request an impossible flight: {bad[0]}", hint, _place(mission, line)
             )
         if bad:
-            tell(f"{_place(mission, line)}: warning: {agent} may ask for what cannot be flown: {bad[0]}")
+            tell(f"{_place(mission, line)}: warning: {agent} may request an impossible flight: {bad[0]}")
 
 
 def _place(mission: ElaboratedMission, line: int) -> str:
@@ -167,9 +167,9 @@ def _unshown(reaction: Reaction, mission: ElaboratedMission) -> Iterator[str]:
     for node, place in reaction.moves:
         of, holder = _kind(mission, node), _kind(mission, place)
         if of is not None and not signature[of].driven:
-            yield f"nothing shows that {node} is put into {place}"
+            yield f"no report can confirm that {node} is put into {place}"
         elif of is not None and holder is not None and of in signature[holder].carries:
-            yield f"nothing shows that {node} is aboard {place}"
+            yield f"no report can confirm that {node} is aboard {place}"
     for node, links in _links(reaction):
         of = _kind(mission, node)
         if (
@@ -178,7 +178,7 @@ def _unshown(reaction: Reaction, mission: ElaboratedMission) -> Iterator[str]:
             or (of is not None and not signature[of].driven)
         ):
             which = sorted(link if isinstance(link, str) else "a channel" for link in links)
-            yield f"nothing shows that {node} joins or leaves {' and '.join(dict.fromkeys(which))}"
+            yield f"no report can confirm that {node} joins or leaves {' and '.join(dict.fromkeys(which))}"
 
 
 def _links(reaction: Reaction) -> Iterator[tuple[NodeTerm, frozenset[LinkTerm]]]:

@@ -138,7 +138,7 @@ def _show_timeline(options: Namespace) -> Exit:
 
     if open_mission(options.file, variation_of(options)).setting.timing is None:
         hint = "write a section timing { ... }: docs/explanation/time.md"
-        raise Mistake("it has no times: nothing says how long anything takes", hint, options.file)
+        raise Mistake("it has no times: no duration is given", hint, options.file)
     limits = Limits(MOST_CONFIGURATIONS)
     checked = check_mission(options.file, limits, variation_of(options), How(times=True))
     if isinstance(checked, Failed):

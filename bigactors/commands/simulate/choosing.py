@@ -64,7 +64,7 @@ class Walk:
     def possible(self, enabled: int) -> str:
         """Return the possible answers."""
         numbers = f"a number from 1 to {enabled}, r, " if enabled > 1 else "1, r, " if enabled else ""
-        return f"answer {numbers}u, s, f, q, or ? for what they do"
+        return f"answer {numbers}u, s, f, q, or ? for their meaning"
 
     def take(self, choice: Choice, moment: str) -> Iterator[str]:
         """Take a step, at the given moment if there is one."""
@@ -107,7 +107,7 @@ class Walk:
         for each in asked:
             yield f"  {'true ' if holds(each.formula, self.run.at) else 'false'}  {each.name}: {each.shown}"
         if not asked:
-            yield "the mission has no invariant and no reachable: nothing is asked of one configuration"
+            yield "the mission has no invariant and no reachable: no property is about a single configuration"
 
     def choices(self) -> Iterator[str]:
         """Show the numbered choices. Choices with equal labels also show their changes."""

@@ -120,7 +120,7 @@ async def test_a_frame_whose_pose_is_not_known_is_left_out_and_told(tmp_path):
         return "frame left out" in sky.troubles()
 
     await looked(sky, feed, done)
-    assert sky.troubles()["frame left out"] == "where uav0 was, and how it lay, is not known"
+    assert sky.troubles()["frame left out"] == "the position and attitude of uav0 are not known"
     assert sky.published == []
 
 
@@ -209,7 +209,7 @@ def test_the_settings_of_a_camera_are_read_from_the_end_of_its_address():
         ("uav0", "'uav0' is no camera: write VEHICLE=SOURCE"),
         ("uav0=folder:x,zoom=3", "'zoom' is no setting of a camera"),
         ("uav0=folder:x,fov=wide", "fov=wide is no angle in degrees"),
-        ("uav7=folder:x", "'uav7' carries a camera, and is not given"),
+        ("uav7=folder:x", "'uav7' carries a camera, but its address is not given"),
         ("uav0=folder:x,kind=UAV", "'UAV' is no kind of the mission that a camera could find"),
         ("uav0=folder:x,detector=nowhere:find", "there is no detector nowhere:find"),
         ("uav0=folder:x,fov=300", "a field of view of 300° is none"),

@@ -181,7 +181,10 @@ def with_alarms(state):
 
 def alarms_of(alerts):
     """Return the section `alarms` of a run that has not fallen back."""
-    follows = {"hold": "all vehicles were told to hold", "return": "all vehicles were told to return home"}
+    follows = {
+        "hold": "all vehicles were commanded to hold",
+        "return": "all vehicles were commanded to return home",
+    }
     return {
         key: alert | {"consequence": follows.get(alert["fallback"], alert["fallback"])}
         for key, alert in alerts.items()

@@ -132,7 +132,7 @@ async def never(_action, _by):
     [
         pytest.param({"token": "looks-on"}, True, False, "this link only watches", id="who watches"),
         pytest.param({}, False, False, "this console only watches", id="in a recording"),
-        pytest.param({"name": ""}, True, False, "say who you are first", id="without a name"),
+        pytest.param({"name": ""}, True, False, "enter your name first", id="without a name"),
         pytest.param({}, True, True, "go to the newest one", id="in the past"),
     ],
 )

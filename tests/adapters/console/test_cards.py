@@ -49,7 +49,7 @@ def test_a_vehicle_of_which_nothing_is_asked_says_for_whom_it_waits(tape):
     assert says(tape.card(), level=0, why="", home=(37.01, -8.65), returning=False)
     tape.turn(60, uav(EAST, 60))
     tells(1060.5)
-    assert says(tape.card(), level=0, why='nothing is asked of it: op waits for "handover"')
+    assert says(tape.card(), level=0, why='it has no request: op waits for "handover"')
 
 
 def test_arrival_is_what_the_rules_say_it_is_and_where_l_and_p_differ_after_it_is_wrong(tape):
@@ -62,15 +62,15 @@ def test_arrival_is_what_the_rules_say_it_is_and_where_l_and_p_differ_after_it_i
     assert says(tape.card(), believed="east0", actual="region", level=3, word="broken")
     reasons = tape.card()["why"].split("; ")
     assert reasons[0].startswith("broken assumption: uav0 ")
-    assert reasons[-1] == "where it is believed to be and where it is differ"
+    assert reasons[-1] == "its believed and its actual position differ"
 
 
 def test_a_request_is_watched_from_half_of_its_time_on_and_wrong_when_that_is_over(tape):
     for now in range(0, 121, 4):
         tape.turn(now, uav(WEST if now == 0 else BETWEEN, now))
     assert so(tape.card(50)) == (0, "well", "")
-    assert so(tape.card(51)) == (1, "watch", "its request stands for more than half of 100 s")
-    assert so(tape.card(100)) == (2, "wrong", "its request stands for longer than 100 s")
+    assert so(tape.card(51)) == (1, "watch", "its request is pending for more than half of 100 s")
+    assert so(tape.card(100)) == (2, "wrong", "its request is pending for longer than 100 s")
     (late,) = [each for each in tape.shown()["alerts"].values() if each["wrong"]]
     assert (late["kind"], late["about"]) == ("late", "a")
 
@@ -80,7 +80,7 @@ def test_a_vehicle_is_unknown_taken_over_silent_or_lost_by_what_is_so(tape):
     tape.turn(0, uav(WEST, 0))
     assert so(tape.card()) == (0, "well", "")
     tape.turn(1, uav(WEST, 1), reports=[TakenOver("uav0", 1001.0, "a pilot flies it")])
-    meanwhile = "; the 100 s of its request run on meanwhile"
+    meanwhile = "; the time limit of its request, 100 s, still runs"
     assert so(tape.card()) == (3, "taken over", f"taken over: a pilot flies it{meanwhile}")
     assert tape.card()["taken"] == "a pilot flies it"
     tape.turn(2, sayings=[GivingBack("uav0")])
@@ -230,27 +230,29 @@ def test_while_a_vehicle_is_held_its_request_runs_out_and_its_agent_is_grounded(
     with Tape(tmp_path / "r.mcap", GROUNDING) as tape:
         tape.turn(0, uav(WEST, 0))
         tape.turn(1, sayings=[Ordering(Fallback.HOLD, "uav0", "Ana")])
-        stopped = "nothing that a orders is carried out any more"
+        stopped = "no command of a is carried out any more"
         assert tape.card()["request"]["fallback"] == "hold"
-        assert tape.card()["why"].endswith(f"the 100 s of its request run on meanwhile; then {stopped}")
+        assert tape.card()["why"].endswith(
+            f"the time limit of its request, 100 s, still runs; then {stopped}"
+        )
         tape.turn(101, uav(WEST, 101))
         assert tape.card()["why"] == (
-            f"its request stands for longer than 100 s; {stopped}; "
-            "told to hold by the operator (Ana), not confirmed yet"
+            f"its request is pending for longer than 100 s; {stopped}; "
+            "ordered to hold by the operator (Ana), not confirmed yet"
         )
         (late,) = [each for each in tape.shown()["alarms"].values() if each["kind"] == "late"]
-        assert late["consequence"] == f"its vehicles were told to hold; {stopped}"
+        assert late["consequence"] == f"its vehicles were commanded to hold; {stopped}"
         tape.turn(102, sayings=[GivingBack("uav0")])
         assert tape.run.state.overrides.grounded == {"a"}
         assert not any(isinstance(each, GoTo) for each in tape.turn(103, uav(WEST, 103)).commands)
         assert tape.card()["request"]["given_up"]
         assert [each["notes"] for each in tape.actions() if each["what"] == "give back"] == [
-            ["what it was to do was given up: it is told to hold"]
+            ["its task was given up: it is commanded to hold"]
         ]
 
 
 FALLING_BACK = FLIGHT.replace("on broken assumption: continue", "on broken assumption: return")
-STOPPED = "all vehicles were told to return home; the mission commands nothing any more"
+STOPPED = "all vehicles were commanded to return home; the mission sends no more commands"
 
 
 def test_after_a_fallback_the_cards_say_that_nothing_is_commanded_any_more(tmp_path):
@@ -262,7 +264,7 @@ def test_after_a_fallback_the_cards_say_that_nothing_is_commanded_any_more(tmp_p
         assert says(tape.card(), level=2, why=STOPPED)
         assert tape.card()["request"]["given_up"]
         tape.turn(2, sayings=[Ordering(Fallback.HOLD, "uav0", "Ana")])
-        assert tape.card()["why"] == f"{STOPPED}; told to hold by the operator (Ana), not confirmed yet"
+        assert tape.card()["why"] == f"{STOPPED}; ordered to hold by the operator (Ana), not confirmed yet"
         tape.turn(3, sayings=[GivingBack("uav0", by="Ana")])
         assert says(tape.card(), level=2, why=STOPPED)
         assert tape.card()["request"]["given_up"]
@@ -272,8 +274,8 @@ def test_after_a_fallback_the_cards_say_that_nothing_is_commanded_any_more(tmp_p
 
 
 STANDING = FLIGHT.replace("  control(MOVE_HOST_TO east0)\n", '  react { case "go" => skip }\n', 1)
-BREAKS = "takes it out of west0, which breaks what the mission assumes: "
-ALL_HOLD = "all vehicles are told to hold, and the mission commands nothing any more"
+BREAKS = "takes it out of west0, which breaks an assumption of the mission: "
+ALL_HOLD = "all vehicles are commanded to hold, and the mission sends no more commands"
 INSIDE = (37.011, -8.652)
 
 
@@ -281,7 +283,7 @@ INSIDE = (37.011, -8.652)
     ("text", "home", "told"),
     [
         pytest.param("hold", BETWEEN, ALL_HOLD, id="it ends the mission"),
-        pytest.param("continue", BETWEEN, "that is reported, and the mission goes on", id="it is reported"),
+        pytest.param("continue", BETWEEN, "this is reported, and the mission goes on", id="it is reported"),
         pytest.param("hold", INSIDE, None, id="its home is within its place"),
         pytest.param("hold", None, None, id="its home is not known"),
     ],

@@ -30,10 +30,10 @@ def test_an_order_is_asked_sent_then_confirmed_by_the_vehicle_until_it_is_given_
     order = {"time": 1001.0, "by": "Ana", "what": "hold", "about": "uav0"}
     order |= {"left_out": {}, "notes": [], "vain": None, "answered": None}
     asked, ordered = fated("asked")
-    waits = "told to hold by the operator (Ana), not confirmed yet"
+    waits = "ordered to hold by the operator (Ana), not confirmed yet"
     assert tape.actions() == [{**order, **asked}]
     assert stands(tape) == (1, waits, ordered)
-    assert tape.card()["why"].endswith("; the 100 s of its request run on meanwhile")
+    assert tape.card()["why"].endswith("; the time limit of its request, 100 s, still runs")
     assert (tape.card()["order"]["command"], tape.card()["order"]["state"]) == ("Hold", "asked")
     tape.turn(2, reports=[Sent("operator-2", "uav0", 1002.0)])
     sent, ordered = fated("sent")
@@ -75,7 +75,7 @@ def test_a_refused_order_never_reads_as_done_until_the_vehicle_obeys_after_all(t
     ("then", "what"),
     [
         ({"sayings": [GivingBack("uav0", by="Bo")]}, "given back"),
-        ({"sayings": [Ordering(Fallback.RETURN, "uav0", "Bo")]}, "told to return"),
+        ({"sayings": [Ordering(Fallback.RETURN, "uav0", "Bo")]}, "ordered to return"),
         ({"reports": [TakenOver("uav0", 1003.0, "a pilot flies it")]}, "taken over: a pilot flies it"),
     ],
 )
@@ -121,7 +121,7 @@ def test_an_order_overrules_who_has_taken_a_vehicle_over_and_is_overruled_so(tap
     tape.turn(0, uav(WEST, 0))
     tape.turn(1, uav(WEST, 1), reports=[TakenOver("uav0", 1001.0, "a pilot flies it")])
     tape.turn(2, sayings=[Ordering(Fallback.HOLD, "uav0")])
-    assert stands(tape)[:2] == (1, "told to hold by the operator, not confirmed yet")
+    assert stands(tape)[:2] == (1, "ordered to hold by the operator, not confirmed yet")
     tape.turn(3, uav(WEST, 3), reports=[TakenOver("uav0", 1003.0, "it is in RTL")])
     assert stands(tape)[:2] == (3, "it is in RTL")
 
@@ -152,7 +152,7 @@ def test_an_order_to_all_is_confirmed_when_all_have_confirmed_it_and_says_who_wa
 
 
 FALLING_BACK = FLIGHT.replace("on broken assumption: continue", "on broken assumption: return")
-STOPPED = "all vehicles were told to return home; the mission commands nothing any more"
+STOPPED = "all vehicles were commanded to return home; the mission sends no more commands"
 
 
 def test_what_is_said_after_a_fallback_is_told_to_be_in_vain(tmp_path):
@@ -161,7 +161,7 @@ def test_what_is_said_after_a_fallback_is_told_to_be_in_vain(tmp_path):
         tape.turn(1, sayings=[("op", "status")])
         tape.turn(2, uav(BETWEEN, 2), boat(EAST, 1002.0))
         tape.turn(3, sayings=[("op", "status")])
-        vain = "the mission has fallen back and commands nothing any more: what is said moves no vehicle"
+        vain = "the mission has fallen back and sends no more commands: messages move no vehicle"
         assert [each["vain"] for each in tape.actions()] == [None, vain]
         for shown, said, stopped in ((tape.shown(), vain, STOPPED), (tape.shown(1), None, None)):
             assert {each["vain"] for each in shown["sayings"].values()} == {said}

@@ -67,7 +67,7 @@ def test_spill_watch_is_shown_as_the_mission_says_it_goes(watched, rule, about, 
     if asked is not None:
         assert (card["request"]["text"], card["request"]["limit"]) == (asked, 1800.0)
         assert card["order"]["state"] == "accepted"
-    over = "nothing will be asked of it any more: every bigActor of the mission has ended"
+    over = "it will get no more requests: every bigActor of the mission has ended"
     is_over = about == "airfield0" and not asked
     assert (card["level"], card["why"] == over) == (int(is_over), is_over)
 
@@ -144,7 +144,7 @@ def test_what_may_be_said_becomes_less_with_each_saying(recording):
         ('say "nonsense"', "refused"),
         ('say "handover"', "confirmed"),
     ]
-    assert "what may be said now" in shown["actions"]["2"]["why"]
+    assert "permitted now" in shown["actions"]["2"]["why"]
 
 
 def test_steps_say_what_they_changed_and_whether_the_terminal_tells_of_them(recording):
@@ -227,7 +227,7 @@ def test_a_step_that_the_rules_do_not_allow_is_told_and_arrivals_go_on(recording
 
     view = spoilt(recording, tmp_path / "r.mcap", change)
     alert = view["alerts"]["0"]
-    assert alert["message"].startswith("what is believed is not known any more: step 4: ")
+    assert alert["message"].startswith("the logical model is not known any more: step 4: ")
     assert not alert["wrong"]
     assert view["entities"]["uav0"]["at"] == EAST
     card = view["vehicles"]["uav0"]
@@ -243,7 +243,7 @@ def test_of_a_mission_that_cannot_be_read_arrivals_are_shown(recording, tmp_path
 
     view = spoilt(recording, tmp_path / "r.mcap", change)
     message = view["alerts"]["0"]["message"]
-    assert message.startswith("what is believed is not known: its mission cannot be read")
+    assert message.startswith("the logical model is not known: its mission cannot be read")
     assert view["entities"]["uav0"]["at"] == EAST
     assert view["vehicles"]["uav0"]["kind"] == "UAV"
 

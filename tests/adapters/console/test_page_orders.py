@@ -195,7 +195,7 @@ def orders_and_sees_it_confirmed(ana):
 
 
 REFUSED = "it obeys system 252, not gcs0"
-TOLD_AGAIN = f"refused, and told again: {REFUSED}"
+TOLD_AGAIN = f"refused, and repeated: {REFUSED}"
 
 
 def orders_again_and_sees_it_refused(ana):
@@ -227,7 +227,7 @@ def reads_of_each_vehicle_what_became_of_an_order_to_all(ana):
     fates = {"uav0": {"state": "confirmed", "why": ""}, "uav1": {"state": "refused", "why": REFUSED}}
     order = deed(time.time(), "Ana", "hold", "all", "sent") | {"state": "refused", "why": f"uav1: {REFUSED}"}
     ana.told(actions={"8": order | {"fates": fates}})
-    ana.sees(".fates .refused", "refused, and told again: uav1")
+    ana.sees(".fates .refused", "refused, and repeated: uav1")
     ana.sees(".fates .aside", "uav0: confirmed by the vehicle")
     ana.sees(".fates .aside", f"uav1: refused: {REFUSED}")
 
@@ -301,7 +301,7 @@ def start_it_when_all_is_done(ana, bo):
 
 
 def sees_it_break_off_which_is_no_end(ana):
-    ana.told(clock={"ended": "the run ended without a word: it was killed", "broken_off": True})
+    ana.told(clock={"ended": "the run ended without a message: it was killed", "broken_off": True})
     ana.sees(".badge.broken", "BROKEN OFF")
     ana.sees(".calm.wrong", "it was killed")
     ana.harness.stop_serving()

@@ -247,7 +247,7 @@ def reads_of_a_lost_one_the_reason_above_its_orders(ana):
 
 
 def reads_what_a_return_ends_above_the_button(ana):
-    ends = "breaks what the mission assumes: all vehicles are told to hold"
+    ends = "breaks an assumption of the mission: all vehicles are commanded to hold"
     ana.told(vehicles={"uav0": card(on_return=ends)})
     told = ana.page.locator(".on-return:visible")
     assert ends in told.inner_text()

@@ -8,7 +8,7 @@ from page_driving import HOLD, SAY
 from page_harness import TOKEN, alert, card, deed, world
 
 UAV0 = ".card[data-name=uav0]"
-STOPPED = "all vehicles were told to hold; the mission commands nothing any more"
+STOPPED = "all vehicles were commanded to hold; the mission sends no more commands"
 
 
 # --- a card
@@ -133,7 +133,7 @@ def reads_only_what_was_told_and_dimmed_what_is_old(ana):
     ana.sees(f"{UAV0} .said.quiet", "10 min")
 
 
-ENDS = "breaks what the mission assumes: all vehicles are told to hold"
+ENDS = "breaks an assumption of the mission: all vehicles are commanded to hold"
 
 
 def reads_what_a_return_ends_before_pressing_it(ana):
@@ -166,7 +166,7 @@ def reads_at_which_step_the_picture_was_drawn(ana):
     ana.sees_no(".bigraph .tools", "step 40")
     ana.clicks("button", "Text")
     ana.harness.change(bigraph={"drawn": 42})
-    ana.page.get_by_text("what is believed, after step 42", exact=True).wait_for()
+    ana.page.get_by_text("the logical model, after step 42", exact=True).wait_for()
 
 
 # --- what is wrong
@@ -203,7 +203,7 @@ def sees_nothing_move_when_one_comes_and_goes(ana):
 
 
 def is_told_whom_the_mission_waits_for(ana):
-    ana.sees(".verdict.doubted summary", "1 on what proved wrong")
+    ana.sees(".verdict.doubted summary", "1 on a broken assumption")
     key, saying = next(iter(ana.harness.state["sayings"].items()))
     ana.told(sayings={key: saying | {"awaited": True}})
     ana.sees(".calm.asked", "tower waits for somebody to say “handover”")
@@ -251,7 +251,7 @@ def reads_the_cause_first_and_what_the_run_did_of_itself(ana):
     ana.told(alerts=dict.fromkeys(ana.harness.state["alerts"]) | {"31": broken, "32": lost})
     ana.sees(".alert .message", "nothing was heard of uav1")
     ana.told(alerts={"32": acknowledged(lost)})
-    ana.sees(".alert .message", "control:gcs0 any more → all vehicles were told to return home")
+    ana.sees(".alert .message", "control:gcs0 any more → all vehicles were commanded to return home")
 
 
 def reads_it_also_beside_the_past(ana):
@@ -275,7 +275,7 @@ def fallen():
     state["alerts"] = {"1": broken}
     state["alarms"] = {"1": broken | {"consequence": STOPPED}}
     state["mission"]["fallen_back"] = STOPPED
-    why = "the mission has fallen back and commands nothing any more: what is said moves no vehicle"
+    why = "the mission has fallen back and sends no more commands: messages move no vehicle"
     state["sayings"] = {key: each | {"vain": why} for key, each in state["sayings"].items()}
     return state
 
@@ -302,7 +302,7 @@ def reads_the_whole_consequence_in_the_red_line(ana):
 def is_offered_no_word_to_the_mission_but_orders_to_vehicles(ana):
     ana.sees(".sayings button:disabled")
     assert ana.count(".sayings button:enabled") == 0
-    ana.sees(".actions", "What is said to its agents moves no vehicle.")
+    ana.sees(".actions", "Messages to its agents move no vehicle.")
     assert ana.page.locator(HOLD).is_enabled()
     vain = ana.harness.state["sayings"]['tower "handover"']["vain"]
     ana.told(actions={"9": deed(time.time(), "Ana", 'say "handover"', "tower") | {"vain": vain}})
@@ -316,7 +316,7 @@ def reads_it_when_every_alarm_is_acknowledged(ana):
 
 
 def is_offered_words_to_an_agent_that_commands_nothing_with_that_said(ana):
-    vain = "the mission has fallen back: nothing that tower orders is carried out any more"
+    vain = "the mission has fallen back: no command of tower is carried out any more"
     saying = ana.harness.state["sayings"]['tower "handover"'] | {"vain": vain}
     ana.told(sayings={'tower "handover"': saying}, mission={"fallen_back": None})
     ana.sees(".sayings button:enabled", vain)
@@ -356,7 +356,7 @@ def reads_that_the_recording_is_not_read_any_further_and_orders_on(ana):
 def loses_the_server_and_finds_it_again_with_what_was_typed(ana):
     known = ana.writes("#goto", "lara", 2)
     ana.harness.stop_serving()
-    ana.sees(".offline", "what is shown is of")
+    ana.sees(".offline", "this view is of")
     ana.sees(".tally", "4 unknown")
     assert ana.count(".held:enabled") == 0
     ana.harness.state["vehicles"]["new0"] = card()

@@ -91,7 +91,7 @@ def test_a_vehicle_whose_station_is_not_reached_is_wrong(run, tmp_path):
         ("arrivals", 1001.0, {**obeys, "channels": ["control:gcs1"]}),
         ("stations", 1002.0, {"station": "gcs1", "time": 1002.0, "reached": False, "heard": 1000.5}),
     ]
-    for count, level, why in ((1, 0, ""), (2, 2, "gcs1, which it obeys, is not reached")):
+    for count, level, why in ((1, 0, ""), (2, 2, "its station gcs1 is not reached")):
         card = told(tmp_path / f"{count}.mcap", run, *messages[:count])["vehicles"]["uav0"]
         assert (card["level"], card["why"]) == (level, why)
 

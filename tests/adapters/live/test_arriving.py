@@ -81,7 +81,7 @@ def test_a_plane_that_the_wind_carries_out_of_its_place_breaks_an_assumption_tha
     told = capsys.readouterr()
     assert "⟨commit" in told.out
     assert terminal.broken == broken
-    reason = "uav0 is in none of the places; it was not sent there, and has not stayed where it was"
+    reason = "uav0 is in none of the places; it was not sent there, and has left its place"
     assert (reason in told.err) == broken
     assert vehicle.mode == (vehicle.kind.profile.home if broken else vehicle.kind.profile.guided)
 

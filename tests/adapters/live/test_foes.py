@@ -293,12 +293,15 @@ LONG_BLACKOUT = {"disturbance": Disturbance(blackouts=((120.0, 130.0),))}
     ("line", "how", "told"),
     [
         pytest.param(
-            [], LONG_BLACKOUT, "uav0 is not on control:gcs0 any more; the mission does not say", id="blackout"
+            [],
+            LONG_BLACKOUT,
+            "uav0 is not on control:gcs0 any more; the mission does not let it leave",
+            id="blackout",
         ),
         pytest.param(
             ["--feed=ais=udp:0", "--name=mmsi:263999001=drifter0"],
             {"foe": spoofer},
-            "drifter0 is in east0; the mission does not say that it drifts",
+            "drifter0 is in east0; the mission does not let it drift",
             id="a transponder that jumps",
         ),
         pytest.param(

@@ -109,7 +109,7 @@ def test_the_log_has_levels_and_says_who_said_what(flown):
     ]
     assert (2, "uav0", "GoTo east0 (a-1)") in lines
     assert any(re.match(r"ordered to hold by Ana; refused: there is no vehicle", line[2]) for line in lines)
-    assert any(line[1:2] == ("a",) and "told 'go' by Ben" in line[2] for line in lines)
+    assert any(line[1:2] == ("a",) and "the message 'go' by Ben" in line[2] for line in lines)
     assert lines[-1] == (2, "", "the run ends: done")
 
 

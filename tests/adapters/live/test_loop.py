@@ -143,7 +143,7 @@ async def test_a_run_that_is_interrupted_ends_even_if_something_has_just_come_in
 
 def test_what_is_refused_is_reported_and_a_run_with_nothing_else_to_do_ends():
     ending, looker = fly(TOUR + GO, Vehicle(refuses="not armed"))
-    assert ending.reason == "what was left to be done was refused"
+    assert ending.reason == "all remaining requests were refused"
     assert [finding.kind for finding in looker.findings] == ["refused"]
     assert "commit" not in [step.transition.label.rule for step in looker.steps]
 
@@ -268,5 +268,5 @@ async def test_what_listens_and_does_not_tell_how_it_stands_is_said(tmp_path):
         writer.close()
 
     async with await asyncio.start_unix_server(serve, tmp_path / "s"):
-        with pytest.raises(NobodyListens, match="a version that does not tell how it stands"):
+        with pytest.raises(NobodyListens, match="a version that reports no status"):
             await status(tmp_path / "s")

@@ -142,7 +142,7 @@ def test_a_run_that_is_not_given_back_ends_held_and_is_resumed_so(flying):
     assert not flown.ended
     found = resume("r.mcap", open_mission("flown.mission", LIVE))
     assert flown.ending.state.overrides.taken == {"uav0": "held by the operator (Ana)"}
-    assert found.taken == {"uav0": "told to hold by the operator (Ana), not confirmed yet"}
+    assert found.taken == {"uav0": "ordered to hold by the operator (Ana), not confirmed yet"}
     (_request,) = found.standing_orders
     assert found.standing_orders == {"uav0": StandingOrder(Hold("operator-2", "uav0"), "Ana")}
 
@@ -184,12 +184,12 @@ def test_a_killed_run_holds_its_vehicle_still_when_it_is_resumed_and_ends_once_i
     assert trace.configurations[-1].structure.logical.parent("uav0") == "east0"
     assert main(["replay", str(second)]) == 0
     out = capsys.readouterr().out
-    assert "told to hold: uav0" in out
+    assert "ordered to hold: uav0" in out
     assert "uav0 held by the operator (Ana)\n" in out
     does = r"held by the operator \(Ana\), has not arrived in east0, BRAKE(, disarmed)?, battery"
     held = re.search(rf"^vehicles\n  uav0 {does}", out, re.M)
     assert held is not None, out
-    assert "requests\n  FLY(a, MOVE_HOST_TO east0)\nmay be said\n  op status (1 time more)\n" in out
+    assert "requests\n  FLY(a, MOVE_HOST_TO east0)\npermitted messages\n  op status (1 time more)\n" in out
     assert told(second, "orders", "by") == ["Ana"]
 
 

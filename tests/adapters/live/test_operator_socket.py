@@ -22,7 +22,7 @@ LINES = [
 ANSWERS = [
     {"refusal": ""},
     {"refusal": "", "left_out": {"uav1": "a pilot flies it"}, "notes": ["look"]},
-    {"refusal": "", "fates": {"uav0": ["sent", "told to hold by the operator"]}},
+    {"refusal": "", "fates": {"uav0": ["sent", "ordered to hold by the operator"]}},
 ]
 
 

@@ -42,7 +42,7 @@ def test_an_order_is_asked_then_sent_then_confirmed_once(what, does, done):
     for kind, now in ((Sent, 2.0), (Accepted, 3.0), (Accepted, 4.0), (Arrived, 5.0)):
         run.turn(now, reports=[kind("operator-2", "uav0", now)])
         fates.append(run.state.overrides.fates["uav0"])
-    asked, end = f"told to {what.value} by {ANA}, not confirmed yet", ("confirmed", f"{done} by {ANA}")
+    asked, end = f"ordered to {what.value} by {ANA}, not confirmed yet", ("confirmed", f"{done} by {ANA}")
     assert fates == [("asked", asked), ("sent", asked), end, end, end]
     assert run.messages()[1:] == [f"uav0 {does}, as {ANA} ordered"]
     assert run.state.overrides.taken == {"uav0": f"{done} by {ANA}"}
@@ -51,7 +51,7 @@ def test_an_order_is_asked_then_sent_then_confirmed_once(what, does, done):
 def test_a_refused_order_is_shown_as_refused_and_not_as_done():
     run = refused(held())
     run.turn(2.1, reports=[Sent("operator-2", "uav0", 2.1)])  # it was taken on before it was refused
-    assert run.messages()[-1] == f"uav0 {REFUSES}; it is told again until it does"
+    assert run.messages()[-1] == f"uav0 {REFUSES}; the order is repeated until it obeys"
     assert run.state.overrides.fates == {"uav0": ("refused", REFUSES)}
     assert vehicle_line("uav0", run.state, None, 3.0) == f"uav0 {REFUSES}, has not arrived in east0"
     assert standing(run.state) == f"; uav0 {REFUSES}"
@@ -110,7 +110,7 @@ def test_a_refused_fall_back_is_owed_until_it_is_confirmed():
 def test_a_fall_back_that_is_not_confirmed_is_in_the_last_line():
     run = flying(precautions=LivePolicy(limits=(TimeLimit("FLY", "a", 60.0, RETURN),)))
     run.turn(61.0, seen("uav0", BETWEEN, 61.0))
-    assert standing(run.state) == "; uav0 told to return by the mission, not confirmed yet"
+    assert standing(run.state) == "; uav0 ordered to return by the mission, not confirmed yet"
 
 
 @pytest.mark.parametrize("ends", ["taken over", "given back", "ordered"])

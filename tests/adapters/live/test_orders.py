@@ -47,9 +47,9 @@ def test_a_vehicle_that_an_operator_orders_is_told_at_once_and_its_request_stand
     assert turn.commands == (kind("operator-2", "uav0"),)
     assert turn.answers[0].refusal == ""
     assert turn.answers[0].requests == {"uav0": "operator-2"}
-    assert run.state.overrides.taken == {"uav0": f"told to {what.value} by {ANA}, not confirmed yet"}
+    assert run.state.overrides.taken == {"uav0": f"ordered to {what.value} by {ANA}, not confirmed yet"}
     assert [f.message for f in turn.findings] == [
-        f"uav0 is told to {what.value} by {ANA}; the mission does not command it until `bigactors give-back uav0`"
+        f"uav0 is ordered to {what.value} by {ANA}; the mission does not command it until `bigactors give-back uav0`"
     ]
     run.turn(2.0, seen("uav0", EAST, 2.0))
     assert "commit" not in run.rules
@@ -80,11 +80,11 @@ def test_an_order_to_all_tells_all_but_those_that_someone_else_has_taken_over():
     run = flying_two(TWO)
     run.turn(1.0, reports=[TakenOver("uav1", 1.0, "it is in RTL")])
     turn = run.turn(2.0, sayings=[ordered(None, RETURN)])
-    left_out = "uav1 was taken over, and is not overruled: it is in RTL"
+    left_out = "uav1 was taken over, and an order to all does not overrule that: it is in RTL"
     assert turn.commands == (Return("operator-1", "uav0"),)
     assert turn.answers[0].refusal == ""
     assert turn.answers[0].left_out == {"uav1": left_out}
-    message = f"uav0 is told to return by {ANA}; {left_out}; the mission does not command it until"
+    message = f"uav0 is ordered to return by {ANA}; {left_out}; the mission does not command it until"
     (finding,) = turn.findings
     assert (finding.about, finding.message) == ("", f"{message} `bigactors give-back VEHICLE`")
     turn = run.turn(3.0, sayings=[ordered(None, HOLD)])
@@ -120,7 +120,7 @@ HELD, SENT, BACK = ordered(), ordered(what=RETURN), GivingBack("uav0", by="Ben")
 TAKEN, DRIFT = TakenOver("uav0", 1.0, "it is in RTL"), boat(WEST, 1.0)
 HOLDS, RETURNS = (f"told to {what} by {ANA}, not confirmed yet" for what in ("hold", "return"))
 ANEW = "uav0 was given back by Ben, and is commanded again"
-OVERRULES = "that overrules who took uav0 over: it is in RTL"
+OVERRULES = "this order overrules the take-over of uav0: it is in RTL"
 FOR_ITSELF = "uav0 was taken over: it is in RTL"
 TOLD = {
     "twice, and another after it": (GO, None, [[HELD], [HELD], [SENT]], "Hold Hold Return", RETURNS, ""),
@@ -179,7 +179,7 @@ def test_what_the_mission_falls_back_on_does_not_overrule_an_operator(fallback):
     assert run.told == ["GoTo", type(run.commands[-1]).__name__]
     assert run.told[-1] == other.value.capitalize()
     why = f"{ANA} ordered it to {other.value}"
-    assert f"uav0 is not told to {fallback.value}: {why}" in run.messages()
+    assert f"uav0 is not commanded to {fallback.value}: {why}" in run.messages()
 
 
 def test_a_vehicle_that_is_not_heard_is_told_when_it_is_and_the_operator_knows():
@@ -187,7 +187,7 @@ def test_a_vehicle_that_is_not_heard_is_told_when_it_is_and_the_operator_knows()
     run.turn(1.0, reports=[LinkLost("uav0", 1.0, 0.0)])
     turn = run.turn(2.0, sayings=[ordered()])
     assert turn.commands == (Hold("operator-3", "uav0"),)
-    assert "uav0 is not heard: it is told as soon as it is" in turn.findings[0].message
+    assert "uav0 is silent: it gets the order once it is heard" in turn.findings[0].message
     run.turn(3.0, seen("uav0", BETWEEN, 3.0), reports=[LinkRestored("uav0", 3.0)])
     assert run.told == ["GoTo", "Hold", "Hold"]  # the first for the assumption that the lost link broke
 
@@ -246,7 +246,7 @@ def test_a_vehicle_that_is_given_back_after_its_time_limit_is_flown_by_the_fallb
     assert [type(command).__name__ for command in turn.commands] == ["GiveBack", fallback.__name__]
     (given,) = (each for each in turn.findings if each.kind == "given back")
     assert given.message == (
-        f"uav0 was given back by Ana; what it was to do was given up: it is told to {then.value}"
+        f"uav0 was given back by Ana; its task was given up: it is commanded to {then.value}"
     )
 
 
@@ -265,7 +265,7 @@ def test_who_was_told_to_return_does_not_stop_on_its_way_home(precautions, drift
     assert {"broken assumption", "late"} <= set(run.kinds())
     assert run.told[-1] == "Return"
     assert "Hold" not in run.told
-    kept = "uav0 is not told to hold: it was told to return before"
+    kept = "uav0 is not commanded to hold: it was commanded to return before"
     assert [finding.message for finding in run.findings if finding.kind == "trouble"] == [kept]
     turn = run.turn(110.0, seen("uav0", BETWEEN, 110.0), sayings=[ordered(), GivingBack("uav0")])
     assert [type(command).__name__ for command in turn.commands][-1] == "Return"
@@ -278,7 +278,7 @@ def test_a_vehicle_that_was_told_to_return_breaks_no_assumption_on_its_way_home(
     assert run.kinds().count("broken assumption") == 1
     run.turn(70.0, seen("uav0", BETWEEN, 70.0))
     assert run.state.configuration.structure.logical.parent("uav0") == "east0"
-    told_home = "told to return by the mission, not confirmed yet"
+    told_home = "ordered to return by the mission, not confirmed yet"
     assert vehicle_line("uav0", run.state, None, 70.0) == f"uav0 {told_home}, is in none of the places"
     run.turn(80.0, seen("uav0", WEST, 80.0))
     assert run.kinds().count("broken assumption") == 1
@@ -291,11 +291,11 @@ def test_who_sends_a_vehicle_home_that_is_to_stay_is_told_what_follows_and_is_na
     turn = run.turn(61.0, seen("uav0", EAST, 61.0), sayings=[ordered(what=RETURN)])
     (answer,) = turn.answers
     assert answer.notes == (
-        "the mission assumes that uav0 stays in east0: when it leaves, all vehicles are told to hold",
+        "the mission assumes that uav0 stays in east0: when it leaves, all vehicles are commanded to hold",
     )
     run.turn(70.0, seen("uav0", BETWEEN, 70.0))
     (broken,) = (each.message for each in run.findings if each.kind == "broken assumption")
-    assert broken.endswith("stayed where it was: told to return by the operator (Ana), not confirmed yet")
+    assert broken.endswith("left its place: ordered to return by the operator (Ana), not confirmed yet")
     again = flying(TWO + GO, LivePolicy(HOLD))
     (answer,) = again.turn(10.0, seen("uav0", BETWEEN, 10.0), sayings=[ordered(what=RETURN)]).answers
     assert answer.notes == ()

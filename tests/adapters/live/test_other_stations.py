@@ -136,7 +136,7 @@ def test_a_parcel_that_cannot_enter_is_said_once_and_nothing_after_it_enters():
     run.turn(1.0, reports=[bad, message(2)])
     assert run.rules == []
     assert run.messages() == [
-        "parcel 1 of gcs0 cannot enter, nor what comes after it: {'Parcel': 'x'} should be Parcel"
+        "parcel 1 of gcs0 cannot enter, nor any later one: {'Parcel': 'x'} should be Parcel"
     ]
     stranger = at("gcs1")
     stranger.turn(0.0, reports=[message(1, agent="nobody")])
@@ -146,7 +146,7 @@ def test_a_parcel_that_cannot_enter_is_said_once_and_nothing_after_it_enters():
 def test_what_is_said_to_an_agent_elsewhere_is_said_there():
     run = at("gcs0")
     run.turn(0.0, sayings=[Saying("op1", "stop")])
-    assert run.refusals == ["op1 runs at gcs1: say it there"]
+    assert run.refusals == ["op1 runs at gcs1: send the message there"]
     assert run.steps == []
 
 
@@ -178,7 +178,9 @@ def test_a_peer_has_not_sent_a_vehicle_that_obeys_this_station():
     run.turn(0.0, seen("uav0", WEST, 0.0))
     run.turn(1.0, reports=[Underway("uav0", 1.0, "east0")])
     assert run.state.configuration.structure.physical.going_to("uav0") == ""
-    assert run.messages() == ["another station says that it has sent uav0 to east0, but uav0 obeys this one"]
+    assert run.messages() == [
+        "another station reports that it has sent uav0 to east0, but uav0 obeys this one"
+    ]
 
 
 def test_a_vehicle_of_another_stations_is_not_commanded_from_here():

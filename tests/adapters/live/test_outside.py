@@ -243,7 +243,7 @@ def test_an_output_that_cannot_be_written_ends_no_run(monkeypatch, capfd, stream
         monkeypatch.setattr(sys, stream, full)
         ending = fly(TOUR + GO, [vehicle], [terminal], _nothing, 0.5)
         monkeypatch.undo()
-    assert ending.reason == "what was left to be done was refused"
+    assert ending.reason == "all remaining requests were refused"
     assert not terminal.broken
     told = capfd.readouterr()
     assert "No space left on device" in told.err or stream == "stderr"

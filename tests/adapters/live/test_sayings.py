@@ -58,7 +58,7 @@ def test_an_operator_types_quotes_only_where_a_name_is_said_too(said, heard):
     run = Run(plan_of(TOUR + talk))
     run.turn(0.0)
     run.turn(1.0, sayings=[Saying("op", "what?"), Saying("op", said)])
-    assert run.answers[0].refusal.endswith('may be said now: "gcs1" to op, gcs1 to op, stop to op')
+    assert run.answers[0].refusal.endswith('permitted now: "gcs1" to op, gcs1 to op, stop to op')
     assert run.shown == heard
 
 
@@ -91,7 +91,7 @@ def test_a_vehicle_has_no_mailbox():
     run.turn(0.0, sayings=[Saying("uav0", "go")])
     (answer,) = run.answers
     assert answer.refusal.startswith(
-        "there is no bigActor 'uav0', which is a vehicle; the mission does not say"
+        "there is no bigActor 'uav0', which is a vehicle; the mission does not permit"
     )
 
 
@@ -101,6 +101,6 @@ def test_a_vehicle_is_believed_elsewhere_only_while_its_link_is_lost():
     run.turn(1.0, seen("uav0", WEST, 1.0), sayings=[said])
     run.turn(9.0, reports=[LinkLost("uav0", 9.0, 1.0)], sayings=[said])
     run.turn(10.0, reports=[LinkRestored("uav0", 10.0)], sayings=[said])
-    no = "the link to uav0 is not lost; it can be believed elsewhere once it is silent where it was"
+    no = "the link to uav0 is not lost; another address is accepted once the known one is silent"
     assert run.refusals == [no, "", no]
     assert run.commands == [Rebind("operator-1", "uav0", "127.0.0.1:5555")]

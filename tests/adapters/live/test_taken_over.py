@@ -118,7 +118,7 @@ def home(vehicle):
 
 
 BATTERY = "'Battery 1 is low 12.60V used 0 mAh'"
-RTL = "it is in RTL, by itself or told by someone else"
+RTL = "it is in RTL, by itself or by a command from elsewhere"
 
 
 @pytest.mark.long

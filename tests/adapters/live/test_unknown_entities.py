@@ -162,9 +162,9 @@ def test_nobody_moves_an_entity_by_calling_it_something_else():
         run.turn(2.0, Heard("camera", said))
     assert len(run.steps) == 1
     assert run.messages()[1:] == [
-        "'camera' speaks of boat0 as Location, and it is of kind Vessel",
-        "'camera' speaks of mmsi0 as Location, and it is of kind Vessel",
-        "'camera' speaks of gcs0 as Vessel, and it is of kind Station",
+        "'camera' reports boat0 as Location, but it is of kind Vessel",
+        "'camera' reports mmsi0 as Location, but it is of kind Vessel",
+        "'camera' reports gcs0 as Vessel, but it is of kind Station",
     ]
 
 
@@ -176,7 +176,7 @@ def test_nothing_that_is_seen_is_called_as_the_region_a_bigactor_or_a_kind_is():
     run.turn(2.0, *(boat(WEST, 2.0, name) for name in names))
     assert run.steps[before:] == []
     assert run.messages("trouble") == [
-        f"'ais' speaks of {name}, which the mission has as no entity" for name in names
+        f"'ais' reports {name}, which is no entity of the mission" for name in names
     ]
     assert not run.state.sightings.newest.keys() & set(names)
 

@@ -153,7 +153,7 @@ def test_a_damaged_last_entry_is_dropped_and_its_number_is_not_given_again(opene
     last, path = full(opened), tmp_path / "x.log"
     path.write_bytes(path.read_bytes().replace(b'"gcs1"', b'"gcs2"'))
     again = opened()
-    assert again.dropped == f"{path}:5: the last entry was dropped: its checksum is not that of what it says"
+    assert again.dropped == f"{path}:5: the last entry was dropped: its checksum does not match its content"
     assert again.last > last
     again.close()
     clean = opened()

@@ -42,13 +42,13 @@ def test_nothing_is_scouted_and_nobody_else_is_asked(tmp_path):
     [
         ("gcs0 = 3", "gcs0 is no table"),
         ("[gcs1]\nconnect = ['tcp/127.0.0.1:1']", "no station 'gcs0': its stations are gcs1"),
-        ("[gcs0]\n", "does not say where it is reached"),
+        ("[gcs0]\n", "has no address to connect to"),
         ("[gcs0]\nconnect = 'tcp/127.0.0.1:1'", "no list"),
         ("[gcs0]\nconnect = ['udp/127.0.0.1:1']", "no endpoint"),
         ("[gcs0]\nconnect = ['tcp/127.0.0.1:70000']", "no endpoint"),
         ("[gcs0]\nconnect = ['tcp/127.0.0.1:1#iface=lo']", "no endpoint"),
         ("[gcs0]\nconnect = ['tls/127.0.0.1:1']", "the file has no [tls]"),
-        ("[gcs0]\nconnect = ['tcp/example.net:1']", "does not say where it listens"),
+        ("[gcs0]\nconnect = ['tcp/example.net:1']", "has no address to listen at"),
         ("[gcs0]\nconect = []", "has 'conect'"),
         ("['gcs 0']\nconnect = []", "no name of a station"),
         (

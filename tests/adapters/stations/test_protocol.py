@@ -246,7 +246,7 @@ def test_an_entry_without_one_of_its_members_names_it_or_is_another_entry(data):
         try:
             assert entry_of("gcs0", rest).number == data["n"]
         except ValueError as error:
-            assert re.match(r"`\$`: it lacks `\w+`|an entry says or does none", str(error))  # noqa: PT017
+            assert re.match(r"`\$`: it lacks `\w+`|an entry is of no known kind", str(error))  # noqa: PT017
 
 
 def test_what_is_wrong_with_a_message_names_its_place():

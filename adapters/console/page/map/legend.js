@@ -19,7 +19,7 @@ const SIGNS = [
   [[["M18 10 m-4.5 0 a4.5 4.5 0 1 0 9 0 a4.5 4.5 0 1 0 -9 0", "place", "halo"], ["M17 10 h2", "place"]], "a place that is a point"],
   [[["M2 6 H34 M6 6 v6 M14 6 v6 M22 6 v6 M30 6 v6", "fence"]], "a fence; its teeth are inside"],
   [[["M2 10 H34", "way", null, "10 5"]], "the way it flies; numbers are VIA points"],
-  [[["M2 10 H34", "way", null, "2 5"]], "the way it was told, not accepted yet"],
+  [[["M2 10 H34", "way", null, "2 5"]], "the commanded way, not accepted yet"],
   [[["M18 10 m-6 0 a6 6 0 1 0 12 0 a6 6 0 1 0 -12 0 M9 10 h7 M20 10 h7 M18 1 v7 M18 12 v7", "way", "halo"]], "where it goes"],
   [[["M2 10 H34", "track"]], "where it was; older is fainter"],
   [[["M10 8 V3 H15 M21 3 H26 V8 M26 12 V17 H21 M15 17 H10 V12", "chosen"]], "chosen"],
@@ -36,7 +36,7 @@ export class Legend {
     this.element.className = "map-legend";
     const summary = document.createElement("summary");
     summary.textContent = "Signs";
-    summary.title = "what the signs mean  I";
+    summary.title = "the legend  I";
     const list = element("ul", "");
     list.append(...SIGNS.map(([paths, meaning]) => this.#line(paths, meaning)));
     this.element.append(summary, list);

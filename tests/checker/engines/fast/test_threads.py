@@ -205,4 +205,4 @@ def test_the_command_line_passes_the_number_of_threads_on(monkeypatch, capsys):
     main(["check", "oil_spill", "--engine", "fast", "--threads", "3", "--no-traces"])
     assert set(asked) == {3}
     assert main(["check", "oil_spill", "--engine", "reference", "--threads", "2"]) == 2
-    assert "--threads is of the fast explorer\n  hint: leave --engine out" in capsys.readouterr().err
+    assert "--threads works with the fast engine only\n  hint: leave --engine out" in capsys.readouterr().err
