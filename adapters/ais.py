@@ -13,12 +13,12 @@ from dataclasses import replace
 from typing import Final
 
 from adapters.addresses import parse_address
-from adapters.feed import Feed
-from adapters.issue_counter import Troubles
 from adapters.lines import Lines
+from adapters.listening_plugin import Feed
 from adapters.naming import NamingService
 from adapters.plugin import Aged, World
 from adapters.transport import Port, Remote, open_port
+from adapters.trouble_throttle import Troubles
 from physical import Geometry, PhysicalError, PhysicalProperty, contains, open_file
 from physical.ais_receiver import TAKEN, ReceiverState, hear
 from physical.ais_reports import AisError, PositionReport

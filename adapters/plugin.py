@@ -302,7 +302,7 @@ class Trouble:
 
 @dataclass(frozen=True, slots=True)
 class Delivered:
-    """A parcel from another station: messages for an agent, or an agent (see `semantics.state.partition`).
+    """A parcel from another station: messages for an agent, or an agent (see `semantics.state.station_partition`).
 
     Attributes:
         station: The sender.

@@ -6,9 +6,9 @@ import asyncio
 from pathlib import Path
 from typing import Final
 
-from adapters.feed import Feed
-from adapters.issue_counter import Troubles
+from adapters.listening_plugin import Feed
 from adapters.plugin import Gone, World
+from adapters.trouble_throttle import Troubles
 from physical import PhysicalError, PhysicalProperty, open_file
 from physical.place_files import read_place_file
 

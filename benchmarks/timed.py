@@ -23,7 +23,7 @@ from checker import Limits
 from checker.engines.choose import explore
 from checker.engines.contract import Engine, Exploration
 from checker.engines.timed.zone_answers import ZoneTimes
-from checker.engines.zones.interchange import model_of
+from checker.engines.zones.automaton_export import model_of
 from checker.engines.zones.tchecker import tchecker_text
 from checker.engines.zones.zone_search import Search
 from semantics.properties.kinds import PropertyKind

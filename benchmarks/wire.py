@@ -29,9 +29,9 @@ from adapters.live.batch import Heard
 from adapters.live.core import started
 from adapters.live.loop import LiveRun, settle
 from adapters.live.plan import Plan
-from adapters.live.turn import Turn
+from adapters.live.turn_result import Turn
 from adapters.mavlink import Autopilot, Craft
-from adapters.mavlink.message import Message
+from adapters.mavlink.message import MavlinkMessage
 from adapters.naming import NamingService
 from adapters.plugin import Aged, Command, GoTo, Report
 from adapters.recording.writing import Recorder
@@ -39,9 +39,9 @@ from adapters.simulated import Kind, Simulator, Vehicle
 from adapters.transport import Remote
 from benchmarks.parts import Parts
 from bigactors import __version__
-from bigactors.missions import digest_of
+from bigactors.flight_watchers import Tape
+from bigactors.mission_lookup import digest_of
 from bigactors.terminal import say
-from bigactors.watchers import Tape
 from physical import Geometry, contains
 from semantics.state.setting import Control, Scheduler
 from specs import Source
@@ -168,7 +168,7 @@ class Link(Autopilot):
         self.arrived = _arrival(self._port)
         super()._receive(remote, data)
 
-    def _hear(self, remote: Remote, message: Message) -> None:
+    def _hear(self, remote: Remote, message: MavlinkMessage) -> None:
         if message.name == "GLOBAL_POSITION_INT":
             self.sent[message.system] = self.start + message["time_boot_ms"] / 1000, self.arrived
         super()._hear(remote, message)

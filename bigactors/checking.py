@@ -5,15 +5,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from bigactors.build import build_digest
-from bigactors.diagnostics import diagnostic_json
+from bigactors.code_digest import build_digest
+from bigactors.diagnostic_output import diagnostic_json
 from bigactors.exits import Exit
 from bigactors.files import file_stem
-from bigactors.flight_limits import short_limits
-from bigactors.missions import checkable, digest_of, open_mission
+from bigactors.mission_lookup import checkable, digest_of, open_mission
 from bigactors.mistakes import Mistake, describe_bug
 from bigactors.progress import watching
 from bigactors.terminal import tell
+from bigactors.timeout_consistency import short_limits
 from checker import (
     CheckpointError,
     Cluster,
@@ -84,7 +84,7 @@ class Checked:
 
 
 @dataclass(frozen=True, slots=True)
-class Failed:
+class FailedMission:
     """A mission without a report: it has a mistake (2), was interrupted or not begun (3), or we have a bug (4)."""
 
     name: str
@@ -123,7 +123,7 @@ def check_mission(
     limits: Limits,
     variation: Variation,
     how: How | None = None,
-) -> Checked | Failed:
+) -> Checked | FailedMission:
     """Check one mission. Print a failure on the standard error, and return it."""
     how = how or How()
     try:
@@ -150,17 +150,17 @@ def check_mission(
         code, hint = next(said for kind, said in REFUSALS.items() if isinstance(refused, kind))
         mistake = Mistake(str(refused) or "there is not enough memory", hint, name)
         tell(str(mistake))
-        return Failed(name, code, mistake.message, mistake.details)
+        return FailedMission(name, code, mistake.message, mistake.details)
     except Mistake as mistake:
         tell(str(mistake))
-        return Failed(name, Exit.MISTAKE, mistake.message, mistake.details)
+        return FailedMission(name, Exit.MISTAKE, mistake.message, mistake.details)
     except KeyboardInterrupt:
         message = "interrupted: nothing is decided of it"
         tell(f"{name}: {message}")
-        return Failed(name, Exit.INCOMPLETE, message, interrupted=True)
+        return FailedMission(name, Exit.INCOMPLETE, message, interrupted=True)
     except Exception as error:  # any other exception is our bug; the remaining missions are still checked
         tell(f"{name}:\n{describe_bug(error)}")
-        return Failed(name, Exit.BUG, f"internal error: {type(error).__name__}: {error}")
+        return FailedMission(name, Exit.BUG, f"internal error: {type(error).__name__}: {error}")
 
 
 def _check_times(name: str, mission: ElaboratedMission, report: Report) -> None:
@@ -180,19 +180,19 @@ def _of_this(keeping: Keeping, mission: ElaboratedMission, limits: Limits) -> Ke
 
 def check_missions(
     names: list[str], limits: Limits, variation: Variation, how: How | None = None
-) -> Iterator[Checked | Failed]:
+) -> Iterator[Checked | FailedMission]:
     """Check missions in turn; after an interruption, the rest fail as not begun."""
     interrupted = False
     for name in names:
         if interrupted:
-            yield Failed(name, Exit.INCOMPLETE, "not begun")
+            yield FailedMission(name, Exit.INCOMPLETE, "not begun")
             continue
         result = check_mission(name, limits, variation, how)
         interrupted = result.interrupted
         yield result
 
 
-def results_json(results: list[Checked | Failed], code: Exit) -> dict[str, Any]:
+def results_json(results: list[Checked | FailedMission], code: Exit) -> dict[str, Any]:
     """Return the results as plain data: the one report, or a list of several."""
     if len(results) == 1:
         return results[0].as_json()

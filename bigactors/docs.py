@@ -16,10 +16,10 @@ from bigactors.files import make_folder, write_text
 from bigactors.lsp.textmate import textmate_grammar
 from bigactors.terminal import safe_output, say
 from checker.reports.glossary import word_table
-from semantics.extension import EXTENSION
-from semantics.extension import say as say_rule
+from semantics.bigactor_rules import EXTENSION
+from semantics.bigactor_rules import say as say_rule
 from semantics.rules import RULES, TIMED_RULES, env
-from semantics.state.partition import PASSING
+from semantics.state.station_partition import PASSING
 from specs import code_table
 from specs.language_reference import language_reference
 
@@ -34,7 +34,8 @@ RULES_HEAD = """\
 
 Premises are above the bar of a rule, the conclusion is below it. A configuration is ⟨α | S | η⟩: the bigActors, the
 structure S = (L, P, β, γ) of the logical and the physical model, and the pending requests. The rules are functions of
-`semantics/rules.py` and `semantics/extension.py`, and between stations of `semantics/state/partition.py`; this page is
+`semantics/rules.py` and `semantics/bigactor_rules.py`, and between stations of
+`semantics/state/station_partition.py`; this page is
 generated from their docstrings.
 """
 

@@ -10,7 +10,7 @@ from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Final
 
 from adapters.assigned import Assigned
-from adapters.camera.sightings import load_detector
+from adapters.camera.region_detection import load_detector
 from adapters.camera.slick import Detector
 from adapters.plugin import Plugin
 from bigactors.mistakes import Mistake, suggestion

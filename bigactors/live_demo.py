@@ -20,12 +20,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
-from adapters.camera.feed import CameraFeed
+from adapters.camera.camera_plugin import CameraFeed
 from adapters.camera.libraries import opencv
-from adapters.camera.view import Lens, Pose
+from adapters.camera.sea_projection import Lens, Pose
 from adapters.live.loop import Ending
 from adapters.live.socket_file import is_taken
-from adapters.mavlink.autopilot import Autopilot
+from adapters.mavlink.mavlink_plugin import Autopilot
 from adapters.simulated import Kind, Simulator, Vehicle
 from adapters.simulated import run as run_simulated
 from adapters.simulated.camera import render
@@ -33,13 +33,13 @@ from bigactors.arguments import parse_arguments
 from bigactors.cli import main as command
 from bigactors.cli import reported
 from bigactors.commands.run.flight import Flight, fly, prepare, record
-from bigactors.drawings import write_page
 from bigactors.exits import Exit
+from bigactors.flight_watchers import Terminal
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.pages import Story
+from bigactors.picture_files import write_page
 from bigactors.recordings import open_recording, trace_of
 from bigactors.terminal import flying_output, say, tell
-from bigactors.watchers import Terminal
 from physical import circle
 from physical.wordings import counted
 from specs.missions import shipped_missions

@@ -137,7 +137,7 @@ class MissionFile(pytest.File):
     @cached_property
     def result(self) -> CheckResult:
         """The report with line numbers in the mission's text."""
-        from bigactors.outputs import result_on  # noqa: PLC0415 - the same
+        from bigactors.check_outputs import result_on  # noqa: PLC0415 - the same
 
         return result_on(self.mission, self.mission.source.name, self.report)
 

@@ -6,22 +6,22 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from adapters.live.orders import stopping
+from adapters.live.command_planning import stopping
+from adapters.live.operator_findings import Finding, is_breach
 from adapters.live.overrides import StandingOrder
-from adapters.live.reported import Finding, is_breach
-from adapters.live.timing import Timers, begun, stepped
-from adapters.live.turn import Outgoing
+from adapters.live.timing_monitor import Timers, begun, stepped
+from adapters.live.turn_result import Outgoing
 from adapters.recording.mcap_files import Message, RecordingError
-from adapters.recording.reading import Recording, read_recording
-from bigactors.diagnostics import as_mistake
-from bigactors.missions import digest_of
+from adapters.recording.recording_reader import Recording, read_recording
+from bigactors.diagnostic_output import as_mistake
+from bigactors.mission_lookup import digest_of
 from bigactors.mistakes import Mistake, unreadable
 from checker import ReplayError, Trace, replay
 from checker.traces import SCHEMA
 from semantics.live_policy import Fallback
 from semantics.state.configuration import Configuration, Transition
-from semantics.state.partition import Parting, Passage, parcel_of, parted
 from semantics.state.setting import Control, Scheduler
+from semantics.state.station_partition import Parting, Passage, parcel_of, parted
 from specs import MissionError, Source
 from specs.elaboration import ElaboratedMission, Variation, elaborate
 from specs.parser import parse

@@ -12,7 +12,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Final
 
-from adapters.written_files import open_private, others_may_read
+from adapters.private_files import open_private, others_may_read
 from bigactors.files import read_bytes
 from bigactors.mistakes import Mistake, unreadable
 from physical.wordings import install_extra

@@ -10,7 +10,7 @@
 from physical.wordings import install_extra
 
 try:
-    from semantics.strategies import (
+    from semantics.hypothesis_strategies import (
         GeneratedMission,
         World,
         beliefs,

@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Final, TextIO
 
+from bigactors.asynchronous_printing import printing_aside, put
 from bigactors.mistakes import Mistake
-from bigactors.printing import printing_aside, put
 
 COLOUR: ContextVar[str] = ContextVar("COLOUR", default="auto")
 """The value of `--color`: auto, always or never."""

@@ -38,7 +38,7 @@ from adapters.plugin import (
     Trouble,
     entity_of,
 )
-from adapters.recording.reading import read_recording
+from adapters.recording.recording_reader import read_recording
 from adapters.recording.schemas import SCHEMAS
 from adapters.recording.writing import Recorder
 from adapters.simulated.clock import run

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from bigactors.checking import Checked
-from bigactors.drawings import draw_run
 from bigactors.files import file_stem, make_folder, write_json, write_text
 from bigactors.pages import MOST_PICTURES, Story, trace_page
+from bigactors.picture_files import draw_run
 from checker import Trace, print_trace, to_json
 from semantics.properties.kinds import PropertyKind
 from semantics.state.printing import print_configuration

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from adapters.live.live_state import LiveState
 from adapters.live.operator_commands import typed
 from adapters.live.plan import Plan
 from adapters.live.scheduling import in_turn
-from adapters.live.state import LiveState
-from adapters.live.timing import flying
+from adapters.live.timing_monitor import flying
 from adapters.plugin import Follow, GoTo, Status
 from physical import distance
 from physical.wordings import counted

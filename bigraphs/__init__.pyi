@@ -37,12 +37,12 @@ from .errors import BigraphError as BigraphError
 from .errors import NotationError as NotationError
 from .exploration import explore as explore
 from .interface import Interface as Interface
-from .labels import link_label as link_label
-from .labels import node_labels as node_labels
 from .layout import Layout as Layout
 from .layout import layout as layout
 from .matching import Match as Match
 from .matching import find_matches as find_matches
+from .node_labels import link_label as link_label
+from .node_labels import node_labels as node_labels
 from .relational_bigraphs import from_relations as from_relations
 from .rewriting import rewrite as rewrite
 from .rewriting import successors as successors

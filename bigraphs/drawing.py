@@ -9,9 +9,9 @@ from typing import Final
 
 from bigraphs.bigraph import Bigraph, Link
 from bigraphs.errors import BigraphError
-from bigraphs.labels import link_label
-from bigraphs.layout import FONT, HEADER, PAD, SMALL, Box, Item, Layout, layout
-from bigraphs.link_curves import Route, route
+from bigraphs.layout import FONT, HEADER, PAD, SMALL, Box, BoxSubject, Layout, layout
+from bigraphs.link_curves import LinkRoute, route
+from bigraphs.node_labels import link_label
 from physical.svg import Canvas, Paint, Picture, PictureError, Point, Words
 
 # Fill, border and text colours of the kinds of node, assigned in alphabetical order.
@@ -114,7 +114,7 @@ class _Pen:
         for name, box in self.plan.inner:
             self.pill(name, box, colours.get(inner[name], FAINT))
 
-    def box(self, item: Item, box: Box, level: float) -> None:
+    def box(self, item: BoxSubject, box: Box, level: float) -> None:
         if item.kind == "region":
             self.rounded(box, 10, REGION, level)
             if self.bigraph.regions > 1:
@@ -148,7 +148,7 @@ class _Pen:
         self.text((x, y), name, Words(FONT, ink, bold=bool(members), anchor=anchor), members)
         self.text((x, y + 11), kind, Words(SMALL, border, anchor=anchor))
 
-    def link(self, found: Route, colour: str) -> None:
+    def link(self, found: LinkRoute, colour: str) -> None:
         lit = link_label(found.link) in self.highlight
         line = Paint(stroke=HIGHLIGHT if lit else colour, width=2.4 if lit else 1.5, opacity=0.95)
         for curve in found.curves:

@@ -14,7 +14,7 @@ from math import ceil, log
 from typing import Final, TypeAlias
 
 from bigraphs.bigraph import Bigraph, Link, Place, children, points, sites_in
-from bigraphs.folding import Folded, folded
+from bigraphs.node_aggregation import Folded, folded
 from physical.svg import text_width
 
 FONT: Final = 10.0
@@ -64,7 +64,7 @@ class Box:
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class BoxSubject:
     """The subject of a box: a `region`, `node`, `site` or `ghost` of a node, its number, and the place of the box."""
 
     kind: str
@@ -82,7 +82,7 @@ class Layout:
     shown: Folded
     width: float
     height: float
-    boxes: tuple[tuple[Item, Box], ...]
+    boxes: tuple[tuple[BoxSubject, Box], ...]
     outer: tuple[tuple[str, Box], ...]
     inner: tuple[tuple[str, Box], ...]
 
@@ -92,7 +92,7 @@ class Layout:
 
 
 Size: TypeAlias = tuple[float, float]
-Rows: TypeAlias = tuple[tuple[Item, ...], ...]
+Rows: TypeAlias = tuple[tuple[BoxSubject, ...], ...]
 
 
 def layout(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Layout:
@@ -103,21 +103,24 @@ def layout(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Layout:
     shown = folded(bigraph, apart)
     bigraph = shown.bigraph
     tree = _tree(bigraph)
-    sizes: dict[Item, Size] = {}
-    rows: dict[Item, Rows] = {}
-    headers: dict[Item, float] = {}
+    sizes: dict[BoxSubject, Size] = {}
+    rows: dict[BoxSubject, Rows] = {}
+    headers: dict[BoxSubject, float] = {}
     for item in _bottom_up(tree, bigraph.regions):
         rows[item], (width, height) = _packed([(child, sizes[child]) for child in tree[item]])
         label = label_size(shown, item)
         headers[item] = _header(item, label)
         sizes[item] = _with_frame(item, (width, height), label)
-    tops = [(Item("region", region), sizes[Item("region", region)]) for region in range(bigraph.regions)]
+    tops = [
+        (BoxSubject("region", region), sizes[BoxSubject("region", region)])
+        for region in range(bigraph.regions)
+    ]
     tiers, (width, height) = _packed(tops)
     outer_rows = _pill_rows(bigraph.outer_names, max(width, 120.0))
     inner_rows = _pill_rows(bigraph.inner.names, max(width, 120.0))
     width = max(width, outer_rows.width, inner_rows.width)
     above = outer_rows.height
-    boxes: dict[Item, Box] = {}
+    boxes: dict[BoxSubject, Box] = {}
     _stretch(tiers, Box(0.0, above, width, height), sizes, boxes)
     for item in _top_down(tree, bigraph.regions):
         _stretch(rows[item], _inside(boxes[item], headers[item]), sizes, boxes)
@@ -139,7 +142,7 @@ def layout(bigraph: Bigraph, apart: Collection[str] = frozenset()) -> Layout:
     )
 
 
-def label_size(shown: Folded, item: Item) -> Size:
+def label_size(shown: Folded, item: BoxSubject) -> Size:
     """Return the size of a box's label, without the frame."""
     if item.kind == "region":
         several = shown.bigraph.regions > 1
@@ -155,37 +158,37 @@ def label_size(shown: Folded, item: Item) -> Size:
     )
 
 
-def _tree(bigraph: Bigraph) -> dict[Item, list[Item]]:
+def _tree(bigraph: Bigraph) -> dict[BoxSubject, list[BoxSubject]]:
     """Return the items drawn in each region and node: nodes in their first place, ghosts in the others."""
     inside, sited = children(bigraph), sites_in(bigraph)
-    tree: dict[Item, list[Item]] = {}
+    tree: dict[BoxSubject, list[BoxSubject]] = {}
     for place, nodes in inside.items():
         drawn = [
-            Item("node", number)
+            BoxSubject("node", number)
             if bigraph.nodes[number].parents[0] == place
-            else Item("ghost", number, place)
+            else BoxSubject("ghost", number, place)
             for number in nodes
         ]
-        drawn += [Item("site", site, place) for site in sited.get(place, ())]
-        tree[Item("node", place) if place >= 0 else Item("region", ~place)] = drawn
+        drawn += [BoxSubject("site", site, place) for site in sited.get(place, ())]
+        tree[BoxSubject("node", place) if place >= 0 else BoxSubject("region", ~place)] = drawn
     return tree
 
 
-def _top_down(tree: Mapping[Item, Sequence[Item]], regions: int) -> list[Item]:
-    order = [Item("region", region) for region in range(regions)]
+def _top_down(tree: Mapping[BoxSubject, Sequence[BoxSubject]], regions: int) -> list[BoxSubject]:
+    order = [BoxSubject("region", region) for region in range(regions)]
     for item in order:  # the list grows during the loop
         order.extend(tree.get(item, ()))
     return order
 
 
-def _bottom_up(tree: dict[Item, list[Item]], regions: int) -> list[Item]:
+def _bottom_up(tree: dict[BoxSubject, list[BoxSubject]], regions: int) -> list[BoxSubject]:
     order = _top_down(tree, regions)[::-1]
     for item in order:
         tree.setdefault(item, [])
     return order
 
 
-def _packed(sized: Sequence[tuple[Item, Size]]) -> tuple[Rows, Size]:
+def _packed(sized: Sequence[tuple[BoxSubject, Size]]) -> tuple[Rows, Size]:
     """Return the boxes in rows, and their total size; the rows balance a small area against the aspect ratio SHAPE."""
     if not sized:
         return (), (0.0, 0.0)
@@ -193,7 +196,7 @@ def _packed(sized: Sequence[tuple[Item, Size]]) -> tuple[Rows, Size]:
     return min(tries, key=lambda rows: _badness(rows[1]))
 
 
-def _row_widths(sized: Sequence[tuple[Item, Size]]) -> list[float]:
+def _row_widths(sized: Sequence[tuple[BoxSubject, Size]]) -> list[float]:
     widest = max(width for _, (width, _) in sized)
     sums = accumulate(width + GAP for _, (width, _) in sized)
     return sorted(
@@ -201,8 +204,8 @@ def _row_widths(sized: Sequence[tuple[Item, Size]]) -> list[float]:
     )
 
 
-def _in_rows(sized: Sequence[tuple[Item, Size]], limit: float) -> tuple[Rows, Size]:
-    rows: list[list[tuple[Item, Size]]] = [[]]
+def _in_rows(sized: Sequence[tuple[BoxSubject, Size]], limit: float) -> tuple[Rows, Size]:
+    rows: list[list[tuple[BoxSubject, Size]]] = [[]]
     used = 0.0
     for item, (width, height) in sized:
         if rows[-1] and used + width > limit + 1e-6:
@@ -220,7 +223,7 @@ def _badness(size: Size) -> float:
     return log(width * height) + 0.9 * abs(log(width / height / SHAPE))
 
 
-def _with_frame(item: Item, content: Size, label: Size) -> Size:
+def _with_frame(item: BoxSubject, content: Size, label: Size) -> Size:
     """Return the size of a box: its label, and its content below."""
     if content == (0.0, 0.0):
         least = (90.0, 60.0) if item.kind == "region" else (0.0, 0.0)
@@ -229,7 +232,7 @@ def _with_frame(item: Item, content: Size, label: Size) -> Size:
     return max(content[0], label[0]) + 2 * PAD, content[1] + header + PAD
 
 
-def _header(item: Item, label: Size) -> float:
+def _header(item: BoxSubject, label: Size) -> float:
     if item.kind == "region":
         return label[1] or PAD
     return (
@@ -241,7 +244,7 @@ def _inside(box: Box, header: float) -> Box:
     return Box(box.x + PAD, box.y + header, box.width - 2 * PAD, box.height - PAD - header)
 
 
-def _stretch(rows: Rows, room: Box, sizes: Mapping[Item, Size], boxes: dict[Item, Box]) -> None:
+def _stretch(rows: Rows, room: Box, sizes: Mapping[BoxSubject, Size], boxes: dict[BoxSubject, Box]) -> None:
     """Place rows in a room and distribute the spare space: boxes with content grow, others are centred."""
     if not rows:
         return
@@ -258,7 +261,7 @@ def _stretch(rows: Rows, room: Box, sizes: Mapping[Item, Size], boxes: dict[Item
         y += height + more + GAP
 
 
-def _fitted(item: Item, slot: Box, size: Size) -> Box:
+def _fitted(item: BoxSubject, slot: Box, size: Size) -> Box:
     """Return the whole slot for a box with content, else the centre of the slot."""
     if item.kind == "region" or size[1] > LEAF_HEIGHT:
         return slot

@@ -15,7 +15,7 @@ NORMALS: Final[Mapping[str, Point]] = {"top": (0, -1), "bottom": (0, 1), "left":
 
 
 @dataclass(frozen=True, slots=True)
-class Route:
+class LinkRoute:
     """One link: its curves (chains of cubic Béziers), the ports at their starts, and its optional dot."""
 
     link: Link
@@ -34,7 +34,7 @@ class _End:
     target: Point
 
 
-def route(layout: Layout) -> tuple[Route, ...]:
+def route(layout: Layout) -> tuple[LinkRoute, ...]:
     """Return the curves of every link that joins something."""
     bigraph = layout.shown.bigraph
     boxes = {item.number: box for item, box in layout.boxes if item.kind == "node"}
@@ -134,15 +134,15 @@ def _on_side(box: Box, side: str, share: float) -> Point:
     return box.x + (box.width if side == "right" else 0.0), box.y + share * box.height
 
 
-def _route(link: Link, ends: Sequence[tuple[_End, Point]], goal: Point, names: Sequence[Point]) -> Route:
+def _route(link: Link, ends: Sequence[tuple[_End, Point]], goal: Point, names: Sequence[Point]) -> LinkRoute:
     ports = tuple(place for _, place in ends)
     if isinstance(link, int) and len(ends) == 2 and not names and ends[0][0].node != ends[1][0].node:
         (one, start), (other, end) = ends
-        return Route(link, (_between(start, one.side, end, other.side),), ports, None)
+        return LinkRoute(link, (_between(start, one.side, end, other.side),), ports, None)
     down = (0.0, 1.0) if isinstance(link, str) else None
     curves = [_towards(place, NORMALS[end.side], goal, down) for end, place in ends]
     curves += [_towards(name, NORMALS["top"], goal, down) for name in names]
-    return Route(link, tuple(curves), ports, None if isinstance(link, str) else goal)
+    return LinkRoute(link, tuple(curves), ports, None if isinstance(link, str) else goal)
 
 
 def _reach(start: Point, end: Point) -> float:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from bigraphs.bigraph import Bigraph, Link, Place, children, points, sites_in
-from bigraphs.labels import link_label
+from bigraphs.node_labels import link_label
 from bigraphs.rules import ReactionRule
 from bigraphs.signature import Signature
 

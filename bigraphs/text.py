@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from bigraphs.bigraph import Bigraph, Place, children, points, sites_in
-from bigraphs.labels import link_label, node_labels
+from bigraphs.node_labels import link_label, node_labels
 
 
 def draw_text(bigraph: Bigraph) -> str:

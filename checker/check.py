@@ -22,7 +22,7 @@ from checker.properties.inspections import (
 )
 from checker.properties.ownership import owned
 from checker.properties.races import ControlRaces, StaleObservationRaces
-from checker.properties.visited import Visited
+from checker.properties.visited_statements import Visited
 from checker.reduction.original_run import in_original_names
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.traces import Trace, trace_of, trace_to

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from semantics.observed_steps import Sight, steps_seen
 from semantics.state.brief import cut
 from semantics.state.configuration import Configuration, Label, Transition
-from semantics.state.partition import Elsewhere
 from semantics.state.requests import Received
 from semantics.state.signature import Name
+from semantics.state.station_partition import Elsewhere
 from semantics.successors import expand_by, served, turn_of
 
 

@@ -21,8 +21,8 @@ from semantics.races.monitor import monitored
 from semantics.state.canonical import digest_of_step
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.observation_serialization import sight_json, sight_of
-from semantics.state.partition import Elsewhere
 from semantics.state.printing import print_changes
+from semantics.state.station_partition import Elsewhere
 from semantics.successors import expand, turn_of
 from semantics.timing.dates import clock_text
 

@@ -23,10 +23,10 @@ from typing import Final
 
 import shapely
 
-from physical.containment import PlaceIndex
 from physical.errors import GeometryError
 from physical.frame import E7, METRES_PER_DEGREE, TURN, PositionE7, local_frame, rounded
-from physical.measure import centroid, deep_spot
+from physical.geometry_measures import centroid, deep_spot
+from physical.place_nesting import PlaceIndex
 from physical.placement import is_convex, outline, placed, room, still, template, translate_to
 from physical.shape import Geometry, beside, contains, intern, planar
 

@@ -1,7 +1,7 @@
 """Geometry in one import: shapes, relations, measures and placement."""
 
 from physical.errors import GeometryError
-from physical.measure import area, centroid, distance, interior_point, waypoint
+from physical.geometry_measures import area, centroid, distance, interior_point, waypoint
 from physical.placement import nearest_placement, translate_to
 from physical.shape import Geometry, box, circle, contains, equal, overlaps, point, polygon
 

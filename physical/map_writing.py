@@ -11,6 +11,7 @@ from typing import Final
 
 import shapely
 
+from physical.geometry_measures import metres_text
 from physical.land import ACCURACY
 from physical.map_labels import BESIDE, Box, Spot, Wanted, around, place_labels
 from physical.map_marks import (
@@ -28,7 +29,6 @@ from physical.map_marks import (
 from physical.map_scene import Scene, Sheet, area_of
 from physical.map_style import INK, QUIET, darker
 from physical.map_view import bounds, scale_length
-from physical.measure import metres_text
 from physical.outliers import apart
 from physical.svg import Canvas, shortened, text_width
 

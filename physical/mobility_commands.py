@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from physical.altitude import Band
 from physical.errors import PhysicalError
-from physical.measure import waypoint
+from physical.geometry_measures import waypoint
 from physical.physical_property import PhysicalProperty
 from physical.shape import Geometry
 

@@ -8,8 +8,8 @@ from itertools import islice, product
 from typing import Final, TypeVar
 
 from physical.frame import Position
+from physical.geometry_measures import distance
 from physical.land import land_share
-from physical.measure import distance
 from physical.shape import Geometry, point
 
 CELL: Final = 500_000.0

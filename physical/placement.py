@@ -17,7 +17,7 @@ from shapely.affinity import translate
 
 from physical.errors import GeometryError
 from physical.frame import LocalFrame, local_frame
-from physical.measure import centroid
+from physical.geometry_measures import centroid
 from physical.shape import Geometry, canonical, contains, covers, intern, planar
 
 MARGINS: Final = (0.05, 0.5, 5.0)

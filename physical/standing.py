@@ -16,7 +16,7 @@ import shapely
 
 from physical.errors import GeometryError
 from physical.frame import LocalFrame, local_frame
-from physical.measure import area, centroid
+from physical.geometry_measures import area, centroid
 from physical.placement import nearest_spot, placed, room, template
 from physical.shape import Geometry, contains, planar, point
 

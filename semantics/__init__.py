@@ -1,7 +1,7 @@
 """The calculus: configurations ⟨α | S | η⟩, the seven inference rules, and the bigActor extension.
 
-The package does not depend on search, files, devices or the mission language. `semantics.strategies` generates
-structures and configurations for property-based tests; it needs the extra `strategies`.
+The package does not depend on search, files, devices or the mission language. `semantics.hypothesis_strategies`
+generates structures and configurations for property-based tests; it needs the extra `strategies`.
 """
 
 import lazy_loader

@@ -10,6 +10,7 @@ from .behaviours.reaction_rules import Match as Match
 from .behaviours.reaction_rules import Pattern as Pattern
 from .behaviours.reaction_rules import Reaction as Reaction
 from .behaviours.reaction_rules import matches as matches
+from .bigactor_rules import EXTENSION as EXTENSION
 from .control import Obstacle as Obstacle
 from .control import obstacle as obstacle
 from .environment import Appears as Appears
@@ -19,7 +20,6 @@ from .environment import Drops as Drops
 from .environment import Leaves as Leaves
 from .environment import Says as Says
 from .environment import Vanishes as Vanishes
-from .extension import EXTENSION as EXTENSION
 from .properties.property import Property as Property
 from .properties.propositions import Proposition as Proposition
 from .properties.propositions import holds as holds

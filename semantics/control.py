@@ -19,7 +19,7 @@ from semantics.behaviours.reaction_rules import (
     stays_forest,
 )
 from semantics.drive import Driven, Reach, drive, unloaded
-from semantics.state.cells import Changes
+from semantics.state.cell_values import Changes
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit
 from semantics.state.relations import Parent, Relation

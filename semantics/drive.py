@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from physical import Geometry, band_contains, centroid, nearest_placement, translate_to
 from semantics.behaviours.reaction_rules import Match, Reaction, moved, relinked
-from semantics.state.cells import Cells, Changes, Written
+from semantics.state.cell_values import Cells, Changes, Written
 from semantics.state.logical_model import LogicalModel
 from semantics.state.physical_model import Carried, PhysicalModel, Placed, Placement, encloses
 from semantics.state.signature import REGION, Name

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from semantics.behaviours.values import Value, show
-from semantics.state.cells import Cell, Changes
+from semantics.state.cell_values import Cell, Changes
 from semantics.state.physical_model import (
     Carried,
     PhysicalModel,

@@ -12,10 +12,9 @@ from semantics.behaviours.reaction_rules import moved
 from semantics.drive import Reach
 from semantics.environment import Observed
 from semantics.rules import commit, env
-from semantics.state.cells import NAMES, Cell, Changes, Row
+from semantics.state.cell_values import NAMES, Cell, Changes, Row
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.logical_model import links_cell, parent_cell
-from semantics.state.partition import Elsewhere, passing
 from semantics.state.physical_model import (
     Carried,
     InTransit,
@@ -26,6 +25,7 @@ from semantics.state.physical_model import (
 )
 from semantics.state.requests import FLY, Request
 from semantics.state.signature import Name
+from semantics.state.station_partition import Elsewhere, passing
 from semantics.successors import remembered
 
 WRITABLE = frozenset({"placement", "channels", "left", "down"})

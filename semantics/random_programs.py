@@ -1,4 +1,4 @@
-"""Random programs from a stream of choices, such as the draws of `semantics.strategies`."""
+"""Random programs from a stream of choices, such as the draws of `semantics.hypothesis_strategies`."""
 
 from collections.abc import Callable, Sequence
 from typing import TypeVar

@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator
 
 from semantics.behaviours.computation import compute, enter_case
 from semantics.behaviours.expressions import evaluated, name_in, query_of
+from semantics.behaviours.process_conversion import continuing, next_statement, process_of, resting_on
 from semantics.behaviours.queries import answers, overlay, resolve
 from semantics.behaviours.reaction_rules import Reaction, in_flight
 from semantics.behaviours.statements import ControlBy, Observe, React, at_internal
-from semantics.behaviours.stepping import continuing, next_statement, process_of, resting_on
 from semantics.control import Realisation, commits, realisations
 from semantics.drive import Reach
 from semantics.environment import Clause, Observed, Says

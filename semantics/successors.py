@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from functools import cache
 
 from semantics.behaviours.expressions import Fault
+from semantics.bigactor_rules import EXTENSION, migrate, say, snd
 from semantics.environment import Clause
-from semantics.extension import EXTENSION, migrate, say, snd
 from semantics.races.monitor import marked
 from semantics.rules import RULES, TIMED_RULES, Rule, actuate, command, commit, env, sense
-from semantics.state.cells import QUEUE
+from semantics.state.cell_values import QUEUE
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.setting import Control, Scheduler
 from semantics.state.signature import Name

@@ -10,10 +10,10 @@ import aiohttp
 from jsonschema import Draft202012Validator
 
 from adapters.console.access import Access
+from adapters.console.browser_requests import PROTOCOL
 from adapters.console.browser_session import Console
+from adapters.console.console_server import Site, serving
 from adapters.console.history import History
-from adapters.console.requests import PROTOCOL
-from adapters.console.server import Site, serving
 from bigactors.commands.console.recorded_history import rules_of
 
 DOCS = Path(__file__).parents[1] / "docs" / "reference"

@@ -40,7 +40,7 @@ LIBRARIES = {
         "checker/",
         "bigactors/commands/big/temporal.py",
         "adapters/camera/",
-        "adapters/ros/messages.py",  # arrays of ROS's messages
+        "adapters/ros/position_messages.py",  # arrays of ROS's messages
         "adapters/simulated/camera.py",
         "physical/extents.py",  # arrays of shapely's coordinates
     ),
@@ -56,23 +56,23 @@ LIBRARIES = {
     "pymavlink": ("adapters/mavlink/codec.py",),
     "aiohttp": ("adapters/web.py",),
     "serial_asyncio_fast": ("adapters/transport.py",),
-    "zenoh": ("adapters/stations/bus.py", "adapters/ros/link.py", "adapters/ros/publisher.py"),
+    "zenoh": ("adapters/stations/bus.py", "adapters/ros/ros_node.py", "adapters/ros/publisher.py"),
     "xxhash": ("adapters/ros/wire.py",),
     "rosbags": ("adapters/ros/",),
     "msgspec": (
-        "adapters/location.py",
+        "adapters/location_feed.py",
         "adapters/typed_json.py",
-        "adapters/console/requests.py",
+        "adapters/console/browser_requests.py",
         "adapters/recording/type_schemas.py",
         "adapters/stations/",
     ),
     "mcap": ("adapters/recording/mcap_files.py",),
     "zstandard": ("adapters/recording/decompression.py",),
     "lz4": ("adapters/recording/decompression.py",),
-    "pygls": ("bigactors/lsp/server.py",),  # which nothing imports before it serves
-    "lsprotocol": ("bigactors/lsp/server.py",),
+    "pygls": ("bigactors/lsp/language_server.py",),  # which nothing imports before it serves
+    "lsprotocol": ("bigactors/lsp/language_server.py",),
     "cryptography": ("bigactors/signatures.py",),
-    "hypothesis": ("semantics/strategies.py",),
+    "hypothesis": ("semantics/hypothesis_strategies.py",),
     "wcwidth": ("bigactors/terminal.py", "checker/reports/lanes.py"),
     "argcomplete": ("bigactors/commands/completion.py",),
     "lazy_loader": tuple(
@@ -93,10 +93,10 @@ LAZY = {"resvg_py"}
 """Of what every installation has, what takes long to load."""
 
 NEED_THEIR_EXTRA = {
-    "bigactors/lsp/server.py",
+    "bigactors/lsp/language_server.py",
     "bigactors/pytest_plugin.py",
     "bigactors/testing.py",
-    "semantics/strategies.py",
+    "semantics/hypothesis_strategies.py",
 }
 """Modules that nothing imports where their extra is not installed."""
 
@@ -230,7 +230,9 @@ def test_each_module_can_be_imported_without_any_extra():
 
 
 def test_nobody_imports_the_strategies_but_tests_and_the_module_that_offers_them():
-    importing = {found.file for found in imports() if found.module.startswith("semantics.strategies")}
+    importing = {
+        found.file for found in imports() if found.module.startswith("semantics.hypothesis_strategies")
+    }
     assert importing == {"bigactors/strategies.py"}
     assert [str(found) for found in imports() if found.module.startswith("bigactors.strategies")] == []
 

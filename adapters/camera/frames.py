@@ -13,7 +13,7 @@ import numpy as np
 
 from adapters.camera.libraries import MOST_PIXELS, geotiffs, opencv
 from adapters.camera.poses import pose_at, read_poses
-from adapters.camera.view import Array, Frame, Lens, Pose, Projection
+from adapters.camera.sea_projection import Array, Frame, Lens, Pose, Projection
 from physical import PhysicalError, open_file
 
 PICTURES: Final = (".jpg", ".jpeg", ".png", ".bmp", ".webp")

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from adapters.camera.libraries import opencv
+from adapters.camera.sea_projection import Frame
 from adapters.camera.slick import Patch
-from adapters.camera.view import Frame
 
 
 def draw_patches(frame: Frame, patches: Iterable[Patch], folder: Path) -> None:

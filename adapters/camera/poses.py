@@ -12,7 +12,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
-from adapters.camera.view import Pose
+from adapters.camera.sea_projection import Pose
 from physical import PhysicalError, open_file
 from physical.frame import E7
 

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from adapters.camera.libraries import opencv
-from adapters.camera.view import Array, Frame
+from adapters.camera.sea_projection import Array, Frame
 
 LARGEST_SIDE: Final = 480
 """The longer side in pixels to which a picture is reduced."""

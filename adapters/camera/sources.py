@@ -13,7 +13,7 @@ from typing import Any, Final, Protocol
 
 from adapters.camera.frames import PICTURES, read_picture
 from adapters.camera.libraries import opencv
-from adapters.camera.view import Array
+from adapters.camera.sea_projection import Array
 
 MOST_FILES: Final = 100
 """The most new pictures of a folder at one check: the newest."""

@@ -12,8 +12,8 @@ from typing import Final
 import numpy as np
 import shapely
 
+from adapters.camera.sea_projection import Array, Frame
 from adapters.camera.slick import Patch
-from adapters.camera.view import Array, Frame
 from physical import Geometry, PhysicalError
 from physical.frame import PositionE7, local_frame, rounded
 from physical.shape import canonical, planar

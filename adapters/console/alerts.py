@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+from adapters.console.console_view import Json, Section
 from adapters.console.facts import Facts
 from adapters.console.mutable_facts import Draft
 from adapters.console.parsing import text, texts
 from adapters.console.ticks import tick
-from adapters.console.view import Json, Section
 
 MOST: Final = 1_000
 

@@ -15,13 +15,11 @@ from pathlib import Path
 from typing import Any, Final
 
 from adapters.console.access import Access, Role
-from adapters.console.history import History, Moment
-from adapters.console.playhead import Playhead
-from adapters.console.requests import (
+from adapters.console.browser_requests import (
     PROTOCOL,
     Act,
     Hello,
-    Live,
+    LiveRequest,
     Pause,
     Play,
     Request,
@@ -29,8 +27,10 @@ from adapters.console.requests import (
     Unreadable,
     read_request,
 )
+from adapters.console.console_view import View, difference
+from adapters.console.history import History, Moment
+from adapters.console.playhead import Playhead
 from adapters.console.run_client import Performing
-from adapters.console.view import View, difference
 from adapters.live.operator_socket import Outcome
 from adapters.rate_limit import Ration
 
@@ -200,7 +200,7 @@ class Looker:
                 self.playhead = self.playhead.play(speed, clock, history.now)
             case Pause():
                 self.playhead = self.playhead.pause(clock, history.now)
-            case Live():
+            case LiveRequest():
                 self.playhead = Playhead()
             case Hello():
                 await self._complain("hello was sent already")

@@ -7,15 +7,15 @@ from math import floor
 from operator import attrgetter
 from typing import Final, NamedTuple
 
-from adapters.console.agents import agents
+from adapters.console.agent_states import agents
 from adapters.console.alerts import ALL, fallen_back, grounded
+from adapters.console.console_view import Json
 from adapters.console.facts import ControllingStations, Facts, Link, OrderState, Position, VehicleCommand
 from adapters.console.flights import concerned
 from adapters.console.parsing import text
-from adapters.console.returns import of_return
-from adapters.console.view import Json
+from adapters.console.return_preview import of_return
 from adapters.console.whereabouts import UNKNOWN, Whereabouts, destination, known_whereabouts
-from adapters.live.due_times import Waiting
+from adapters.live.due_times import HeadRequest
 from semantics.behaviours.durations import duration_text
 from semantics.live_policy import Fallback, TimeLimit
 from semantics.state.requests import CTR, FLY, Request
@@ -42,7 +42,7 @@ UNTOLD: Final = ControllingStations(())
 class Asked(NamedTuple):
     """A request that concerns a vehicle, its time limit, and whether it is given up (never served any more)."""
 
-    waiting: Waiting
+    waiting: HeadRequest
     limit: TimeLimit | None
     given_up: bool
 

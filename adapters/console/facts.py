@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from adapters.console.view import Json, Section
-from adapters.live.due_times import Waiting
+from adapters.console.console_view import Json, Section
+from adapters.live.due_times import HeadRequest
 from adapters.live.overrides import StandingOrder
 from semantics.live_policy import Fallback, TimeLimit
 from semantics.state.configuration import Configuration, Label
@@ -61,13 +61,13 @@ class Standing:
         rules: The rules of its mission.
         configuration: ⟨α | S | η⟩.
         change: The last change of its L or P.
-        heads: The requests at the heads of lines, and the start of their waits, as in `adapters.live.limits`.
+        heads: The requests at the heads of lines, and the start of their waits, as in `adapters.live.request_timeouts`.
     """
 
     rules: Rules
     configuration: Configuration
     change: Change
-    heads: Mapping[str, Waiting] = field(default_factory=dict)
+    heads: Mapping[str, HeadRequest] = field(default_factory=dict)
 
 
 class SeenEntity(NamedTuple):

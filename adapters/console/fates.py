@@ -9,12 +9,12 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from typing import Any, Final
 
-from adapters.console.actions import MOST_NAMED, act
+from adapters.console.console_view import Json
 from adapters.console.facts import OrderState
 from adapters.console.mutable_facts import MOST_VEHICLES, Draft
+from adapters.console.operator_actions import MOST_NAMED, act
 from adapters.console.parsing import text
-from adapters.console.view import Json
-from adapters.live.orders import stopping
+from adapters.live.command_planning import stopping
 from adapters.live.overrides import Fate, StandingOrder
 from semantics.live_policy import Fallback
 

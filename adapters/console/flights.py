@@ -6,13 +6,13 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any, Final
 
+from adapters.console.console_view import Json
 from adapters.console.facts import Link, Position, VehicleCommand
 from adapters.console.fates import confirm, end, refuse, sent
 from adapters.console.giving_back import not_rebound, rebind, rebound
 from adapters.console.mutable_facts import MOST_VEHICLES, Draft, Table
 from adapters.console.parsing import count, number, text, texts
-from adapters.console.stations import obeys
-from adapters.console.view import Json
+from adapters.console.station_list import obeys
 from physical import PhysicalError, waypoint
 from physical.frame import E7
 from semantics.behaviours.reaction_rules import moved

@@ -5,24 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final
 
-from adapters.console.actions import take_acknowledgement, take_saying
-from adapters.console.agents import take_deadline
+from adapters.console.agent_states import take_deadline
 from adapters.console.alerts import take_finding, tell
-from adapters.console.arrivals import take_arrival
+from adapters.console.entity_tracks import take_arrival
 from adapters.console.facts import Change, Facts, Opening, Standing, Unreplayable
 from adapters.console.fates import take_order
 from adapters.console.flights import take_command, take_flight, take_report, take_status, take_words
 from adapters.console.giving_back import take_giving_back
 from adapters.console.mutable_facts import Draft
+from adapters.console.operator_actions import take_acknowledgement, take_saying
 from adapters.console.parsing import text
-from adapters.console.preflight import take_preflight
-from adapters.console.runs import run_of
-from adapters.console.stations import take_presence
-from adapters.console.steps import take_step
-from adapters.live.limits import heads_of
+from adapters.console.preflight_checklist import take_preflight
+from adapters.console.replayed_steps import take_step
+from adapters.console.run_header import run_of
+from adapters.console.station_list import take_presence
+from adapters.live.request_timeouts import heads_of
 from adapters.recording.foxglove import OTHERS
 from adapters.recording.mcap_files import Message
-from adapters.recording.reading import checked_run
+from adapters.recording.recording_reader import checked_run
 
 TOPICS: Final[dict[str, Callable[[Draft, float, Any], None]]] = {
     "arrivals": take_arrival,

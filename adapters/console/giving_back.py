@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from adapters.console.actions import act, settle
 from adapters.console.fates import end
 from adapters.console.mutable_facts import MOST_VEHICLES, Draft
+from adapters.console.operator_actions import act, settle
 from adapters.console.parsing import text
 
 

@@ -14,14 +14,14 @@ from operator import is_ as _is
 from pathlib import Path
 from typing import Final, Protocol
 
+from adapters.console.console_view import NOTHING, Json, View
 from adapters.console.facts import Change, Facts, Opening
 from adapters.console.fold import take, time_of
 from adapters.console.mutable_facts import Draft
 from adapters.console.sections import view_of
-from adapters.console.view import NOTHING, Json, View
 from adapters.recording.foxglove import OTHERS
 from adapters.recording.mcap_files import McapReader, Message, Place, RecordingError
-from adapters.recording.reading import MOST_MESSAGES
+from adapters.recording.recording_reader import MOST_MESSAGES
 
 MOST_CHECKPOINTS: Final = 256
 """Above this number, every second checkpoint is dropped, and the distance between later ones doubles."""
@@ -184,9 +184,9 @@ class History:
         """Return a reader of the recording from a place that was read."""
         return self._reader.going_on(place)
 
-    def display(self) -> Display:
+    def display(self) -> BrowserDisplay:
         """Return a display for another browser."""
-        return Display(self._drawing)
+        return BrowserDisplay(self._drawing)
 
     # --- reading on
 
@@ -216,7 +216,7 @@ def _time_of(checkpoint: Checkpoint) -> float:
     return checkpoint.facts.time
 
 
-class Display:
+class BrowserDisplay:
     """The view of one browser; unchanged values stay the same objects."""
 
     def __init__(self, drawing: Drawing) -> None:

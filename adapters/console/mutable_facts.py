@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, MutableMapping
 from dataclasses import fields
 from typing import Any, Final, TypeVar
 
+from adapters.console.console_view import Json
 from adapters.console.facts import (
     ControllingStations,
     Facts,
@@ -18,7 +19,6 @@ from adapters.console.facts import (
     Trail,
     VehicleCommand,
 )
-from adapters.console.view import Json
 
 Value = TypeVar("Value")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
-from adapters.console.requests import Acknowledge, GiveBack, Order, RequestedAction, Say
+from adapters.console.browser_requests import Acknowledge, GiveBackRequest, Order, RequestedAction, Say
 from adapters.live.operator_socket import NobodyListens, Outcome, acknowledge, give_back, order, say, start
 
 Performing = Callable[[RequestedAction, str], Awaitable[Outcome]]
@@ -30,7 +30,7 @@ async def _perform(socket: Path, action: RequestedAction, by: str) -> Outcome:
             return Outcome(await say(socket, agent, message, by))
         case RequestedAction(order=Order(what, vehicle)):
             return await order(socket, what, vehicle, by)
-        case RequestedAction(give_back=GiveBack(vehicle)):
+        case RequestedAction(give_back=GiveBackRequest(vehicle)):
             return await give_back(socket, vehicle, by=by)
         case RequestedAction(acknowledge=Acknowledge(alert)):
             return Outcome(await acknowledge(socket, int(alert), by))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from adapters.console.agents import agents, sayings
+from adapters.console.agent_states import agents, sayings
 from adapters.console.alerts import alarms, fallen_back
-from adapters.console.arrivals import tracks
 from adapters.console.cards import vehicles
+from adapters.console.console_view import Json, Section, View, keeping
+from adapters.console.entity_tracks import tracks
 from adapters.console.facts import Facts
-from adapters.console.stations import stations
-from adapters.console.view import Json, Section, View, keeping
+from adapters.console.station_list import stations
 from adapters.console.whereabouts import entities, places
 from bigraphs import draw_text
 from semantics.state.configuration import Configuration

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
+from adapters.console.console_view import Json
 from adapters.console.facts import Facts, Position, SeenEntity, Shape
-from adapters.console.view import Json
 from physical import Geometry
 from physical.frame import E7
 from semantics.state.canonical import written
-from semantics.state.cells import Cell, Cells, Edit, Part, Question
+from semantics.state.cell_values import Cell, Cells, Edit, Part, Question
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import InTransit, PhysicalModel, Placed
 from semantics.state.signature import Name

@@ -6,12 +6,12 @@ to vehicles. `LiveRun` is the loop around it. Neither knows MAVLink, AIS or a fi
 
 from adapters.live.batch import Batch, Heard, Saying
 from adapters.live.core import advance, is_over, resumed, started, watch
+from adapters.live.live_state import LiveState
 from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, settle
+from adapters.live.operator_findings import Finding
 from adapters.live.operator_socket import NobodyListens, listening, say
 from adapters.live.plan import Plan
-from adapters.live.reported import Finding
-from adapters.live.state import LiveState
-from adapters.live.turn import LiveStep, Turn
+from adapters.live.turn_result import LiveStep, Turn
 
 __all__ = [
     "Batch",

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from bisect import bisect_right
 
-from adapters.live.controls import serve
+from adapters.live.request_service import serve
 from adapters.live.scheduling import PATIENCE, STEPS_PER_SECOND, own_steps
 from adapters.live.step_taking import take
 from adapters.live.turn_in_progress import Turning
 from semantics.behaviours.expressions import Fault
+from semantics.behaviours.process_conversion import next_statement
 from semantics.behaviours.statements import React
-from semantics.behaviours.stepping import next_statement
-from semantics.extension import timeout
+from semantics.bigactor_rules import timeout
 from semantics.state.configuration import Transition
-from semantics.state.partition import is_here
 from semantics.state.signature import Name
+from semantics.state.station_partition import is_here
 
 
 def go_on(turning: Turning, most: int) -> None:

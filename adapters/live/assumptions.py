@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import Final, assert_never
 
+from adapters.live.fresh_placements import Fences, contents
 from adapters.live.plan import Plan
-from adapters.live.sightings import Fences, contents
 from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Placement

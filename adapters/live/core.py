@@ -13,20 +13,20 @@ from adapters.live.batch import Batch
 from adapters.live.fallbacks import answers_for
 from adapters.live.flying import remember
 from adapters.live.ingest import take_in
-from adapters.live.limits import check_limits
+from adapters.live.live_state import LiveState
 from adapters.live.operator_commands import answer
 from adapters.live.order_progress import repeat_refused
 from adapters.live.plan import Plan
+from adapters.live.request_timeouts import check_limits
 from adapters.live.scheduling import in_turn
-from adapters.live.state import LiveState
 from adapters.live.step_taking import check_times
-from adapters.live.turn import Turn
 from adapters.live.turn_in_progress import Turning
+from adapters.live.turn_result import Turn
 from semantics.environment import Says
 from semantics.state.configuration import Configuration
-from semantics.state.partition import is_parted
 from semantics.state.requests import READY
 from semantics.state.signature import Name
+from semantics.state.station_partition import is_parted
 
 MOST_STEPS = 400
 """The most steps of one turn."""

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from adapters.live.timing import Timers, begun
+from adapters.live.timing_monitor import Timers, begun
 from semantics.state.configuration import Configuration
 from semantics.state.requests import Request
 from semantics.state.signature import Name
 
 
 @dataclass(frozen=True, slots=True)
-class Waiting:
+class HeadRequest:
     """The request at the head of an agent's line: its start there, and the limits that it has exceeded."""
 
     request: Request
@@ -32,7 +32,7 @@ class DueTimes:
     """
 
     timeouts: Mapping[Name, float] = field(default_factory=dict)
-    heads: Mapping[str, Waiting] = field(default_factory=dict)
+    heads: Mapping[str, HeadRequest] = field(default_factory=dict)
     timers: Timers | None = None
     stopped: float | None = None
 
@@ -52,7 +52,7 @@ class DueTimes:
             return self
         return replace(self, heads={key: each for key, each in self.heads.items() if key != agent})
 
-    def with_heads(self, heads: Mapping[str, Waiting]) -> DueTimes:
+    def with_heads(self, heads: Mapping[str, HeadRequest]) -> DueTimes:
         """Return the value with the heads of all lines."""
         return replace(self, heads=heads)
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from adapters.live.orders import is_authority, stopping
+from adapters.live.command_planning import is_authority, stopping
 from adapters.live.overrides import StandingOrder
 from adapters.live.turn_in_progress import Turning
 from semantics.live_policy import Fallback
-from semantics.state.partition import HERE, is_parted
 from semantics.state.signature import Name
+from semantics.state.station_partition import HERE, is_parted
 
 
 def breaks(turning: Turning, assumption: str, about: Name, kind: str = "broken assumption") -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from adapters.live.command_planning import journey, needed_hand_overs, renewed
 from adapters.live.commanded import GivenCommand
-from adapters.live.orders import journey, needed_hand_overs, renewed
 from adapters.live.scheduling import in_turn
 from adapters.live.step_taking import observe
 from adapters.live.turn_in_progress import Turning

@@ -7,12 +7,12 @@ from typing import assert_never
 
 from adapters.live.assumptions import STRAYED, broken_by_place, clause_of_leaving, relations
 from adapters.live.batch import Batch, Heard
+from adapters.live.command_planning import is_authority
 from adapters.live.fallbacks import answers_for, breaks, flies_home
 from adapters.live.flying import arrive, doubt, flies, obey, refuse, renew
+from adapters.live.fresh_placements import Refusal, Sighting, placement_seen, sighting_of
 from adapters.live.order_progress import confirm, refused, sent
-from adapters.live.orders import is_authority
 from adapters.live.other_stations import take_station_report
-from adapters.live.sightings import Refusal, Sighting, placement_seen, sighting_of
 from adapters.live.step_taking import observe, take
 from adapters.live.surroundings import separating_place
 from adapters.live.turn_in_progress import Turning
@@ -42,7 +42,7 @@ from adapters.plugin import (
 from semantics.environment import Appears, Leaves
 from semantics.observed_steps import Sight, happening
 from semantics.rules import env
-from semantics.state.cells import Cell
+from semantics.state.cell_values import Cell
 from semantics.state.physical_model import Carried, Placed, Placement, channels_cell, placement_cell
 from semantics.state.signature import REGION, Name
 

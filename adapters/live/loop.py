@@ -16,15 +16,14 @@ from collections import OrderedDict
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from adapters.issue_counter import Troubles
 from adapters.live.batch import Batch, Heard, Said, Saying
 from adapters.live.core import advance, is_over, is_refused, watch
+from adapters.live.live_state import LiveState
+from adapters.live.operator_findings import Finding
 from adapters.live.plan import Plan
-from adapters.live.reported import Finding
-from adapters.live.state import LiveState
-from adapters.live.turn import Answer, Turn
+from adapters.live.run_watchers import Watcher, Watchers
+from adapters.live.turn_result import Answer, Turn
 from adapters.live.validation import flaw_of, legible_report
-from adapters.live.watchers import Watcher, Watchers
 from adapters.plugin import (
     Command,
     Failed,
@@ -44,6 +43,7 @@ from adapters.plugin import (
     entity_of,
 )
 from adapters.silence_clock import Listening
+from adapters.trouble_throttle import Troubles
 from physical import is_text
 
 GATHER = 0.002

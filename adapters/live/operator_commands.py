@@ -11,20 +11,20 @@ from collections.abc import Iterable, Iterator
 from ipaddress import ip_address
 
 from adapters.live.batch import Acknowledging, GivingBack, Ordering, Said, Saying
+from adapters.live.command_planning import is_authority, stopping
 from adapters.live.fallbacks import answers_for, due_fallback, fall_back
 from adapters.live.flying import ask_anew
-from adapters.live.orders import is_authority, stopping
 from adapters.live.overrides import StandingOrder, operator
 from adapters.live.step_taking import take
-from adapters.live.turn import Answer
 from adapters.live.turn_in_progress import Turning
+from adapters.live.turn_result import Answer
 from adapters.plugin import Follow, GiveBack, GoTo, HandOver, Hold, Rebind, Return
 from semantics.behaviours.values import show, spoken
+from semantics.bigactor_rules import say
 from semantics.environment import Says
-from semantics.extension import say
 from semantics.live_policy import Fallback
-from semantics.state.partition import is_here, station_of
 from semantics.state.signature import Name
+from semantics.state.station_partition import is_here, station_of
 
 _ADDRESS = re.compile(r"\[?([0-9a-fA-F:.]+)\]?:([0-9]{1,5})")
 """A vehicle's address: numeric, since the loop does not wait for name look-ups."""

@@ -13,7 +13,7 @@ from typing import Any, Final, NamedTuple
 
 from adapters.live.batch import Acknowledging, GivingBack, Ordering, Said, Saying
 from adapters.live.socket_file import Reserve, bound
-from adapters.live.turn import Answer
+from adapters.live.turn_result import Answer
 from physical import PhysicalError, is_text, is_word, read_json
 from semantics.live_policy import Fallback
 

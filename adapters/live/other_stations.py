@@ -10,7 +10,9 @@ from adapters.live.turn_in_progress import Turning
 from adapters.plugin import Believes, Broken, Delivered, Hosts, StationReport, Underway
 from semantics.observed_steps import Sight, happening
 from semantics.state.parcel_serialization import parcel_of
-from semantics.state.partition import (
+from semantics.state.physical_model import InTransit, Placed, placement_cell
+from semantics.state.signature import REGION, Name
+from semantics.state.station_partition import (
     Belief,
     HostReport,
     Passage,
@@ -20,8 +22,6 @@ from semantics.state.partition import (
     objection,
     took_cell,
 )
-from semantics.state.physical_model import InTransit, Placed, placement_cell
-from semantics.state.signature import REGION, Name
 
 
 def take_station_report(turning: Turning, report: StationReport) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from semantics.extension import migrate, rcv_msg, req_mgr, req_snd, snd, spawn
+from semantics.bigactor_rules import migrate, rcv_msg, req_mgr, req_snd, snd, spawn
 from semantics.rules import Rule, actuate, command, fun, rcv_obs, req_ctr, req_obs, sense
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.eta import PendingRequest

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from adapters.live.fallbacks import breaks
-from adapters.live.timing import next_end, stepped, too_late, too_soon
-from adapters.live.turn import LiveStep, Outgoing
+from adapters.live.timing_monitor import next_end, stepped, too_late, too_soon
 from adapters.live.turn_in_progress import Turning
+from adapters.live.turn_result import LiveStep, Outgoing
 from semantics.observed_steps import Sight
 from semantics.state.configuration import Transition
-from semantics.state.partition import (
+from semantics.state.requests import SND
+from semantics.state.signature import Name
+from semantics.state.station_partition import (
     Elsewhere,
     Passage,
     is_parted,
@@ -19,8 +21,6 @@ from semantics.state.partition import (
     sent_cell,
     station_of,
 )
-from semantics.state.requests import SND
-from semantics.state.signature import Name
 
 
 def take(

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+from adapters.live.fresh_placements import Fences, placement_seen
+from adapters.live.live_state import LiveState
+from adapters.live.operator_findings import Finding
 from adapters.live.plan import Plan
-from adapters.live.reported import Finding
-from adapters.live.sightings import Fences, placement_seen
-from adapters.live.state import LiveState
-from adapters.live.turn import Answer, LiveStep, Outgoing, Turn
+from adapters.live.turn_result import Answer, LiveStep, Outgoing, Turn
 from adapters.plugin import Command
 from semantics.state.physical_model import Carried, Placed, Placement
 from semantics.state.signature import Name

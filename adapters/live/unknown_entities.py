@@ -10,11 +10,11 @@ from collections.abc import Iterable, Sequence
 
 from adapters.live.fallbacks import breaks
 from adapters.live.flying import renew
-from adapters.live.sightings import Sighting
+from adapters.live.fresh_placements import Sighting
 from adapters.live.step_taking import observe
 from adapters.live.turn_in_progress import Turning
 from semantics.observed_steps import Sight, happening
-from semantics.state.cells import NAMES, Cell
+from semantics.state.cell_values import NAMES, Cell
 from semantics.state.physical_model import Placed, Placement, channels_cell, placement_cell
 from semantics.state.signature import REGION, Name
 

@@ -7,7 +7,7 @@ a socket and a clock, `roster` identifies vehicles, and `keys` keeps the signing
 A command counts as carried out once the vehicle's state shows it; an answer alone proves nothing.
 """
 
-from adapters.mavlink.autopilot import Autopilot
-from adapters.mavlink.fleet import Craft, Stations
+from adapters.mavlink.mavlink_plugin import Autopilot
+from adapters.mavlink.vehicle_identities import Craft, Stations
 
 __all__ = ["Autopilot", "Craft", "Stations"]

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
 
-from adapters.mavlink.message import Message
+from adapters.mavlink.message import MavlinkMessage
 from physical import PhysicalError
 from physical.wordings import install_extra
 
@@ -45,7 +45,7 @@ class Decoder:
         self._mav = _dialect().MAVLink(None)
         self._mav.robust_parsing = True
 
-    def feed(self, data: bytes) -> list[Message | Garbage]:
+    def feed(self, data: bytes) -> list[MavlinkMessage | Garbage]:
         """Return the complete messages; never raises, for any bytes."""
         found = [_heard(each) for each in self._mav.parse_buffer(data[:MAX_CHUNK]) or ()]
         self._forget()
@@ -72,7 +72,7 @@ class Encoder:
         self._mav.signing.sign_outgoing = key is not None
         self._mav.signing.link_id = link
 
-    def pack(self, message: Message, timestamp: int = 0) -> bytes:
+    def pack(self, message: MavlinkMessage, timestamp: int = 0) -> bytes:
         """Return the frame of a message; `timestamp` is the signature's (see `signing.stamp`).
 
         Raises CodecError if there is no such message, or a field is missing or does not fit.
@@ -89,7 +89,7 @@ class Encoder:
         return frame
 
 
-def _heard(parsed: Any) -> Message | Garbage | None:
+def _heard(parsed: Any) -> MavlinkMessage | Garbage | None:
     name = parsed.get_type()
     raw = bytes(parsed.get_msgbuf())
     if name == "BAD_DATA":
@@ -99,7 +99,7 @@ def _heard(parsed: Any) -> Message | Garbage | None:
     fields = {field: getattr(parsed, field) for field in parsed.get_fieldnames()}
     if name == "MISSION_CURRENT":
         fields = _numbers(raw) | fields
-    return Message(name, fields, parsed.get_srcSystem(), parsed.get_srcComponent(), raw)
+    return MavlinkMessage(name, fields, parsed.get_srcSystem(), parsed.get_srcComponent(), raw)
 
 
 def _numbers(raw: bytes) -> dict[str, int]:

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
-from adapters.mavlink.constants import Cmd, Frame, Result
-from adapters.mavlink.message import Message, say
+from adapters.mavlink.constants import Cmd, MavFrame, Result
+from adapters.mavlink.message import MavlinkMessage, say
 
 AGAIN: Final = 1.5
 """Seconds before a command is sent again."""
@@ -22,10 +22,10 @@ _FINAL: Final = {Result.DENIED, Result.UNSUPPORTED}
 
 
 @dataclass(frozen=True, slots=True)
-class Telling:
+class RepeatedMessage:
     """A message that is sent repeatedly; `answer` is the vehicle's last."""
 
-    message: Message
+    message: MavlinkMessage
     sent: float | None = None
     attempts: int = 0
     answer: int | None = None
@@ -52,7 +52,7 @@ class Telling:
         return self.message.name if number is None else Cmd(number).name
 
 
-def tick(telling: Telling, now: float) -> tuple[Telling, tuple[Message, ...]]:
+def tick(telling: RepeatedMessage, now: float) -> tuple[RepeatedMessage, tuple[MavlinkMessage, ...]]:
     """Send it, unless it was sent just before."""
     patience = IN_PROGRESS if telling.answer == Result.IN_PROGRESS else AGAIN
     if telling.sent is not None and now - telling.sent < patience:
@@ -63,7 +63,7 @@ def tick(telling: Telling, now: float) -> tuple[Telling, tuple[Message, ...]]:
     return replace(telling, sent=now, attempts=telling.attempts + 1), (message,)
 
 
-def hear(telling: Telling, message: Message) -> Telling:
+def hear(telling: RepeatedMessage, message: MavlinkMessage) -> RepeatedMessage:
     """Take the vehicle's answer to us."""
     asked = telling.message.fields.get("command")
     if message.name != "COMMAND_ACK" or asked is None or message["command"] != asked or not telling.attempts:
@@ -71,7 +71,7 @@ def hear(telling: Telling, message: Message) -> Telling:
     return replace(telling, answer=message["result"])
 
 
-def long(command: Cmd, system: int, *parameters: float) -> Message:
+def long(command: Cmd, system: int, *parameters: float) -> MavlinkMessage:
     """Return a COMMAND_LONG with its parameters; missing ones are 0."""
     padded = (*parameters, *(0.0,) * (7 - len(parameters)))
     numbered: dict[str, Any] = {f"param{i}": float(value) for i, value in enumerate(padded, 1)}
@@ -94,8 +94,8 @@ ANYWHERE: Final = 2**31 - 1
 
 
 def reposition(
-    system: int, x: int, y: int, height: tuple[float, Frame], circle: float, *, enters: bool
-) -> Message:
+    system: int, x: int, y: int, height: tuple[float, MavFrame], circle: float, *, enters: bool
+) -> MavlinkMessage:
     """Return the command to go to a point (1e-7 degree, metres in a frame), and circle there.
 
     Outside guided mode the vehicle refuses it, unless the command `enters` guided mode.
@@ -118,26 +118,26 @@ def reposition(
     )
 
 
-def stop(system: int) -> Message:
+def stop(system: int) -> MavlinkMessage:
     """Return the command to stay at the current position: it has no target."""
-    return reposition(system, ANYWHERE, ANYWHERE, (NAN, Frame.SEA_LEVEL), NAN, enters=True)
+    return reposition(system, ANYWHERE, ANYWHERE, (NAN, MavFrame.SEA_LEVEL), NAN, enters=True)
 
 
-def take_off(system: int, height: tuple[float, Frame]) -> Message:
+def take_off(system: int, height: tuple[float, MavFrame]) -> MavlinkMessage:
     """Return the command to take off at the current position, to a height in a frame."""
     metres, frame = height
-    rest = 0.0 if frame is Frame.HOME else NAN  # PX4 would take off towards (0, 0)
+    rest = 0.0 if frame is MavFrame.HOME else NAN  # PX4 would take off towards (0, 0)
     return long(Cmd.TAKEOFF, system, *(6 * [rest]), metres)
 
 
-def begin_with(system: int, index: int, *, by_command: bool) -> Message:
+def begin_with(system: int, index: int, *, by_command: bool) -> MavlinkMessage:
     """Return the message that makes an item of the mission the current one."""
     if by_command:
         return long(Cmd.SET_MISSION_CURRENT, system, index)
     return say("MISSION_SET_CURRENT", target_system=system, target_component=1, seq=index)
 
 
-def set_parameter(system: int, name: str, value: float) -> Message:
+def set_parameter(system: int, name: str, value: float) -> MavlinkMessage:
     """Return the message that sets a parameter; the PARAM_VALUE in answer is the state."""
     return say(
         "PARAM_SET",
@@ -149,7 +149,7 @@ def set_parameter(system: int, name: str, value: float) -> Message:
     )
 
 
-def read_parameter(system: int, name: str) -> Message:
+def read_parameter(system: int, name: str) -> MavlinkMessage:
     """Return the message that asks for a parameter."""
     return say(
         "PARAM_REQUEST_READ",

@@ -50,7 +50,7 @@ class ModeFlag(IntFlag):
     ARMED = 128
 
 
-class Frame(IntEnum):
+class MavFrame(IntEnum):
     """MAV_FRAME: the origin of an altitude."""
 
     SEA_LEVEL = 0

@@ -10,7 +10,7 @@ from typing import Final
 
 from adapters.mavlink.constants import MissionResult, MissionType
 from adapters.mavlink.items import Items, item_of
-from adapters.mavlink.message import Message, say
+from adapters.mavlink.message import MavlinkMessage, say
 
 ASK_AGAIN: Final = 1.0
 MAX_ITEMS: Final = 2_000
@@ -41,7 +41,7 @@ class Download:
         return self.count is not None and len(self.items) == self.count
 
 
-Step = tuple[Download, tuple[Message, ...]]
+Step = tuple[Download, tuple[MavlinkMessage, ...]]
 
 
 def tick(download: Download, now: float) -> Step:
@@ -50,7 +50,7 @@ def tick(download: Download, now: float) -> Step:
     return (download, ()) if download.over or waiting else _ask(download, now)
 
 
-def hear(download: Download, message: Message, now: float) -> Step:
+def hear(download: Download, message: MavlinkMessage, now: float) -> Step:
     """Take a message of the vehicle that is meant for us."""
     said = message.fields
     if download.over or said.get("mission_type") != download.kind:
@@ -88,7 +88,7 @@ def _ask(download: Download, now: float) -> Step:
     return replace(download, asked=now), (question,)
 
 
-def _thanks(download: Download) -> Message:
+def _thanks(download: Download) -> MavlinkMessage:
     return say(
         "MISSION_ACK",
         target_system=download.system,

@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from typing import Final, Protocol, TypeVar
 
-from adapters.mavlink import survey as surveys
-from adapters.mavlink.changed import changed
+from adapters.mavlink import item_polling as surveys
 from adapters.mavlink.constants import MissionType
-from adapters.mavlink.fleet import Craft
+from adapters.mavlink.fast_replace import changed
+from adapters.mavlink.item_merging import OnBoard, Unconfirmed, before_upload
+from adapters.mavlink.item_polling import Survey, changed_by
 from adapters.mavlink.items import Items
-from adapters.mavlink.merging import OnBoard, Unconfirmed, before_upload
-from adapters.mavlink.message import Message
+from adapters.mavlink.message import MavlinkMessage
 from adapters.mavlink.next_step import Load, Step
 from adapters.mavlink.refuges import beyond_fence
-from adapters.mavlink.survey import Survey, changed_by
-from adapters.mavlink.sync import Sync
 from adapters.mavlink.task import Task
 from adapters.mavlink.telemetry import Telemetry
+from adapters.mavlink.vehicle_identities import Craft
+from adapters.mavlink.verified_upload import Sync
 from adapters.plugin import Command, Follow, Hold, Report, Return, Trouble
 
 
@@ -115,7 +115,7 @@ def out_of_fence(pilot: Believer, now: float) -> tuple[Report, ...]:
     return tuple(Trouble(pilot.craft.entity, now, "returns outside its fence", reason) for reason in reasons)
 
 
-def overheard(pilot: Pilot, message: Message) -> Pilot:
+def overheard(pilot: Pilot, message: MavlinkMessage) -> Pilot:
     """Take a message between the vehicle and another station: drop the beliefs that it may change."""
     kinds = changed_by(message, pilot.system)
     return unsure(pilot, kinds, quiet=True) if kinds else pilot
@@ -164,7 +164,7 @@ def _renumbered(pilot: Believer, before: Telemetry) -> Iterator[MissionType]:
         yield from (kind for kind, now, then in pairs if now != then)
 
 
-def read_on(pilot: Pilot, message: Message, now: float) -> tuple[Pilot, tuple[Message, ...]]:
+def read_on(pilot: Pilot, message: MavlinkMessage, now: float) -> tuple[Pilot, tuple[MavlinkMessage, ...]]:
     """Pass an answer to the reading of the items on board."""
     if message.name not in surveys.ANSWERS or _uploads(pilot):
         return pilot, ()
@@ -211,7 +211,7 @@ def _uploaded(pilot: Believer) -> MissionType | None:
     return task.doing.kind
 
 
-def surveyed(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
+def surveyed(pilot: Pilot, now: float) -> tuple[Pilot, tuple[MavlinkMessage, ...]]:
     """Read the items on board a vehicle that obeys us, again from time to time, and more often those that it flies."""
     profile, known = pilot.known.profile, pilot.known
     if profile is None or _uploads(pilot):

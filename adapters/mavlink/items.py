@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Final
 
-from adapters.mavlink.constants import Cmd, Frame, MissionType
-from adapters.mavlink.message import Message, say
+from adapters.mavlink.constants import Cmd, MavFrame, MissionType
+from adapters.mavlink.message import MavlinkMessage, say
 from physical import Geometry
 
 TAKEOFF_PITCH: Final = 15.0
@@ -17,20 +17,23 @@ HEIGHT_TOLERANCE: Final = 0.02
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class OnboardItem:
     """One item: x and y are latitude and longitude in 1e-7 degree, z metres in the frame."""
 
     command: int
     x: int
     y: int
     z: float = 0.0
-    frame: int = Frame.HOME
+    frame: int = MavFrame.HOME
     parameters: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
 
-Items = tuple[Item, ...]
+Items = tuple[OnboardItem, ...]
 
-_SAME_FRAME: Final[dict[int, int]] = {Frame.SEA_LEVEL_INT: Frame.SEA_LEVEL, Frame.HOME_INT: Frame.HOME}
+_SAME_FRAME: Final[dict[int, int]] = {
+    MavFrame.SEA_LEVEL_INT: MavFrame.SEA_LEVEL,
+    MavFrame.HOME_INT: MavFrame.HOME,
+}
 """The frames for integer coordinates that PX4 reads back (mavlink/mavlink_mission.cpp)."""
 
 
@@ -55,19 +58,19 @@ def route(
     If `home` is an item, it is item 0, which the vehicle overwrites. With `above`, the altitude of the mission's home,
     heights are above that home, even if the vehicle's home moves. `near`: acceptance radii of all points but the last.
     """
-    z, frame = (height, Frame.HOME) if above is None else (round(height + above, 2), Frame.SEA_LEVEL)
+    z, frame = (height, MavFrame.HOME) if above is None else (round(height + above, 2), MavFrame.SEA_LEVEL)
     radii = near or (0.0,) * (len(path) - 1)
     ways = [
-        Item(Cmd.WAYPOINT, *e7(at), z, frame, (0.0, radius, 0.0, 0.0))
+        OnboardItem(Cmd.WAYPOINT, *e7(at), z, frame, (0.0, radius, 0.0, 0.0))
         for at, radius in zip(path[:-1], radii, strict=True)
     ]
-    stay = Item(Cmd.LOITER_UNLIMITED, *e7(path[-1]), z, frame)
+    stay = OnboardItem(Cmd.LOITER_UNLIMITED, *e7(path[-1]), z, frame)
     first = (
-        [Item(Cmd.TAKEOFF, *e7(path[0]), z, frame, parameters=(TAKEOFF_PITCH, 0.0, 0.0, 0.0))]
+        [OnboardItem(Cmd.TAKEOFF, *e7(path[0]), z, frame, parameters=(TAKEOFF_PITCH, 0.0, 0.0, 0.0))]
         if takeoff
         else []
     )
-    zeroth = [Item(Cmd.WAYPOINT, *e7(path[0]), 0.0, Frame.SEA_LEVEL)] if home else []
+    zeroth = [OnboardItem(Cmd.WAYPOINT, *e7(path[0]), 0.0, MavFrame.SEA_LEVEL)] if home else []
     return (*zeroth, *first, *ways, stay)
 
 
@@ -76,12 +79,12 @@ def fence(polygon: Geometry) -> Items:
     """Return the fence that keeps a vehicle within a polygon."""
     count = float(len(polygon.vertices))
     return tuple(
-        Item(
+        OnboardItem(
             Cmd.FENCE_VERTEX_INCLUSION,
             round(latitude * 1e7),
             round(longitude * 1e7),
             0.0,
-            Frame.SEA_LEVEL,
+            MavFrame.SEA_LEVEL,
             (count, 0.0, 0.0, 0.0),
         )
         for latitude, longitude in polygon.vertices
@@ -94,19 +97,19 @@ def same(ours: Items, theirs: Items, kind: MissionType) -> bool:
     return len(ours) == len(theirs) and all(map(alike, ours[first:], theirs[first:]))
 
 
-def _is_home(item: Item) -> bool:
+def _is_home(item: OnboardItem) -> bool:
     """Return whether a first item is that for home: no flown item is at sea level."""
-    return (item.command, item.z, item.frame) == (Cmd.WAYPOINT, 0.0, Frame.SEA_LEVEL)
+    return (item.command, item.z, item.frame) == (Cmd.WAYPOINT, 0.0, MavFrame.SEA_LEVEL)
 
 
-def alike(a: Item, b: Item) -> bool:
+def alike(a: OnboardItem, b: OnboardItem) -> bool:
     """Return whether an item on board is the wanted one."""
     here, there = ((each.command, _SAME_FRAME.get(each.frame, each.frame), each.x, each.y) for each in (a, b))
     counts = a.command == Cmd.DO_JUMP and a.parameters[0] != b.parameters[0]
     return here == there and abs(a.z - b.z) <= HEIGHT_TOLERANCE and not counts
 
 
-def item_message(item: Item, index: int, kind: int, system: int, component: int = 1) -> Message:
+def item_message(item: OnboardItem, index: int, kind: int, system: int, component: int = 1) -> MavlinkMessage:
     """Return the message that carries an item."""
     return say(
         "MISSION_ITEM_INT",
@@ -128,7 +131,7 @@ def item_message(item: Item, index: int, kind: int, system: int, component: int 
     )
 
 
-def item_of(said: Mapping[str, Any]) -> Item:
+def item_of(said: Mapping[str, Any]) -> OnboardItem:
     """Read an item from the fields of its message."""
     parameters = (said["param1"], said["param2"], said["param3"], said["param4"])
-    return Item(said["command"], said["x"], said["y"], said["z"], said["frame"], parameters)
+    return OnboardItem(said["command"], said["x"], said["y"], said["z"], said["frame"], parameters)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from adapters.mavlink import signing
-from adapters.mavlink.message import Message
+from adapters.mavlink.message import MavlinkMessage
 from adapters.mavlink.signing import Verdict
 
 
@@ -29,7 +29,7 @@ class Keeper:
         """The key."""
         return self._signing.key
 
-    def judge(self, message: Message) -> Verdict:
+    def judge(self, message: MavlinkMessage) -> Verdict:
         """Check the signature of one packet, and remember its time stamp."""
         self._signing, verdict = signing.check(self._signing, message)
         self._reserve()

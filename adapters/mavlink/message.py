@@ -14,7 +14,7 @@ SIGNED: Final = 1
 
 
 @dataclass(frozen=True, slots=True)
-class Message:
+class MavlinkMessage:
     """One message.
 
     Attributes:
@@ -45,11 +45,11 @@ class Message:
         return int(self.fields.get("target_system", 0))
 
 
-def say(name: str, **fields: Any) -> Message:
+def say(name: str, **fields: Any) -> MavlinkMessage:
     """Return an outgoing message."""
-    return Message(name, fields)
+    return MavlinkMessage(name, fields)
 
 
-def is_for(message: Message, system: int) -> bool:
+def is_for(message: MavlinkMessage, system: int) -> bool:
     """Return whether a message is addressed to a system, or to all."""
     return message.target in (0, system)

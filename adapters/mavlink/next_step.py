@@ -10,15 +10,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from adapters.mavlink import command as to
-from adapters.mavlink.constants import AUTHORITY_PARAMETERS, Cmd, Fence, Frame, MissionType
+from adapters.mavlink.acceptance_radius import acceptance
+from adapters.mavlink.constants import AUTHORITY_PARAMETERS, Cmd, Fence, MavFrame, MissionType
+from adapters.mavlink.item_merging import (
+    OnBoard,
+    Unconfirmed,
+    before_upload,
+    is_on_board,
+    may_be_landing,
+    merged,
+)
 from adapters.mavlink.items import Items, e7, fence, route
-from adapters.mavlink.loiter_radius import goal, stay
-from adapters.mavlink.merging import OnBoard, Unconfirmed, before_upload, is_on_board, may_be_landing, merged
-from adapters.mavlink.message import Message
-from adapters.mavlink.passing import acceptance
+from adapters.mavlink.loiter_circle import goal, stay
+from adapters.mavlink.message import MavlinkMessage
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.refuges import ARMING_ITEMS, refuges
-from adapters.mavlink.telemetry import Position, Telemetry
+from adapters.mavlink.telemetry import Telemetry, VehiclePosition
 from adapters.plugin import Command, Follow, GiveBack, GoTo, HandOver, Hold, Rebind, Return
 from physical import Band, Geometry, contains, distance, point, waypoint
 
@@ -42,7 +49,7 @@ class Tell:
     """A message, repeated until the state shows its effect."""
 
     why: str
-    message: Message
+    message: MavlinkMessage
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +70,7 @@ class Load:
 
 
 @dataclass(frozen=True, slots=True)
-class Underway:
+class FollowsCommand:
     """The state shows that the vehicle follows its command.
 
     Attributes:
@@ -75,11 +82,11 @@ class Underway:
     waypoint: Geometry | None = field(default=None, compare=False)
 
 
-Step = Wait | Tell | Load | Underway
+Step = Wait | Tell | Load | FollowsCommand
 
 
 @dataclass(frozen=True, slots=True)
-class Vehicle:
+class StepInput:
     """The input of `next_step`.
 
     Attributes:
@@ -123,7 +130,7 @@ class Vehicle:
     lacks: str = ""
 
 
-def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
+def next_step(command: Command, station: int, vehicle: StepInput) -> Step:
     """Return the first missing step; `station` is the system id that a HandOver gives authority to."""
     match command:
         case GoTo():
@@ -133,17 +140,17 @@ def next_step(command: Command, station: int, vehicle: Vehicle) -> Step:
         case HandOver():
             return _hand_over(station, vehicle)
         case Hold():
-            return _in_mode(vehicle, vehicle.profile.hold) or _stopped(vehicle) or Underway(done=True)
+            return _in_mode(vehicle, vehicle.profile.hold) or _stopped(vehicle) or FollowsCommand(done=True)
         case Return():
             lands = may_be_landing(vehicle.known, vehicle.on_board)
-            return (None if lands else _in_mode(vehicle, vehicle.profile.home)) or Underway(
+            return (None if lands else _in_mode(vehicle, vehicle.profile.home)) or FollowsCommand(
                 done=_is_home(vehicle)
             )
         case GiveBack() | Rebind():
             raise AssertionError("it is done at once")
 
 
-def _prepared(vehicle: Vehicle, mission: Items | None = None) -> Step | None:
+def _prepared(vehicle: StepInput, mission: Items | None = None) -> Step | None:
     """Return the first missing precondition: a position, acceptance of missions, the fence, readiness to arm.
 
     A vehicle that is ready only with certain items on board gets its `mission` first.
@@ -166,7 +173,7 @@ def _prepared(vehicle: Vehicle, mission: Items | None = None) -> Step | None:
     return load
 
 
-def _ready(vehicle: Vehicle) -> Step:
+def _ready(vehicle: StepInput) -> Step:
     """Wait until it could be armed; if that depends on its mode, first enter a mode from which it may take off."""
     unfit = vehicle.profile.climb is not None and vehicle.known.mode != vehicle.profile.climb
     return (_in_mode(vehicle, vehicle.profile.hold) if unfit else None) or Wait(
@@ -174,7 +181,7 @@ def _ready(vehicle: Vehicle) -> Step:
     )
 
 
-def _loaded(vehicle: Vehicle, ours: Items, kind: MissionType) -> Step | None:
+def _loaded(vehicle: StepInput, ours: Items, kind: MissionType) -> Step | None:
     """Read the items on board; then upload ours, with those that are kept."""
     found = vehicle.on_board.get(kind)
     if found is None:
@@ -184,21 +191,21 @@ def _loaded(vehicle: Vehicle, ours: Items, kind: MissionType) -> Step | None:
     return None if is_on_board(wanted, found, kind) else Load(wanted, kind, before)
 
 
-def _go(command: GoTo, vehicle: Vehicle) -> Step:
+def _go(command: GoTo, vehicle: StepInput) -> Step:
     at = _stay(command, vehicle)
     return (
         _off_the_ground(vehicle, at)
         or _sent(vehicle, at)
-        or Underway(done=_reached(command.place, at, vehicle), waypoint=at)
+        or FollowsCommand(done=_reached(command.place, at, vehicle), waypoint=at)
     )
 
 
-def _stay(command: GoTo | Follow, vehicle: Vehicle) -> Geometry:
+def _stay(command: GoTo | Follow, vehicle: StepInput) -> Geometry:
     """Return the point around which it will stay; commands without room for its circle were refused."""
     return stay(command, vehicle.room) or waypoint(goal(command))
 
 
-def _off_the_ground(vehicle: Vehicle, at: Geometry) -> Step | None:
+def _off_the_ground(vehicle: StepInput, at: Geometry) -> Step | None:
     """Get the vehicle moving: a plane by a mission that begins with a take-off, the others in guided mode."""
     if vehicle.profile.takeoff is TakeOff.MISSION:
         return _mission_takeoff(vehicle, at)
@@ -210,7 +217,7 @@ def _off_the_ground(vehicle: Vehicle, at: Geometry) -> Step | None:
     return _copter_takeoff(vehicle)
 
 
-def _copter_takeoff(vehicle: Vehicle) -> Step | None:
+def _copter_takeoff(vehicle: StepInput) -> Step | None:
     if not vehicle.known.flying:
         return _told_to_take_off(vehicle)
     position = _position(vehicle)
@@ -220,7 +227,7 @@ def _copter_takeoff(vehicle: Vehicle) -> Step | None:
     return Wait("it climbs") if low and position.climb > CLIMBING else None
 
 
-def _mode_takeoff(vehicle: Vehicle, mode: int) -> Step | None:
+def _mode_takeoff(vehicle: StepInput, mode: int) -> Step | None:
     """Take off in a mode for that, which the vehicle leaves by itself once it is high enough."""
     known = vehicle.known
     if known.flying:
@@ -228,33 +235,33 @@ def _mode_takeoff(vehicle: Vehicle, mode: int) -> Step | None:
     return (_told_to_take_off(vehicle) if known.mode != mode else _armed(vehicle)) or Wait("it takes off")
 
 
-def _told_to_take_off(vehicle: Vehicle) -> Step:
+def _told_to_take_off(vehicle: StepInput) -> Step:
     return Tell("to take off", to.take_off(vehicle.system, _height(vehicle, vehicle.profile.rise)))
 
 
-def _height(vehicle: Vehicle, height: float) -> tuple[float, Frame]:
+def _height(vehicle: StepInput, height: float) -> tuple[float, MavFrame]:
     """Return a height above home in the vehicle's frame, for a take-off."""
     if not vehicle.profile.dialect.above_sea:
-        return height, Frame.HOME
+        return height, MavFrame.HOME
     assert vehicle.known.ground is not None, "plans begin with a home"
-    return round(height + vehicle.known.ground, 1), Frame.SEA_LEVEL
+    return round(height + vehicle.known.ground, 1), MavFrame.SEA_LEVEL
 
 
-def _travel_height(vehicle: Vehicle) -> tuple[float, Frame]:
+def _travel_height(vehicle: StepInput) -> tuple[float, MavFrame]:
     """Return the height of the command in the vehicle's frame, for travel."""
     if vehicle.above is None:
         return _height(vehicle, vehicle.height)
-    return round(vehicle.height + vehicle.above, 1), Frame.SEA_LEVEL
+    return round(vehicle.height + vehicle.above, 1), MavFrame.SEA_LEVEL
 
 
-def _takeoff_items(command: GoTo, vehicle: Vehicle) -> Items | None:
+def _takeoff_items(command: GoTo, vehicle: StepInput) -> Items | None:
     """Return the mission by which a vehicle takes off, if it uses one."""
     if vehicle.profile.takeoff is not TakeOff.MISSION or vehicle.known.flying:
         return None
     return route((_stay(command, vehicle),), vehicle.height, takeoff=True, above=vehicle.above)
 
 
-def _mission_takeoff(vehicle: Vehicle, at: Geometry) -> Step | None:
+def _mission_takeoff(vehicle: StepInput, at: Geometry) -> Step | None:
     known, auto = vehicle.known, vehicle.profile.auto
     if known.flying:
         climbing = known.mode == auto and (known.current or 0) <= 1 and _may_take_off(vehicle)
@@ -268,12 +275,12 @@ def _mission_takeoff(vehicle: Vehicle, at: Geometry) -> Step | None:
     )
 
 
-def _may_take_off(vehicle: Vehicle) -> bool:
+def _may_take_off(vehicle: StepInput) -> bool:
     items = vehicle.on_board.get(MissionType.MISSION)
     return items is None or (len(items) > 1 and items[1].command == Cmd.TAKEOFF)
 
 
-def _sent(vehicle: Vehicle, at: Geometry) -> Step | None:
+def _sent(vehicle: StepInput, at: Geometry) -> Step | None:
     """Bring it to guided mode with the commanded target.
 
     A vehicle in guided mode is not asked to enter it: it may leave that mode at this moment for its safety.
@@ -290,7 +297,7 @@ def _sent(vehicle: Vehicle, at: Geometry) -> Step | None:
     return Tell(why, to.reposition(vehicle.system, x, y, height, vehicle.circle, enters=enters))
 
 
-def _aims_elsewhere(vehicle: Vehicle) -> bool:
+def _aims_elsewhere(vehicle: StepInput) -> bool:
     """Return whether its target is at another height than the command's, as far as both are known."""
     known = vehicle.known
     if known.aim is None or known.datum is None or vehicle.profile.takeoff is TakeOff.NONE:
@@ -298,7 +305,7 @@ def _aims_elsewhere(vehicle: Vehicle) -> bool:
     return abs(known.aim - vehicle.height - known.datum) > TARGET_METRES
 
 
-def _stopped(vehicle: Vehicle) -> Step | None:
+def _stopped(vehicle: StepInput) -> Step | None:
     """Make it stay here, if the mode in which it holds is also the mode in which it goes to a target."""
     known, profile = vehicle.known, vehicle.profile
     if profile.hold != profile.guided or known.target is None or known.position is None:
@@ -312,7 +319,7 @@ def _targets(known: Telemetry, at: Geometry) -> bool:
     return known.target is not None and distance(point(*known.target), at) <= TARGET_METRES
 
 
-def _path_items(command: Follow, vehicle: Vehicle) -> Items:
+def _path_items(command: Follow, vehicle: StepInput) -> Items:
     profile, path = vehicle.profile, (*map(waypoint, command.path[:-1]), _stay(command, vehicle))
     usual = vehicle.known.parameters.get("WP_RADIUS", 0.0)
     return route(
@@ -335,7 +342,7 @@ def _lead(profile: Profile) -> int:
     return profile.dialect.home_is_item + _by_item(profile)
 
 
-def _follow(command: Follow, vehicle: Vehicle) -> Step:
+def _follow(command: Follow, vehicle: StepInput) -> Step:
     profile, last, items = vehicle.profile, _stay(command, vehicle), _path_items(command, vehicle)
     # A flying vehicle need not take off again: it begins with the point after the take-off.
     first = _lead(profile) - (_by_item(profile) and not vehicle.known.flying)
@@ -349,11 +356,11 @@ def _follow(command: Follow, vehicle: Vehicle) -> Step:
         or _in_mode(vehicle, profile.auto)
         or _armed(vehicle)
         or _in_turn(vehicle)
-        or Underway(done=_at_the_end(command, last, items, vehicle), waypoint=last)
+        or FollowsCommand(done=_at_the_end(command, last, items, vehicle), waypoint=last)
     )
 
 
-def _begun(vehicle: Vehicle, first: int) -> Step | None:
+def _begun(vehicle: StepInput, first: int) -> Step | None:
     """Make a mission begin at its start, not at the item of an earlier one."""
     by_command = vehicle.profile.dialect.begins_by_command
     if vehicle.begun or (vehicle.resumes and not by_command):  # it keeps its item when a mission changes
@@ -361,7 +368,7 @@ def _begun(vehicle: Vehicle, first: int) -> Step | None:
     return Tell("to begin its mission", to.begin_with(vehicle.system, first, by_command=by_command))
 
 
-def _in_turn(vehicle: Vehicle) -> Step | None:
+def _in_turn(vehicle: StepInput) -> Step | None:
     """Make it visit every place of the path: an item's number is no proof that the vehicle was there."""
     current, next_place = vehicle.known.current or 0, _lead(vehicle.profile) + vehicle.passed
     due = min(next_place, current) if current >= vehicle.furthest else vehicle.furthest
@@ -372,19 +379,19 @@ def _in_turn(vehicle: Vehicle) -> Step | None:
     return Tell(why, to.begin_with(vehicle.system, due, by_command=by_command))
 
 
-def _at_the_end(command: Follow, at: Geometry, items: Items, vehicle: Vehicle) -> bool:
+def _at_the_end(command: Follow, at: Geometry, items: Items, vehicle: StepInput) -> bool:
     passed_all = vehicle.passed >= len(command.path) - 1
     return passed_all and vehicle.known.current == len(items) - 1 and _reached(command.path[-1], at, vehicle)
 
 
-def _hand_over(station: int, vehicle: Vehicle) -> Step:
+def _hand_over(station: int, vehicle: StepInput) -> Step:
     if vehicle.known.authority == station:
-        return Underway(done=True)
+        return FollowsCommand(done=True)
     name = vehicle.known.authority_parameter or AUTHORITY_PARAMETERS[0]
     return Tell("to obey the other station", to.set_parameter(vehicle.system, name, station))
 
 
-def _in_mode(vehicle: Vehicle, mode: int) -> Step | None:
+def _in_mode(vehicle: StepInput, mode: int) -> Step | None:
     if vehicle.known.mode == mode:
         return None
     why = f"to change to {vehicle.profile.mode_name(mode)}"
@@ -392,11 +399,11 @@ def _in_mode(vehicle: Vehicle, mode: int) -> Step | None:
     return Tell(why, to.long(Cmd.DO_SET_MODE, vehicle.system, 1, *numbers))
 
 
-def _armed(vehicle: Vehicle) -> Step | None:
+def _armed(vehicle: StepInput) -> Step | None:
     return None if vehicle.known.armed else Tell("to arm", to.long(Cmd.ARM_DISARM, vehicle.system, 1))
 
 
-def _is_home(vehicle: Vehicle) -> bool:
+def _is_home(vehicle: StepInput) -> bool:
     if vehicle.known.armed is False:
         return True
     reach = vehicle.home_circle + vehicle.profile.reach
@@ -405,7 +412,7 @@ def _is_home(vehicle: Vehicle) -> bool:
     )
 
 
-def passing(command: Follow, vehicle: Vehicle) -> int:
+def passing(command: Follow, vehicle: StepInput) -> int:
     """Return how many places of its path a vehicle has passed, in order, including its present position."""
     passed = vehicle.passed
     while passed < len(command.path) - 1:
@@ -416,7 +423,7 @@ def passing(command: Follow, vehicle: Vehicle) -> int:
     return passed
 
 
-def _reached(place: Geometry, at: Geometry, vehicle: Vehicle) -> bool:
+def _reached(place: Geometry, at: Geometry, vehicle: StepInput) -> bool:
     spot = _spot(vehicle)
     if place.is_point:
         return distance(spot, at) <= max(vehicle.profile.reach, 1.2 * vehicle.circle)
@@ -424,7 +431,7 @@ def _reached(place: Geometry, at: Geometry, vehicle: Vehicle) -> bool:
 
 
 def height_of(
-    band: Band | None, profile: Profile, known: Telemetry, position: Position, otherwise: float
+    band: Band | None, profile: Profile, known: Telemetry, position: VehiclePosition, otherwise: float
 ) -> float:
     """Return the height above the mission's home of the middle of a band; without one, `otherwise`."""
     if band is None or profile.takeoff is TakeOff.NONE:
@@ -433,11 +440,11 @@ def height_of(
     return round((band.low + band.high) / 2 - home, 2)
 
 
-def _position(vehicle: Vehicle) -> Position:
+def _position(vehicle: StepInput) -> VehiclePosition:
     assert vehicle.known.position is not None, "plans begin with a position"
     return vehicle.known.position
 
 
-def _spot(vehicle: Vehicle) -> Geometry:
+def _spot(vehicle: StepInput) -> Geometry:
     position = _position(vehicle)
     return point(position.latitude, position.longitude)

@@ -8,7 +8,11 @@ from types import MappingProxyType
 from typing import Final
 
 from adapters.mavlink.constants import MissionType
-from adapters.mavlink.fencing import (
+from adapters.mavlink.item_merging import OnBoard, is_cut, jumps_out, merged
+from adapters.mavlink.items import route
+from adapters.mavlink.loiter_circle import cramped, goal, home_circle, room, stay
+from adapters.mavlink.next_step import height_of
+from adapters.mavlink.onboard_fences import (
     barred,
     beyond,
     crossed,
@@ -17,15 +21,11 @@ from adapters.mavlink.fencing import (
     widened,
     zones_beside,
 )
-from adapters.mavlink.fleet import Craft, Stations
-from adapters.mavlink.items import route
-from adapters.mavlink.loiter_radius import cramped, goal, home_circle, room, stay
-from adapters.mavlink.merging import OnBoard, is_cut, jumps_out, merged
-from adapters.mavlink.next_step import height_of
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.refuges import beyond_fence, missing_items
 from adapters.mavlink.remarks import remarks_on_board
 from adapters.mavlink.telemetry import Telemetry
+from adapters.mavlink.vehicle_identities import Craft, Stations
 from adapters.plugin import Command, Follow, GoTo, HandOver
 from physical import Geometry, circle, contains, point, waypoint
 

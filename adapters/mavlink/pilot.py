@@ -11,25 +11,25 @@ from functools import partial
 from typing import Final
 
 from adapters.mavlink import inventory, next_step, streams, takeover
-from adapters.mavlink import survey as surveys
+from adapters.mavlink import item_polling as surveys
 from adapters.mavlink import task as tasks
-from adapters.mavlink.changed import changed
 from adapters.mavlink.command import long, read_parameter
-from adapters.mavlink.condition import Condition, look
 from adapters.mavlink.constants import AUTHORITY_PARAMETERS, AUTOPILOT_VERSION, REGULAR, Cmd, MissionType
-from adapters.mavlink.fleet import CONTROL, Craft, Stations
-from adapters.mavlink.link import Link, watch
-from adapters.mavlink.loiter_radius import circle, home_circle, room
-from adapters.mavlink.merging import OnBoard, Unconfirmed
-from adapters.mavlink.message import Message
+from adapters.mavlink.fast_replace import changed
+from adapters.mavlink.item_merging import OnBoard, Unconfirmed
+from adapters.mavlink.item_polling import Survey
+from adapters.mavlink.link_loss import LinkState, watch
+from adapters.mavlink.loiter_circle import circle, home_circle, room
+from adapters.mavlink.message import MavlinkMessage
 from adapters.mavlink.objections import not_ours, objection
 from adapters.mavlink.profiles import Profile, TakeOff, unknown_kind
 from adapters.mavlink.streams import Streams
-from adapters.mavlink.survey import Survey
-from adapters.mavlink.sync import Sync
 from adapters.mavlink.takeover import Helm
 from adapters.mavlink.task import Progress, Task
-from adapters.mavlink.telemetry import Position, Telemetry, absorb, property_of, waited
+from adapters.mavlink.telemetry import Telemetry, VehiclePosition, absorb, property_of, waited
+from adapters.mavlink.vehicle_faults import FaultState, look
+from adapters.mavlink.vehicle_identities import CONTROL, Craft, Stations
+from adapters.mavlink.verified_upload import Sync
 from adapters.plugin import (
     Aged,
     Command,
@@ -75,7 +75,7 @@ _ANSWERS: Final = frozenset(
 
 _SLOTS: Final = ("hand_over", "moving")
 
-Shown = tuple[Position | None, int | None, bool]
+Shown = tuple[VehiclePosition | None, int | None, bool]
 """The basis of the last publication: position, authority, whether the link was lost."""
 
 
@@ -111,7 +111,7 @@ class Pilot:
     system: int
     signs: bool = False
     known: Telemetry = field(default_factory=Telemetry)
-    link: Link = field(default_factory=Link)
+    link: LinkState = field(default_factory=LinkState)
     streams: Streams = field(default_factory=Streams)
     on_board: OnBoard = field(default_factory=dict)
     survey: Survey = field(default_factory=Survey)
@@ -125,7 +125,7 @@ class Pilot:
     since: float | None = None
     shown: Shown = (None, None, False)
     status: Status | None = None
-    condition: Condition = field(default_factory=Condition)
+    condition: FaultState = field(default_factory=FaultState)
 
 
 @dataclass(frozen=True)  # no slots: `changed`
@@ -133,7 +133,7 @@ class Outcome:
     """The results of one input; `seen` are reports for people alone."""
 
     pilot: Pilot
-    sent: tuple[Message, ...] = ()
+    sent: tuple[MavlinkMessage, ...] = ()
     reports: tuple[Report, ...] = ()
     published: tuple[Aged, ...] = ()
     seen: tuple[Status | StatusText, ...] = ()
@@ -208,12 +208,12 @@ def _continued(before: Task | None, task: Task) -> Task:
     )
 
 
-def hear(pilot: Pilot, message: Message, now: float) -> Outcome:
+def hear(pilot: Pilot, message: MavlinkMessage, now: float) -> Outcome:
     """Take a message of the vehicle to us, or to all."""
     return _with_its_words(_heard(pilot, message, now), now)
 
 
-def _heard(pilot: Pilot, message: Message, now: float) -> Outcome:
+def _heard(pilot: Pilot, message: MavlinkMessage, now: float) -> Outcome:
     before, known = pilot.known, absorb(pilot.known, message, now)
     pilot = inventory.with_known(pilot, known)
     pilot = changed(pilot, streams=streams.hear(pilot.streams, message, now))
@@ -249,7 +249,7 @@ def _ticked(pilot: Pilot, now: float) -> Outcome:
     pilot = changed(pilot, link=link)
     if isinstance(change, LinkRestored):
         pilot = inventory.unsure(pilot, quiet=True)
-    questions: tuple[Message, ...] = ()
+    questions: tuple[MavlinkMessage, ...] = ()
     before = pilot.unanswered
     if pilot.known.heard is not None and not link.lost:
         pilot, questions = _asked(pilot, now)
@@ -302,7 +302,7 @@ def _status(pilot: Pilot, now: float) -> Status:
     )
 
 
-def _asked(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
+def _asked(pilot: Pilot, now: float) -> tuple[Pilot, tuple[MavlinkMessage, ...]]:
     """Request missing messages, the vehicle's authority, and its parameters."""
     profile = pilot.known.profile
     wanted = REGULAR if profile is None else profile.dialect.streams
@@ -318,7 +318,7 @@ def _asked(pilot: Pilot, now: float) -> tuple[Pilot, tuple[Message, ...]]:
     return pilot, (*missing, *_who_commands(pilot), *more)
 
 
-def _who_commands(pilot: Pilot) -> tuple[Message, ...]:
+def _who_commands(pilot: Pilot) -> tuple[MavlinkMessage, ...]:
     """Ask as each station: a vehicle may answer only the one that it obeys, and its last answer may be lost."""
     known, profile = pilot.known.authority_parameter, pilot.known.profile
     possible = AUTHORITY_PARAMETERS if profile is None else profile.dialect.authority
@@ -329,7 +329,7 @@ def _who_commands(pilot: Pilot) -> tuple[Message, ...]:
     )
 
 
-def _untold(pilot: Pilot) -> Iterator[Message]:
+def _untold(pilot: Pilot) -> Iterator[MavlinkMessage]:
     """Yield requests for a vehicle's missing parameters, as long as it may answer."""
     known = pilot.known
     if known.profile is None or pilot.questions >= MOST_QUESTIONS:
@@ -348,7 +348,7 @@ def is_known(pilot: Pilot) -> bool:
     return known and not any(_untold(pilot)) and (pilot.survey.settled or not _is_ours(pilot))
 
 
-def _spoken(pilot: Pilot, sent: tuple[Message, ...]) -> tuple[Message, ...]:
+def _spoken(pilot: Pilot, sent: tuple[MavlinkMessage, ...]) -> tuple[MavlinkMessage, ...]:
     speaker = pilot.stations.speaker(_authority(pilot))
     return tuple(message if message.system else replace(message, system=speaker) for message in sent)
 
@@ -356,7 +356,7 @@ def _spoken(pilot: Pilot, sent: tuple[Message, ...]) -> tuple[Message, ...]:
 def _advance(pilot: Pilot, now: float) -> Outcome:
     """Update the helm, advance the tasks, and publish changes."""
     pilot, lost = _watched(pilot, now)
-    sent: list[Message] = []
+    sent: list[MavlinkMessage] = []
     reports: list[Report] = [*lost]
     for slot in _SLOTS if pilot.helm.held else ():
         task: Task | None = getattr(pilot, slot)
@@ -464,8 +464,8 @@ def _progress(pilot: Pilot, task: Task, now: float) -> Progress:
     return tasks.advance(task, step, vehicle, lost=pilot.link.lost, now=now)
 
 
-def _vehicle(pilot: Pilot, task: Task, profile: Profile, now: float) -> next_step.Vehicle:
-    return next_step.Vehicle(
+def _vehicle(pilot: Pilot, task: Task, profile: Profile, now: float) -> next_step.StepInput:
+    return next_step.StepInput(
         system=pilot.system,
         known=pilot.known,
         profile=profile,

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 
 from adapters.mavlink.constants import Cmd, MissionType
+from adapters.mavlink.item_merging import OnBoard
 from adapters.mavlink.items import Items
-from adapters.mavlink.merging import OnBoard
 from adapters.mavlink.telemetry import Telemetry
 from physical import Geometry, PhysicalError, contains, distance, point
 

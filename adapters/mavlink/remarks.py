@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 
 from adapters.mavlink.constants import Cmd, MissionType
-from adapters.mavlink.fencing import zones_beside
-from adapters.mavlink.fleet import Craft
+from adapters.mavlink.item_merging import RETURNS_BY_LANDING, OnBoard, landing
 from adapters.mavlink.items import Items
 from adapters.mavlink.items import fence as polygon_items
-from adapters.mavlink.merging import RETURNS_BY_LANDING, OnBoard, landing
+from adapters.mavlink.onboard_fences import zones_beside
 from adapters.mavlink.refuges import rally_points
 from adapters.mavlink.telemetry import Telemetry
+from adapters.mavlink.vehicle_identities import Craft
 from adapters.mavlink.zones import zones
 
 _OURS = (Cmd.WAYPOINT, Cmd.LOITER_UNLIMITED, Cmd.TAKEOFF)

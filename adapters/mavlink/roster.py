@@ -12,7 +12,7 @@ from typing import Final
 
 from adapters.mavlink.command import long
 from adapters.mavlink.constants import AUTOPILOT_COMPONENT, AUTOPILOT_VERSION, NO_AUTOPILOT, Cmd
-from adapters.mavlink.message import Message
+from adapters.mavlink.message import MavlinkMessage
 from adapters.mavlink.pilot import Pilot
 
 ASK_EVERY: Final = 1.0
@@ -35,11 +35,11 @@ class Found:
 
     roster: Roster
     pilot: Pilot | None = None
-    question: Message | None = None
+    question: MavlinkMessage | None = None
     stranger: bool = False
 
 
-def find(roster: Roster, pilots: Iterable[Pilot], message: Message, now: float) -> Found:
+def find(roster: Roster, pilots: Iterable[Pilot], message: MavlinkMessage, now: float) -> Found:
     """Return the pilot of a message's sender, or the question that would identify it."""
     if message.system == 0 or message.component != AUTOPILOT_COMPONENT:
         return Found(roster)
@@ -61,7 +61,7 @@ def find(roster: Roster, pilots: Iterable[Pilot], message: Message, now: float) 
     return Found(roster, replace(fitting, system=message.system))
 
 
-def serial_of(version: Message) -> str:
+def serial_of(version: MavlinkMessage) -> str:
     """Return an autopilot's serial number in hexadecimal digits, empty if it has none."""
     long_one = bytes(version["uid2"]).rstrip(b"\0")
     if long_one:

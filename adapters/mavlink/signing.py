@@ -17,8 +17,8 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Final
 
-from adapters.mavlink.message import Message, say
-from adapters.written_files import open_private, others_may_read
+from adapters.mavlink.message import MavlinkMessage, say
+from adapters.private_files import open_private, others_may_read
 from physical import PhysicalError, open_file, read_json
 
 EPOCH: Final = 1_420_070_400
@@ -66,7 +66,7 @@ def new_key(passphrase: str) -> bytes:
     return hashlib.sha256(passphrase.encode()).digest()
 
 
-def check(signing: Signing, message: Message) -> tuple[Signing, Verdict]:
+def check(signing: Signing, message: MavlinkMessage) -> tuple[Signing, Verdict]:
     """Check the signature of one packet."""
     raw = message.raw
     if len(raw) < _BLOCK + 12 or not message.signed:
@@ -101,7 +101,7 @@ def covers(reserved: Signing, signing: Signing) -> bool:
     )
 
 
-def setup_signing(key: bytes, now: float, system: int, component: int = 1) -> Message:
+def setup_signing(key: bytes, now: float, system: int, component: int = 1) -> MavlinkMessage:
     """Return the message that gives a vehicle its key, in clear text: send it by cable only."""
     return say(
         "SETUP_SIGNING",

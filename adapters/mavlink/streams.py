@@ -8,7 +8,7 @@ from typing import Final
 
 from adapters.mavlink.command import long
 from adapters.mavlink.constants import REGULAR, STREAMS, Cmd
-from adapters.mavlink.message import Message
+from adapters.mavlink.message import MavlinkMessage
 
 MISSED: Final = 5.0
 """Seconds, or periods, without a message after which it is requested."""
@@ -24,14 +24,14 @@ class Streams:
     asked: float | None = None
 
 
-def hear(streams: Streams, message: Message, now: float) -> Streams:
+def hear(streams: Streams, message: MavlinkMessage, now: float) -> Streams:
     """Record the arrival of a message."""
     return Streams({**streams.came, message.name: now}, streams.asked) if message.name in STREAMS else streams
 
 
 def tick(
     streams: Streams, system: int, now: float, wanted: Iterable[str] = REGULAR
-) -> tuple[Streams, tuple[Message, ...]]:
+) -> tuple[Streams, tuple[MavlinkMessage, ...]]:
     """Request all wanted messages that have not come for a while."""
     if streams.asked is not None and now - streams.asked < ASK_EVERY:
         return streams, ()
@@ -43,6 +43,6 @@ def _missed(came: float | None, period: float, now: float) -> bool:
     return came is None or now - came > max(MISSED, MISSED * period)
 
 
-def _question(name: str, system: int) -> Message:
+def _question(name: str, system: int) -> MavlinkMessage:
     number, period = STREAMS[name]
     return long(Cmd.SET_MESSAGE_INTERVAL, system, number, period * 1e6)

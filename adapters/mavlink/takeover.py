@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Final
 
-from adapters.mavlink.merging import OnBoard, may_be_landing
+from adapters.mavlink.item_merging import OnBoard, may_be_landing
 from adapters.mavlink.profiles import Profile, TakeOff
 from adapters.mavlink.telemetry import Telemetry
 from adapters.plugin import Command, Follow, GoTo, Hold, Return

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from adapters.mavlink import command as telling
-from adapters.mavlink import sync as syncing
+from adapters.mavlink import verified_upload as syncing
 from adapters.mavlink.constants import Cmd, MissionType, Result
 from adapters.mavlink.items import Items
-from adapters.mavlink.loiter_radius import goal
-from adapters.mavlink.message import Message
-from adapters.mavlink.next_step import Load, Step, Tell, Underway, Vehicle, Wait, passing
+from adapters.mavlink.loiter_circle import goal
+from adapters.mavlink.message import MavlinkMessage
+from adapters.mavlink.next_step import FollowsCommand, Load, Step, StepInput, Tell, Wait, passing
 from adapters.plugin import Accepted, Arrived, Command, Follow, GoTo, Rejected, Report, Trouble
 from physical import Geometry
 
@@ -57,7 +57,7 @@ class Task:
     step: Step | None = None
     since: float = 0.0
     reached: tuple[int, int, int] = (0, 0, 0)
-    doing: telling.Telling | syncing.Sync | None = None
+    doing: telling.RepeatedMessage | syncing.Sync | None = None
     accepted: bool = False
     over: bool = False
     rejection: str | None = None
@@ -77,14 +77,14 @@ class Progress:
     """The progress of a task: messages to send, a report, and items confirmed on board."""
 
     task: Task
-    sent: tuple[Message, ...] = ()
+    sent: tuple[MavlinkMessage, ...] = ()
     report: Report | None = None
     on_board: Mapping[MissionType, Items] | None = None
 
 
-def hear(task: Task, message: Message, now: float) -> Progress:
+def hear(task: Task, message: MavlinkMessage, now: float) -> Progress:
     """Pass a message from the vehicle to the current exchange."""
-    if isinstance(task.doing, telling.Telling):
+    if isinstance(task.doing, telling.RepeatedMessage):
         return Progress(replace(task, doing=telling.hear(task.doing, message)))
     if isinstance(task.doing, syncing.Sync):
         sync, sent = syncing.hear(task.doing, message, now)
@@ -92,10 +92,10 @@ def hear(task: Task, message: Message, now: float) -> Progress:
     return Progress(task)
 
 
-def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float) -> Progress:
+def advance(task: Task, step: Step, vehicle: StepInput, *, lost: bool, now: float) -> Progress:
     """Pursue `step`, the first missing one."""
     task = _followed(task, vehicle, now)
-    if isinstance(step, Underway):
+    if isinstance(step, FollowsCommand):
         return _underway(task, step, now)
     if step != task.step:
         task = replace(
@@ -121,14 +121,14 @@ def advance(task: Task, step: Step, vehicle: Vehicle, *, lost: bool, now: float)
 
 def undone(task: Task, step: Step, boots: int) -> str:
     """Return the step that a vehicle with a completed command no longer shows, or an empty text."""
-    if not task.accepted or boots != task.boots or isinstance(step, Underway | Wait):
+    if not task.accepted or boots != task.boots or isinstance(step, FollowsCommand | Wait):
         return ""
     if isinstance(step, Load):
         return f"the {step.what} on board is not the one sent: somebody has changed it"
     return f"it has left its task: it would need the command {step.why}"
 
 
-def seen(task: Task, vehicle: Vehicle) -> Task:
+def seen(task: Task, vehicle: StepInput) -> Task:
     """Record the places of its path that a vehicle passes, in their order, while it flies its mission."""
     flies = (task.begun or task.resumes) and vehicle.known.mode == vehicle.profile.auto
     if not isinstance(task.command, Follow) or not flies:
@@ -137,7 +137,7 @@ def seen(task: Task, vehicle: Vehicle) -> Task:
     return task if passed == task.passed else replace(task, passed=passed)
 
 
-def _complained(progress: Progress, vehicle: Vehicle, now: float) -> Progress:
+def _complained(progress: Progress, vehicle: StepInput, now: float) -> Progress:
     """Report a vehicle's first temporary refusal: the command is repeated, and that may take a while."""
     task = progress.task
     no, step = "" if task.doing is None else task.doing.objection, task.step
@@ -158,7 +158,7 @@ def rejected(task: Task, reason: str, now: float) -> Progress:
     return Progress(replace(task, over=True, rejection=reason), report=report)
 
 
-def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
+def _followed(task: Task, vehicle: StepInput, now: float) -> Task:
     """Update the task from the vehicle's state."""
     known = vehicle.known
     if known.boots != task.boots:  # a reboot voids all progress
@@ -178,7 +178,7 @@ def _followed(task: Task, vehicle: Vehicle, now: float) -> Task:
     return replace(task, begun=True, furthest=0) if _begins(task, vehicle) else task
 
 
-def _begins(task: Task, vehicle: Vehicle) -> bool:
+def _begins(task: Task, vehicle: StepInput) -> bool:
     """Return whether the vehicle is at the commanded item; if it was there before, only its answer shows this."""
     message = task.step.message if isinstance(task.step, Tell) else None
     if message is not None and message.name == "MISSION_SET_CURRENT":
@@ -187,11 +187,11 @@ def _begins(task: Task, vehicle: Vehicle) -> bool:
     if asked.get("command") != Cmd.SET_MISSION_CURRENT:
         return False
     if task.resumes:
-        return isinstance(task.doing, telling.Telling) and task.doing.answer == Result.ACCEPTED
+        return isinstance(task.doing, telling.RepeatedMessage) and task.doing.answer == Result.ACCEPTED
     return vehicle.known.current == asked.get("param1")
 
 
-def _underway(task: Task, step: Underway, now: float) -> Progress:
+def _underway(task: Task, step: FollowsCommand, now: float) -> Progress:
     if (task.step, task.doing) != (step, None):
         task = replace(task, step=step, doing=None, waypoint=step.waypoint)
     if step.done and not task.over:
@@ -213,10 +213,10 @@ def _shown(task: Task, now: float) -> tuple[str, str, float, Geometry | None, Ge
     return command.request, command.entity, now, place, task.waypoint
 
 
-def _exchange(step: Step, vehicle: Vehicle) -> telling.Telling | syncing.Sync | None:
+def _exchange(step: Step, vehicle: StepInput) -> telling.RepeatedMessage | syncing.Sync | None:
     match step:
         case Tell():
-            return telling.Telling(step.message)
+            return telling.RepeatedMessage(step.message)
         case Load():
             ready = vehicle.known.armed is True or vehicle.known.healthy is True
             return syncing.begin(step.items, step.kind, vehicle.system, vehicle.speaker, ready=ready)
@@ -227,11 +227,11 @@ def _patience(step: Step) -> float:
     return BOOT_PATIENCE if isinstance(step, Wait) else PATIENCE
 
 
-def _pursued(task: Task, vehicle: Vehicle, now: float) -> Progress:
+def _pursued(task: Task, vehicle: StepInput, now: float) -> Progress:
     refusal = task.doing.refusal if task.doing is not None else None
     if refusal:
         return rejected(task, refusal + vehicle.known.last_words(now), now)
-    if isinstance(task.doing, telling.Telling):
+    if isinstance(task.doing, telling.RepeatedMessage):
         told, sent = telling.tick(task.doing, now)
         return Progress(replace(task, doing=told), sent)
     if isinstance(task.doing, syncing.Sync):
@@ -241,13 +241,13 @@ def _pursued(task: Task, vehicle: Vehicle, now: float) -> Progress:
     return Progress(task)
 
 
-def _failure(step: Step, task: Task, vehicle: Vehicle) -> str:
+def _failure(step: Step, task: Task, vehicle: StepInput) -> str:
     other = f"; {vehicle.deaf}" if vehicle.deaf else ""
     match step:
         case Wait():
             return f"{step.why}, for {_patience(step):.0f} s{other}"
         case Tell():
-            no = task.doing.objection if isinstance(task.doing, telling.Telling) else ""
+            no = task.doing.objection if isinstance(task.doing, telling.RepeatedMessage) else ""
             answer = f", but answered {no}" if no else ""
             return f"it was commanded {step.why}, and did not obey in {PATIENCE:.0f} s{answer}{other}"
         case Load():

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, Final
 
-from adapters.mavlink.changed import changed
 from adapters.mavlink.constants import (
     ACTIVE,
     AUTHORITY_PARAMETERS,
@@ -29,10 +28,11 @@ from adapters.mavlink.constants import (
     ModeFlag,
     Result,
 )
-from adapters.mavlink.fleet import Craft
-from adapters.mavlink.message import Message
+from adapters.mavlink.fast_replace import changed
+from adapters.mavlink.message import MavlinkMessage
 from adapters.mavlink.profiles import Profile, profile_of
-from adapters.mavlink.texts import Chunks, Joined, Text, give_up, join
+from adapters.mavlink.texts import Chunks, Joined, VehicleText, give_up, join
+from adapters.mavlink.vehicle_identities import Craft
 from adapters.plugin import Battery
 from physical import Band, PhysicalProperty, Velocity, distance, point
 
@@ -69,7 +69,7 @@ NOWHERE: Final = 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class Position:
+class VehiclePosition:
     """A vehicle's position: degrees, metres above sea level and above home, m/s (over ground, upwards), our time."""
 
     latitude: float
@@ -130,7 +130,7 @@ class Telemetry:
     mode: int | None = None
     armed: bool | None = None
     active: bool | None = None
-    position: Position | None = None
+    position: VehiclePosition | None = None
     fixes: Mapping[int, tuple[int, float]] = field(default_factory=dict)
     estimate: tuple[bool, float] | None = None
     healthy: bool | None = None
@@ -153,7 +153,7 @@ class Telemetry:
     boots: int = 0
     words: tuple[tuple[float, str], ...] = ()
     chunks: Chunks | None = None
-    texts: tuple[Text, ...] = ()
+    texts: tuple[VehicleText, ...] = ()
     battery: Battery | None = None
     heading: float | None = None
     beat: float | None = None
@@ -207,7 +207,7 @@ class Telemetry:
         return f"; its last words: {', '.join(map(repr, dict.fromkeys(lately)))}" if lately else ""
 
 
-def absorb(known: Telemetry, message: Message, now: float) -> Telemetry:
+def absorb(known: Telemetry, message: MavlinkMessage, now: float) -> Telemetry:
     """Return the state after one more message from the vehicle's autopilot."""
     if message.component != AUTOPILOT_COMPONENT:
         return known
@@ -218,7 +218,7 @@ def absorb(known: Telemetry, message: Message, now: float) -> Telemetry:
     return known if reader is None else reader(known, message.fields, now)
 
 
-def property_of(craft: Craft, at: Position, channels: tuple[str, ...]) -> PhysicalProperty:
+def property_of(craft: Craft, at: VehiclePosition, channels: tuple[str, ...]) -> PhysicalProperty:
     """Return the physical property of a vehicle at a position."""
     return PhysicalProperty(
         craft.entity,
@@ -282,7 +282,7 @@ def _position(known: Telemetry, said: Mapping[str, Any], now: float) -> Telemetr
     if late or not known.is_placed(now) or not _somewhere(said["lat"] / 1e7, said["lon"] / 1e7):
         return changed(known, heading=heading)
     north, east = said["vx"] / 100, said["vy"] / 100
-    position = Position(
+    position = VehiclePosition(
         said["lat"] / 1e7,
         said["lon"] / 1e7,
         said["alt"] / 1000,

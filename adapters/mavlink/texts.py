@@ -20,7 +20,7 @@ LEAST_SEVERE: Final = 7
 
 
 @dataclass(frozen=True, slots=True)
-class Text:
+class VehicleText:
     """A whole text, and its severity: from 0 (emergency) to 7 (debug)."""
 
     text: str
@@ -38,7 +38,7 @@ class Chunks:
     at: float = 0.0
 
 
-Joined = tuple[Chunks | None, tuple[Text, ...]]
+Joined = tuple[Chunks | None, tuple[VehicleText, ...]]
 """The incomplete text, and the completed ones."""
 
 
@@ -48,7 +48,7 @@ def join(chunks: Chunks | None, said: Mapping[str, Any], now: float) -> Joined:
     text, severity = str(said["text"]), min(said["severity"], LEAST_SEVERE)
     if not number:
         return chunks, _whole((text,), severity)
-    before: tuple[Text, ...] = ()
+    before: tuple[VehicleText, ...] = ()
     if chunks is not None and chunks.number != number:
         before, chunks = _whole((*chunks.parts, LOST), chunks.severity), None
     known = chunks or Chunks(number, severity)
@@ -67,6 +67,6 @@ def give_up(chunks: Chunks | None, now: float) -> Joined:
     return None, _whole((*chunks.parts, LOST), chunks.severity)
 
 
-def _whole(parts: tuple[str, ...], severity: int) -> tuple[Text, ...]:
+def _whole(parts: tuple[str, ...], severity: int) -> tuple[VehicleText, ...]:
     text = "".join(filter(str.isprintable, "".join(parts))).strip()
-    return (Text(text, severity),) if text else ()
+    return (VehicleText(text, severity),) if text else ()

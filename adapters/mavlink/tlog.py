@@ -10,9 +10,9 @@ from typing import IO, Final
 
 from adapters.mavlink.codec import Decoder
 from adapters.mavlink.constants import AUTOPILOT_COMPONENT
-from adapters.mavlink.fleet import Craft
-from adapters.mavlink.message import Message
+from adapters.mavlink.message import MavlinkMessage
 from adapters.mavlink.telemetry import Telemetry, absorb, property_of
+from adapters.mavlink.vehicle_identities import Craft
 from physical import PhysicalError, PhysicalProperty, open_file
 from physical.file_account import Counting
 
@@ -66,7 +66,9 @@ def entry(time: float, frame: bytes) -> bytes:
     return round(time * 1e6).to_bytes(8, "big") + frame
 
 
-def read_tlog(path: str | PathLike[str], counting: Counting | None = None) -> Iterator[tuple[float, Message]]:
+def read_tlog(
+    path: str | PathLike[str], counting: Counting | None = None
+) -> Iterator[tuple[float, MavlinkMessage]]:
     """Yield the messages of a log with their times; damaged parts are skipped and counted.
 
     Raises PhysicalError if the file can't be read or has no message.
@@ -80,7 +82,7 @@ def read_tlog(path: str | PathLike[str], counting: Counting | None = None) -> It
 
 
 def positions_of(
-    log: Iterable[tuple[float, Message]], crafts: Mapping[int, Craft], counting: Counting | None = None
+    log: Iterable[tuple[float, MavlinkMessage]], crafts: Mapping[int, Craft], counting: Counting | None = None
 ) -> Iterator[tuple[float, PhysicalProperty]]:
     """Yield the physical properties in a log of the vehicles with the given system ids.
 
@@ -102,13 +104,13 @@ def positions_of(
             counting.leave(_placeless(message, after, time))
 
 
-def _foreign(message: Message, why: str) -> str:
+def _foreign(message: MavlinkMessage, why: str) -> str:
     """Describe a message of another sender; the sender matters only for positions."""
     positioned = message.name == POSITION or message.name in _OTHER_POSITIONS
     return f"{message.name} of system {message.system}, {why}" if positioned else message.name
 
 
-def _placeless(message: Message, after: Telemetry, time: float) -> str:
+def _placeless(message: MavlinkMessage, after: Telemetry, time: float) -> str:
     """Return the reason why a message of a named vehicle shows no position."""
     if message.name in _OTHER_POSITIONS:
         return f"{message.name}: the positions that count are those of {POSITION}"
@@ -126,12 +128,12 @@ def _placeless(message: Message, after: Telemetry, time: float) -> str:
 # --- entries --------------------------------------------------------------------------------------
 
 
-def messages_in(file: IO[bytes], counting: Counting) -> Iterator[tuple[float, Message]]:
+def messages_in(file: IO[bytes], counting: Counting) -> Iterator[tuple[float, MavlinkMessage]]:
     """Yield the messages of an open log, like `read_tlog`."""
     clock, found = _Clock(), False
     for stamp, each in entries(file):
         match each:
-            case Message():
+            case MavlinkMessage():
                 found = True
                 yield clock.time(stamp, counting), each
             case Unread(reason):
@@ -143,7 +145,7 @@ def messages_in(file: IO[bytes], counting: Counting) -> Iterator[tuple[float, Me
         raise PhysicalError("tlog", "no MAVLink frame is in it", "give a telemetry log (.tlog)")
 
 
-def entries(file: IO[bytes]) -> Iterator[tuple[float, Message | Unread | Damage]]:
+def entries(file: IO[bytes]) -> Iterator[tuple[float, MavlinkMessage | Unread | Damage]]:
     """Yield the contents of a log with their times in seconds: messages, unreadable frames, damaged stretches.
 
     Together they cover all bytes of the file.
@@ -220,7 +222,7 @@ class _Bytes:
         return self._ended
 
 
-def _entry(log: _Bytes, *, sure: bool = False) -> tuple[int, Message | Unread] | None:
+def _entry(log: _Bytes, *, sure: bool = False) -> tuple[int, MavlinkMessage | Unread] | None:
     """Return the entry that begins here and its size, or None.
 
     A frame that can't be checked counts if another entry, or the end, follows it, unless the entry must be `sure`.
@@ -234,7 +236,7 @@ def _entry(log: _Bytes, *, sure: bool = False) -> tuple[int, Message | Unread] |
     if len(whole) < size:
         return None
     decoded = Decoder().feed(whole[_STAMP:])
-    if len(decoded) == 1 and isinstance(decoded[0], Message):
+    if len(decoded) == 1 and isinstance(decoded[0], MavlinkMessage):
         return size, decoded[0]
     after = log.ahead(_STAMP + 1, size)
     if sure or not (after == b"" or _BEGINNING.match(after)):

@@ -2,7 +2,7 @@
 
 The vehicle requests item after item, repeats a request after a second, and gives up after eight. So only the count is
 sent by timer. ArduPlane sends MISSION_REQUEST, others MISSION_REQUEST_INT: both get MISSION_ITEM_INT. An ACK proves
-nothing: `adapters.mavlink.sync` reads the items back.
+nothing: `adapters.mavlink.verified_upload` reads the items back.
 
 A vehicle takes one upload at a time, from one system id. It answers others with DENIED (ArduPilot) or ERROR (PX4) until
 that upload is over. So these answers are final only after a vehicle's timeout. A vehicle that has just booted answers
@@ -16,7 +16,7 @@ from typing import Final
 
 from adapters.mavlink.constants import MissionResult, MissionType
 from adapters.mavlink.items import Items, item_message
-from adapters.mavlink.message import Message, say
+from adapters.mavlink.message import MavlinkMessage, say
 
 COUNT_AGAIN: Final = 2.0
 """Seconds without a request before the count is sent again."""
@@ -69,7 +69,7 @@ class Upload:
     full: int = 0
 
 
-Step = tuple[Upload, tuple[Message, ...]]
+Step = tuple[Upload, tuple[MavlinkMessage, ...]]
 
 
 def tick(upload: Upload, now: float) -> Step:
@@ -85,7 +85,7 @@ def tick(upload: Upload, now: float) -> Step:
     return _count(upload, now) if now - upload.asked >= GIVEN_UP else (upload, ())
 
 
-def hear(upload: Upload, message: Message, now: float) -> Step:
+def hear(upload: Upload, message: MavlinkMessage, now: float) -> Step:
     """Take a message from the vehicle to us."""
     if upload.over or message.fields.get("mission_type") != upload.kind:
         return upload, ()

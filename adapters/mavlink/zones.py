@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Final
 
 from adapters.mavlink.constants import Cmd
-from adapters.mavlink.items import Item, Items
+from adapters.mavlink.items import Items, OnboardItem
 from physical import Geometry, PhysicalError, circle, polygon
 
 _VERTICES: Final = (Cmd.FENCE_VERTEX_INCLUSION, Cmd.FENCE_VERTEX_EXCLUSION)
@@ -89,7 +89,7 @@ def _shape(group: Items) -> Geometry | None:
         return None
 
 
-def _is_circle(item: Item) -> bool:
+def _is_circle(item: OnboardItem) -> bool:
     return item.command in _CIRCLES
 
 

@@ -4,7 +4,7 @@
 """
 
 from adapters.recording.mcap_files import Message, RecordingError
-from adapters.recording.reading import Recording, is_recording, read_recording
+from adapters.recording.recording_reader import Recording, is_recording, read_recording
 from adapters.recording.schemas import SCHEMAS
 from adapters.recording.writing import Recorder
 

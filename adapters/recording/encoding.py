@@ -6,9 +6,9 @@ from dataclasses import fields
 from typing import Any
 
 from adapters.live.batch import Acknowledging, GivingBack, Heard, Ordering, Saying
-from adapters.live.reported import Finding
-from adapters.live.timing import Timers, flying
-from adapters.live.turn import Answer, LiveStep
+from adapters.live.operator_findings import Finding
+from adapters.live.timing_monitor import Timers, flying
+from adapters.live.turn_result import Answer, LiveStep
 from adapters.plugin import Aged, Battery, Command, Gone, Presence, Report, Seen, Status, StatusText
 from physical import Band, Geometry, PhysicalProperty
 from semantics.state.canonical import digest_of_step

@@ -12,8 +12,8 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO, Final, NamedTuple
 
+from adapters.private_files import open_private, writing
 from adapters.recording.decompression import opened
-from adapters.written_files import open_private, writing
 from physical import PhysicalError, open_file, read_json
 from physical.wordings import install_extra
 

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from typing import Any, Final, get_args
 
-from adapters.live.reported import Finding
+from adapters.live.operator_findings import Finding
 from adapters.plugin import Command, Presence, Report, Seen, Status, StatusText
-from adapters.recording.reading import VERSION
+from adapters.recording.recording_reader import VERSION
 from adapters.recording.type_schemas import BAND, RING, members_of
 
 COMMANDS: Final = get_args(Command)

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from adapters.live.batch import Heard
-from adapters.live.reported import Finding
-from adapters.live.turn import Turn
+from adapters.live.operator_findings import Finding
+from adapters.live.turn_result import Turn
 from adapters.plugin import Report, Seen, entity_of
 from adapters.rate_limit import Ration, Turns
 from adapters.recording.encoding import (

@@ -5,9 +5,9 @@ link with a `disturbance`, and `clock` runs everything faster than real time.
 """
 
 from adapters.simulated.clock import run
-from adapters.simulated.disturbance import Disturbance
+from adapters.simulated.link_impairment import Disturbance
 from adapters.simulated.serving import Simulator
-from adapters.simulated.state import Kind
-from adapters.simulated.vehicle import Vehicle
+from adapters.simulated.simulated_vehicle import Vehicle
+from adapters.simulated.vehicle_state import Kind
 
 __all__ = ["Disturbance", "Kind", "Simulator", "Vehicle", "run"]

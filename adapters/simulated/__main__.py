@@ -7,10 +7,10 @@ from pathlib import Path
 
 from adapters.mavlink.signing import Signing, load
 from adapters.simulated.clock import run
-from adapters.simulated.disturbance import Disturbance
+from adapters.simulated.link_impairment import Disturbance
 from adapters.simulated.serving import Simulator
-from adapters.simulated.state import Kind
-from adapters.simulated.vehicle import Vehicle
+from adapters.simulated.simulated_vehicle import Vehicle
+from adapters.simulated.vehicle_state import Kind
 
 
 def home(text: str) -> tuple[float, float, float]:

@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 import shapely
 
-from adapters.camera.view import Lens, Pose
+from adapters.camera.sea_projection import Lens, Pose
 from physical import Geometry
 from physical.shape import planar
 

@@ -10,15 +10,15 @@ from typing import Final
 
 from adapters.mavlink.command import ANYWHERE
 from adapters.mavlink.constants import AUTOPILOT_VERSION, INTEGERS, STREAMS, Cmd, Fence, Result
-from adapters.mavlink.message import Message, is_for, say
+from adapters.mavlink.message import MavlinkMessage, is_for, say
 from adapters.mavlink.profiles import TakeOff, mode_number
 from adapters.mavlink.signing import EPOCH, UNITS, Signing, Verdict, check
 from adapters.simulated.body import Target, metres_to
-from adapters.simulated.missions import missing
+from adapters.simulated.mission_flight import missing
 from adapters.simulated.reporting import Reporter, parameter_value
-from adapters.simulated.vehicle import Vehicle
+from adapters.simulated.simulated_vehicle import Vehicle
 
-Answer = list[Message]
+Answer = list[MavlinkMessage]
 
 _NAMES: Final[Mapping[float, str]] = MappingProxyType(
     {**{number: name for name, (number, _) in STREAMS.items()}, AUTOPILOT_VERSION: "AUTOPILOT_VERSION"}
@@ -39,7 +39,7 @@ LONGEST: Final = 3.6e9
 """The longest interval of a message, in microseconds."""
 
 
-def hear(vehicle: Vehicle, reporter: Reporter, message: Message, now: float) -> Answer:
+def hear(vehicle: Vehicle, reporter: Reporter, message: MavlinkMessage, now: float) -> Answer:
     """Answer a message, if it is authentic, addressed to this vehicle, and from the station that it obeys."""
     if not _believed(vehicle, message) or not is_for(message, vehicle.system):
         return []
@@ -55,7 +55,7 @@ def hear(vehicle: Vehicle, reporter: Reporter, message: Message, now: float) -> 
     return [] if answer is None else answer(vehicle, reporter, message)
 
 
-def _believed(vehicle: Vehicle, message: Message) -> bool:
+def _believed(vehicle: Vehicle, message: MavlinkMessage) -> bool:
     if vehicle.signing is None:
         return True
     vehicle.signing, verdict = check(vehicle.signing, message)
@@ -65,18 +65,18 @@ def _believed(vehicle: Vehicle, message: Message) -> bool:
 # --- messages ---------------------------------------------------------------------------------------
 
 
-def _setup_signing(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Answer:
+def _setup_signing(vehicle: Vehicle, _reporter: Reporter, message: MavlinkMessage) -> Answer:
     vehicle.signing = Signing(bytes(message["secret_key"]), message["initial_timestamp"])
     return []
 
 
-def _read_parameter(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Answer:
+def _read_parameter(vehicle: Vehicle, _reporter: Reporter, message: MavlinkMessage) -> Answer:
     return (
         [parameter_value(vehicle, message["param_id"])] if message["param_id"] in vehicle.parameters else []
     )
 
 
-def _set_parameter(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Answer:
+def _set_parameter(vehicle: Vehicle, _reporter: Reporter, message: MavlinkMessage) -> Answer:
     name, value = message["param_id"], message["param_value"]
     if vehicle.kind.profile.dialect.typed and message["param_type"] in INTEGERS:
         value = float(int.from_bytes(struct.pack("<f", value), "little", signed=True))
@@ -89,7 +89,7 @@ def _set_parameter(vehicle: Vehicle, _reporter: Reporter, message: Message) -> A
     return [parameter_value(vehicle, name)]
 
 
-def _command(vehicle: Vehicle, reporter: Reporter, message: Message) -> Answer:
+def _command(vehicle: Vehicle, reporter: Reporter, message: MavlinkMessage) -> Answer:
     try:
         known = _PX4_COMMANDS if vehicle.kind.profile.dialect.typed else _COMMANDS
         carry_out = known[Cmd(message["command"])]
@@ -99,7 +99,7 @@ def _command(vehicle: Vehicle, reporter: Reporter, message: Message) -> Answer:
     return [_ack(message, result)]
 
 
-def _ack(message: Message, result: Result) -> Message:
+def _ack(message: MavlinkMessage, result: Result) -> MavlinkMessage:
     return say(
         "COMMAND_ACK",
         command=message["command"],
@@ -109,7 +109,7 @@ def _ack(message: Message, result: Result) -> Message:
     )
 
 
-_ANSWERS: Final[Mapping[str, Callable[[Vehicle, Reporter, Message], Answer]]] = MappingProxyType(
+_ANSWERS: Final[Mapping[str, Callable[[Vehicle, Reporter, MavlinkMessage], Answer]]] = MappingProxyType(
     {
         "COMMAND_INT": _command,
         "COMMAND_LONG": _command,
@@ -122,7 +122,7 @@ _ANSWERS: Final[Mapping[str, Callable[[Vehicle, Reporter, Message], Answer]]] = 
 # --- commands ---------------------------------------------------------------------------------------
 
 
-def _set_mode(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+def _set_mode(vehicle: Vehicle, _reporter: Reporter, message: MavlinkMessage) -> Result:
     mode = message["param2"]
     if mode not in vehicle.kind.profile.modes:
         return Result.FAILED
@@ -133,7 +133,7 @@ def _set_mode(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result
     return Result.ACCEPTED
 
 
-def _arm(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+def _arm(vehicle: Vehicle, reporter: Reporter, message: MavlinkMessage) -> Result:
     if message["param1"] < 0.5:
         vehicle.arm(armed=vehicle.flies and vehicle.kind.profile.takeoff is not TakeOff.NONE)
         return Result.FAILED if vehicle.armed else Result.ACCEPTED
@@ -145,7 +145,7 @@ def _arm(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
     return Result.ACCEPTED
 
 
-def _take_off(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+def _take_off(vehicle: Vehicle, _reporter: Reporter, message: MavlinkMessage) -> Result:
     profile = vehicle.kind.profile
     if profile.takeoff is not TakeOff.COMMAND:
         return Result.UNSUPPORTED
@@ -158,7 +158,7 @@ def _take_off(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result
     return Result.ACCEPTED
 
 
-def _reposition(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+def _reposition(vehicle: Vehicle, _reporter: Reporter, message: MavlinkMessage) -> Result:
     profile = vehicle.kind.profile
     if message.name != "COMMAND_INT" or not vehicle.armed:
         return Result.DENIED
@@ -177,7 +177,7 @@ def _reposition(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Resu
     return Result.ACCEPTED
 
 
-def _set_home(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+def _set_home(vehicle: Vehicle, reporter: Reporter, message: MavlinkMessage) -> Result:
     """Move its home to a place, or to its position; it reports that at once."""
     here = vehicle.body.latitude, vehicle.body.longitude, vehicle.home[2] + vehicle.body.height
     if message["param1"] == 1:
@@ -190,7 +190,7 @@ def _set_home(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
     return Result.ACCEPTED
 
 
-def _keep_fence(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+def _keep_fence(vehicle: Vehicle, _reporter: Reporter, message: MavlinkMessage) -> Result:
     if not 0 <= message["param2"] < 16:
         return Result.FAILED
     meant = Fence(int(message["param2"])) if vehicle.version >= (4, 6, 0) else Fence(0)
@@ -202,7 +202,7 @@ def _keep_fence(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Resu
     return Result.ACCEPTED
 
 
-def _set_current(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+def _set_current(vehicle: Vehicle, _reporter: Reporter, message: MavlinkMessage) -> Result:
     return Result.ACCEPTED if _make_current(vehicle, message["param1"]) else Result.FAILED
 
 
@@ -212,14 +212,14 @@ def _make_current(vehicle: Vehicle, index: float) -> bool:
     return there
 
 
-def _start_mission(vehicle: Vehicle, _reporter: Reporter, _message: Message) -> Result:
+def _start_mission(vehicle: Vehicle, _reporter: Reporter, _message: MavlinkMessage) -> Result:
     if not vehicle.store.mission:
         return Result.FAILED
     vehicle.mode = vehicle.kind.profile.auto
     return Result.ACCEPTED
 
 
-def _request_message(_vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+def _request_message(_vehicle: Vehicle, reporter: Reporter, message: MavlinkMessage) -> Result:
     name = _NAMES.get(message["param1"])
     if name is None:
         return Result.FAILED
@@ -227,7 +227,7 @@ def _request_message(_vehicle: Vehicle, reporter: Reporter, message: Message) ->
     return Result.ACCEPTED
 
 
-def _set_interval(_vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+def _set_interval(_vehicle: Vehicle, reporter: Reporter, message: MavlinkMessage) -> Result:
     name = _NAMES.get(message["param1"])
     if name is None or not 0 <= message["param2"] <= LONGEST:
         return Result.FAILED
@@ -235,7 +235,7 @@ def _set_interval(_vehicle: Vehicle, reporter: Reporter, message: Message) -> Re
     return Result.ACCEPTED
 
 
-_COMMANDS: Final[Mapping[Cmd, Callable[[Vehicle, Reporter, Message], Result]]] = MappingProxyType(
+_COMMANDS: Final[Mapping[Cmd, Callable[[Vehicle, Reporter, MavlinkMessage], Result]]] = MappingProxyType(
     {
         Cmd.ARM_DISARM: _arm,
         Cmd.DO_SET_HOME: _set_home,
@@ -254,7 +254,7 @@ _COMMANDS: Final[Mapping[Cmd, Callable[[Vehicle, Reporter, Message], Result]]] =
 # --- PX4's commands, after commander/Commander.cpp and navigator/navigator_main.cpp ------------------
 
 
-def _px4_set_mode(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+def _px4_set_mode(vehicle: Vehicle, _reporter: Reporter, message: MavlinkMessage) -> Result:
     main, sub = message["param2"], message["param3"]
     if not (0 <= main < 256 and 0 <= sub < 256):
         return Result.TEMPORARILY_REJECTED
@@ -267,7 +267,7 @@ def _px4_set_mode(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Re
     return Result.ACCEPTED
 
 
-def _px4_arm(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+def _px4_arm(vehicle: Vehicle, reporter: Reporter, message: MavlinkMessage) -> Result:
     arms = message["param1"] > 0.5
     if arms and not vehicle.ready:
         reporter.text("Arming denied: Resolve system health failures first")
@@ -277,7 +277,7 @@ def _px4_arm(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
     return Result.ACCEPTED
 
 
-def _px4_take_off(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Result:
+def _px4_take_off(vehicle: Vehicle, _reporter: Reporter, message: MavlinkMessage) -> Result:
     altitude = message["param7"]
     height = vehicle.parameters["MIS_TAKEOFF_ALT"] if math.isnan(altitude) else altitude - vehicle.home[2]
     if not abs(height) <= HIGHEST:
@@ -289,7 +289,7 @@ def _px4_take_off(vehicle: Vehicle, _reporter: Reporter, message: Message) -> Re
     return Result.ACCEPTED
 
 
-def _px4_reposition(vehicle: Vehicle, reporter: Reporter, message: Message) -> Result:
+def _px4_reposition(vehicle: Vehicle, reporter: Reporter, message: MavlinkMessage) -> Result:
     """Go to a target above sea level; without the flag PX4 1.14 to 1.17 do not know the command."""
     flags = message["param2"]
     if message.name != "COMMAND_INT" or not 0 <= flags <= FLAGS or not int(flags) & CHANGE_MODE:
@@ -313,7 +313,7 @@ def _px4_reposition(vehicle: Vehicle, reporter: Reporter, message: Message) -> R
     return Result.ACCEPTED
 
 
-_PX4_COMMANDS: Final[Mapping[Cmd, Callable[[Vehicle, Reporter, Message], Result]]] = MappingProxyType(
+_PX4_COMMANDS: Final[Mapping[Cmd, Callable[[Vehicle, Reporter, MavlinkMessage], Result]]] = MappingProxyType(
     {
         Cmd.ARM_DISARM: _px4_arm,
         Cmd.DO_SET_HOME: _set_home,

@@ -9,10 +9,10 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from adapters.mavlink.constants import GEOFENCE, PREARM_HEALTHY, Landed, ModeFlag
-from adapters.mavlink.message import Message, say
+from adapters.mavlink.message import MavlinkMessage, say
 from adapters.mavlink.texts import CHUNK
-from adapters.simulated.state import WARNING
-from adapters.simulated.vehicle import Vehicle
+from adapters.simulated.simulated_vehicle import Vehicle
+from adapters.simulated.vehicle_state import WARNING
 
 DEFAULT: Final = {
     "HEARTBEAT": 1.0,
@@ -64,7 +64,7 @@ class Reporter:
         """Reset all requests, as a reboot does."""
         self.__init__()  # type: ignore[misc]
 
-    def due(self, vehicle: Vehicle) -> list[Message]:
+    def due(self, vehicle: Vehicle) -> list[MavlinkMessage]:
         """Return the messages to send now, by the vehicle's own clock."""
         names = [name for name, period in self._every.items() if self._is_due(name, period, vehicle.uptime)]
         if vehicle.mode != self._mode:  # a change is sent at once
@@ -81,7 +81,7 @@ class Reporter:
         vehicle.words.clear()
         return [*(_MESSAGES[name](vehicle) for name in names), *texts, *reached]
 
-    def _chunks(self, severity: int, text: bytes) -> list[Message]:
+    def _chunks(self, severity: int, text: bytes) -> list[MavlinkMessage]:
         """Return the messages of a text; a long one has a number, and ends with a chunk that is not full."""
         if len(text) <= CHUNK:
             return [say("STATUSTEXT", severity=severity, text=text)]
@@ -102,7 +102,7 @@ class Reporter:
         return True
 
 
-def parameter_value(vehicle: Vehicle, name: str) -> Message:
+def parameter_value(vehicle: Vehicle, name: str) -> MavlinkMessage:
     """Return the message with a parameter's value."""
     names, value = list(vehicle.parameters), vehicle.parameters[name]
     whole = vehicle.kind.profile.dialect.typed and name in WHOLE
@@ -116,7 +116,7 @@ def parameter_value(vehicle: Vehicle, name: str) -> Message:
     )
 
 
-def _heartbeat(vehicle: Vehicle) -> Message:
+def _heartbeat(vehicle: Vehicle) -> MavlinkMessage:
     flags = ModeFlag.CUSTOM_MODE | 80 | (ModeFlag.ARMED if vehicle.armed else 0)
     return say(
         "HEARTBEAT",
@@ -134,13 +134,13 @@ def _is_active(vehicle: Vehicle) -> bool:
     return vehicle.armed if vehicle.kind.profile.dialect.lands_by_state else vehicle.flies
 
 
-def _extended(vehicle: Vehicle) -> Message:
+def _extended(vehicle: Vehicle) -> MavlinkMessage:
     rises = vehicle.mode == vehicle.kind.profile.climb
     landed = (Landed.TAKEOFF if rises else Landed.IN_AIR) if vehicle.flies else Landed.ON_GROUND
     return say("EXTENDED_SYS_STATE", vtol_state=0, landed_state=int(landed))
 
 
-def _status(vehicle: Vehicle) -> Message:
+def _status(vehicle: Vehicle) -> MavlinkMessage:
     sensors = {
         "onboard_control_sensors_present": PREARM_HEALTHY | GEOFENCE,
         "onboard_control_sensors_enabled": PREARM_HEALTHY
@@ -161,11 +161,11 @@ def _status(vehicle: Vehicle) -> Message:
     )
 
 
-def _gps(vehicle: Vehicle) -> Message:
+def _gps(vehicle: Vehicle) -> MavlinkMessage:
     return say("GPS_RAW_INT", **_receiver(vehicle, fix=vehicle.fixed and vehicle.has_fix))
 
 
-def _second_gps(vehicle: Vehicle) -> Message:
+def _second_gps(vehicle: Vehicle) -> MavlinkMessage:
     fix = bool(vehicle.second) and vehicle.has_fix
     return say("GPS2_RAW", **_receiver(vehicle, fix=fix), dgps_numch=0, dgps_age=0)
 
@@ -191,7 +191,7 @@ def _estimate(vehicle: Vehicle) -> int:
     return GOOD if vehicle.has_fix else NO_POSITION
 
 
-def _filter(vehicle: Vehicle) -> Message:
+def _filter(vehicle: Vehicle) -> MavlinkMessage:
     kinds = ("velocity", "pos_horiz", "pos_vert", "compass", "terrain_alt")
     return say(
         "EKF_STATUS_REPORT",
@@ -200,7 +200,7 @@ def _filter(vehicle: Vehicle) -> Message:
     )
 
 
-def _estimator(vehicle: Vehicle) -> Message:
+def _estimator(vehicle: Vehicle) -> MavlinkMessage:
     ratios = dict.fromkeys(
         [f"{each}_ratio" for each in ("vel", "pos_horiz", "pos_vert", "mag", "hagl", "tas")], 0.0
     )
@@ -214,7 +214,7 @@ def _estimator(vehicle: Vehicle) -> Message:
     )
 
 
-def _position(vehicle: Vehicle) -> Message:
+def _position(vehicle: Vehicle) -> MavlinkMessage:
     where, fix = vehicle.body, vehicle.has_fix
     course = math.radians(where.course)
     return say(
@@ -231,24 +231,24 @@ def _position(vehicle: Vehicle) -> Message:
     )
 
 
-def _attitude(vehicle: Vehicle) -> Message:
+def _attitude(vehicle: Vehicle) -> MavlinkMessage:
     roll, pitch = map(math.radians, vehicle.tilt)
     yaw = math.remainder(math.radians(vehicle.body.course), math.tau)
     rates = {"rollspeed": 0.0, "pitchspeed": 0.0, "yawspeed": math.radians(vehicle.body.turn)}
     return say("ATTITUDE", time_boot_ms=_milliseconds(vehicle), roll=roll, pitch=pitch, yaw=yaw, **rates)
 
 
-def _time(vehicle: Vehicle) -> Message:
+def _time(vehicle: Vehicle) -> MavlinkMessage:
     return say("SYSTEM_TIME", time_unix_usec=0, time_boot_ms=_milliseconds(vehicle))
 
 
-def _current(vehicle: Vehicle) -> Message:
+def _current(vehicle: Vehicle) -> MavlinkMessage:
     home = vehicle.kind.profile.dialect.home_is_item
     total = max(0, len(vehicle.store.mission) - home)
     return say("MISSION_CURRENT", seq=vehicle.current, total=total)
 
 
-def _target(vehicle: Vehicle) -> Message:
+def _target(vehicle: Vehicle) -> MavlinkMessage:
     at = vehicle.target
     nothing: dict[str, Any] = dict.fromkeys(["vx", "vy", "vz", "afx", "afy", "afz", "yaw", "yaw_rate"], 0.0)
     return say(
@@ -263,7 +263,7 @@ def _target(vehicle: Vehicle) -> Message:
     )
 
 
-def _home(vehicle: Vehicle) -> Message:
+def _home(vehicle: Vehicle) -> MavlinkMessage:
     latitude, longitude, altitude = vehicle.home
     known = vehicle.has_fix
     nothing: dict[str, Any] = dict.fromkeys(["x", "y", "z", "approach_x", "approach_y", "approach_z"], 0.0)
@@ -277,7 +277,7 @@ def _home(vehicle: Vehicle) -> Message:
     )
 
 
-def _version(vehicle: Vehicle) -> Message:
+def _version(vehicle: Vehicle) -> MavlinkMessage:
     numbers = ["capabilities", "flight_sw_version", "middleware_sw_version", "os_sw_version", "board_version"]
     nothing: dict[str, Any] = dict.fromkeys([*numbers, "vendor_id", "product_id", "uid"], 0)
     custom = {f"{part}_custom_version": [0] * 8 for part in ("flight", "middleware", "os")}
@@ -298,7 +298,7 @@ def _milliseconds(vehicle: Vehicle) -> int:
     return int(vehicle.uptime * 1000) % 2**32
 
 
-_MESSAGES: Final[Mapping[str, Callable[[Vehicle], Message]]] = MappingProxyType(
+_MESSAGES: Final[Mapping[str, Callable[[Vehicle], MavlinkMessage]]] = MappingProxyType(
     {
         "HEARTBEAT": _heartbeat,
         "SYS_STATUS": _status,

@@ -12,12 +12,12 @@ from typing import Final
 from adapters.addresses import parse_address
 from adapters.mavlink.codec import Decoder, Encoder, Garbage
 from adapters.mavlink.constants import AUTOPILOT_COMPONENT
-from adapters.mavlink.message import Message
+from adapters.mavlink.message import MavlinkMessage
 from adapters.mavlink.signing import stamp
 from adapters.simulated import protocol
-from adapters.simulated.disturbance import NONE, Disturbance
+from adapters.simulated.link_impairment import NONE, Disturbance
 from adapters.simulated.reporting import Reporter
-from adapters.simulated.vehicle import Vehicle
+from adapters.simulated.simulated_vehicle import Vehicle
 from adapters.transport import Port, Remote, open_port
 
 STEP: Final = 0.1
@@ -100,12 +100,12 @@ class Simulator:
             for vehicle, reporter in self._vehicles.values():
                 self._send(vehicle, protocol.hear(vehicle, reporter, message, self.now()), remote)
 
-    def _broadcast(self, vehicle: Vehicle, messages: Sequence[Message]) -> None:
+    def _broadcast(self, vehicle: Vehicle, messages: Sequence[MavlinkMessage]) -> None:
         remotes: list[Remote | None] = [*self._remotes]
         for remote in remotes or [None]:
             self._send(vehicle, messages, remote)
 
-    def _send(self, vehicle: Vehicle, messages: Sequence[Message], remote: Remote | None) -> None:
+    def _send(self, vehicle: Vehicle, messages: Sequence[MavlinkMessage], remote: Remote | None) -> None:
         for message in messages:
             frame = self._frame(vehicle, message)
             for seconds in self.disturbance.arrivals(self._loop_time(), self._random):
@@ -115,7 +115,7 @@ class Simulator:
         if self._port is not None:
             self._port.send(frame, remote)
 
-    def _frame(self, vehicle: Vehicle, message: Message) -> bytes:
+    def _frame(self, vehicle: Vehicle, message: MavlinkMessage) -> bytes:
         timestamp, key = 0, None
         if vehicle.signing is not None:
             vehicle.signing = stamp(vehicle.signing, self.now())

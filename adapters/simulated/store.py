@@ -10,10 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from adapters.mavlink.constants import Cmd, Frame, MissionResult, MissionType
-from adapters.mavlink.items import Item, Items, item_message, item_of
-from adapters.mavlink.message import Message, say
-from adapters.mavlink.survey import ALL_KINDS
+from adapters.mavlink.constants import Cmd, MavFrame, MissionResult, MissionType
+from adapters.mavlink.item_polling import ALL_KINDS
+from adapters.mavlink.items import Items, OnboardItem, item_message, item_of
+from adapters.mavlink.message import MavlinkMessage, say
 
 MAX_ITEMS: Final = 700
 FENCE_ITEMS: Final = 84
@@ -101,7 +101,7 @@ class Store:
     refuses: dict[MissionType, MissionResult] = field(default_factory=dict)
     flown: bool = False
 
-    def hear(self, message: Message, *, ready: bool, now: float) -> list[Message]:
+    def hear(self, message: MavlinkMessage, *, ready: bool, now: float) -> list[MavlinkMessage]:
         """Answer a message of the mission protocol."""
         kind = _kind(message)
         match message.name:
@@ -123,7 +123,7 @@ class Store:
     def _receives(self, kind: MissionType | None) -> bool:
         return self.receiving is not None and self.receiving.kind is kind
 
-    def tick(self, now: float) -> list[Message]:
+    def tick(self, now: float) -> list[MavlinkMessage]:
         """Ask again for an item that does not come, or give up."""
         going = self.receiving
         if going is None:
@@ -133,7 +133,9 @@ class Store:
             return [_ack(going, MissionResult.CANCELLED)]
         return self._ask(going, now) if now - going.asked >= self.manner.ask_again else []
 
-    def _count(self, message: Message, kind: MissionType, *, ready: bool, now: float) -> list[Message]:
+    def _count(
+        self, message: MavlinkMessage, kind: MissionType, *, ready: bool, now: float
+    ) -> list[MavlinkMessage]:
         going = Receiving(message.system, message.component, kind, message["count"], heard=now)
         busy = self.receiving is not None and self.receiving.station != message.system
         if busy:
@@ -158,7 +160,7 @@ class Store:
             self.torn = self.mission
         self.receiving = None
 
-    def _clear(self, message: Message) -> list[Message]:
+    def _clear(self, message: MavlinkMessage) -> list[MavlinkMessage]:
         every = message.fields.get("mission_type") == ALL_KINDS
         kinds = [*MissionType] if every else [kind for kind in [_kind(message)] if kind is not None]
         busy = self.receiving is not None and self.receiving.station != message.system
@@ -170,7 +172,7 @@ class Store:
             self.torn = None if MissionType.MISSION in kinds else self.torn
         return [_answer(message, kinds[0] if kinds else None, result)]
 
-    def _item(self, going: Receiving, message: Message, now: float) -> list[Message]:
+    def _item(self, going: Receiving, message: MavlinkMessage, now: float) -> list[MavlinkMessage]:
         if message["seq"] != len(going.items):
             wrong = self.manner.out_of_turn
             return [] if wrong is None else [_answer(message, going.kind, wrong)]
@@ -184,12 +186,12 @@ class Store:
         going = replace(going, items=(*going.items, item), heard=now)
         return self._complete(going) if len(going.items) == going.count else self._ask(going, now)
 
-    def _ask(self, going: Receiving, now: float) -> list[Message]:
+    def _ask(self, going: Receiving, now: float) -> list[MavlinkMessage]:
         self.receiving = replace(going, asked=now)
         seq = {"seq": len(going.items), "mission_type": int(going.kind)}
         return [say(self.request, target_system=going.station, target_component=going.component, **seq)]
 
-    def _complete(self, going: Receiving) -> list[Message]:
+    def _complete(self, going: Receiving) -> list[MavlinkMessage]:
         self.receiving = None
         if going.kind in self.refuses:
             return [_ack(going, self.refuses[going.kind])]
@@ -202,47 +204,47 @@ class Store:
         if kind is not MissionType.MISSION or not items or not self.manner.home_is_item:
             return items
         x, y, z = self.home
-        return (Item(Cmd.WAYPOINT, x, y, z, Frame.SEA_LEVEL), *items[1:])
+        return (OnboardItem(Cmd.WAYPOINT, x, y, z, MavFrame.SEA_LEVEL), *items[1:])
 
-    def _asked(self, message: Message, kind: MissionType) -> list[Message]:
+    def _asked(self, message: MavlinkMessage, kind: MissionType) -> list[MavlinkMessage]:
         items, index = self._all(kind), message["seq"]
         if not 0 <= index < len(items):
             return []
         return [item_message(items[index], index, kind, message.system, message.component)]
 
 
-def _wrong(item: Item, kind: MissionType) -> MissionResult | None:
+def _wrong(item: OnboardItem, kind: MissionType) -> MissionResult | None:
     """Return the result that rejects an item, or None."""
     if kind is MissionType.FENCE and item.command in POLYGONS and item.parameters[0] > VERTICES:
         return MissionResult.INVALID_PARAM1
     return None if _sound(item) else MissionResult.INVALID
 
 
-def _sound(item: Item) -> bool:
+def _sound(item: OnboardItem) -> bool:
     """Return whether an item is on the earth, and its numbers are numbers."""
     on_earth = abs(item.x) <= 90 * 10**7 and abs(item.y) <= 180 * 10**7
     return on_earth and abs(item.z) <= HIGHEST and all(abs(value) <= HIGHEST for value in item.parameters)
 
 
-def _said(text: str) -> Message:
+def _said(text: str) -> MavlinkMessage:
     return say("STATUSTEXT", severity=WARNING, text=text.encode())
 
 
-def _kind(message: Message) -> MissionType | None:
+def _kind(message: MavlinkMessage) -> MissionType | None:
     try:
         return MissionType(message.fields.get("mission_type", 0))
     except ValueError:
         return None
 
 
-def _back(message: Message) -> dict[str, int]:
+def _back(message: MavlinkMessage) -> dict[str, int]:
     return {"target_system": message.system, "target_component": message.component}
 
 
-def _answer(message: Message, kind: MissionType | None, result: MissionResult) -> Message:
+def _answer(message: MavlinkMessage, kind: MissionType | None, result: MissionResult) -> MavlinkMessage:
     return say("MISSION_ACK", type=int(result), mission_type=int(kind or 0), **_back(message))
 
 
-def _ack(going: Receiving, result: MissionResult) -> Message:
+def _ack(going: Receiving, result: MissionResult) -> MavlinkMessage:
     whom = {"target_system": going.station, "target_component": going.component}
     return say("MISSION_ACK", type=int(result), mission_type=int(going.kind), **whom)

@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Final
 
-from adapters.live.orders import is_authority, is_done
+from adapters.live.command_planning import is_authority, is_done
 from adapters.plugin import HandOver, Published
 from adapters.stations.entries import Said
 from adapters.stations.merge import channels_of

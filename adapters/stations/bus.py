@@ -12,8 +12,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, Final
 
-from adapters.stations.messages import MOST_BYTES
 from adapters.stations.peers import Peers
+from adapters.stations.station_messages import MOST_BYTES
 from physical import PhysicalError
 from physical.wordings import install_extra
 

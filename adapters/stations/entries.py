@@ -72,7 +72,7 @@ class Said:
         return self.time + self.published.time_to_live if isinstance(self.published, Aged) else math.inf
 
 
-class Sent(Struct, frozen=True):
+class VehicleSent(Struct, frozen=True):
     """A vehicle was sent to a node, or (an empty name) is no longer under way."""
 
     entity: Word = field(name="sent")
@@ -159,7 +159,7 @@ class Took(Struct, frozen=True):
         return ("took", self.of)
 
 
-Content = Said | Sent | Hosted | Believed | Broke | Posted | Took
+Content = Said | VehicleSent | Hosted | Believed | Broke | Posted | Took
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,11 +223,11 @@ class _Seen(Struct, frozen=True, omit_defaults=True, kw_only=True):
     owned: bool
 
 
-_Data = Took | Sent | Hosted | Believed | Broke | Posted | _Ended | _Seen
+_Data = Took | VehicleSent | Hosted | Believed | Broke | Posted | _Ended | _Seen
 
 _KINDS: Final[Mapping[str, type[_Data]]] = {
     "took": Took,
-    "sent": Sent,
+    "sent": VehicleSent,
     "hosted": Hosted,
     "believed": Believed,
     "broke": Broke,

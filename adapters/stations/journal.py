@@ -15,9 +15,9 @@ from typing import Any, BinaryIO, Final
 
 from msgspec import Struct, to_builtins
 
+from adapters.private_files import open_private, writing
 from adapters.stations.entries import MOST_BYTES, Content, Count, Entry, Posted, Took, entry_of, entry_text
 from adapters.typed_json import typed
-from adapters.written_files import open_private, writing
 from physical import PhysicalError, read_json
 
 SCHEMA: Final = "bigactors.station/3"

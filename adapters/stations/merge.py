@@ -12,9 +12,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
-from adapters.live.sightings import MOST_AHEAD
+from adapters.live.fresh_placements import MOST_AHEAD
 from adapters.plugin import Aged, Gone, Published
-from adapters.stations.entries import Believed, Entry, Hosted, Said, Sent, stamped_at
+from adapters.stations.entries import Believed, Entry, Hosted, Said, VehicleSent, stamped_at
 from physical import PhysicalProperty
 
 ABREAST: Final = 5.0
@@ -65,7 +65,7 @@ class Merge:
         match entry.content:
             case Said() as said:
                 return said.entity if self._join(self.words, said.entity, entry) else None
-            case Sent(entity):
+            case VehicleSent(entity):
                 return entity if self._join(self.legs, entity, entry) else None
             case Hosted(agent):
                 return agent if self._join(self.homes, agent, entry) else None
@@ -168,7 +168,7 @@ def _counts(content: object, now: float) -> bool:
 
 
 def _stamp(entry: Entry) -> tuple[float, str, int]:
-    assert isinstance(entry.content, Said | Sent | Hosted | Believed)
+    assert isinstance(entry.content, Said | VehicleSent | Hosted | Believed)
     return (entry.content.time, entry.station, entry.number)
 
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 
-from adapters.live.turn import LiveStep, Turn
-from adapters.stations.entries import Believed, Broke, Content, Hosted, Posted, Sent, Took
+from adapters.live.turn_result import LiveStep, Turn
+from adapters.stations.entries import Believed, Broke, Content, Hosted, Posted, Took, VehicleSent
 from adapters.stations.merge import Merge
 from semantics.state.canonical import written
-from semantics.state.cells import Cell
+from semantics.state.cell_values import Cell
 from semantics.state.configuration import Configuration
 from semantics.state.parcel_serialization import parcel_json
-from semantics.state.partition import Passage, is_here
+from semantics.state.station_partition import Passage, is_here
 
 A_MOMENT = 1e-6
 """The least seconds between the time stamps of two entries on an agent, for any clocks."""
@@ -30,7 +30,7 @@ def told(turn: Turn, vehicles: Collection[str], known: Mapping[str, int]) -> Ite
         if step.transition.label.rule in ("command", "commit"):
             for vehicle in sorted(vehicles):
                 if before.going_to(vehicle) != after.going_to(vehicle):
-                    yield Sent(vehicle, after.going_to(vehicle), step.time)
+                    yield VehicleSent(vehicle, after.going_to(vehicle), step.time)
     for finding in turn.findings:
         if finding.kind == "broken assumption" and not finding.elsewhere:
             yield Broke(finding.message, finding.time)

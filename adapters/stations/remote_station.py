@@ -9,8 +9,8 @@ from typing import Final
 
 from adapters.plugin import Presence
 from adapters.stations.entries import Posted
-from adapters.stations.messages import Message
 from adapters.stations.skew import Skew
+from adapters.stations.station_messages import StationMessage
 
 SELDOM: Final = 2.0
 """Seconds between two reports of the time at which a station was last heard."""
@@ -60,7 +60,7 @@ class Other:
         best = self.skew.best
         return time if best is None else time - best.ahead
 
-    def follow(self, message: Message, *, whole: bool) -> bool:
+    def follow(self, message: StationMessage, *, whole: bool) -> bool:
         """Count the entries of a message; return whether no earlier ones are missing."""
         self.last = max(self.last, message.last)
         whole = whole and message.after <= self.heard

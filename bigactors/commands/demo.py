@@ -41,7 +41,7 @@ def run(options: Namespace) -> Exit:
 def _show(name: str, out: Path) -> Exit:
     from bigactors.checking import Checked, check_mission
     from bigactors.commands.check.check_report import coloured, report_lines
-    from bigactors.drawings import draw
+    from bigactors.picture_files import draw
     from bigactors.trace_files import write_evidence
     from checker import Limits
     from specs.elaboration import Variation

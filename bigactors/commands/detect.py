@@ -16,8 +16,8 @@ from bigactors.mistakes import Mistake, unreadable
 from bigactors.terminal import say, tell
 
 if TYPE_CHECKING:
+    from adapters.camera.sea_projection import Frame
     from adapters.camera.slick import Patch
-    from adapters.camera.view import Frame
     from adapters.camera.votes import Region
     from physical import PhysicalProperty
 
@@ -116,9 +116,9 @@ def run(options: Namespace) -> Exit:
     """Print the regions found in the frames, and the number of unusable frames by reason."""
     from adapters.camera.frames import frames_of
     from adapters.camera.overlay import draw_patches
-    from adapters.camera.sightings import properties, sightings
+    from adapters.camera.region_detection import properties, sightings
+    from adapters.camera.sea_projection import Lens
     from adapters.camera.slick import find_slicks
-    from adapters.camera.view import Lens
     from adapters.naming import NamingService
     from bigactors.installed_plugins import find_detector
     from physical import PhysicalError

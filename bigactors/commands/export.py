@@ -55,7 +55,7 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> Exit:
     """Explore a mission by zones, and write its automaton."""
     from bigactors.files import write_text
-    from bigactors.missions import open_mission, variation_of
+    from bigactors.mission_lookup import open_mission, variation_of
     from checker import Engine, explore
     from checker.engines.contract import TickError
     from semantics.properties.property import watching
@@ -68,7 +68,7 @@ def run(options: Namespace) -> Exit:
         )
     # numba is slow to load: a mission without times is refused before
     from checker.engines.timed.zone_answers import ZoneTimes
-    from checker.engines.zones.interchange import model_of
+    from checker.engines.zones.automaton_export import model_of
     from checker.engines.zones.tchecker import tchecker_text
     from checker.engines.zones.uppaal import uppaal_text
 

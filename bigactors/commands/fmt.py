@@ -50,7 +50,7 @@ def _file(path: str, options: Namespace) -> Exit:
 
 def formatted(path: str) -> tuple[str, str]:
     """Return a mission file's text and its formatted text; raises Mistake if it does not parse."""
-    from bigactors.diagnostics import as_mistake
+    from bigactors.diagnostic_output import as_mistake
     from bigactors.files import read_bytes
     from specs import MissionError, Source, decode, format_mission, parse
     from specs.preprocessing import MAX_BYTES

@@ -30,7 +30,7 @@ def run(options: Namespace) -> Exit:
 
     del options
     try:
-        from bigactors.lsp.server import make_server
+        from bigactors.lsp.language_server import make_server
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] not in ("pygls", "lsprotocol"):
             raise

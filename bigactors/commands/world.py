@@ -58,8 +58,8 @@ GEOJSON = (".geojson", ".json")
 
 def run(options: Namespace) -> Exit:
     """Print the world, draw it on request, and count the data that could not be read."""
-    from bigactors.drawings import draw
     from bigactors.files import write_text
+    from bigactors.picture_files import draw
     from bigactors.worlds import census, configuration_of, read_world
     from bigraphs import draw_text
     from physical import write_geojson

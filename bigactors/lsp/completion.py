@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
-from bigactors.lsp.occurrences import variables_of
-from bigactors.lsp.reading import Reading
+from bigactors.lsp.edited_mission import Reading
+from bigactors.lsp.name_resolution import variables_of
 from semantics.behaviours.commands import COMMAND_WORDS
 from specs.build_behaviour import PATTERN_TYPES
 from specs.build_world import CONTROL_MODES, FALLBACKS, SCHEDULERS

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from textwrap import dedent
 from typing import Any, Final, TypeVar
 
-from bigactors.lsp.occurrences import Symbol
-from bigactors.lsp.reading import Reading
-from physical.measure import area
-from semantics import extension, rules
+from bigactors.lsp.edited_mission import Reading
+from bigactors.lsp.name_resolution import Symbol
+from physical.geometry_measures import area
+from semantics import bigactor_rules, rules
 from semantics.behaviours.commands import COMMANDS
 from semantics.properties.kinds import ABOUT, PropertyKind
 from specs import explain
@@ -28,11 +28,11 @@ SERVED_BY: Final[Mapping[type[s.Node], tuple[Callable[..., Any], ...]]] = {
     s.Control: (rules.req_ctr, rules.actuate, rules.command, rules.commit),
     s.Command: (rules.req_ctr, rules.actuate),
     s.ApplyRule: (rules.req_ctr, rules.actuate),
-    s.React: (rules.rcv_obs, extension.rcv_msg),
-    s.Send: (extension.req_snd, extension.snd),
-    s.Migrate: (extension.req_mgr, extension.migrate),
-    s.Spawn: (extension.spawn,),
-    s.Says: (extension.say,),
+    s.React: (rules.rcv_obs, bigactor_rules.rcv_msg),
+    s.Send: (bigactor_rules.req_snd, bigactor_rules.snd),
+    s.Migrate: (bigactor_rules.req_mgr, bigactor_rules.migrate),
+    s.Spawn: (bigactor_rules.spawn,),
+    s.Says: (bigactor_rules.say,),
     **dict.fromkeys(
         (s.Display, s.Let, s.Assign, s.If, s.Loop, s.While, s.For, s.Match, s.Call), (rules.fun,)
     ),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from bigactors.lsp.reading import Reading
+from bigactors.lsp.edited_mission import Reading
 from specs import syntax as s
 from specs.construct_text import write
 

@@ -13,7 +13,7 @@ UNITS: Final = {"utf-8": ("utf-8", 1), "utf-16": ("utf-16-le", 2), "utf-32": ("u
 
 
 @dataclass(frozen=True, slots=True)
-class Lines:
+class LineStarts:
     r"""The beginnings of a text's lines, and the encoding in which an editor counts within them.
 
     >>> lines = Lines("a\r\nb🚁c", "utf-16")

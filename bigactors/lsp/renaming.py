@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from bigactors.lsp.reading import Reading
+from bigactors.lsp.edited_mission import Reading
 from specs.diagnostics import Source
 from specs.grammar import RESERVED
 from specs.syntax import Span
@@ -14,7 +14,7 @@ _NAME: Final = re.compile(r"[^\W\d_]\w*")
 _CHANNEL: Final = re.compile(r"\w+(?:[:.\-]\w+)*")
 
 
-class Refused(Exception):
+class RenameRefused(Exception):
     """The reason why a symbol cannot be renamed, for the user."""
 
 
@@ -22,11 +22,11 @@ def renamable(reading: Reading, offset: int) -> Span:
     """Return the span of the name at an offset; raises Refused if there is none or it is declared in another file."""
     found = reading.occurrences.at(offset)
     if found is None:
-        raise Refused("there is no name of this mission here")
+        raise RenameRefused("there is no name of this mission here")
     if found.symbol not in reading.occurrences.declared:
-        raise Refused(f"'{found.symbol.name}' is not declared in this file")
+        raise RenameRefused(f"'{found.symbol.name}' is not declared in this file")
     if reading.recovered.mistakes:
-        raise Refused(
+        raise RenameRefused(
             "the file has syntax errors: correct them first, since the unreadable parts may contain names"
         )
     return found.span
@@ -40,18 +40,18 @@ def rename(reading: Reading, offset: int, name: str) -> tuple[Span, ...]:
         raise AssertionError(offset)
     shape = _CHANNEL if found.symbol.sort == "channel" else _NAME
     if not shape.fullmatch(name):
-        raise Refused(f"'{name}' is no name: letters, digits and _, a letter first")
+        raise RenameRefused(f"'{name}' is no name: letters, digits and _, a letter first")
     if name in RESERVED:
-        raise Refused(f"'{name}' is a word of the language")
+        raise RenameRefused(f"'{name}' is a word of the language")
     spans = tuple(each.span for each in reading.occurrences.of(found.symbol))
     after = Reading(Source(reading.source.name, replaced(reading.text, spans, name)), reading.directory)
     if after.recovered.mistakes:
-        raise Refused(f"'{name}' cannot stand there: {after.recovered.mistakes[0].message}")
+        raise RenameRefused(f"'{name}' cannot stand there: {after.recovered.mistakes[0].message}")
     if _pattern(reading) != _pattern(after):
-        raise Refused(f"'{name}' has a meaning already where it would stand: choose another name")
+        raise RenameRefused(f"'{name}' has a meaning already where it would stand: choose another name")
     new = set(_said(after)) - set(_said(reading))
     if len(after.diagnosis.mistakes) > len(reading.diagnosis.mistakes):
-        raise Refused(f"with that name there is a new mistake: {min(new)}")
+        raise RenameRefused(f"with that name there is a new mistake: {min(new)}")
     return spans
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from bigactors.lsp.reading import Reading
+from bigactors.lsp.edited_mission import Reading
 from specs.syntax import Span
 
 TYPES: Final[Mapping[str, str]] = {

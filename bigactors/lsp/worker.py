@@ -12,7 +12,7 @@ from typing import Any
 
 from bigactors.checking import Checked
 from bigactors.files import make_folder, write_text
-from bigactors.missions import digest_of
+from bigactors.mission_lookup import digest_of
 from bigactors.pages import trace_page
 from bigactors.trace_files import evidence_of, story_of
 from checker import Limits, check

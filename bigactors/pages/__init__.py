@@ -4,7 +4,7 @@ All text except our own markup is escaped, nothing is loaded, and a Content-Secu
 browser. Without scripts a page shows everything at once.
 """
 
-from bigactors.pages.story import MOST_PICTURES, Story, Telling, telling
+from bigactors.pages.story import MOST_PICTURES, PageContent, Story, telling
 from bigactors.pages.trace_page import page_of, trace_page
 
-__all__ = ["MOST_PICTURES", "Story", "Telling", "page_of", "telling", "trace_page"]
+__all__ = ["MOST_PICTURES", "PageContent", "Story", "page_of", "telling", "trace_page"]

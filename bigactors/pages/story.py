@@ -52,7 +52,7 @@ class Story:
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class PageFrame:
     """A configuration of the page, with the step to it; one frame stands for all identical ones.
 
     Attributes:
@@ -85,7 +85,7 @@ class Frame:
 
 
 @dataclass(frozen=True, slots=True)
-class Telling:
+class PageContent:
     """The content of a page.
 
     Attributes:
@@ -99,7 +99,7 @@ class Telling:
     story: Story
     lanes: Lanes
     rows: tuple[Row, ...]
-    frames: tuple[Frame, ...]
+    frames: tuple[PageFrame, ...]
     order: tuple[int | None, ...]
 
     @property
@@ -122,7 +122,7 @@ class Telling:
         )
 
 
-def telling(story: Story) -> Telling:
+def telling(story: Story) -> PageContent:
     """Return the content of a story's page; of a long story, the ends and the part around the start."""
     lanes = lanes_of_trace(story.trace)
     steps = lanes.steps if story.unfolded else tuple(folded(lanes.steps))
@@ -130,7 +130,7 @@ def telling(story: Story) -> Telling:
     looks = _looks(story.trace)
     held = sorted(_held(rows, looks))
     places = {look: place for place, look in enumerate(held)}
-    return Telling(
+    return PageContent(
         story, lanes, rows, _frames(story, lanes, held, looks), tuple(places.get(look) for look in looks)
     )
 
@@ -152,7 +152,7 @@ def _held(rows: Sequence[Row], looks: Sequence[int]) -> Iterable[int]:
     return islice(dict.fromkeys(looks[number] for number in chain([0], own, again)), MOST_FRAMES)
 
 
-def _frames(story: Story, lanes: Lanes, held: Sequence[int], looks: Sequence[int]) -> tuple[Frame, ...]:
+def _frames(story: Story, lanes: Lanes, held: Sequence[int], looks: Sequence[int]) -> tuple[PageFrame, ...]:
     configurations, counts = story.trace.configurations, Counter(looks)
     panels = Panels.of(configurations, min(story.drawn, MOST_PICTURES))
     frames = {}
@@ -160,5 +160,5 @@ def _frames(story: Story, lanes: Lanes, held: Sequence[int], looks: Sequence[int
         c, before = configurations[number], configurations[number - 1] if number else None
         pictures = panels.logical(c, before), panels.physical(c, before)
         step = lanes.steps[number - 1] if number else None
-        frames[number] = Frame(number, counts[number], step, c, before, *pictures)
+        frames[number] = PageFrame(number, counts[number], step, c, before, *pictures)
     return tuple(frames[number] for number in held)

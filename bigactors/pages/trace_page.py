@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Final
 
 from bigactors.pages.markup import element, text
-from bigactors.pages.story import Frame, Story, Telling, telling
+from bigactors.pages.story import PageContent, PageFrame, Story, telling
 from bigactors.pictures import Look, Panel, channels_of, look_of, shown_names
 from bigraphs import Bigraph, draw_text
 from bigraphs.drawing import HIGHLIGHT
@@ -44,7 +44,7 @@ def trace_page(story: Story) -> str:
     return page_of(telling(story))
 
 
-def page_of(told: Telling) -> str:
+def page_of(told: PageContent) -> str:
     """Return the page of its content."""
     script, style = _resource("trace.js"), _resource("trace.css")
     allowed = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
@@ -67,7 +67,7 @@ def page_of(told: Telling) -> str:
     return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
 
 
-def _steps(told: Telling) -> dict[str, str | None]:
+def _steps(told: PageContent) -> dict[str, str | None]:
     """Return the script's data: the frame of each configuration, and the tenths of a second since the last."""
     order = " ".join("" if frame is None else str(frame) for frame in told.order)
     tenths = [round(10 * second) for second in told.seconds]
@@ -79,7 +79,7 @@ def _resource(name: str) -> str:
     return (resources("bigactors.pages") / name).read_text(encoding="utf-8")
 
 
-def _header(told: Telling) -> str:
+def _header(told: PageContent) -> str:
     story = told.story
     return element(
         "header",
@@ -105,7 +105,7 @@ def _race(race: RaceSteps | None) -> str:
 # --- lanes ----------------------------------------------------------------------------------------------------
 
 
-def _run(told: Telling) -> str:
+def _run(told: PageContent) -> str:
     lanes = told.lanes
     heads = (element("th", text(name), scope="col") for name in lanes.names)
     head = element("thead", element("tr", element("th", text("c"), scope="col"), *heads))
@@ -120,7 +120,7 @@ def _run(told: Telling) -> str:
     )
 
 
-def _rows(told: Telling) -> Iterator[str]:
+def _rows(told: PageContent) -> Iterator[str]:
     """Yield the rows: of the first configuration, of single steps, and of folded steps."""
     seconds = told.seconds
     passing = lapses(told.rows)
@@ -136,7 +136,7 @@ def _rows(told: Telling) -> Iterator[str]:
         yield _row(row.number, told.lanes, row, seconds, **more)
 
 
-def _others(told: Telling) -> Iterator[str]:
+def _others(told: PageContent) -> Iterator[str]:
     """Yield a row for each frame outside the table: the script inserts them when it unfolds steps."""
     shown = {told.order[row.number] for row in told.rows if isinstance(row, LaneStep)}
     for place, frame in enumerate(told.frames):
@@ -206,7 +206,7 @@ def _several(row: Repetition) -> str:
 # --- the stage ------------------------------------------------------------------------------------------------
 
 
-def _stage(told: Telling) -> str:
+def _stage(told: PageContent) -> str:
     frames = told.frames
     drawn = (panel for frame in frames for panel in (frame.logical, frame.physical))
     panels = dict(sorted((panel.key, panel) for panel in drawn if panel is not None))
@@ -292,7 +292,7 @@ def _svg(panel: Panel, name: str, width: float, height: float) -> str:
     )
 
 
-def _frame(place: int, frame: Frame, words: Mapping[Bigraph, int]) -> str:
+def _frame(place: int, frame: PageFrame, words: Mapping[Bigraph, int]) -> str:
     agents = [print_agent(frame.c, a) for a in frame.c.alpha.names()]
     requests = [str(each.request) for each in frame.c.eta.all()]
     before = frame.before
@@ -330,7 +330,7 @@ def _list(name: str, gloss: str, lines: Sequence[str], known: set[str]) -> str:
 # --- the legend -----------------------------------------------------------------------------------------------
 
 
-def _legend(frames: Sequence[Frame]) -> str:
+def _legend(frames: Sequence[PageFrame]) -> str:
     looks = [look_of(frame.c, frame.before) for frame in frames]
     kinds = sorted({frame.c.setting.kind(name) for frame in frames for name in shown_names(frame.c)})
     channels = sorted({channel for frame in frames for channel in channels_of(frame.c)})

@@ -3,7 +3,7 @@
 Beliefs, the actual world and changes come from `semantics`; nothing is decided here.
 """
 
-from bigactors.pictures.configuration import Look, draw_configuration, look_of
+from bigactors.pictures.configuration_picture import Look, draw_configuration, look_of
 from bigactors.pictures.panels import Panel, Panels, logical_picture
 from bigactors.pictures.scene import channels_of, shown_names
 from bigactors.pictures.trace import draw_overview, draw_trace

@@ -4,7 +4,7 @@ from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from bigactors.pictures.configuration import Look, draw_logical, look_of
+from bigactors.pictures.configuration_picture import Look, draw_logical, look_of
 from bigactors.pictures.page import Page
 from bigactors.pictures.scene import map_entities
 from bigraphs.bigraph import Bigraph

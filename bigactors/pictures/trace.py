@@ -10,7 +10,7 @@ from itertools import accumulate
 from pathlib import Path
 from typing import Final
 
-from bigactors.pictures.configuration import draw_configuration
+from bigactors.pictures.configuration_picture import draw_configuration
 from bigactors.pictures.page import Page, wrapped
 from checker.properties.race_steps import RaceSteps
 from checker.reports.lanes import Lanes, LaneStep, Repetition, bounded, folded, lanes_of, lapses, steps_of
@@ -47,7 +47,7 @@ LANE_LINE: Final = Paint(stroke="#d8dee4")
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class OverviewRow:
     """One step of the overview, or several repeated steps.
 
     Attributes:
@@ -134,7 +134,7 @@ def draw_overview(
     return page.picture(title or "trace")
 
 
-def rows_of(lanes: Lanes, *, unfolded: bool = False) -> tuple[Row, ...]:
+def rows_of(lanes: Lanes, *, unfolded: bool = False) -> tuple[OverviewRow, ...]:
     """Return the steps of a trace as rows of its overview; of a trace that is too long, only the ends."""
     steps = tuple(bounded(lanes.steps if unfolded else tuple(folded(lanes.steps)), MOST_ROWS))
     passing = lapses(steps)
@@ -146,12 +146,14 @@ def rows_of(lanes: Lanes, *, unfolded: bool = False) -> tuple[Row, ...]:
     )
 
 
-def _row(step: LaneStep | Repetition) -> Row:
+def _row(step: LaneStep | Repetition) -> OverviewRow:
     words = wrapped(step.about, LANE - 26.0, 7.0, 3)
     if isinstance(step, Repetition):
-        return Row(step.number, step.lane, AGAIN, step.heading, words, ())
+        return OverviewRow(step.number, step.lane, AGAIN, step.heading, words, ())
     colours = SERVED if step.serves else AROUND if step.label.agent is None else AGENT
-    return Row(step.number, step.lane, colours, step.label.rule, words, _changes(step), role=step.role)
+    return OverviewRow(
+        step.number, step.lane, colours, step.label.rule, words, _changes(step), role=step.role
+    )
 
 
 def _changes(step: LaneStep) -> tuple[str, ...]:
@@ -164,7 +166,7 @@ def _changes(step: LaneStep) -> tuple[str, ...]:
     )
 
 
-def _page(lanes: Lanes, rows: Sequence[Row], title: str | None, links: Sequence[str]) -> Page:
+def _page(lanes: Lanes, rows: Sequence[OverviewRow], title: str | None, links: Sequence[str]) -> Page:
     left = MARGIN + NUMBERS + (DATES if any(row.date for row in rows) else 0.0)
     starts = [left + rank * (LANE + GUTTER) for rank in range(len(lanes.names))]
     end = left + len(starts) * (LANE + GUTTER)
@@ -196,7 +198,7 @@ def _draw_lane(page: Page, name: str, start: float, span: tuple[float, float]) -
     page.line([(middle, span[0] + HEAD - 6), (middle, span[1])], LANE_LINE)
 
 
-def _draw_axis(page: Page, rows: Sequence[Row], tops: Sequence[float], x: float) -> None:
+def _draw_axis(page: Page, rows: Sequence[OverviewRow], tops: Sequence[float], x: float) -> None:
     """Draw the dates of rows, each once, and the time between them."""
     page.write(x, tops[0] - HEAD + 15, "time", 9.0, bold=True, anchor="end")
     page.line([(x, tops[0]), (x, tops[-1])], LANE_LINE)
@@ -211,7 +213,7 @@ def _draw_axis(page: Page, rows: Sequence[Row], tops: Sequence[float], x: float)
             page.write(x - 6.0, here + 14.0, row.date, 8.0, anchor="end")
 
 
-def _draw_row(page: Page, row: Row, start: float, y: float, link: str | None) -> None:
+def _draw_row(page: Page, row: OverviewRow, start: float, y: float, link: str | None) -> None:
     fill, border = row.colours
     paint = Paint(fill, RACE, 2.2) if row.role else Paint(fill, border, 1.1)
     page.rectangle((start + 4, y), (LANE - 8, row.box_height), paint, radius=5, link=link)

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from bigraphs.bigraph import Bigraph, Link, Node, Place, assemble, moved
 from bigraphs.canonical_form import equal
 from bigraphs.engine.intern_tables import InternTables, has_sharing
+from bigraphs.engine.occurrence_search import Matcher
 from bigraphs.engine.patterns import CompiledPattern, compile_pattern
-from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import PatternOccurrence
 from bigraphs.engine.state_arrays import make_state
 from bigraphs.signature import Control, Signature

@@ -5,8 +5,8 @@ from __future__ import annotations
 from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph, Place, assemble, moved
 from bigraphs.engine.intern_tables import InternTables
+from bigraphs.engine.occurrence_search import Matcher
 from bigraphs.engine.patterns import CompiledPattern, compile_pattern
-from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import PatternOccurrence
 from bigraphs.engine.state_arrays import GroundState, bits
 from bigraphs.system import Condition, Where

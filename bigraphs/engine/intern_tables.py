@@ -46,7 +46,7 @@ class InternTables:
         named: Whether nodes may have names.
         rows: The row of each code.
         bare: For each code whether its subtree has no edge and no shared node.
-        plans: The search plans of patterns, by their forms (`bigraphs.engine.search`).
+        plans: The search plans of patterns, by their forms (`bigraphs.engine.occurrence_search`).
         pause: Long searches call it at intervals; it may raise an exception to end them.
     """
 

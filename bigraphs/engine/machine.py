@@ -11,17 +11,17 @@ from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph
 from bigraphs.canonical_form import canonical
 from bigraphs.engine.contexts import occurs, without_idle
-from bigraphs.engine.forms import Forms
 from bigraphs.engine.intern_tables import InternTables, has_edges, has_sharing
 from bigraphs.engine.labelling import Labelling
+from bigraphs.engine.occurrence_search import Matcher
 from bigraphs.engine.occurrences import Spot
 from bigraphs.engine.patterns import check_size, compile_pattern
 from bigraphs.engine.reactions import CompiledReaction
+from bigraphs.engine.rule_forms import Forms
 from bigraphs.engine.rule_index import ReactionIndex, RuleIndex, numbers_in
-from bigraphs.engine.search import Matcher
 from bigraphs.engine.search_state import PatternOccurrence
 from bigraphs.engine.state_arrays import GroundState, Key, make_state
-from bigraphs.engine.state_order import Outlines
+from bigraphs.engine.state_digests import Outlines
 from bigraphs.errors import BigraphError
 from bigraphs.system import System
 

@@ -10,12 +10,12 @@ from typing import TypeAlias
 
 from bigraphs.engine.automorphisms import Representatives
 from bigraphs.engine.contexts import ConditionCheck
-from bigraphs.engine.forms import Forms
 from bigraphs.engine.intern_tables import InternTables, has_edges
 from bigraphs.engine.multiple_parents import region_places, site_contents
 from bigraphs.engine.mutable_state import MutableState
+from bigraphs.engine.occurrence_search import Matcher
 from bigraphs.engine.patterns import CompiledPattern, check_size, check_solid, compile_pattern
-from bigraphs.engine.search import Matcher
+from bigraphs.engine.rule_forms import Forms
 from bigraphs.engine.search_state import PatternOccurrence
 from bigraphs.engine.state_arrays import GroundState, bits
 from bigraphs.engine.tracking import top_down, traced, track, track_edges

@@ -17,7 +17,7 @@ from bigraphs.bigraph import Bigraph
 from bigraphs.drawing import KINDS, LINKS
 from bigraphs.exports.dot import describe
 from bigraphs.exports.state_graph import RADIUS, places_of
-from bigraphs.labels import link_label
+from bigraphs.node_labels import link_label
 from bigraphs.transitions import TransitionSystem
 
 MOST_STATES: Final = 2_000

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from bigraphs.bigraph import Bigraph
-from bigraphs.labels import link_label
+from bigraphs.node_labels import link_label
 from bigraphs.transitions import TransitionSystem
 
 

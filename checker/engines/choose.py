@@ -16,7 +16,7 @@ from checker.engines.contract import (
     Options,
     Reporter,
 )
-from checker.engines.fast.loading import load_numba
+from checker.engines.fast.numba_loading import load_numba
 from checker.engines.reference import explore_one_by_one
 from checker.limits import Limits
 from semantics.state.configuration import Configuration

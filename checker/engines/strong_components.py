@@ -4,7 +4,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from checker.engines.fast.loading import load_numba
+from checker.engines.fast.numba_loading import load_numba
 from checker.engines.graph import Numbers
 from checker.engines.tarjan import SearchRoom, divide
 

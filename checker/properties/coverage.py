@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from typing import Final
 
-from checker.properties.visited import Visited, passages
+from checker.properties.visited_statements import Visited, passages
 from semantics.behaviours.computation import STEPPED, Passage
 from semantics.behaviours.program import Program
 from semantics.behaviours.statements import (

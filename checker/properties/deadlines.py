@@ -12,7 +12,7 @@ from checker.engines.timed.answers import Times
 from checker.engines.timed.first_runs import TimedRun
 from checker.limits import BoundMet
 from checker.properties.critical_path import Leg, critical_path
-from checker.properties.longest_paths import NEVER
+from checker.properties.longest_stays import NEVER
 from checker.properties.schedule import EventDates, Milestone, Schedule, flights_of
 from checker.traces import Trace, dated_trace
 from checker.verdicts import Outcome, Verdict, Violation

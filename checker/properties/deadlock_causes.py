@@ -5,13 +5,13 @@ from collections.abc import Iterable, Iterator
 from checker.reduction.static_messages import may_take, message_of
 from semantics.behaviours.expressions import Literal
 from semantics.behaviours.patterns import Anything, Elements, Exactly, Pattern, bind
+from semantics.behaviours.process_conversion import next_statement
 from semantics.behaviours.program import reachable
 from semantics.behaviours.statements import React, Send
-from semantics.behaviours.stepping import next_statement
 from semantics.behaviours.values import Value, show
+from semantics.bigactor_rules import linked
 from semantics.control import obstacle
 from semantics.environment import Drops, Leaves
-from semantics.extension import linked
 from semantics.state.agents import written
 from semantics.state.configuration import Configuration
 from semantics.state.eta import PendingRequest

@@ -7,20 +7,20 @@ from itertools import chain
 from operator import itemgetter
 from typing import ClassVar, NamedTuple
 
+from checker.properties.blocked_controls import lacking
 from checker.properties.control_sites import common_sites
 from checker.properties.deadlock_causes import causes
 from checker.properties.findings import MOST_VIOLATIONS, Collected, Inspected, Key
 from checker.properties.invariant_vacuity import Valuations
-from checker.properties.obstacles import lacking
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.patterns import bind
+from semantics.behaviours.process_conversion import next_statement
 from semantics.behaviours.reaction_rules import moved
 from semantics.behaviours.statements import Block, Call, Loop, React
-from semantics.behaviours.stepping import next_statement
 from semantics.control import Obstacle, obstacle
 from semantics.environment import Says
 from semantics.properties.propositions import Proposition, counterexample_names, holds
-from semantics.state.cells import QUEUE
+from semantics.state.cell_values import QUEUE
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.requests import CTR, FLY, MGR, OBS, SND
 from semantics.state.setting import Control, Setting

@@ -25,8 +25,18 @@ from semantics.properties.propositions import (
     atoms_of,
     holds,
 )
-from semantics.state import cells
-from semantics.state.cells import Cell, Cells, Changes, Edit, Question, WritableCells, Written, is_, merged
+from semantics.state import cell_values
+from semantics.state.cell_values import (
+    Cell,
+    Cells,
+    Changes,
+    Edit,
+    Question,
+    WritableCells,
+    Written,
+    is_,
+    merged,
+)
 from semantics.state.configuration import Configuration
 
 MOST_ATOMS: Final = 64
@@ -143,7 +153,9 @@ class Asking:
         """Return the edited value of a cell."""
         return edit(self.read(cell), *constants)
 
-    def each(self, names: Iterable[str], part: Callable[[str], cells.Part]) -> Mapping[str, cells.Part]:
+    def each(
+        self, names: Iterable[str], part: Callable[[str], cell_values.Part]
+    ) -> Mapping[str, cell_values.Part]:
         """Return a pointwise definition's value for each name."""
         return {name: part(name) for name in names}
 

@@ -11,7 +11,7 @@ from semantics.control import applicable
 from semantics.races.monitor import CONTROLS, slots_used, stale_tests
 from semantics.races.provenance import EVERYTHING, Dependency
 from semantics.rules import TIMED_RULES, actuate
-from semantics.state.cells import MONITOR, VOYAGE
+from semantics.state.cell_values import MONITOR, VOYAGE
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.eta import PendingRequest
 from semantics.state.requests import CTR, FLY, Request

@@ -15,7 +15,7 @@ from checker.properties.races import is_stale, used_slots
 from checker.steps import Step, alike
 from semantics.races.provenance import OTHERS, Dependency, Key, Mark
 from semantics.state.agents import AgentProvenance
-from semantics.state.cells import MONITOR
+from semantics.state.cell_values import MONITOR
 from semantics.state.configuration import Configuration
 from semantics.state.requests import CTR, FLY
 from semantics.state.signature import Name

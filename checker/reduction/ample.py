@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from checker.properties.inspections import is_unfair
-from checker.reduction.actors import Acting, Actor, Actors
+from checker.reduction.actor_footprints import Acting, Actor, Actors
 from checker.reduction.cycle_proviso import Parts, Paths, part_of, parts_of
-from checker.reduction.visible import Eyes
+from checker.reduction.visible_slots import Eyes
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.signature import Name

@@ -23,7 +23,7 @@ from semantics.behaviours.reaction_rules import (
 )
 from semantics.behaviours.values import Text, Truth, order_key
 from semantics.properties.propositions import Instances, Range
-from semantics.state.cells import AGENTS, NAMES, Cell, Changes, Row
+from semantics.state.cell_values import AGENTS, NAMES, Cell, Changes, Row
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, Placed
 from semantics.state.requests import request_key

@@ -7,7 +7,7 @@ unexpanded or ignores no step. When a cycle closes, the parts taken along it cou
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from checker.reduction.actors import Acting, Actor
+from checker.reduction.actor_footprints import Acting, Actor
 from semantics.state.signature import Name
 
 Part = tuple[str, Name | int]

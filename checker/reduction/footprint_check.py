@@ -10,26 +10,26 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from checker.engines.fast.recording import Asked, CellRecorder, CellSource, ColumnQuestion, Conclusion
+from checker.engines.fast.access_recording import Asked, CellRecorder, CellSource, ColumnQuestion, Conclusion
 from checker.engines.fast.value_templates import settled
-from checker.reduction.actors import Acting, Actor, Actors
+from checker.reduction.actor_footprints import Acting, Actor, Actors
 from checker.reduction.ample import Ample, disturbed
 from checker.reduction.configuration_renaming import Renaming
+from checker.reduction.footprint_slots import NOTHING, Slot, SlotFootprint
 from checker.reduction.race_footprints import ANSWERS, MARKS, slot_of_mark
 from checker.reduction.static_messages import ConstantMessage
 from checker.reduction.symmetry import MissionSymmetry
-from checker.reduction.variables import NOTHING, Slot, SlotFootprint
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Fact
+from semantics.bigactor_rules import say, spawn
 from semantics.control import applicable, obstacle
-from semantics.extension import say, spawn
 from semantics.properties.propositions import Proposition, holds
 from semantics.races.monitor import marked, slots_used
 from semantics.races.provenance import ANY, Dependency, Key
 from semantics.races.relevance import possible_receivers, questions_of, relevant, slots_of
 from semantics.rules import env, rcv_obs
 from semantics.state.agents import AgentProvenance, mailbox_cell, watch_cell
-from semantics.state.cells import MONITOR, Cell, Changes, Row, has, is_something
+from semantics.state.cell_values import MONITOR, Cell, Changes, Row, has, is_something
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.physical_model import is_aboard
 from semantics.state.printing import print_configuration

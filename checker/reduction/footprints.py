@@ -8,10 +8,10 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from typing import assert_never
 
+from checker.reduction.footprint_slots import NOTHING, Slot, SlotFootprint, Slots
 from checker.reduction.overapproximation import Names, Overapproximation
 from checker.reduction.possible_values import Roles
 from checker.reduction.static_messages import ConstantMessage, Message, wakes
-from checker.reduction.variables import NOTHING, Slot, SlotFootprint, Slots
 from semantics.behaviours.observations import All, Nodes, Query, QueryOperator
 from semantics.behaviours.reaction_rules import (
     LinkTerm,

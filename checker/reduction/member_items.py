@@ -14,7 +14,7 @@ from typing import Any
 from checker.engines.fast.value_templates import holes, join_value, split_value
 from checker.reduction.configuration_renaming import Renaming, mentioned, spelled
 from semantics.behaviours.observations import NOTHING_SEEN, Observation
-from semantics.state.cells import AGENTS, NAMES, Cell, Row
+from semantics.state.cell_values import AGENTS, NAMES, Cell, Row
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
 

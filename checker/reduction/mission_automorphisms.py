@@ -6,8 +6,8 @@ from functools import cached_property, partial
 from itertools import product
 from typing import Any
 
+from checker.reduction.alpha_equivalence import VARIABLES, Pairing, Unlike
 from checker.reduction.configuration_renaming import WORD, Mentions, Renaming
-from checker.reduction.pairing import VARIABLES, Pairing, Unlike
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault, Literal
 from semantics.behaviours.patterns import Exactly
@@ -15,7 +15,7 @@ from semantics.behaviours.program import Behaviour
 from semantics.behaviours.statements import ControlBy, Spawn, Statement
 from semantics.environment import Says
 from semantics.properties.propositions import And, Instances, Or, Proposition
-from semantics.state.cells import Cell
+from semantics.state.cell_values import Cell
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name

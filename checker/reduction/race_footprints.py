@@ -9,17 +9,17 @@ neither control changes the inputs of the other's marks.
 from collections.abc import Iterable, Iterator
 from functools import cache
 
+from checker.reduction.footprint_slots import NOTHING, Slot, SlotFootprint, joined
 from checker.reduction.footprints import Footprints
 from checker.reduction.observation_flow import tellers
 from checker.reduction.overapproximation import Names
-from checker.reduction.variables import NOTHING, Slot, SlotFootprint, joined
 from semantics.behaviours.observations import Nodes, Of, Query, QueryOperator
 from semantics.behaviours.program import reachable
 from semantics.behaviours.statements import Observe
 from semantics.races.provenance import ANY, SLOT, Key, Provenance
 from semantics.races.relevance import Questions, anybodys, hosts_of, questions_in, slots_of, tells
 from semantics.state.agents import AgentProvenance, Code, watch_cell
-from semantics.state.cells import MONITOR
+from semantics.state.cell_values import MONITOR
 from semantics.state.configuration import Configuration
 from semantics.state.eta import line_cell, sends_cell
 from semantics.state.requests import CTR, FLY, OBS, SND, Request

@@ -9,15 +9,15 @@ from itertools import combinations
 from typing import Any
 
 from checker.engines.fast.value_templates import mobile_names
+from checker.reduction.alpha_equivalence import UNLIKE_TEXTS, Pairing, Unlike
 from checker.reduction.configuration_renaming import Renaming
 from checker.reduction.member_items import Class, Items
 from checker.reduction.mission_automorphisms import Automorphisms
-from checker.reduction.order import ordered
-from checker.reduction.pairing import UNLIKE_TEXTS, Pairing, Unlike
+from checker.reduction.name_order import ordered
 from checker.reduction.refusals import Reduction, RefusedError
 from checker.reduction.representatives import to_representative
 from semantics.properties.propositions import Proposition
-from semantics.state.cells import Row
+from semantics.state.cell_values import Row
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name

@@ -200,6 +200,6 @@ def _spelling(word: str) -> str:
 
 
 def _rule(name: str) -> str:
-    from semantics import extension, rules  # noqa: PLC0415 - slow to import
+    from semantics import bigactor_rules, rules  # noqa: PLC0415 - slow to import
 
-    return getdoc(getattr(rules, name, None) or getattr(extension, name)) or ""
+    return getdoc(getattr(rules, name, None) or getattr(bigactor_rules, name)) or ""

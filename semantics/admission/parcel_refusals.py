@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from semantics.admission.abstract_values import Abstract
-from semantics.admission.control_points import is_point
+from semantics.admission.program_points import is_point
 from semantics.admission.value_flow import PossibleBehaviour, ValueFlow
 from semantics.behaviours.expressions import Fault, QueryOf
 from semantics.behaviours.observations import All, Nodes, Query

@@ -26,7 +26,7 @@ from semantics.admission.abstract_values import (
     tuple_of,
     word,
 )
-from semantics.admission.control_points import once
+from semantics.admission.program_points import once
 from semantics.behaviours.expressions import (
     Apply,
     Expression,

@@ -9,7 +9,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from semantics.behaviours.endings import assigned, ends, migrates
 from semantics.behaviours.expressions import (
     EvaluationScope,
     Expression,
@@ -40,6 +39,7 @@ from semantics.behaviours.statements import (
     Tested,
     While,
 )
+from semantics.behaviours.termination import assigned, ends, migrates
 from semantics.behaviours.values import Value, show, spoken
 from semantics.races.provenance import NOTHING, Provenance, asking, deciding
 from semantics.state.agents import Code, Store

@@ -24,7 +24,7 @@ from semantics.behaviours.observations import (
     agent_key,
 )
 from semantics.state.agents import Agents
-from semantics.state.cells import NAMES, Changes
+from semantics.state.cell_values import NAMES, Changes
 from semantics.state.logical_model import LogicalModel
 from semantics.state.physical_model import PhysicalModel
 from semantics.state.signature import REGION, Name

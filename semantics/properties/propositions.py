@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, overload
 
+from semantics.behaviours.process_conversion import waits
 from semantics.behaviours.program import VariableOf
-from semantics.behaviours.stepping import waits
 from semantics.behaviours.values import Value, show
 from semantics.state.agents import Store, code_cell, is_over, store_cell
 from semantics.state.configuration import Configuration

@@ -8,9 +8,9 @@ from dataclasses import replace
 from functools import cache, partial
 from typing import NamedTuple
 
-from semantics.behaviours.endings import begun_loops
 from semantics.behaviours.observations import QueryOperator, QueryStep, Steps
 from semantics.behaviours.queries import answers, denoted
+from semantics.behaviours.termination import begun_loops
 from semantics.races.provenance import (
     ANY,
     EVERYTHING,
@@ -39,7 +39,7 @@ from semantics.races.relevance import (
     slots_of,
 )
 from semantics.state.agents import AgentProvenance, watch_cell
-from semantics.state.cells import MONITOR, QUEUE, Cell, Changes, merged
+from semantics.state.cell_values import MONITOR, QUEUE, Cell, Changes, merged
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.eta import line_cell, sends_cell
 from semantics.state.relations import Parent, Relation

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from bigraphs import Bigraph
 from physical import PhysicalProperty
 from semantics.behaviours.program import Program
-from semantics.state.cells import Changes
+from semantics.state.cell_values import Changes
 from semantics.state.configuration import Configuration
 from semantics.state.initial import initial
 from semantics.state.logical_model import links_cell, parent_cell

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from semantics.behaviours.values import Value, order_key
 from semantics.races.provenance import NOTHING, Provenance
-from semantics.state.cells import AGENTS, MONITOR, Cell, Cells, Changes, has
+from semantics.state.cell_values import AGENTS, MONITOR, Cell, Cells, Changes, has
 from semantics.state.signature import Name
 from semantics.state.views import CellView
 

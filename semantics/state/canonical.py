@@ -7,7 +7,7 @@ from itertools import compress
 from operator import ne
 from typing import Any
 
-from semantics.state.cells import Cell, Row
+from semantics.state.cell_values import Cell, Row
 from semantics.state.configuration import Configuration
 
 SLICE = 64

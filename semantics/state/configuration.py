@@ -6,7 +6,17 @@ from typing import Any
 
 from semantics.state.agents import Agents
 from semantics.state.brief import cut
-from semantics.state.cells import MONITOR, Cell, Changes, Edit, Part, Question, Row, WritableCells, merged
+from semantics.state.cell_values import (
+    MONITOR,
+    Cell,
+    Changes,
+    Edit,
+    Part,
+    Question,
+    Row,
+    WritableCells,
+    merged,
+)
 from semantics.state.eta import Eta, PendingRequest
 from semantics.state.requests import REQUESTS, Received, Request
 from semantics.state.setting import Setting

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from semantics.behaviours.values import show
 from semantics.state.agents import written
 from semantics.state.canonical import written as written_cells
-from semantics.state.cells import AGENTS, MONITOR, NAMES, QUEUE, Cell
+from semantics.state.cell_values import AGENTS, MONITOR, NAMES, QUEUE, Cell
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, PhysicalModel
 from semantics.state.printing import word_of

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from semantics.races.provenance import NOTHING, Provenance
-from semantics.state.cells import AGENTS, MONITOR, QUEUE, Cell, Cells, Changes, Edit
+from semantics.state.cell_values import AGENTS, MONITOR, QUEUE, Cell, Cells, Changes, Edit
 from semantics.state.requests import FLY, READY, SND, Request, request_key
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name

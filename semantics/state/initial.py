@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import assert_never
 
-from semantics.behaviours.stepping import new_process, starting
+from semantics.behaviours.process_conversion import new_process, starting
 from semantics.environment import Appears, Clause, Drifts, Drops, Leaves, Says, Vanishes
 from semantics.state.agents import Code
-from semantics.state.cells import AGENTS, NAMES, QUEUE, Changes
+from semantics.state.cell_values import AGENTS, NAMES, QUEUE, Changes
 from semantics.state.configuration import Configuration
 from semantics.state.logical_model import links_cell, parent_cell
 from semantics.state.physical_model import Placement, channels_cell, down_cell, placement_cell

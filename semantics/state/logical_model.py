@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from bigraphs import Bigraph, from_relations, open_signature
-from semantics.state.cells import NAMES, Cell, Cells, Changes, is_, is_something
+from semantics.state.cell_values import NAMES, Cell, Cells, Changes, is_, is_something
 from semantics.state.signature import REGION, EntityKinds, Name
 from semantics.state.views import CellView
 

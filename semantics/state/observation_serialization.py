@@ -6,10 +6,10 @@ from physical import Band, Geometry, point
 from physical.frame import E7
 from physical.shape import MAX_VERTICES, canonical
 from semantics.observed_steps import WRITABLE, Sight
-from semantics.state.cells import Cell
+from semantics.state.cell_values import Cell
 from semantics.state.parcel_serialization import elsewhere_json, elsewhere_of
-from semantics.state.partition import Elsewhere
 from semantics.state.physical_model import Carried, InTransit, Placed, Placement
+from semantics.state.station_partition import Elsewhere
 
 MOST_WRITES = 10_000
 """The most cells that one observation may write."""

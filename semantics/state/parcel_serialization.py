@@ -13,8 +13,8 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 from semantics.behaviours.observations import All, Fact, Nodes, Observation, Of, Query, QueryOperator, Swept
 from semantics.behaviours.values import LARGEST_NUMBER, MOST_PARTS, Route, Text, Truth, Value, in_order, parts
 from semantics.state.parcels import Controls, Parcel, Running
-from semantics.state.partition import Belief, Elsewhere, HostReport, Passage
 from semantics.state.requests import MGR, OBS, READY, SND
+from semantics.state.station_partition import Belief, Elsewhere, HostReport, Passage
 
 MOST_ITEMS = 10_000
 """The greatest length of one list."""

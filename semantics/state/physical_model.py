@@ -7,7 +7,7 @@ from itertools import takewhile
 from typing import NamedTuple
 
 from physical import Band, Geometry, PlaceIndex, area, band_contains, contains, point, share_interior
-from semantics.state.cells import NAMES, Cell, Cells, Changes, is_something
+from semantics.state.cell_values import NAMES, Cell, Cells, Changes, is_something
 from semantics.state.signature import REGION, EntityKinds, Name
 from semantics.state.views import CellView
 

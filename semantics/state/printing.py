@@ -8,7 +8,7 @@ from semantics.behaviours.statements import Statement
 from semantics.behaviours.values import show
 from semantics.state.agents import written
 from semantics.state.brief import cut
-from semantics.state.cells import AGENTS, MONITOR, NAMES, QUEUE, Cell
+from semantics.state.cell_values import AGENTS, MONITOR, NAMES, QUEUE, Cell
 from semantics.state.configuration import Configuration
 from semantics.state.physical_model import Carried, InTransit, PhysicalModel, Placement
 from semantics.state.requests import READY

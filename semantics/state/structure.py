@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from semantics.state.cells import Cells
+from semantics.state.cell_values import Cells
 from semantics.state.logical_model import LogicalModel
 from semantics.state.physical_model import PhysicalModel
 from semantics.state.relations import Linked, Parent, Relation

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from semantics.state.cells import Cell, Row
+from semantics.state.cell_values import Cell, Row
 
 
 class CellView:

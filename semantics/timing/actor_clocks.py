@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault
+from semantics.behaviours.process_conversion import next_statement
 from semantics.behaviours.statements import React
-from semantics.behaviours.stepping import next_statement
+from semantics.bigactor_rules import channels_between
 from semantics.environment import Drops, Leaves
-from semantics.extension import channels_between
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.requests import CTR, FLY, MGR, OBS, SND, Request
 from semantics.state.signature import Name

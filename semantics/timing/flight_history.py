@@ -19,7 +19,7 @@ from semantics.behaviours.reaction_rules import moved
 from semantics.brr_driver import stops
 from semantics.control import commits
 from semantics.environment import Drifts
-from semantics.state.cells import VOYAGE, Cell, Changes
+from semantics.state.cell_values import VOYAGE, Cell, Changes
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.eta import line_cell
 from semantics.state.physical_model import Carried, InTransit, PhysicalModel, Placed, placement_cell

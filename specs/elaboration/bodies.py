@@ -8,9 +8,9 @@ from functools import cached_property
 
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Expression, Literal
-from semantics.behaviours.pacing import unpaced
 from semantics.behaviours.program import Behaviour, Program, reachable
 from semantics.behaviours.statements import Block, Loop
+from semantics.behaviours.unpaced_loops import unpaced
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.initial_actors import InitialActor

@@ -11,7 +11,7 @@ from specs import syntax as s
 from specs.codes import Code
 from specs.construct_text import write
 from specs.elaboration.names import Names
-from specs.elaboration.needs import requoted, unquoted
+from specs.elaboration.type_constraints import requoted, unquoted
 from specs.elaboration.value_types import ANY, NAMES, NOTHING, Sorts, Types, ValueSort, sort_of
 
 _PLURALS: Final = {

@@ -32,7 +32,8 @@ from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.names import Names
-from specs.elaboration.needs import (
+from specs.elaboration.scopes import Scope
+from specs.elaboration.type_constraints import (
     AGENT,
     COLLECTION,
     CONDITION,
@@ -44,7 +45,6 @@ from specs.elaboration.needs import (
     operands,
     unquoted,
 )
-from specs.elaboration.scopes import Scope
 from specs.elaboration.value_types import MISTAKEN
 from specs.grammar import QUERY_WORDS
 

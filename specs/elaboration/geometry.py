@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from physical import Band, Geometry, PhysicalError, box, centroid, circle, point, polygon, translate_to
+from physical.geometry_measures import metres_text
 from physical.long_edges import check_edges
-from physical.measure import metres_text
 from physical.outliers import is_swapped, outliers
 from semantics.state.physical_model import Placed
 from specs import syntax as s

@@ -24,18 +24,18 @@ from specs.elaboration.beliefs import check_forest, elaborate_beliefs, settled
 from specs.elaboration.bodies import declare_behaviours, elaborate_bodies
 from specs.elaboration.check_section import elaborate_checks, elaborate_control, elaborate_scheduler
 from specs.elaboration.environment import appearing_channels, elaborate_environment
+from specs.elaboration.independent_diagnostics import independent
 from specs.elaboration.initial_actors import first_actors
 from specs.elaboration.live import elaborate_live
 from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.mobility import check_nesting, elaborate_mobility, fixed_entities, warn_of_outliers
 from specs.elaboration.names import Names
-from specs.elaboration.needs import check_types
 from specs.elaboration.overflights import warn_of_overflights
 from specs.elaboration.realisability import Ground, check_controls
 from specs.elaboration.rules import elaborate_rules
 from specs.elaboration.signature import elaborate_signature
 from specs.elaboration.timing import TickConversion, elaborate_timing
-from specs.elaboration.unread import independent
+from specs.elaboration.type_constraints import check_types
 from specs.elaboration.value_types import Inference
 from specs.elaboration.variation import AS_WRITTEN, Variation
 from specs.elaboration.world import elaborate_world

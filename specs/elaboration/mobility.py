@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from physical import Geometry, Place, check_places
-from physical.measure import metres_text
+from physical.geometry_measures import metres_text
 from physical.outliers import ON_DRY_LAND, all_swapped, is_swapped, outliers
 from semantics.environment import Clause, Placing
 from semantics.state.physical_model import Carried, Placed

@@ -14,7 +14,7 @@ from semantics.state.signature import NO_ENTITIES, REGION, Signature
 from specs import syntax as s
 from specs.codes import Code
 from specs.elaboration.mission_mistakes import Findings, a, shorten
-from specs.elaboration.needs import Demand, Need, Use, unquoted
+from specs.elaboration.type_constraints import Demand, Need, Use, unquoted
 
 SORTS: Final = ("entity", "agent", "family", "kind", "channel", "rule", "behaviour")
 AGENTS: Final = "agents"

@@ -27,12 +27,19 @@ from specs.elaboration.expressions import (
 )
 from specs.elaboration.mission_mistakes import Findings
 from specs.elaboration.names import Names
-from specs.elaboration.needs import COLLECTION, CONDITION, CONDITIONAL, FILLED, CaseDistinction, Need
 from specs.elaboration.patterns import check_distinct, elaborate_pattern, note_hiding
 from specs.elaboration.rule_regions import regions_of
 from specs.elaboration.rule_schemas import Schema, SchemaParameter
 from specs.elaboration.rules import elaborate_rule, word_of
 from specs.elaboration.scopes import Scope, Variables
+from specs.elaboration.type_constraints import (
+    COLLECTION,
+    CONDITION,
+    CONDITIONAL,
+    FILLED,
+    CaseDistinction,
+    Need,
+)
 from specs.foreign_words import DONE
 
 LONGEST: Final = 7 * 24 * 3600.0

@@ -7,8 +7,8 @@ from pymavlink.generator.mavcrc import x25crc
 
 from adapters.mavlink.codec import Encoder
 from adapters.mavlink.command import long, reposition
-from adapters.mavlink.constants import Cmd, Frame
-from adapters.mavlink.items import Item, item_message
+from adapters.mavlink.constants import Cmd, MavFrame
+from adapters.mavlink.items import OnboardItem, item_message
 from adapters.mavlink.message import say
 from adapters.simulated import Kind, Vehicle
 from adapters.simulated.reporting import Reporter
@@ -41,16 +41,16 @@ def frames():
         say("MISSION_ACK", type=0, **whom),
         say("MISSION_COUNT", count=3, **whom),
         say("COMMAND_ACK", command=400, result=0, target_system=255, target_component=190),
-        item_message(Item(Cmd.WAYPOINT, 370_000_000, -86_000_000, 100.0), 1, 0, 255, 190),
+        item_message(OnboardItem(Cmd.WAYPOINT, 370_000_000, -86_000_000, 100.0), 1, 0, 255, 190),
         say("PARAM_VALUE", param_value=255.0, param_count=1, param_index=0, **PARAMETER),
     )
     ours = Encoder(255, 190)
     questions = (
         long(Cmd.ARM_DISARM, 1, 1),
-        reposition(1, 370_000_000, -86_000_000, (100.0, Frame.HOME), 80.0, enters=True),
+        reposition(1, 370_000_000, -86_000_000, (100.0, MavFrame.HOME), 80.0, enters=True),
         say("MISSION_COUNT", target_system=1, target_component=1, count=3, mission_type=0),
         say("PARAM_SET", target_system=1, target_component=1, param_value=9.0, **PARAMETER),
-        item_message(Item(Cmd.WAYPOINT, 370_000_000, -86_000_000, 100.0), 1, 0, 1),
+        item_message(OnboardItem(Cmd.WAYPOINT, 370_000_000, -86_000_000, 100.0), 1, 0, 1),
     )
     said = [theirs.pack(message) for message in (*reporter.due(vehicle), *answers)]
     return said, [ours.pack(message) for message in questions]

@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from random import SystemRandom
 
 from adapters.recording.mcap_files import RecordingError
-from adapters.recording.reading import read_recording
+from adapters.recording.recording_reader import read_recording
 
 SIMULATOR = """
 import sys

@@ -10,7 +10,7 @@ import zenoh
 from rosbags.rosbag2 import Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from adapters.ros.messages import FIX, GEOGRAPHIC
+from adapters.ros.position_messages import FIX, GEOGRAPHIC
 
 STORE = get_typestore(Stores.ROS2_KILTED)
 for _name, _definition in GEOGRAPHIC.items():

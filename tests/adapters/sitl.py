@@ -13,7 +13,7 @@ from worlds import HOME, World, running, until
 from adapters.mavlink import Autopilot, Craft, Stations
 from adapters.mavlink.codec import Decoder, Encoder
 from adapters.mavlink.items import item_message, item_of
-from adapters.mavlink.message import Message, say
+from adapters.mavlink.message import MavlinkMessage, say
 
 FOLDER = os.environ.get("BIGACTORS_SITL", "")
 SPEED = 10
@@ -99,7 +99,7 @@ class Station:
         deadline = time.monotonic() + seconds
         while time.monotonic() < deadline:
             for message in self.decoder.feed(self.link.recv(4096)):
-                if isinstance(message, Message) and message.name in names:
+                if isinstance(message, MavlinkMessage) and message.name in names:
                     yield message
         pytest.fail(f"the simulator sends no {names}")
 

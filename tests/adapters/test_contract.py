@@ -16,23 +16,23 @@ from worlds import AREA, EPOCH, HOME, World, answering, running, simulated
 
 import adapters
 from adapters.ais import AisFeed
-from adapters.camera.feed import Camera, CameraFeed
+from adapters.camera.camera_plugin import Camera, CameraFeed
 from adapters.camera.libraries import opencv
 from adapters.camera.poses import PoseLog
+from adapters.camera.sea_projection import Lens, Pose
 from adapters.camera.sources import Folder
-from adapters.camera.view import Lens, Pose
-from adapters.detections import Detections
-from adapters.location import LocationService
+from adapters.detection_feed import Detections
+from adapters.location_feed import LocationService
 from adapters.mavlink import Autopilot, Craft
 from adapters.naming import NamingService
 from adapters.plugin import Plugin
 from adapters.ros import RosFeed, RosVehicles
-from adapters.ros.messages import FIX
+from adapters.ros.position_messages import FIX
 from adapters.simulated import Kind, Simulator, Vehicle
 from adapters.simulated.camera import render
 from adapters.static_places import StaticPlaces
 from adapters.stations.shared_plugin import Shared
-from adapters.stations.sharing import Sharing
+from adapters.stations.station_plugin import Sharing
 from adapters.web import Listen
 from bigactors.commands.run import feeds
 from bigactors.commands.run.option_values import LIVING
@@ -184,7 +184,7 @@ ELSEWHERE = {Plugin, Shared, Sharing}
 """The interface, and what stands between several stations."""
 
 APART = {RosVehicles}
-"""Held to the contract in `tests/adapters/ros/test_vehicle.py`, with a router."""
+"""Held to the contract in `tests/adapters/ros/test_ros_vehicle.py`, with a router."""
 
 
 def is_plugin(each):

@@ -17,10 +17,10 @@ from json_mutations import mutated
 from scale import examples
 from worlds import DATA, World, answering, running, simulated, until
 
-from adapters import location, web
+from adapters import location_feed, web
 from adapters.ais import AisFeed
 from adapters.lines import MAX_LINE, Lines
-from adapters.location import LocationService
+from adapters.location_feed import LocationService
 from adapters.naming import NamingService
 from adapters.plugin import Aged, Trouble
 from adapters.static_places import StaticPlaces
@@ -358,9 +358,9 @@ FULL = DRIFTER | {"altitude": 0, "speed": 0.4, "course": 120, "time": 1e9, "chan
 @given(mutated([{"entities": [FULL, DRIFTER]}]))
 def test_an_answer_with_a_fault_is_read_or_refused_and_so_is_each_of_its_entities(body):
     with suppress(PhysicalError):
-        for entry in read_typed(body, web.MAX_BODY, location._Answer).entities:
+        for entry in read_typed(body, web.MAX_BODY, location_feed._Answer).entities:
             with suppress(PhysicalError):
-                found = location._property(entry, 1e9, "cloud")
+                found = location_feed._property(entry, 1e9, "cloud")
                 assert is_word(found.entity)
                 assert is_word(found.kind)
                 assert all(map(is_word, found.channels))

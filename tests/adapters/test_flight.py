@@ -6,8 +6,8 @@ import pytest
 from worlds import AREA, EPOCH, FIELD, HOME, TINY, World, flight, flown, running, simulated, until
 
 from adapters.mavlink import Autopilot, Craft, Stations
-from adapters.mavlink.autopilot import AT_ONCE
 from adapters.mavlink.constants import MissionType
+from adapters.mavlink.mavlink_plugin import AT_ONCE
 from adapters.mavlink.task import PATIENCE
 from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Hold, Rejected, Return
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run

@@ -14,7 +14,7 @@ from worlds import AREA, World, running, simulated, until
 from adapters.ais import AisFeed
 from adapters.mavlink import Autopilot, Craft
 from adapters.mavlink.codec import Decoder, Garbage
-from adapters.mavlink.constants import Cmd, Frame, Result
+from adapters.mavlink.constants import Cmd, MavFrame, Result
 from adapters.mavlink.message import say
 from adapters.plugin import Aged, GoTo
 from adapters.simulated import Kind, Vehicle, protocol
@@ -92,7 +92,13 @@ def test_the_simulated_vehicle_takes_mutated_packets(number, change):
 
 def test_flags_that_are_no_number_move_no_vehicle():
     vehicle = Vehicle(Kind.COPTER, (37.0, -8.6, 20.0), enforce=False, armed=True)
-    where = {"x": 370_000_000, "y": -86_000_000, "z": 20.0, "frame": int(Frame.HOME_INT), "param3": 10.0}
+    where = {
+        "x": 370_000_000,
+        "y": -86_000_000,
+        "z": 20.0,
+        "frame": int(MavFrame.HOME_INT),
+        "param3": 10.0,
+    }
     command = say("COMMAND_INT", command=int(Cmd.REPOSITION), param2=math.nan, **where)
     [answer] = protocol.hear(vehicle, Reporter(), command, 1.0)
     assert (answer.name, answer["result"], vehicle.target) == ("COMMAND_ACK", Result.DENIED, None)

@@ -7,12 +7,12 @@ from packets import beat
 from worlds import AREA
 
 from adapters.mavlink import pilot
-from adapters.mavlink.fleet import Craft, Stations
 from adapters.mavlink.message import say
 from adapters.mavlink.pilot import Pilot
 from adapters.mavlink.profiles import COPTER, PLANE, ROVER
 from adapters.mavlink.takeover import STRANGE, Helm, given_back, modes_of, watch
-from adapters.mavlink.telemetry import Position, Telemetry
+from adapters.mavlink.telemetry import Telemetry, VehiclePosition
+from adapters.mavlink.vehicle_identities import Craft, Stations
 from adapters.plugin import (
     Accepted,
     Doubted,
@@ -122,7 +122,7 @@ def test_what_was_taken_over_stays_so_until_it_is_given_back_in_whatever_mode_it
 
 # --- with a pilot ---------------------------------------------------------------------------------------
 
-AT = Position(37.0, -8.6, 120.0, 100.0, 20.0, 0.0, 0.0, 0.0)
+AT = VehiclePosition(37.0, -8.6, 120.0, 100.0, 20.0, 0.0, 0.0, 0.0)
 TO = (37.01, -8.6175)
 STATIONS = Stations({"gcs0": 255, "gcs1": 254}, ("gcs0",))
 

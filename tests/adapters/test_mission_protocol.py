@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from adapters.mavlink import sync, upload
+from adapters.mavlink import upload, verified_upload
 from adapters.mavlink.constants import Cmd, MissionResult, MissionType
-from adapters.mavlink.items import Item, fence, route, same
+from adapters.mavlink.items import OnboardItem, fence, route, same
 from adapters.mavlink.message import say
 from adapters.simulated.store import ARDUPILOT_MANNER, PX4_MANNER, Store
 from physical import box, point
@@ -95,10 +95,12 @@ def test_a_denial_is_final_only_once_another_upload_would_have_been_given_up():
 
 
 def test_an_answer_to_another_station_than_the_one_that_uploads_is_passed_over():
-    going, _ = sync.tick(sync.begin(ITEMS, MissionType.MISSION, 1, 254), 0.0)
+    going, _ = verified_upload.tick(verified_upload.begin(ITEMS, MissionType.MISSION, 1, 254), 0.0)
     for message in (asked(0), ack(MissionResult.INVALID)):  # meant for 255
-        assert sync.hear(going, message, 0.1) == (going, ())
-    _, (item,) = sync.hear(going, replace(asked(0), fields={**asked(0).fields, "target_system": 254}), 0.1)
+        assert verified_upload.hear(going, message, 0.1) == (going, ())
+    _, (item,) = verified_upload.hear(
+        going, replace(asked(0), fields={**asked(0).fields, "target_system": 254}), 0.1
+    )
     assert (item.name, item.system) == ("MISSION_ITEM_INT", 254)
 
 
@@ -128,7 +130,7 @@ class Line:
     """A vehicle's store and our sync with a line between them, by a clock of their own."""
 
     def __init__(self, items, kind, fates, store=None):
-        self.sync = sync.begin(items, kind, 1, 255)
+        self.sync = verified_upload.begin(items, kind, 1, 255)
         self.store = store or Store(request="MISSION_REQUEST")
         self.fates = iter(fates)
         self.now = 0.0
@@ -140,7 +142,7 @@ class Line:
 
     def step(self, seconds=0.1):
         self.now += seconds
-        self.sync, ours = sync.tick(self.sync, self.now)
+        self.sync, ours = verified_upload.tick(self.sync, self.now)
         theirs = self.store.tick(self.now)
         for _ in range(40):
             if not ours and not theirs:
@@ -150,7 +152,7 @@ class Line:
                 answers += self.store.hear(message, ready=self.now > 3.0, now=self.now)
             ours = []
             for message in self.through([*theirs, *answers], system=1, component=1):
-                self.sync, sent = sync.hear(self.sync, message, self.now)
+                self.sync, sent = verified_upload.hear(self.sync, message, self.now)
                 ours += sent
             theirs = []
 
@@ -169,7 +171,9 @@ def test_whatever_is_lost_or_doubled_it_is_on_board_when_confirmed(fates, which)
 def test_a_vehicle_that_keeps_something_else_is_found_out():
     class Forgetful(Store):
         def _complete(self, going):
-            return super()._complete(replace(going, items=(*going.items[:-1], Item(Cmd.WAYPOINT, 1, 1))))
+            return super()._complete(
+                replace(going, items=(*going.items[:-1], OnboardItem(Cmd.WAYPOINT, 1, 1)))
+            )
 
     line = Line(ITEMS, MissionType.MISSION, (), Forgetful(request="MISSION_REQUEST"))
     while line.sync.refusal is None:

@@ -9,8 +9,8 @@ import pytest
 from worlds import AREA, flight, flown, simulated, until
 
 from adapters.mavlink import Craft
-from adapters.mavlink.constants import Cmd, Fence, Frame, MissionResult, MissionType
-from adapters.mavlink.items import Item, fence, route, same
+from adapters.mavlink.constants import Cmd, Fence, MavFrame, MissionResult, MissionType
+from adapters.mavlink.items import OnboardItem, fence, route, same
 from adapters.mavlink.task import PATIENCE
 from adapters.plugin import (
     Arrived,
@@ -54,8 +54,8 @@ def e7(latitude, longitude):
 
 
 def no_fly(latitude, longitude, radius):
-    more = 0.0, Frame.SEA_LEVEL, (radius, 0.0, 0.0, 0.0)
-    return Item(Cmd.FENCE_CIRCLE_EXCLUSION, *e7(latitude, longitude), *more)
+    more = 0.0, MavFrame.SEA_LEVEL, (radius, 0.0, 0.0, 0.0)
+    return OnboardItem(Cmd.FENCE_CIRCLE_EXCLUSION, *e7(latitude, longitude), *more)
 
 
 async def finds(f, kind, *items):
@@ -272,10 +272,10 @@ async def test_where_one_of_several_zones_is_enough_a_wider_one_is_replaced_and_
 # --- landing sequences --------------------------------------------------------------------------------
 
 LANDING = (
-    Item(Cmd.DO_LAND_START, 0, 0, 0.0, Frame.SEA_LEVEL),
-    Item(Cmd.WAYPOINT, *e7(36.99, -8.61), 60.0),
-    Item(Cmd.WAYPOINT, *e7(36.995, -8.605), 30.0),
-    Item(Cmd.LAND, *e7(37.0, -8.6), 0.0),
+    OnboardItem(Cmd.DO_LAND_START, 0, 0, 0.0, MavFrame.SEA_LEVEL),
+    OnboardItem(Cmd.WAYPOINT, *e7(36.99, -8.61), 60.0),
+    OnboardItem(Cmd.WAYPOINT, *e7(36.995, -8.605), 30.0),
+    OnboardItem(Cmd.LAND, *e7(37.0, -8.6), 0.0),
 )
 
 
@@ -323,7 +323,7 @@ async def test_a_landing_sequence_that_is_not_there_and_a_mission_that_is_replac
 @flown(parameters={"RTL_AUTOLAND": 2.0})
 async def test_the_jumps_of_a_landing_sequence_keep_their_aims_and_one_out_of_it_is_refused(f, aside):
     to = 2.0 if aside else len(theirs(f)) + 1.0
-    jump = Item(Cmd.DO_JUMP, 0, 0, 0.0, Frame.SEA_LEVEL, (to, 1.0, 0.0, 0.0))
+    jump = OnboardItem(Cmd.DO_JUMP, 0, 0, 0.0, MavFrame.SEA_LEVEL, (to, 1.0, 0.0, 0.0))
     theirs(f, more=(*LANDING[:3], jump, LANDING[3]))
     await until(f.plugin.is_known, 60)
     if aside:
@@ -339,7 +339,7 @@ async def test_the_jumps_of_a_landing_sequence_keep_their_aims_and_one_out_of_it
 
 
 def rally(latitude, longitude):
-    return Item(Cmd.RALLY_POINT, *e7(latitude, longitude), 60.0)
+    return OnboardItem(Cmd.RALLY_POINT, *e7(latitude, longitude), 60.0)
 
 
 @pytest.mark.parametrize("kind", PLANES)

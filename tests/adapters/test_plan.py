@@ -6,14 +6,14 @@ import pytest
 
 from adapters.mavlink import Autopilot, pilot
 from adapters.mavlink.constants import Cmd, MissionType, Result
-from adapters.mavlink.fleet import Craft, Stations
 from adapters.mavlink.items import route
 from adapters.mavlink.message import say
-from adapters.mavlink.next_step import Load, Tell, Underway, Vehicle, Wait, next_step
+from adapters.mavlink.next_step import FollowsCommand, Load, StepInput, Tell, Wait, next_step
 from adapters.mavlink.pilot import Pilot
 from adapters.mavlink.profiles import BOAT, COPTER, PLANE, ROVER, profile_of
 from adapters.mavlink.task import PATIENCE
-from adapters.mavlink.telemetry import Position, Telemetry
+from adapters.mavlink.telemetry import Telemetry, VehiclePosition
+from adapters.mavlink.vehicle_identities import Craft, Stations
 from adapters.plugin import (
     Accepted,
     Arrived,
@@ -30,7 +30,7 @@ from physical import PhysicalError, box, point, waypoint
 
 AREA = box((37.015, -8.61), (37.005, -8.625))
 THERE = GoTo("r1", "uav0", AREA)
-AT = Position(37.0, -8.6, 20.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+AT = VehiclePosition(37.0, -8.6, 20.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 READY = Telemetry(
     heard=0.0, mode=0, armed=False, active=False, position=AT, healthy=True, current=0, authority=255
 )
@@ -43,7 +43,7 @@ NOTHING = dict.fromkeys(MissionType, ())
 def step(profile, command=THERE, on_board=None, begun=False, **known):
     known = replace(READY, profile=profile, **known)
     on_board = NOTHING if on_board is None else on_board
-    vehicle = Vehicle(1, known, profile, on_board, None, profile.circle, 100.0, begun)
+    vehicle = StepInput(1, known, profile, on_board, None, profile.circle, 100.0, begun)
     return next_step(command, 254, vehicle)
 
 
@@ -100,23 +100,23 @@ FLYING = {"armed": True, "active": True, "mode": PLANE.guided, "current": 2}
 
 def test_it_is_on_its_way_when_it_tells_the_target_and_there_when_it_is_inside():
     assert isinstance(step(PLANE, **FLYING, target=(37.0, -8.6)), Tell)
-    assert step(PLANE, **FLYING, target=(37.01, -8.6175)) == Underway(done=False)
+    assert step(PLANE, **FLYING, target=(37.01, -8.6175)) == FollowsCommand(done=False)
     inside = replace(AT, latitude=37.01, longitude=-8.612, height=100.0)
-    assert step(PLANE, **FLYING, target=(37.01, -8.6175), position=inside) == Underway(done=True)
+    assert step(PLANE, **FLYING, target=(37.01, -8.6175), position=inside) == FollowsCommand(done=True)
 
 
 def test_modes_alone_hold_and_return_and_authority_alone_hands_over():
     assert told(step(PLANE, Hold("r", "uav0"))) == (Cmd.DO_SET_MODE, PLANE.hold)
     assert told(step(PLANE, Return("r", "uav0"))) == (Cmd.DO_SET_MODE, PLANE.home)
-    assert step(PLANE, Return("r", "uav0"), mode=PLANE.home, armed=True, home=(38.0, -8.6)) == Underway(
+    assert step(PLANE, Return("r", "uav0"), mode=PLANE.home, armed=True, home=(38.0, -8.6)) == FollowsCommand(
         done=False
     )
-    assert step(PLANE, Return("r", "uav0"), mode=PLANE.home, armed=True, home=(37.0, -8.6)) == Underway(
+    assert step(PLANE, Return("r", "uav0"), mode=PLANE.home, armed=True, home=(37.0, -8.6)) == FollowsCommand(
         done=True
     )
     hand_over = HandOver("r", "uav0", "control:gcs0", "control:gcs1")
     assert step(PLANE, hand_over).message["param_value"] == 254
-    assert step(PLANE, hand_over, authority=254) == Underway(done=True)
+    assert step(PLANE, hand_over, authority=254) == FollowsCommand(done=True)
 
 
 @pytest.mark.parametrize(
@@ -255,7 +255,7 @@ def test_at_a_point_it_is_there_when_it_circles_it():
     at = point(37.01, -8.6175)
     inside = replace(AT, latitude=37.01, longitude=-8.6184, height=100.0)
     known = FLYING | {"target": at.vertices[0], "position": inside}
-    assert step(PLANE, GoTo("r", "uav0", at), **known) == Underway(done=True)
+    assert step(PLANE, GoTo("r", "uav0", at), **known) == FollowsCommand(done=True)
 
 
 def linked(*crafts):

@@ -7,10 +7,10 @@ import pytest
 from worlds import AREA, HOME, flown, until
 
 from adapters.live.loop import NotHeard
-from adapters.mavlink.condition import Condition, look
-from adapters.mavlink.constants import Cmd, Frame, MissionType
+from adapters.mavlink.constants import Cmd, MavFrame, MissionType
 from adapters.mavlink.message import say
 from adapters.mavlink.telemetry import Telemetry, absorb
+from adapters.mavlink.vehicle_faults import FaultState, look
 from adapters.plugin import Arrived, Follow, GoTo, Status, TakenOver, Trouble
 from adapters.simulated import Kind, Vehicle, protocol
 from adapters.simulated.reporting import Reporter
@@ -147,7 +147,7 @@ async def test_a_home_that_is_moved_is_said_and_the_next_leg_is_flown_above_the_
 async def test_a_path_in_a_band_is_uploaded_above_sea_level(f):
     await f.accepts(Follow("r1", "uav0", (point(37.004, -8.604), AREA), Band(150.0, 190.0)))
     flown = f.vehicle.store.items[MissionType.MISSION][1:]
-    assert {(item.frame, item.z) for item in flown} == {(Frame.SEA_LEVEL, 170.0)}
+    assert {(item.frame, item.z) for item in flown} == {(MavFrame.SEA_LEVEL, 170.0)}
     assert isinstance(await f.ended("r1"), Arrived)
     assert f.vehicle.home[2] + f.vehicle.body.height == pytest.approx(170.0, abs=3.0)
 
@@ -167,5 +167,5 @@ def test_a_simulated_vehicle_stays_where_it_is_when_its_home_is_moved_by_command
 
 def test_a_home_that_arming_sets_anew_was_not_moved():
     known = Telemetry(armed=True, base=(37.0, -8.6, 20.0), home=(37.00001, -8.6), ground=21.5, position=None)
-    condition, reports = look(Condition(), "uav0", known, 1.0, lost=False)
-    assert (condition, reports) == (Condition(), ())
+    condition, reports = look(FaultState(), "uav0", known, 1.0, lost=False)
+    assert (condition, reports) == (FaultState(), ())

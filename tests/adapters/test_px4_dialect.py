@@ -6,8 +6,8 @@ import pytest
 from worlds import AREA, Flight, flown, until
 
 from adapters.mavlink import Craft
-from adapters.mavlink.constants import Cmd, Frame, MissionType
-from adapters.mavlink.items import Item, same
+from adapters.mavlink.constants import Cmd, MavFrame, MissionType
+from adapters.mavlink.items import OnboardItem, same
 from adapters.mavlink.profiles import PX4_COPTER, PX4_DIALECT, mode_number
 from adapters.plugin import Follow, GoTo, Hold, TakenOver
 from adapters.simulated import Kind
@@ -28,9 +28,13 @@ def test_modes_are_numbered_as_px4_numbers_them():
 
 
 def test_frames_for_integers_are_the_same_frames():
-    ours, theirs = (Item(Cmd.WAYPOINT, 1, 2, 3.0, frame) for frame in (Frame.HOME, Frame.HOME_INT))
+    ours, theirs = (
+        OnboardItem(Cmd.WAYPOINT, 1, 2, 3.0, frame) for frame in (MavFrame.HOME, MavFrame.HOME_INT)
+    )
     assert same((ours,), (theirs,), MissionType.MISSION)
-    assert not same((ours,), (Item(Cmd.WAYPOINT, 1, 2, 3.0, Frame.SEA_LEVEL_INT),), MissionType.MISSION)
+    assert not same(
+        (ours,), (OnboardItem(Cmd.WAYPOINT, 1, 2, 3.0, MavFrame.SEA_LEVEL_INT),), MissionType.MISSION
+    )
 
 
 @flown(Kind.PX4_COPTER, craft=Craft("uav0", fence=FENCE))

@@ -6,16 +6,16 @@ import sys
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega
 
-from adapters.mavlink import command, link, streams
+from adapters.mavlink import command, link_loss, streams
 from adapters.mavlink.codec import CodecError, Decoder, Encoder, Garbage
-from adapters.mavlink.command import Telling, long, reposition
-from adapters.mavlink.constants import REGULAR, STREAMS, Cmd, Frame, Result
-from adapters.mavlink.message import Message, is_for, say
+from adapters.mavlink.command import RepeatedMessage, long, reposition
+from adapters.mavlink.constants import REGULAR, STREAMS, Cmd, MavFrame, Result
+from adapters.mavlink.message import MavlinkMessage, is_for, say
 from adapters.mavlink.telemetry import Telemetry, absorb
 from adapters.plugin import LinkLost, LinkRestored
 
 BEAT = {"base_mode": 81, "custom_mode": 0, "system_status": 3, "mavlink_version": 3}
-HEARTBEAT = Message("HEARTBEAT", {"type": 1, "autopilot": 3, **BEAT}, 1, 1)
+HEARTBEAT = MavlinkMessage("HEARTBEAT", {"type": 1, "autopilot": 3, **BEAT}, 1, 1)
 
 
 def ack(result, number=Cmd.ARM_DISARM):
@@ -28,7 +28,7 @@ def ack(result, number=Cmd.ARM_DISARM):
 
 
 def test_what_is_packed_is_read_again_by_us_and_by_pymavlinks_own_parser():
-    message = reposition(1, 370_000_000, -86_000_000, (100.0, Frame.HOME), 80.0, enters=True)
+    message = reposition(1, 370_000_000, -86_000_000, (100.0, MavFrame.HOME), 80.0, enters=True)
     raw = Encoder(255, 190).pack(message)
     (ours,) = Decoder().feed(raw)
     (theirs,) = ardupilotmega.MAVLink(None).parse_buffer(raw)
@@ -93,7 +93,7 @@ def test_messages_are_for_their_target_or_for_everybody():
 
 
 def test_a_command_is_sent_again_until_its_sender_sees_what_it_was_for():
-    telling, sent = Telling(long(Cmd.ARM_DISARM, 1, 1)), []
+    telling, sent = RepeatedMessage(long(Cmd.ARM_DISARM, 1, 1)), []
     for tenth in range(50):
         telling, messages = command.tick(telling, tenth / 10)
         sent += messages
@@ -102,7 +102,7 @@ def test_a_command_is_sent_again_until_its_sender_sees_what_it_was_for():
 
 
 def test_a_command_in_progress_is_left_alone_for_longer():
-    telling, _ = command.tick(Telling(long(Cmd.ARM_DISARM, 1, 1)), 0.0)
+    telling, _ = command.tick(RepeatedMessage(long(Cmd.ARM_DISARM, 1, 1)), 0.0)
     telling = command.hear(telling, ack(Result.IN_PROGRESS))
     assert command.tick(telling, 3.0)[1] == ()
     assert command.tick(telling, 6.0)[1]
@@ -110,13 +110,13 @@ def test_a_command_in_progress_is_left_alone_for_longer():
 
 @pytest.mark.parametrize("result", Result)
 def test_only_denied_and_unsupported_are_final(result):
-    telling, _ = command.tick(Telling(long(Cmd.ARM_DISARM, 1, 1)), 0.0)
+    telling, _ = command.tick(RepeatedMessage(long(Cmd.ARM_DISARM, 1, 1)), 0.0)
     refusal = command.hear(telling, ack(result)).refusal
     assert (refusal is not None) == (result in (Result.DENIED, Result.UNSUPPORTED))
 
 
 def test_an_answer_to_another_command_or_to_none_is_passed_over():
-    telling = Telling(long(Cmd.ARM_DISARM, 1, 1))
+    telling = RepeatedMessage(long(Cmd.ARM_DISARM, 1, 1))
     assert command.hear(telling, ack(Result.DENIED)) is telling  # nothing was sent yet
     telling, _ = command.tick(telling, 0.0)
     assert command.hear(telling, ack(Result.DENIED, Cmd.TAKEOFF)) is telling
@@ -126,22 +126,22 @@ def test_an_answer_to_another_command_or_to_none_is_passed_over():
 
 
 def test_a_link_is_lost_after_five_seconds_of_silence_and_restored_by_a_message():
-    known, state = absorb(Telemetry(), HEARTBEAT, 10.0), link.Link()
-    assert link.watch(state, "uav0", known, 14.9) == (state, None)
-    state, lost = link.watch(state, "uav0", known, 15.1)
+    known, state = absorb(Telemetry(), HEARTBEAT, 10.0), link_loss.LinkState()
+    assert link_loss.watch(state, "uav0", known, 14.9) == (state, None)
+    state, lost = link_loss.watch(state, "uav0", known, 15.1)
     assert lost == LinkLost("uav0", 15.1, 10.0)
-    assert link.watch(state, "uav0", known, 16.0)[1] is None
-    _, back = link.watch(state, "uav0", absorb(known, HEARTBEAT, 17.0), 17.0)
+    assert link_loss.watch(state, "uav0", known, 16.0)[1] is None
+    _, back = link_loss.watch(state, "uav0", absorb(known, HEARTBEAT, 17.0), 17.0)
     assert back == LinkRestored("uav0", 17.0)
 
 
 def test_a_vehicle_never_heard_is_not_lost():
-    assert link.watch(link.Link(), "uav0", Telemetry(), 1e9) == (link.Link(), None)
+    assert link_loss.watch(link_loss.LinkState(), "uav0", Telemetry(), 1e9) == (link_loss.LinkState(), None)
 
 
 def clocked(known, milliseconds, now=0.0):
     return absorb(
-        known, Message("SYSTEM_TIME", {"time_unix_usec": 0, "time_boot_ms": milliseconds}, 1, 1), now
+        known, MavlinkMessage("SYSTEM_TIME", {"time_unix_usec": 0, "time_boot_ms": milliseconds}, 1, 1), now
     )
 
 
@@ -161,7 +161,7 @@ def test_missing_messages_are_asked_for_every_two_seconds_and_those_that_come_ar
     assert {message["param1"] for message in sent} == {number for number, _ in map(STREAMS.get, REGULAR)}
     assert streams.tick(state, 1, 1.9)[1] == ()
     for name in REGULAR:
-        state = streams.hear(state, Message(name, {}), 2.0)
+        state = streams.hear(state, MavlinkMessage(name, {}), 2.0)
     state, sent = streams.tick(state, 1, 2.5)
     assert sent == ()
     _, sent = streams.tick(state, 1, 9.0)
@@ -174,25 +174,25 @@ def test_missing_messages_are_asked_for_every_two_seconds_and_those_that_come_ar
 
 
 def test_what_another_component_says_is_not_the_autopilots_word():
-    camera = Message("HEARTBEAT", {"type": 30, "autopilot": 8, **BEAT}, 1, 100)
+    camera = MavlinkMessage("HEARTBEAT", {"type": 30, "autopilot": 8, **BEAT}, 1, 100)
     assert absorb(Telemetry(), camera, 1.0) == Telemetry()
 
 
 def test_a_late_position_does_not_take_the_vehicle_back():
-    fix = Message("GPS_RAW_INT", {"fix_type": 3}, 1, 1)
+    fix = MavlinkMessage("GPS_RAW_INT", {"fix_type": 3}, 1, 1)
     rest = {"alt": 0, "relative_alt": 0, "vx": 0, "vy": 0, "vz": 0, "hdg": 9_000}
     known = absorb(Telemetry(), fix, 0.0)
     for milliseconds, latitude in ((2_000, 37.2), (1_000, 37.1)):
         fields = {"time_boot_ms": milliseconds, "lat": round(latitude * 1e7), "lon": -86_000_000, **rest}
-        known = absorb(known, Message("GLOBAL_POSITION_INT", fields, 1, 1), 1.0)
+        known = absorb(known, MavlinkMessage("GLOBAL_POSITION_INT", fields, 1, 1), 1.0)
     assert known.position.latitude == 37.2
 
 
 def test_a_fix_is_believed_for_ten_seconds():
-    known = absorb(Telemetry(), Message("GPS_RAW_INT", {"fix_type": 3}, 1, 1), 0.0)
+    known = absorb(Telemetry(), MavlinkMessage("GPS_RAW_INT", {"fix_type": 3}, 1, 1), 0.0)
     fields = {"time_boot_ms": 1, "lat": 370_000_000, "hdg": 65_535}
     fields |= dict.fromkeys(("lon", "alt", "relative_alt", "vx", "vy", "vz"), 0)
-    position = Message("GLOBAL_POSITION_INT", fields, 1, 1)
+    position = MavlinkMessage("GLOBAL_POSITION_INT", fields, 1, 1)
     assert absorb(known, position, 9.9).position is not None
     assert absorb(known, position, 10.1).position is None
 
@@ -201,6 +201,6 @@ def test_of_a_vehicle_the_last_warnings_of_a_minute_are_remembered_as_they_can_b
     known = Telemetry()
     said = [(0.0, 4, "gone"), (50.0, 2, "PreArm:\x1b[31m no"), (60.0, 6, "EKF is fine"), (61.0, 4, "\x07")]
     for time, severity, text in said:
-        known = absorb(known, Message("STATUSTEXT", {"text": text, "severity": severity}, 1, 1), time)
+        known = absorb(known, MavlinkMessage("STATUSTEXT", {"text": text, "severity": severity}, 1, 1), time)
     assert known.last_words(61.0) == "; its last words: 'PreArm:[31m no'"
     assert known.last_words(200.0) == ""

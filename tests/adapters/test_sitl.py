@@ -15,7 +15,7 @@ from adapters.mavlink import Craft
 from adapters.mavlink.command import long, set_parameter
 from adapters.mavlink.constants import Cmd
 from adapters.mavlink.profiles import PLANE
-from adapters.mavlink.sync import Sync
+from adapters.mavlink.verified_upload import Sync
 from adapters.plugin import Accepted, Arrived, Follow, GoTo, HandOver, Refused, Rejected, Return, Status
 from adapters.simulated import run
 from bigactors.arguments import parse_arguments

@@ -9,8 +9,8 @@ from worlds import AREA, HOME, until
 
 from adapters.mavlink import Craft
 from adapters.mavlink.command import long, reposition, set_parameter
-from adapters.mavlink.constants import Cmd, Frame, MissionType
-from adapters.mavlink.items import Item, route, same
+from adapters.mavlink.constants import Cmd, MavFrame, MissionType
+from adapters.mavlink.items import OnboardItem, route, same
 from adapters.plugin import (
     Accepted,
     Arrived,
@@ -139,7 +139,9 @@ def test_a_fence_that_somebody_clears_is_noticed_and_is_on_the_real_plane_again_
 
 
 def test_a_zone_to_stay_out_of_stays_on_the_real_plane_and_is_not_flown_across(tmp_path):
-    zone = Item(Cmd.FENCE_CIRCLE_EXCLUSION, *e7(37.015, -8.6), 0.0, Frame.SEA_LEVEL, (300.0, 0.0, 0.0, 0.0))
+    zone = OnboardItem(
+        Cmd.FENCE_CIRCLE_EXCLUSION, *e7(37.015, -8.6), 0.0, MavFrame.SEA_LEVEL, (300.0, 0.0, 0.0, 0.0)
+    )
 
     async def main():
         before = lambda: load((zone,), MissionType.FENCE)  # noqa: E731
@@ -158,10 +160,10 @@ def test_a_zone_to_stay_out_of_stays_on_the_real_plane_and_is_not_flown_across(t
 
 def test_a_landing_sequence_stays_on_the_real_plane_and_brings_it_down(tmp_path):
     landing = (
-        Item(Cmd.DO_LAND_START, 0, 0, 0.0, Frame.SEA_LEVEL),
-        Item(Cmd.WAYPOINT, *e7(36.985, -8.615), 60.0),
-        Item(Cmd.WAYPOINT, *e7(36.993, -8.607), 30.0),
-        Item(Cmd.LAND, *e7(37.0, -8.6), 0.0),
+        OnboardItem(Cmd.DO_LAND_START, 0, 0, 0.0, MavFrame.SEA_LEVEL),
+        OnboardItem(Cmd.WAYPOINT, *e7(36.985, -8.615), 60.0),
+        OnboardItem(Cmd.WAYPOINT, *e7(36.993, -8.607), 30.0),
+        OnboardItem(Cmd.LAND, *e7(37.0, -8.6), 0.0),
     )
 
     async def main():
@@ -178,7 +180,7 @@ def test_a_landing_sequence_stays_on_the_real_plane_and_brings_it_down(tmp_path)
 
 
 def test_a_return_of_the_real_plane_is_done_at_its_rally_point(tmp_path):
-    rally = Item(Cmd.RALLY_POINT, *e7(37.01, -8.635), 80.0)
+    rally = OnboardItem(Cmd.RALLY_POINT, *e7(37.01, -8.635), 80.0)
 
     async def main():
         before = lambda: load((rally,), MissionType.RALLY)  # noqa: E731
@@ -223,7 +225,7 @@ def test_a_target_of_somebody_at_the_same_point_and_another_height_takes_the_rea
         async with flying(tmp_path, GoTo("r1", "uav0", WAY[-1])) as (world, plugin):
             await until(lambda: plugin.pilot("uav0").known.target)
             x, y = e7(*plugin.pilot("uav0").known.target)
-            tell(253, reposition(1, x, y, (400.0, Frame.HOME), 0.0, enters=True))
+            tell(253, reposition(1, x, y, (400.0, MavFrame.HOME), 0.0, enters=True))
             (taken,) = await until(lambda: world.of(TakenOver), 60)
             assert "at another height" in taken.reason
 

@@ -8,8 +8,8 @@ import pytest
 from packets import beat
 from worlds import AREA, EPOCH, flight, flown, running, simulated, until
 
-from adapters.mavlink.autopilot import MAX_REMOTES
 from adapters.mavlink.codec import Encoder
+from adapters.mavlink.mavlink_plugin import MAX_REMOTES
 from adapters.mavlink.message import say
 from adapters.mavlink.signing import Signing, new_key, save
 from adapters.plugin import Arrived, GoTo, LinkLost, LinkRestored, Rebind, Trouble

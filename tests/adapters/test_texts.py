@@ -12,7 +12,7 @@ from adapters.mavlink import pilot as piloting
 from adapters.mavlink.message import say
 from adapters.mavlink.pilot import Pilot
 from adapters.mavlink.telemetry import Telemetry, absorb
-from adapters.mavlink.texts import CHUNK, PATIENCE, Text, give_up, join
+from adapters.mavlink.texts import CHUNK, PATIENCE, VehicleText, give_up, join
 from adapters.mavlink.tlog import read_tlog
 from adapters.plugin import Battery, GoTo, Hold, Status, StatusText, Trouble
 from adapters.simulated import Kind, run
@@ -60,7 +60,7 @@ def test_another_text_ends_one_whose_rest_did_not_come():
     assert joined(begun, chunk("b" * 50, 8), chunk("c", 8, 1))[1] == ["a" * 50 + "...", "b" * 50 + "c"]
     chunks, _ = joined(begun)
     assert give_up(chunks, PATIENCE) == (chunks, ())
-    assert give_up(chunks, PATIENCE + 0.1) == (None, (Text("a" * 50 + "...", 6),))
+    assert give_up(chunks, PATIENCE + 0.1) == (None, (VehicleText("a" * 50 + "...", 6),))
 
 
 def test_a_text_holds_no_more_chunks_than_their_numbers_tell_apart():
@@ -71,7 +71,7 @@ def test_a_text_holds_no_more_chunks_than_their_numbers_tell_apart():
 def test_what_cannot_be_printed_is_left_out_of_a_text_and_an_unknown_severity_is_the_least():
     assert joined(chunk("a\x1b[2J\x00b"))[1] == ["a[2Jb"]
     assert joined(chunk("\x00"))[1] == []
-    assert join(None, chunk("a", severity=200), 0.0)[1] == (Text("a", 7),)
+    assert join(None, chunk("a", severity=200), 0.0)[1] == (VehicleText("a", 7),)
 
 
 def heard(name, **fields):

@@ -15,9 +15,9 @@ import packets
 from packets import beat, fixed
 
 from adapters.mavlink.codec import Encoder
-from adapters.mavlink.fleet import Craft
-from adapters.mavlink.message import Message
+from adapters.mavlink.message import MavlinkMessage
 from adapters.mavlink.tlog import Damage, Unread, entries, entry, messages_in, positions_of, read_tlog
+from adapters.mavlink.vehicle_identities import Craft
 from physical import PhysicalError
 from physical.file_account import Counting
 
@@ -140,14 +140,14 @@ chunks = st.one_of(
 def test_every_byte_is_in_an_entry_or_in_a_damaged_stretch_and_the_account_adds_up(data):
     found = list(entries(io.BytesIO(data)))
     lost = sum(each.size for _, each in found if isinstance(each, Damage))
-    whole = sum(8 + len(each.raw) for _, each in found if isinstance(each, Message))
+    whole = sum(8 + len(each.raw) for _, each in found if isinstance(each, MavlinkMessage))
     assert lost + whole <= len(data)
     if not any(isinstance(each, Unread) for _, each in found):
         assert lost + whole == len(data)
     try:
         times, tally = read(data)
     except PhysicalError:
-        assert not any(isinstance(each, Message) for _, each in found)
+        assert not any(isinstance(each, MavlinkMessage) for _, each in found)
         return
     assert (tally.total, tally.adds_up) == (len(found), True)
     assert dict(tally.taken).get("position", 0) == len(times)
@@ -160,4 +160,4 @@ def test_every_byte_is_in_an_entry_or_in_a_damaged_stretch_and_the_account_adds_
 def test_a_real_log_has_as_many_messages_as_pymavlink_finds(name, messages, bad):
     with (DATA / f"{name}.tlog").open("rb") as file:
         found = Counter(type(each) for _, each in entries(file))
-    assert (found[Message], found[Unread]) == (messages, bad)
+    assert (found[MavlinkMessage], found[Unread]) == (messages, bad)

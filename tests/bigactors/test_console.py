@@ -18,7 +18,7 @@ from certificates import Authority
 from console_clients import HELLO, client
 from consoles import begun, free_port, link_of
 
-from adapters.recording.reading import read_recording
+from adapters.recording.recording_reader import read_recording
 from bigactors.cli import main
 from bigactors.commands.console import PORT
 from bigactors.commands.run import console_beside

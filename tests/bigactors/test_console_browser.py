@@ -7,7 +7,7 @@ import pytest
 from browsers import DESK, PATIENCE, Watch, chromium
 from consoles import begun, free_port, link_of
 
-from adapters.recording.reading import read_recording
+from adapters.recording.recording_reader import read_recording
 from bigactors.live_demo import MISSION
 from specs.missions import shipped_missions
 

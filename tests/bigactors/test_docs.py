@@ -1,6 +1,6 @@
 from bigactors import docs
 from bigactors.commands import NAMES
-from semantics.extension import EXTENSION
+from semantics.bigactor_rules import EXTENSION
 from semantics.rules import RULES, TIMED_RULES
 
 

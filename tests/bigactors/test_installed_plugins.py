@@ -10,7 +10,7 @@ from bigactors.cli import main
 from bigactors.commands.run.connections import plugins_of
 from bigactors.commands.run.feeds import FEEDS
 from bigactors.installed_plugins import find_detector
-from bigactors.missions import open_mission
+from bigactors.mission_lookup import open_mission
 from bigactors.mistakes import Mistake
 from semantics.state.setting import Control, Scheduler
 from specs.elaboration import Variation

@@ -11,8 +11,8 @@ from adapters.mavlink.signing import load
 from adapters.naming import NameClash
 from bigactors.arguments import parse_arguments
 from bigactors.commands.run.connections import plugins_of
-from bigactors.commands.run.fences import fence_of
-from bigactors.missions import open_mission
+from bigactors.commands.run.geofence import fence_of
+from bigactors.mission_lookup import open_mission
 from bigactors.mistakes import Mistake
 from physical import box, contains, point
 from semantics.state.setting import Control, Scheduler

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import checker
-from bigactors.outputs import result_on
+from bigactors.check_outputs import result_on
 
 pytest_plugins = ["pytester"]
 

@@ -13,8 +13,8 @@ pytest.importorskip("pymavlink")
 from geojson import collection, feature
 from telemetry import BEAT, FIX, log, position
 
-from adapters.mavlink.fleet import Craft
 from adapters.mavlink.tlog import THINGS, messages_in, positions_of
+from adapters.mavlink.vehicle_identities import Craft
 from physical.ais_recording import read_recording
 from physical.ais_world import seen_at
 from physical.file_account import MAX_KINDS, Counting, FileAccount, in_a_line

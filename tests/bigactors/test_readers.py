@@ -17,7 +17,7 @@ from adapters.mavlink.tlog import read_tlog
 from adapters.stations.peers import read_peers
 from bigactors.cli import main
 from bigactors.exits import Exit
-from bigactors.missions import open_mission
+from bigactors.mission_lookup import open_mission
 from bigactors.mistakes import Mistake
 from bigactors.verdict_files import _seal, licence_for
 from physical import PhysicalError, PhysicalProperty, box, point, write_geojson, write_plan, write_waypoints

@@ -14,23 +14,23 @@ from pathlib import Path
 import pytest
 from processes import begun
 
+from adapters.live.live_state import LiveState
 from adapters.live.loop import Ending
+from adapters.live.operator_findings import Finding
 from adapters.live.overrides import Overrides
-from adapters.live.reported import Finding
-from adapters.live.state import LiveState
-from adapters.live.turn import Turn
+from adapters.live.turn_result import Turn
 from adapters.plugin import TakenOver
 from adapters.recording.writing import Recorder
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
 from bigactors.commands.replay.foreign_recordings import watched
 from bigactors.commands.run.flight import conclude, prepare, record
-from bigactors.missions import open_mission
+from bigactors.flight_watchers import Terminal
+from bigactors.mission_lookup import open_mission
 from bigactors.mistakes import Mistake
 from bigactors.pictures.scene import palette_of
 from bigactors.recordings import open_recording
 from bigactors.sockets import folder, only_socket, socket_of
-from bigactors.watchers import Terminal
 from specs.elaboration import Variation
 
 WATCHED = str(Path(__file__).parents[2] / "specs/missions/harbour_watch.nmea")

@@ -3,7 +3,7 @@
 from hypothesis import Phase, find, given, settings
 from scale import examples
 
-import semantics.strategies
+import semantics.hypothesis_strategies
 from bigactors import Limits, Outcome, check, strategies
 from bigactors.strategies import missions
 
@@ -11,12 +11,13 @@ from bigactors.strategies import missions
 def test_every_public_strategy_is_offered_and_its_own():
     defined = {
         name
-        for name, value in vars(semantics.strategies).items()
-        if not name.startswith("_") and getattr(value, "__module__", "") == "semantics.strategies"
+        for name, value in vars(semantics.hypothesis_strategies).items()
+        if not name.startswith("_") and getattr(value, "__module__", "") == "semantics.hypothesis_strategies"
     }
     assert set(strategies.__all__) == defined - {"T", "pick"}
     assert all(
-        getattr(strategies, name) is getattr(semantics.strategies, name) for name in strategies.__all__
+        getattr(strategies, name) is getattr(semantics.hypothesis_strategies, name)
+        for name in strategies.__all__
     )
 
 

@@ -13,7 +13,7 @@ from bigactors.arguments import parse_arguments
 from bigactors.cli import main
 from bigactors.commands.run import flight as run
 from bigactors.files import MOST_JSON
-from bigactors.missions import open_mission
+from bigactors.mission_lookup import open_mission
 from bigactors.mistakes import Mistake
 from bigactors.verdict_files import _seal, find_verdict, licence_for
 from physical import PhysicalError, read_json

@@ -2,7 +2,7 @@ from bigraph_strategies import SIGNATURE, bigraphs
 from hypothesis import given
 
 from bigraphs.bigraph import Node, assemble
-from bigraphs.labels import node_labels
+from bigraphs.node_labels import node_labels
 from bigraphs.relational_bigraphs import from_relations
 from bigraphs.text import draw_text
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from scale import IS_WHOLE, crossed, examples
 
 from checker import Engine, Limits, Outcome, check
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.behaviours.values import Route, Text
 from semantics.environment import Says
 from semantics.state.configuration import Configuration
@@ -129,7 +129,7 @@ def judged(mission, engine):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@given(mission=strategies.missions())
+@given(mission=hypothesis_strategies.missions())
 @examples(60 if IS_WHOLE else 30)
 def test_verdicts_do_not_depend_on_whether_texts_are_spelled_like_names(mission, engine):
     c = mission.initial

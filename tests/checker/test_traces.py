@@ -16,9 +16,9 @@ from shipped import ALL
 from checker import Engine, Limits, ReplayError, Trace, check, explore, print_trace, replay, to_json
 from checker.steps import alike, candidates, step_of
 from checker.traces import MOST_STEPS, SCHEMA, trace_to
+from semantics.hypothesis_strategies import initial_configurations
 from semantics.state.configuration import Label
 from semantics.state.setting import Scheduler
-from semantics.strategies import initial_configurations
 from semantics.successors import expand
 from specs.elaboration import Variation, load_mission
 

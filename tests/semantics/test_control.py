@@ -10,7 +10,7 @@ from scale import examples
 from small_missions import SHAPES, aboard, enabled, mission, move_to, run
 
 from physical import circle, point
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Literal
 from semantics.behaviours.reaction_rules import Pattern, PlaceVariable, Reaction, matches, moved, relinked
@@ -45,10 +45,10 @@ def by(name, *arguments):
 @examples(100)
 @given(st.data())
 def test_drive_makes_the_reactum_true_and_disturbs_nothing_else(data):
-    world = data.draw(strategies.worlds())
-    beliefs = data.draw(strategies.beliefs(world)) if data.draw(st.integers(0, 3)) == 3 else None
+    world = data.draw(hypothesis_strategies.worlds())
+    beliefs = data.draw(hypothesis_strategies.beliefs(world)) if data.draw(st.integers(0, 3)) == 3 else None
     c = world.initial(agents={"a": ("uav0", ())}, beliefs=beliefs)
-    reaction = data.draw(strategies.reactions(sorted(world.kinds), "uav0"))
+    reaction = data.draw(hypothesis_strategies.reactions(sorted(world.kinds), "uav0"))
     for match in applicable(c, "a", reaction):
         driven = drive(c, c.setting, reaction, match) if is_consistent(c, CTR("a", reaction), match) else None
         if driven is None:
@@ -239,7 +239,7 @@ def test_what_is_passed_and_vanishes_is_a_lost_target():
     assert obstacle(c, c.eta.all()[0].request) is Obstacle.INCONSISTENT
 
 
-@given(strategies.configurations())
+@given(hypothesis_strategies.configurations())
 def test_a_control_in_line_is_served_or_has_an_obstacle_or_waits(c):
     for agent in c.alpha.names():
         for pending in c.eta.in_line(agent):
@@ -414,8 +414,8 @@ def test_a_command_from_a_carrier_keeps_the_shape_of_what_is_carried():
 @examples(100)
 @given(st.data())
 def test_atomic_control_is_command_then_commit_with_nothing_between(data):
-    world = data.draw(strategies.worlds())
-    reaction = data.draw(strategies.reactions(sorted(world.kinds), "uav0"))
+    world = data.draw(hypothesis_strategies.worlds())
+    reaction = data.draw(hypothesis_strategies.reactions(sorted(world.kinds), "uav0"))
     c = world.initial(agents={"a": ("uav0", ())}).with_({("line", "a"): (CTR("a", reaction),)})
     timed = under(c, c.setting.with_(**TIMED))
     at_once = {t.target for t in actuate(c, "a")}
@@ -431,7 +431,11 @@ def under(c, setting: Setting):
     return type(c)(setting, c.state)
 
 
-@given(strategies.configurations(strategies.initial_configurations(controls=[Control.TIMED])))
+@given(
+    hypothesis_strategies.configurations(
+        hypothesis_strategies.initial_configurations(controls=[Control.TIMED])
+    )
+)
 def test_whatever_is_in_transit_was_commanded_and_will_be_committed(c):
     flights = [each.request for each in c.eta.all() if isinstance(each.request, FLY)]
     travelling = {node for fly in flights for node, _ in moved(fly.reaction, fly.match)}

@@ -10,7 +10,7 @@ from small_missions import figure_2, run
 from physical import Band, box, circle, point, translate_to
 from semantics.observed_steps import Sight, admitting, arriving, happening, steps_seen
 from semantics.state.canonical import canonical, digest, digest_of_step, written
-from semantics.state.cells import Row
+from semantics.state.cell_values import Row
 from semantics.state.configuration import Configuration
 from semantics.state.observation_serialization import placement_of, sight_json, sight_of, value_json
 from semantics.state.physical_model import Carried, InTransit, Placed, channels_cell, placement_cell

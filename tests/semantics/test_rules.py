@@ -20,7 +20,7 @@ from small_missions import (
 )
 
 from physical import box, point
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.behaviours.expressions import Apply, Fault, Literal, Variable
 from semantics.behaviours.patterns import Anything
 from semantics.behaviours.statements import (
@@ -237,9 +237,9 @@ def test_actuate_allows_belief_to_be_coarser_than_fact():
 @examples(100)
 @given(st.data(), st.sampled_from(Control))
 def test_after_a_control_the_structure_is_locally_consistent_with_the_reactum(data, control):
-    world = data.draw(strategies.worlds())
-    beliefs = data.draw(strategies.beliefs(world)) if data.draw(st.integers(0, 2)) == 2 else None
-    reaction = data.draw(strategies.reactions(sorted(world.kinds), "uav0"))
+    world = data.draw(hypothesis_strategies.worlds())
+    beliefs = data.draw(hypothesis_strategies.beliefs(world)) if data.draw(st.integers(0, 2)) == 2 else None
+    reaction = data.draw(hypothesis_strategies.reactions(sorted(world.kinds), "uav0"))
     c = world.initial(agents={"a": ("uav0", ())}, beliefs=beliefs)
     timed = Configuration(c.setting.with_(control=control), c.with_(c.eta.adding(CTR("a", reaction))).state)
     ways = [found.match for found in realisations(timed, CTR("a", reaction))]

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from scale import examples
 from small_missions import explore, figure_2, mission, move_to
 
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.behaviours.expressions import Fault, Literal, QueryOf
 from semantics.behaviours.patterns import Anything
 from semantics.behaviours.statements import Case, Migrate, Observe, React, Send
-from semantics.state.cells import QUEUE
+from semantics.state.cell_values import QUEUE
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.requests import FLY, READY, Request
 from semantics.state.setting import Control, Scheduler
@@ -58,7 +58,7 @@ def test_the_run_of_figure_2_is_the_papers():
 
 # --- what holds of all rules ------------------------------------------------------------------------------------
 
-anywhere = strategies.configurations(strategies.initial_configurations(monitored=None))
+anywhere = hypothesis_strategies.configurations(hypothesis_strategies.initial_configurations(monitored=None))
 
 
 @given(anywhere)

@@ -8,7 +8,7 @@ from elaborating import elaborated, mistakes
 from hypothesis import given
 from tables import rows
 
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.behaviours.expressions import OPERATORS, Apply, EvaluationScope, Fault, Literal, evaluate
 from semantics.behaviours.observations import Observation
 from semantics.behaviours.program import Program
@@ -20,7 +20,7 @@ from specs.codes import Code
 from specs.diagnostics import Source
 from specs.elaboration import load_mission
 from specs.elaboration.mission_mistakes import Findings
-from specs.elaboration.needs import check_types, operands
+from specs.elaboration.type_constraints import check_types, operands
 from specs.elaboration.value_types import Inference, ValueSort
 
 ROOT = Path(__file__).parents[2]
@@ -101,9 +101,9 @@ def test_in_what_is_explored_each_variable_holds_what_was_inferred_and_nothing_i
     assert [found for c in seen for found in wrong(c, inference, types)] == []
 
 
-@given(strategies.configurations())
+@given(hypothesis_strategies.configurations())
 def test_in_generated_missions_each_variable_holds_what_was_inferred(configuration):
-    inference, types = inferred(configuration.setting, strategies.AGENT_NAMES)
+    inference, types = inferred(configuration.setting, hypothesis_strategies.AGENT_NAMES)
     assert wrong(configuration, inference, types) == []
 
 

@@ -11,7 +11,7 @@ from typing import Any, Final
 from bigactors.commands.big.output import write_data
 from bigactors.files import check_writable
 from bigactors.mistakes import Mistake
-from bigactors.pictures.first_times import Curve
+from bigactors.pictures.hitting_times import Curve
 from bigactors.progress import watching
 from bigactors.terminal import is_terminal, say, tell
 from bigraphs.sampling import (
@@ -203,7 +203,7 @@ def curves(samples: Sequence[Sample], found: Sequence[FirstTimes]) -> Iterator[C
 
 
 def _draw(options: Namespace, system: System, samples: Sequence[Sample], found: Sequence[FirstTimes]) -> None:
-    from bigactors.drawings import draw_first_times  # only drawing needs pictures
+    from bigactors.picture_files import draw_first_times  # only drawing needs pictures
 
     end = options.until if options.until is not None else max(each.time for each in samples)
     left = len(found) - len(PALETTE)

@@ -10,17 +10,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bigactors.checking import Checked, Failed, check_missions
+from bigactors.check_outputs import Output, cautions_of, outputs_of, write_outputs
+from bigactors.checking import Checked, FailedMission, check_missions
 from bigactors.commands.check.settings import how_of, limits_of
 from bigactors.exits import Exit, worst
 from bigactors.files import check_writable, file_stem, make_folder, write_json
-from bigactors.missions import variation_of
+from bigactors.mission_lookup import variation_of
 from bigactors.mistakes import Mistake
-from bigactors.outputs import Output, cautions_of, outputs_of, write_outputs
 from bigactors.terminal import paint, say, tell
 from checker import Interruption, report_text
 from checker.check import reductions_of
-from checker.engines.fast.loading import ALONE
+from checker.engines.fast.numba_loading import ALONE
 from checker.limits import Stop
 from checker.reports.report import MARKS, coverage_text
 from checker.reports.results import caution_text
@@ -54,10 +54,10 @@ def check_and_report(options: Namespace) -> Exit:
     outputs = outputs_of(options)
     variation = variation_of(options)
 
-    def check(interruption: Interruption) -> Iterator[Checked | Failed]:
+    def check(interruption: Interruption) -> Iterator[Checked | FailedMission]:
         return check_missions(options.files, replace(limits, interruption=interruption), variation, how)
 
-    def report(results: Iterable[Checked | Failed]) -> Exit:
+    def report(results: Iterable[Checked | FailedMission]) -> Exit:
         return report_all(results, options, outputs, key)
 
     if not options.watch:
@@ -70,11 +70,14 @@ def check_and_report(options: Namespace) -> Exit:
 
 
 def report_all(
-    checked: Iterable[Checked | Failed], options: Namespace, outputs: Sequence[Output], key: SigningKey | None
+    checked: Iterable[Checked | FailedMission],
+    options: Namespace,
+    outputs: Sequence[Output],
+    key: SigningKey | None,
 ) -> Exit:
     """Print the reports as they come, and write the requested files."""
     alone = any(output.to_standard_output for output in outputs)
-    results: list[Checked | Failed] = []
+    results: list[Checked | FailedMission] = []
     folders: set[str] = set()
     for result in checked:
         results.append(result)
@@ -93,9 +96,9 @@ def report_all(
     return code
 
 
-def report_lines(result: Checked | Failed, *, traces: bool) -> Iterator[str]:
+def report_lines(result: Checked | FailedMission, *, traces: bool) -> Iterator[str]:
     """Yield the printed lines about one mission; none for a failed one, whose message is already printed."""
-    if isinstance(result, Failed):
+    if isinstance(result, FailedMission):
         return
     report = result.report
     for caution in cautions_of(result.mission):
@@ -129,7 +132,7 @@ def remedies(mission: ElaboratedMission, report: Report) -> str:
     return "; ".join((*less, smaller, "or raise the limit that stopped it: --max-configurations, --max-time"))
 
 
-def summary(results: list[Checked | Failed]) -> Iterator[str]:
+def summary(results: list[Checked | FailedMission]) -> Iterator[str]:
     """Yield a line for each of several missions."""
     width = max(len(result.name) for result in results)
     yield ""

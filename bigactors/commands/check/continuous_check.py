@@ -8,11 +8,11 @@ from pathlib import Path
 from time import strftime
 from typing import Final, TypeAlias
 
-from bigactors.checking import Checked, Failed
+from bigactors.checking import Checked, FailedMission
 from bigactors.commands.check.file_changes import interrupted_by_save, look, wait_for_save
 from bigactors.exits import Exit
 from bigactors.files import read_bytes
-from bigactors.missions import locate
+from bigactors.mission_lookup import locate
 from bigactors.mistakes import Mistake
 from bigactors.terminal import is_terminal, say, say_text
 from checker import Interruption
@@ -22,7 +22,7 @@ from specs.preprocessing import MAX_BYTES
 
 CLEAR: Final = "\033[H\033[2J"
 
-Results: TypeAlias = Sequence[Checked | Failed]
+Results: TypeAlias = Sequence[Checked | FailedMission]
 Verdicts: TypeAlias = Mapping[str, Mapping[str, str]]
 """The last outcome of each property, by mission."""
 
@@ -30,7 +30,7 @@ Verdicts: TypeAlias = Mapping[str, Mapping[str, str]]
 def check_at_each_save(
     names: Sequence[str],
     variation: Variation,
-    check: Callable[[Interruption], Iterable[Checked | Failed]],
+    check: Callable[[Interruption], Iterable[Checked | FailedMission]],
     report: Callable[[Results], Exit],
 ) -> Exit:
     """Check missions now and at each save until Ctrl-C; return the exit code of the last completed check.

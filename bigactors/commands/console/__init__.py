@@ -110,7 +110,7 @@ def run(options: Namespace) -> Exit:
 def _check(options: Namespace) -> None:
     """Refuse impossible or unsafe options; raises Mistake."""
     from adapters.addresses import LOOPBACK
-    from adapters.console.server import lacks_parts
+    from adapters.console.console_server import lacks_parts
     from physical import open_file
 
     if lacks_parts():
@@ -157,7 +157,7 @@ def _give_way(niceness: int) -> None:
 def _look_into(options: Namespace) -> None:
     """Read the beginning, so that a file that is no recording is refused at once; raises Mistake."""
     from adapters.recording.mcap_files import McapReader, RecordingError
-    from adapters.recording.reading import checked_run
+    from adapters.recording.recording_reader import checked_run
 
     path = options.recording
     try:
@@ -202,7 +202,7 @@ async def _listen(
 ) -> tuple[str, int]:
     """Listen at the given address, else at the usual port or a free one; raises Mistake."""
     from adapters.addresses import LOOPBACK
-    from adapters.console.server import Site, serving
+    from adapters.console.console_server import Site, serving
 
     host, port = listen or (LOOPBACK, PORT)
     try:

@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from adapters.console.facts import Change, Rules, Unreplayable
 from adapters.console.history import History
-from adapters.recording.reading import Recording
+from adapters.recording.recording_reader import Recording
 from bigactors.mistakes import Mistake
 from bigactors.pictures import Look, logical_picture, look_of
 from bigactors.recordings import mission_of, parting_of
@@ -24,7 +24,7 @@ from bigraphs.bigraph import Bigraph
 from checker import ReplayError
 from checker.traces import follow
 from semantics.state.configuration import Configuration, Label
-from semantics.state.partition import parted
+from semantics.state.station_partition import parted
 
 EVERY: Final = 1.0
 """Seconds between the beginnings of two drawings."""

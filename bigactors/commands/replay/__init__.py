@@ -16,7 +16,7 @@ from bigactors.mistakes import Mistake
 from bigactors.terminal import is_terminal, paint, say, tell
 
 if TYPE_CHECKING:
-    from adapters.recording.reading import Recording
+    from adapters.recording.recording_reader import Recording
     from checker import Trace
 
 DESCRIPTION: Final = """\
@@ -72,7 +72,7 @@ def run(options: Namespace) -> Exit:
     """Replay a trace and print it; stop at a step that the rules do not allow."""
     from bigactors.commands.replay.trace_reader import is_foreign, read_trace
     from bigactors.commands.replay.waypoint_export import write_route
-    from bigactors.missions import opening, variation_of
+    from bigactors.mission_lookup import opening, variation_of
     from checker import ReplayError, print_loop
     from semantics.state.printing import print_configuration
 
@@ -101,7 +101,7 @@ def show_foreign(options: Namespace) -> Exit:
     from textwrap import indent
 
     from bigactors.commands.replay.trace_reader import account_for, watched_in
-    from bigactors.missions import opening, variation_of
+    from bigactors.mission_lookup import opening, variation_of
     from bigraphs import draw_text
     from physical.wordings import counted
     from semantics.state.abstraction import all_as_it_is

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from adapters.live.batch import Batch, Heard
 from adapters.live.core import started, watch
+from adapters.live.operator_findings import Finding
 from adapters.live.plan import Plan
-from adapters.live.reported import Finding
-from adapters.mavlink.fleet import Craft
 from adapters.mavlink.tlog import THINGS, positions_of, read_tlog
+from adapters.mavlink.vehicle_identities import Craft
 from adapters.naming import NamingService
 from bigactors.mistakes import Mistake
 from checker import Step, Trace

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from adapters.recording.reading import Recording, is_recording
+from adapters.recording.recording_reader import Recording, is_recording
 from bigactors.commands.replay.foreign_recordings import TELEMETRY, ForeignRecording, watched
 from bigactors.files import read_bytes, read_json
-from bigactors.missions import digest_of
+from bigactors.mission_lookup import digest_of
 from bigactors.mistakes import Mistake
 from bigactors.recordings import mission_of, open_recording, trace_of
 from bigactors.terminal import tell

@@ -5,12 +5,12 @@ from __future__ import annotations
 from argparse import Namespace
 from collections.abc import Iterable, Mapping
 
-from adapters.camera.feed import Camera, CameraFeed
+from adapters.camera.camera_plugin import Camera, CameraFeed
 from adapters.camera.libraries import opencv
 from adapters.camera.poses import PoseLog
+from adapters.camera.sea_projection import Lens
 from adapters.camera.slick import find_slicks
 from adapters.camera.sources import source_of
-from adapters.camera.view import Lens
 from adapters.naming import NamingService
 from adapters.plugin import Plugin
 from bigactors.installed_plugins import find_detector

@@ -11,17 +11,17 @@ from typing import Any
 
 from adapters.addresses import SCHEMES
 from adapters.assigned import Assigned
-from adapters.mavlink.autopilot import Autopilot, Listener, Tap
-from adapters.mavlink.fleet import Craft, Stations
 from adapters.mavlink.keys import Keeper
+from adapters.mavlink.mavlink_plugin import Autopilot, Listener, Tap
+from adapters.mavlink.vehicle_identities import Craft, Stations
 from adapters.naming import NamingService
 from adapters.plugin import Plugin, preflights
 from adapters.ros import RosVehicles
 from bigactors.commands.run.cameras import cameras_of, poses_for
 from bigactors.commands.run.feeds import feeds_of
-from bigactors.commands.run.fences import fence_of
+from bigactors.commands.run.geofence import fence_of
 from bigactors.commands.run.option_values import LIVING
-from bigactors.commands.run.stations import driven, own_station
+from bigactors.commands.run.station_flight import driven, own_station
 from bigactors.installed_plugins import VEHICLES, make_vehicles, require_known
 from bigactors.mistakes import Mistake
 from bigraphs.notation.spelling import did_you_mean

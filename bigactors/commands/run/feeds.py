@@ -9,8 +9,8 @@ from pathlib import Path
 
 from adapters.addresses import LOOPBACK, parse_address
 from adapters.ais import AisFeed
-from adapters.detections import Detections
-from adapters.location import LocationService
+from adapters.detection_feed import Detections
+from adapters.location_feed import LocationService
 from adapters.naming import NamingService
 from adapters.plugin import Plugin
 from adapters.ros import RosFeed

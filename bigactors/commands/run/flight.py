@@ -15,13 +15,13 @@ from typing import Any
 from adapters.live.commanded import Commanded
 from adapters.live.core import obeying, resumed, started
 from adapters.live.due_times import DueTimes
+from adapters.live.live_state import LiveState
 from adapters.live.loop import Ending, LiveRun, NotAsAssumed, NotHeard, PluginFailed, settle
+from adapters.live.operator_findings import Finding, Reported
 from adapters.live.operator_socket import listening
 from adapters.live.overrides import Overrides
 from adapters.live.plan import Plan
-from adapters.live.reported import Finding, Reported
-from adapters.live.state import LiveState
-from adapters.live.watchers import Watcher
+from adapters.live.run_watchers import Watcher
 from adapters.plugin import Plugin
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.writing import Recorder
@@ -29,12 +29,13 @@ from adapters.ros import RosSending
 from bigactors import __version__
 from bigactors.commands.run.connections import fences_of, plugins_of
 from bigactors.commands.run.console_beside import console_beside, recorded
-from bigactors.commands.run.preflight import check_flyable, check_idle, check_places, get_to_know
-from bigactors.commands.run.starting import Preflight, Start, stand_by
-from bigactors.commands.run.stations import Company, company_of, parting_json
+from bigactors.commands.run.preflight_checks import check_flyable, check_idle, check_places, get_to_know
+from bigactors.commands.run.starting import Start, StartChecks, stand_by
+from bigactors.commands.run.station_flight import Company, company_of, parting_json
 from bigactors.exits import Exit
 from bigactors.files import check_writable
-from bigactors.missions import checkable, digest_of, fixed_places, locate, open_mission
+from bigactors.flight_watchers import Log, Tape, Terminal
+from bigactors.mission_lookup import checkable, digest_of, fixed_places, locate, open_mission
 from bigactors.mistakes import Mistake, unreadable
 from bigactors.recordings import Resumed, resume
 from bigactors.signatures import load_trusted
@@ -42,7 +43,6 @@ from bigactors.sockets import socket_of
 from bigactors.terminal import flying_output, paint, say, tell
 from bigactors.vehicle_lines import situation, standing
 from bigactors.verdict_files import Licence, find_verdict, licence_for
-from bigactors.watchers import Log, Tape, Terminal
 from physical import PhysicalError
 from semantics.state.setting import Control, Scheduler
 from specs.elaboration import ElaboratedMission, Variation
@@ -317,7 +317,7 @@ async def fly(
         takes_over = options.take_over or flight.resumed is not None
         if flight.start.waits:
             verdict = None if flight.licence is None else len(flight.licence.data.get("properties", ()))
-            before = Preflight(flight.mission, flight.plugins, verdict, options.wait, takes_over)
+            before = StartChecks(flight.mission, flight.plugins, verdict, options.wait, takes_over)
             say("the run waits: press Start in the console when its list is done")
             sys.stdout.flush()
             await stand_by(live, flight.start, before, tell_preflight)

@@ -10,7 +10,7 @@ from typing import Any, Final
 from adapters.live.core import obeying
 from adapters.live.loop import LiveRun
 from adapters.plugin import Plugin, Status
-from bigactors.commands.run.preflight import check_idle, check_places, get_to_know
+from bigactors.commands.run.preflight_checks import check_idle, check_places, get_to_know
 from specs.elaboration import ElaboratedMission
 
 EVERY: Final = 0.25
@@ -53,7 +53,7 @@ class Start:
 
 
 @dataclass(frozen=True, slots=True)
-class Preflight:
+class StartChecks:
     """The subject of the checks before the start of a run.
 
     Attributes:
@@ -71,7 +71,7 @@ class Preflight:
     takes_over: bool
 
 
-async def stand_by(live: LiveRun, start: Start, before: Preflight, tell: Telling | None) -> None:
+async def stand_by(live: LiveRun, start: Start, before: StartChecks, tell: Telling | None) -> None:
     """Run the checks, report them to `tell`, and begin when Start is pressed; raises the errors of the checks."""
     checks = asyncio.create_task(_check(live, before))
     forced = before.verdict is None
@@ -98,7 +98,7 @@ async def stand_by(live: LiveRun, start: Start, before: Preflight, tell: Telling
         await asyncio.gather(checks, begins, return_exceptions=True)
 
 
-async def _check(live: LiveRun, before: Preflight) -> None:
+async def _check(live: LiveRun, before: StartChecks) -> None:
     while not live.state.sightings.newest.keys() >= live.plan.vehicles.keys():
         await asyncio.sleep(EVERY)
     check_idle(live, takes_over=before.takes_over)
@@ -109,7 +109,7 @@ async def _check(live: LiveRun, before: Preflight) -> None:
 # --- the list -----------------------------------------------------------------------------------------
 
 
-def _items(live: LiveRun, before: Preflight, *, checked: bool) -> Iterator[Item]:
+def _items(live: LiveRun, before: StartChecks, *, checked: bool) -> Iterator[Item]:
     """Yield the checks in their order."""
     count = before.verdict
     what = "no verdict: nothing was verified of this run" if count is None else "the mission is verified"

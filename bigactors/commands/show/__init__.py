@@ -123,9 +123,9 @@ def run(options: Namespace) -> Exit:
 
 def _show_timeline(options: Namespace) -> Exit:
     """Explore a mission, print its times and draw them. The exit code reports the picture, not the verdicts."""
-    from bigactors.drawings import draw_schedule
     from bigactors.files import file_stem
-    from bigactors.missions import open_mission, variation_of
+    from bigactors.mission_lookup import open_mission, variation_of
+    from bigactors.picture_files import draw_schedule
     from checker import Limits
     from checker.reports.times import times_text
 
@@ -134,14 +134,14 @@ def _show_timeline(options: Namespace) -> Exit:
     if options.trace is not None or options.step is not None or options.lanes or options.against is not None:
         hint = "leave out --trace, --step, --lanes and --against; --lanes shows the dates of one run"
         raise Mistake("a timeline is of all runs of a mission", hint)
-    from bigactors.checking import Failed, How, check_mission  # only a timeline explores
+    from bigactors.checking import FailedMission, How, check_mission  # only a timeline explores
 
     if open_mission(options.file, variation_of(options)).setting.timing is None:
         hint = "write a section timing { ... }: docs/explanation/time.md"
         raise Mistake("it has no times: no duration is given", hint, options.file)
     limits = Limits(MOST_CONFIGURATIONS)
     checked = check_mission(options.file, limits, variation_of(options), How(times=True))
-    if isinstance(checked, Failed):
+    if isinstance(checked, FailedMission):
         return checked.exit
     schedule, name = checked.report.schedule, checked.mission.name
     if schedule is None:
@@ -158,7 +158,7 @@ def _show_timeline(options: Namespace) -> Exit:
 
 def _write_tracks(options: Namespace) -> Exit:
     """Write the dated positions in a recording or a trace; those of a recording completely."""
-    from adapters.recording.reading import is_recording
+    from adapters.recording.recording_reader import is_recording
     from bigactors.commands.show.tracks import write_recorded, write_traced
     from physical.wordings import counted
 
@@ -180,8 +180,8 @@ def _write_tracks(options: Namespace) -> Exit:
 def _compare(options: Namespace) -> Exit:
     """Print the point at which two traces part, and the differences from there."""
     from bigactors.commands.replay.trace_reader import read_trace
-    from bigactors.missions import opening, variation_of
-    from checker.reports.comparison import comparison_text
+    from bigactors.mission_lookup import opening, variation_of
+    from checker.reports.trace_comparison import comparison_text
 
     if options.trace is None:
         raise Mistake("--against is for two traces", "give the other one with --trace")
@@ -217,9 +217,9 @@ def _show_configuration(trace: Trace, step: int) -> None:
 
 def _write(options: Namespace, name: str, trace: Trace, times: tuple[float, ...], step: int) -> None:
     """Write the output by its suffix: a page, the lanes as a picture, or the picture of a configuration."""
-    from bigactors.drawings import draw, draw_lanes, write_page
     from bigactors.files import file_stem
     from bigactors.pages import Story
+    from bigactors.picture_files import draw, draw_lanes, write_page
 
     output = options.output
     if output is not None and Path(output).suffix.lower() in PAGES:
@@ -247,7 +247,7 @@ def _write(options: Namespace, name: str, trace: Trace, times: tuple[float, ...]
 def _chosen(options: Namespace) -> tuple[str, Trace, tuple[float, ...], int]:
     """Return the mission's name, its trace, the times of the steps, and the number of the configuration to show."""
     from bigactors.commands.replay.trace_reader import read_trace
-    from bigactors.missions import open_mission, opening, variation_of
+    from bigactors.mission_lookup import open_mission, opening, variation_of
     from checker import Trace
 
     if options.trace is None:

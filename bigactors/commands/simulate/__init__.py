@@ -69,7 +69,7 @@ def run(options: Namespace) -> Exit:
     """Print one run; write it as a trace on request."""
     from bigactors.commands.simulate.one_run import print_simulation, simulate
     from bigactors.files import json_text, write_json
-    from bigactors.missions import digest_of, open_mission, variation_of
+    from bigactors.mission_lookup import digest_of, open_mission, variation_of
     from checker import to_json
 
     if options.choose and options.json == "-":

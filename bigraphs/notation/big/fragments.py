@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from bigraphs.bigraph import Bigraph
 from bigraphs.notation.big.declarations import BigDeclaration, ControlDeclaration
-from bigraphs.notation.big.expressions import Evaluation
+from bigraphs.notation.big.expression_evaluation import Evaluation
 from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.big.name_check import SyntaxWalk
 from bigraphs.notation.big.names import Names

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby
 from typing import Any, Final
 
+from bigraphs.notation.big.anti_unification import changed, folded
 from bigraphs.notation.big.declarations import (
     ActionDeclaration,
     BigDeclaration,
@@ -28,7 +29,6 @@ from bigraphs.notation.big.declarations import (
     SystemTerm,
 )
 from bigraphs.notation.big.expression_of import written_value
-from bigraphs.notation.big.functions import changed, folded
 from bigraphs.notation.big.printer import format_value
 from bigraphs.notation.big.syntax import (
     Absolute,

@@ -7,7 +7,7 @@ import math
 from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph
 from bigraphs.notation.big.declarations import ConditionTerm, ReactDeclaration
-from bigraphs.notation.big.expressions import Evaluation
+from bigraphs.notation.big.expression_evaluation import Evaluation
 from bigraphs.notation.big.scope import CallFrame
 from bigraphs.notation.big.solidity import faults, pattern_of
 from bigraphs.notation.big.syntax import Expression, ValueExpression

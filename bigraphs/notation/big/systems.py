@@ -12,7 +12,7 @@ from bigraphs.algebra import lean
 from bigraphs.bigraph import Bigraph, relabelled
 from bigraphs.notation.big import values
 from bigraphs.notation.big.declarations import Call, ClassTerm, Model, ParameterDeclaration, SystemTerm
-from bigraphs.notation.big.expressions import Evaluation
+from bigraphs.notation.big.expression_evaluation import Evaluation
 from bigraphs.notation.big.file_mistakes import Findings
 from bigraphs.notation.big.name_check import survey
 from bigraphs.notation.big.names import Names, index

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import Final, TypeVar
 
 from bigraphs.errors import BigraphError, NotationError
+from bigraphs.notation.big.anti_unification import folded
 from bigraphs.notation.big.declarations import (
     ActionDeclaration,
     BigDeclaration,
@@ -22,7 +23,6 @@ from bigraphs.notation.big.declarations import (
     SystemTerm,
 )
 from bigraphs.notation.big.expression_of import expression_of, values_of, written_value
-from bigraphs.notation.big.functions import folded
 from bigraphs.notation.big.grammar import RESERVED
 from bigraphs.notation.big.printer import format_model
 from bigraphs.notation.big.syntax import Arguments, ValueExpression

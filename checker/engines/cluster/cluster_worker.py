@@ -21,9 +21,9 @@ from checker.engines.fast.row_inspection import inspect_fast, is_still, truths
 from checker.engines.fast.row_survey import RowSurvey
 from checker.properties.inspections import Invariant
 from checker.properties.invariant_vacuity import asked
-from checker.properties.visited import Visited
+from checker.properties.visited_statements import Visited
 from semantics.properties.propositions import Atom, Proposition, atoms_of
-from semantics.state.cells import Row
+from semantics.state.cell_values import Row
 from semantics.state.configuration import Configuration, Label
 from semantics.state.requests import Request
 

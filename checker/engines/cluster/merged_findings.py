@@ -8,7 +8,7 @@ from checker.engines.cluster.numbering import Places
 from checker.engines.contract import Inspect
 from checker.properties.findings import Collected, Finding
 from checker.properties.inspections import Inspection, Invariant
-from checker.properties.visited import Visited
+from checker.properties.visited_statements import Visited
 
 
 def is_mergeable(inspection: Inspect) -> bool:

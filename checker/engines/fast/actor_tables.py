@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from checker.engines.fast.bits import WORD
+from checker.engines.fast.jit_decorators import inner
 from checker.engines.fast.kernel import ALPHA, TREE, Ints, LearnedModel, State, code_at, walk
-from checker.engines.fast.loops import inner
 from checker.engines.fast.table import Words
 
 MOST_HERE = 8 * WORD

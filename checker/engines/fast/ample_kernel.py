@@ -28,6 +28,7 @@ from checker.engines.fast.actor_tables import (
     meet,
 )
 from checker.engines.fast.bits import WORD, add, has
+from checker.engines.fast.jit_decorators import inner, njit
 from checker.engines.fast.kernel import (
     AT,
     EXPANDED,
@@ -42,9 +43,8 @@ from checker.engines.fast.kernel import (
     add_row,
     code_at,
 )
-from checker.engines.fast.loops import inner, njit
-from checker.engines.fast.path_ends import Trails, begin_row, end_of, lead_on
 from checker.engines.fast.persistent import find_set
+from checker.engines.fast.proviso_paths import Trails, begin_row, end_of, lead_on
 from checker.engines.fast.row_successors import list_steps, make, make_representative, without_repetitions
 from checker.engines.fast.table import Words, bits_for, entry_of, find
 from checker.engines.fast.tree_compression import NO_ROOM, FoldedTable, intern, unfold

@@ -5,7 +5,7 @@
 
 import numpy as np
 
-from checker.engines.fast.loops import njit
+from checker.engines.fast.jit_decorators import njit
 from checker.engines.fast.table import Words
 
 WORD = 64

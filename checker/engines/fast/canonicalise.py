@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from checker.engines.fast.jit_decorators import inner, njit
 from checker.engines.fast.kernel import PLACE, Ints, State, SuccessorBatch, code_at
-from checker.engines.fast.loops import inner, njit
 from checker.engines.fast.table import Words, hashed
 
 UNKNOWN, FIXED = 0, 1

@@ -1,6 +1,6 @@
 """The compiled loop of strongly connected components."""
 
-from checker.engines.fast.loops import njit
+from checker.engines.fast.jit_decorators import njit
 from checker.engines.tarjan import divide
 
 try:

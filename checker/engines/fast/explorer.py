@@ -15,7 +15,7 @@ from bigraphs.workers import cores
 from checker.engines.contract import Exploration, Inspect, Options, Progress
 from checker.engines.estimate import estimate
 from checker.engines.fast.checkpoint import Journey, resume, save
-from checker.engines.fast.compiling import compilation_uncounted
+from checker.engines.fast.compile_progress import compilation_uncounted
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.row_graph import GraphSurvey
 from checker.engines.fast.row_inspection import inspect_fast

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-from checker.engines.fast.recording import QuestionScope
+from checker.engines.fast.access_recording import QuestionScope
 from checker.engines.fast.rule_cache import Exchange, NoImage, names_in
+from checker.reduction.alpha_equivalence import Pairing, Unlike
 from checker.reduction.mission_automorphisms import Automorphisms
-from checker.reduction.pairing import Pairing, Unlike
 from semantics.behaviours.observations import AGENT
-from semantics.state.cells import Cell, Row
+from semantics.state.cell_values import Cell, Row
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler, Setting
 from semantics.state.signature import Name

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.leaves import (
+from checker.engines.fast.decision_leaves import (
     ALIKE,
     COPIES,
     COPIES_END,
@@ -29,7 +29,8 @@ from checker.engines.fast.leaves import (
     WRITES,
     WRITES_END,
 )
-from checker.engines.fast.loops import inner, njit
+from checker.engines.fast.decision_trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
+from checker.engines.fast.jit_decorators import inner, njit
 from checker.engines.fast.origins import most_origins, note_origin
 from checker.engines.fast.table import Words, bits_for, entry_of, fetch, find, hashed, most_in
 from checker.engines.fast.tree_compression import (
@@ -48,7 +49,6 @@ from checker.engines.fast.tree_compression import (
     step_left_open,
     unfold,
 )
-from checker.engines.fast.trees import BASE, COLUMN, LOW, MASK, RECORD, SHIFT, WIDTH, WORD
 
 Ints = NDArray[np.int32]
 State = NDArray[np.int64]

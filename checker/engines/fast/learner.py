@@ -10,21 +10,36 @@ from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
+from checker.engines.fast.access_recording import (
+    CellRecorder,
+    CellSource,
+    ColumnQuestion,
+    Edited,
+    QuestionScope,
+)
 from checker.engines.fast.columns import Columns, Packing, Place, Writes
+from checker.engines.fast.decision_leaves import (
+    ALIKE,
+    CROWDED,
+    NO_TURN,
+    STEP,
+    UNLIKE,
+    Effect,
+    LeafStep,
+    LeafTables,
+)
+from checker.engines.fast.decision_trees import Trees
 from checker.engines.fast.effects import EffectWriter, RecordedEffect, Relearn, Varies
 from checker.engines.fast.interchangeable import Likeness
-from checker.engines.fast.leaves import ALIKE, CROWDED, NO_TURN, STEP, UNLIKE, Effect, LeafStep, LeafTables
-from checker.engines.fast.recording import CellRecorder, CellSource, ColumnQuestion, Edited, QuestionScope
 from checker.engines.fast.rule_cache import CachedOutcome, Exchange, Kin, PartLessons
 from checker.engines.fast.rule_cache_lookup import Learned, SharedLessons
-from checker.engines.fast.trees import Trees
 from checker.engines.fast.value_templates import agents_of, mobile_names, settled
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Fact, Observation
 from semantics.environment import Clause
 from semantics.races.monitor import marked
 from semantics.state.agents import mailbox_cell
-from semantics.state.cells import Cell, Row
+from semantics.state.cell_values import Cell, Row
 from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.requests import Received
 from semantics.state.setting import Setting

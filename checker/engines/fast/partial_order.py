@@ -22,15 +22,15 @@ from checker.engines.fast.actor_tables import (
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.bits import WORD
 from checker.engines.fast.columns import Packing
+from checker.engines.fast.decision_leaves import LEAF
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.leaves import LEAF
-from checker.engines.fast.path_ends import SearchPaths
+from checker.engines.fast.proviso_paths import SearchPaths
 from checker.engines.fast.value_templates import agents_of
 from checker.properties.inspections import never_ends
-from checker.reduction.actors import Acting, Actor
+from checker.reduction.actor_footprints import Acting, Actor
 from checker.reduction.ample import Ample
-from checker.reduction.variables import SlotFootprint
-from checker.reduction.visible import VisiblePart
+from checker.reduction.footprint_slots import SlotFootprint
+from checker.reduction.visible_slots import VisiblePart
 from semantics.state.configuration import Configuration, Label
 from semantics.state.signature import Name
 

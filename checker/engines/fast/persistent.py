@@ -18,13 +18,13 @@ from checker.engines.fast.actor_tables import (
     Members,
 )
 from checker.engines.fast.bits import WORD, add, has, remove
-from checker.engines.fast.loops import inner, njit
+from checker.engines.fast.jit_decorators import inner, njit
 from checker.engines.fast.table import Words
 
 
 @inner(cache=True)
 def compare(footprints: Words, disturbed: Any, count: int, one: int, other: int) -> int:
-    """Note whether one footprint disturbs another (see `checker.reduction.variables.SlotFootprint`): 1 no, 2 yes."""
+    """Note whether one footprint disturbs another (see `SlotFootprint`): 1 no, 2 yes."""
     words = len(footprints) // (PARTS * count)
     a, b = one * PARTS * words, other * PARTS * words
     found = 1

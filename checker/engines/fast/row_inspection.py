@@ -11,8 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.contract import Inspect
+from checker.engines.fast.decision_leaves import (
+    COPIES,
+    COPIES_END,
+    PAIR,
+    PARTS,
+    PARTS_END,
+    STEP,
+    WRITES,
+    WRITES_END,
+)
 from checker.engines.fast.learner import TransitionGroup
-from checker.engines.fast.leaves import COPIES, COPIES_END, PAIR, PARTS, PARTS_END, STEP, WRITES, WRITES_END
 from checker.engines.fast.proposition_table import Profiles
 from checker.engines.fast.row_survey import RowSurvey, distinct
 from checker.limits import look
@@ -20,7 +29,7 @@ from checker.properties.findings import Collected, Key
 from checker.properties.inspections import Excerpt, Inspection, Invariant, Reachability, Rules
 from checker.properties.invariant_vacuity import bindings, truth
 from checker.properties.races import ControlRaces
-from checker.properties.visited import Visited, where_it_stands
+from checker.properties.visited_statements import Visited, where_it_stands
 from semantics.behaviours.expressions import Fault
 from semantics.properties.propositions import Proposition, atoms_of, holds
 from semantics.races.monitor import CONTROLS

@@ -9,6 +9,20 @@ import numpy as np
 
 from checker.engines.fast.actor_tables import MADE, REPRESENTED, UNKNOWN, Members
 from checker.engines.fast.canonicalise import represent
+from checker.engines.fast.decision_leaves import (
+    ALIKE,
+    COPIES,
+    COPIES_END,
+    CROWDED,
+    END,
+    FIRST,
+    FLAGS,
+    LEAF,
+    PARTS_END,
+    STEP,
+)
+from checker.engines.fast.decision_leaves import PARTS as TREES_OF_PARTS
+from checker.engines.fast.jit_decorators import inner
 from checker.engines.fast.kernel import (
     ALPHA,
     CROWDS,
@@ -31,20 +45,6 @@ from checker.engines.fast.kernel import (
     walk,
     write_part,
 )
-from checker.engines.fast.leaves import (
-    ALIKE,
-    COPIES,
-    COPIES_END,
-    CROWDED,
-    END,
-    FIRST,
-    FLAGS,
-    LEAF,
-    PARTS_END,
-    STEP,
-)
-from checker.engines.fast.leaves import PARTS as TREES_OF_PARTS
-from checker.engines.fast.loops import inner
 from checker.engines.fast.table import Words, hashed
 from checker.engines.fast.tree_compression import NO_ROOM, FoldedTable, fold, take
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from checker.engines.fast.learner import TransitionGroup
 from checker.engines.fast.space import Space
-from semantics.state.cells import AGENTS
+from semantics.state.cell_values import AGENTS
 from semantics.state.configuration import Configuration
 from semantics.state.signature import Name
 from semantics.successors import Expansion, expand

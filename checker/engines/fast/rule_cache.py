@@ -12,12 +12,12 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
+from checker.engines.fast.access_recording import ColumnQuestion, Edited
 from checker.engines.fast.columns import ABSENT, Place
-from checker.engines.fast.recording import ColumnQuestion, Edited
 from checker.engines.fast.value_templates import join_value, split_value
 from checker.reduction.configuration_renaming import WORD, Renaming, requested_keys
 from semantics.behaviours.observations import AGENT
-from semantics.state.cells import Cell
+from semantics.state.cell_values import Cell
 from semantics.state.configuration import Label
 from semantics.state.requests import REQUESTS
 from semantics.state.signature import Name

@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any, Final, NamedTuple, Protocol
 
+from checker.engines.fast.access_recording import Asked, ColumnQuestion
 from checker.engines.fast.columns import Columns
 from checker.engines.fast.interchangeable import Likeness
-from checker.engines.fast.recording import Asked, ColumnQuestion
 from checker.engines.fast.rule_cache import (
     CachedOutcome,
     Kin,
@@ -16,7 +16,7 @@ from checker.engines.fast.rule_cache import (
     NoImage,
     mentioned,
 )
-from semantics.state.cells import Cell, Row
+from semantics.state.cell_values import Cell, Row
 from semantics.state.signature import Name
 
 WRITTEN: Final = object()

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from checker.engines.fast import kernel
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.columns import WORD, Packing, bits_of, packing, packing_in_order, shifts
+from checker.engines.fast.decision_trees import RECORD
 from checker.engines.fast.frontier_chunks import Slices
 from checker.engines.fast.kernel import (
     ALPHA,
@@ -40,9 +41,8 @@ from checker.engines.fast.mapped_arrays import Pages
 from checker.engines.fast.origins import OriginPages, Rising
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.table import most_in, rebuild, slots_for, slots_within
-from checker.engines.fast.trees import RECORD
 from checker.limits import look
-from semantics.state.cells import AGENTS, Row
+from semantics.state.cell_values import AGENTS, Row
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name

@@ -31,7 +31,7 @@ from checker.engines.fast.learner import Learner
 from checker.engines.fast.value_templates import holes, split_value
 from checker.reduction.member_items import Items, Member, Place, Roles
 from checker.reduction.representatives import MOST_ORDERS
-from semantics.state.cells import AGENTS, NAMES
+from semantics.state.cell_values import AGENTS, NAMES
 
 
 class Exchanging:

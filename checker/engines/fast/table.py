@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.loops import njit
+from checker.engines.fast.jit_decorators import njit
 from checker.engines.fast.prefetch import prefetch
 
 Words = NDArray[np.uint64]

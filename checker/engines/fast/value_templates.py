@@ -12,7 +12,7 @@ from typing import Any
 from semantics.behaviours.observations import NOTHING_SEEN, Fact, Observation, Swept, agent_key
 from semantics.behaviours.statements import Migrate, Spawn
 from semantics.behaviours.values import Route
-from semantics.state.cells import Row
+from semantics.state.cell_values import Row
 from semantics.state.physical_model import Carried
 from semantics.state.requests import READY, SND
 from semantics.state.setting import Setting

@@ -12,7 +12,7 @@ from checker.engines.timed.answers import NO_SPAN, DateSpan, FirstMoments, Taken
 from checker.engines.timed.digital_graph import Timeline
 from checker.engines.timed.first_runs import DELAY, TimedRun, dated, first_run
 from checker.properties.critical_path import way_to
-from checker.properties.longest_paths import first_ticks, last_ticks, longest, stopped
+from checker.properties.longest_stays import first_ticks, last_ticks, longest, stopped
 from semantics.properties.propositions import Proposition, holds
 from semantics.races.monitor import CONTROLS
 from semantics.state.configuration import Configuration, Transition

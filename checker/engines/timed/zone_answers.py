@@ -36,7 +36,7 @@ from checker.engines.zones.zone_search import Search
 from checker.limits import look
 from checker.properties.critical_path import way_to
 from checker.properties.inspections import InTime
-from checker.properties.longest_paths import NEVER
+from checker.properties.longest_stays import NEVER
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.setting import Scheduler
@@ -442,7 +442,7 @@ class ZoneTimes:
 
     def spans(self, steps: Sequence[Set[TakenStep]]) -> list[DateSpan]:
         """Return for each set of steps the span of dates at which one of them is taken."""
-        from checker.engines.zones.spans import Spans  # noqa: PLC0415 - few ask for them
+        from checker.engines.zones.date_bounds import Spans  # noqa: PLC0415 - few ask for them
 
         return Spans(self, steps).found()
 

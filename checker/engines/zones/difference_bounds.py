@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.loops import inner, njit
+from checker.engines.fast.jit_decorators import inner, njit
 
 Matrix = NDArray[np.int32]
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError
-from checker.engines.fast.compiling import compilation_uncounted
+from checker.engines.fast.compile_progress import compilation_uncounted
 from checker.engines.timed.zone_answers import OfRows, ZoneTimes
 from checker.engines.zones.timed_automaton import ConstantTooLargeError
 from checker.engines.zones.timed_automaton_of import Network

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast.loops import inner, njit
+from checker.engines.fast.jit_decorators import inner, njit
 from checker.engines.zones.difference_bounds import Matrix, end, extrapolate, let_pass, restrict
 from checker.engines.zones.timed_automaton import (
     CLOCKS,

@@ -13,19 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast import kernel
-from checker.engines.fast.kernel import (
-    AT,
-    SIZE,
-    TREE,
-    TURNS,
-    WORDS,
-    add_row,
-    conclude,
-    copy_columns,
-    walk,
-    write_part,
-)
-from checker.engines.fast.leaves import (
+from checker.engines.fast.decision_leaves import (
     ALIKE,
     COPIES,
     COPIES_END,
@@ -39,7 +27,19 @@ from checker.engines.fast.leaves import (
     STEP,
     TURN,
 )
-from checker.engines.fast.loops import inner, njit
+from checker.engines.fast.jit_decorators import inner, njit
+from checker.engines.fast.kernel import (
+    AT,
+    SIZE,
+    TREE,
+    TURNS,
+    WORDS,
+    add_row,
+    conclude,
+    copy_columns,
+    walk,
+    write_part,
+)
 from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
 from checker.engines.zones import timed_automaton as automata
 from checker.engines.zones.difference_bounds import NONE

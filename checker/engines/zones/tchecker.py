@@ -3,7 +3,13 @@
 import re
 from collections.abc import Iterator
 
-from checker.engines.zones.interchange import FIRST, WRONG, ExportedAutomaton, ExportedEdge, ExportedLocation
+from checker.engines.zones.automaton_export import (
+    FIRST,
+    WRONG,
+    ExportedAutomaton,
+    ExportedEdge,
+    ExportedLocation,
+)
 
 
 def tchecker_text(model: ExportedAutomaton) -> str:

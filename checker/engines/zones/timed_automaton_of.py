@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
+from checker.engines.fast.decision_leaves import LEAF
 from checker.engines.fast.kernel import AT, LIMIT
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.leaves import LEAF
 from checker.engines.fast.origins import OriginPages
 from checker.engines.fast.space import Space
 from checker.engines.fast.table import most_in

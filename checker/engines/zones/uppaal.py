@@ -3,7 +3,13 @@
 from collections.abc import Iterator, Sequence
 from xml.sax.saxutils import escape, quoteattr
 
-from checker.engines.zones.interchange import FIRST, WRONG, ExportedAutomaton, ExportedEdge, ExportedLocation
+from checker.engines.zones.automaton_export import (
+    FIRST,
+    WRONG,
+    ExportedAutomaton,
+    ExportedEdge,
+    ExportedLocation,
+)
 
 DOCUMENT_TYPE = (
     "<!DOCTYPE nta PUBLIC '-//Uppaal Team//DTD Flat System 1.2//EN' "

@@ -33,7 +33,7 @@ from checker.engines.zones.questions import (
 from checker.properties.findings import Key
 from checker.properties.inspections import DeadlockFreedom, InTime
 from checker.properties.races import ControlRaces, StaleObservationRaces
-from checker.properties.visited import COMPUTING, Visited
+from checker.properties.visited_statements import COMPUTING, Visited
 from semantics.races.monitor import CONTROLS
 from semantics.state.setting import Scheduler
 from semantics.state.signature import Name

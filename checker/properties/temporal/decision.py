@@ -7,7 +7,7 @@ from checker.properties.subformulas import STILL
 from checker.properties.temporal.branching import Branching
 from checker.properties.temporal.buchi_automaton import AutomatonTooLargeError
 from checker.properties.temporal.components import Conditions
-from checker.properties.temporal.evaluation import is_true_on
+from checker.properties.temporal.lasso_evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso
 from checker.properties.temporal.linear import counterexample
 from checker.properties.temporal.truth import FormulaTruth

@@ -17,7 +17,7 @@ from checker.properties.temporal.buchi_automaton import AutomatonTooLargeError
 from checker.properties.temporal.components import Conditions, fair_components
 from checker.properties.temporal.digraph import shortest
 from checker.properties.temporal.effort import Exhausted
-from checker.properties.temporal.evaluation import is_true_on
+from checker.properties.temporal.lasso_evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso, component_of, fair_cycle, tightened
 from checker.properties.temporal.linear import conjuncts, counterexample
 from checker.properties.temporal.truth import FormulaTruth

@@ -11,7 +11,7 @@ from aiohttp import WSMsgType, web
 from console_clients import OF_SERVER
 from threaded import loop_beside
 
-from adapters.console.server import HEADERS
+from adapters.console.console_server import HEADERS
 
 PAGE = Path(__file__).parents[3] / "adapters" / "console" / "page"
 TOKEN = "a-token"

@@ -4,12 +4,12 @@ from functools import cache
 
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, mission, plan_of, seen
 
+from adapters.console.console_view import NOTHING
 from adapters.console.facts import Facts
 from adapters.console.fold import take, time_of
 from adapters.console.history import History
 from adapters.console.mutable_facts import Draft
 from adapters.console.sections import view_of
-from adapters.console.view import NOTHING
 from adapters.live.batch import Saying
 from adapters.plugin import LinkLost, LinkRestored, TakenOver
 from adapters.recording.foxglove import OTHERS
@@ -17,7 +17,7 @@ from adapters.recording.mcap_files import McapReader, McapWriter
 from adapters.recording.schemas import SCHEMAS
 from adapters.recording.writing import Recorder
 from bigactors.commands.console.recorded_history import rules_of
-from bigactors.missions import digest_of
+from bigactors.mission_lookup import digest_of
 
 FLIGHT = f"""mission tour
 {TOUR}

@@ -9,7 +9,7 @@ from console_clients import HELLO, PROTOCOL, client, console, play, raw
 from live_missions import EAST, WEST
 from recorded import Tape, uav
 
-from adapters.console.requests import Order, RequestedAction
+from adapters.console.browser_requests import Order, RequestedAction
 from adapters.live.operator_socket import Outcome
 
 

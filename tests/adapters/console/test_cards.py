@@ -5,7 +5,7 @@ from live_missions import boat
 from recorded import BETWEEN, EAST, FLIGHT, WEST, Tape, told, uav
 
 from adapters.live.batch import GivingBack, Ordering
-from adapters.live.timing import flying
+from adapters.live.timing_monitor import flying
 from adapters.plugin import GoTo, LinkLost, LinkRestored, Rejected, Status, TakenOver
 from semantics.live_policy import Fallback
 

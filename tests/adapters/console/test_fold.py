@@ -13,7 +13,7 @@ from recorded import EAST, WEST, Tape, folded, messages, read, shown, uav
 from scale import examples
 
 from adapters.camera.votes import share
-from adapters.console.arrivals import CHUNK, EVERY, MOST_CHUNKS, extended
+from adapters.console.entity_tracks import CHUNK, EVERY, MOST_CHUNKS, extended
 from adapters.console.facts import Facts
 from adapters.console.mutable_facts import Draft
 from adapters.console.ticks import MOST, tick

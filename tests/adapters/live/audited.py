@@ -10,8 +10,8 @@ from live_missions import WEST, verify
 from adapters.simulated import Disturbance, Kind, Simulator, Vehicle, run
 from bigactors.arguments import parse_arguments
 from bigactors.commands.run.flight import fly, prepare, record
+from bigactors.flight_watchers import Terminal
 from bigactors.recordings import open_recording, trace_of
-from bigactors.watchers import Terminal
 from physical import box, circle, contains, point
 
 SHUTTLE = """

@@ -5,8 +5,8 @@ from pathlib import Path
 from adapters.live.batch import Batch, Heard
 from adapters.live.commanded import Commanded
 from adapters.live.core import advance, started
+from adapters.live.live_state import LiveState
 from adapters.live.plan import Plan
-from adapters.live.state import LiveState
 from adapters.plugin import Accepted, Aged
 from bigactors.cli import main
 from physical import PhysicalProperty, point

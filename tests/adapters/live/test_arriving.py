@@ -9,12 +9,12 @@ from test_flying import options_of
 
 from adapters.live.surroundings import spots
 from adapters.mavlink.constants import Cmd, MissionType
-from adapters.mavlink.items import Item
+from adapters.mavlink.items import OnboardItem
 from adapters.plugin import Accepted, GoTo
 from adapters.simulated import Kind, Vehicle, run
 from bigactors.commands.run.flight import prepare
+from bigactors.flight_watchers import Terminal
 from bigactors.mistakes import Mistake
-from bigactors.watchers import Terminal
 from physical import circle, contains, overlaps, point, waypoint
 
 BAY = """mission bay
@@ -185,8 +185,8 @@ def test_a_vehicle_that_stands_where_something_may_come_over_it_alone_is_not_as_
 
 
 FOREIGN = (
-    Item(Cmd.WAYPOINT, 0, 0),
-    *(Item(Cmd.WAYPOINT, 370_500_000 + n, -86_000_000, 100.0) for n in (0, 9)),
+    OnboardItem(Cmd.WAYPOINT, 0, 0),
+    *(OnboardItem(Cmd.WAYPOINT, 370_500_000 + n, -86_000_000, 100.0) for n in (0, 9)),
 )
 
 

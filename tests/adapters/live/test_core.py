@@ -17,9 +17,9 @@ from live_missions import (
 
 from adapters.live.batch import Batch, GivingBack, Heard
 from adapters.live.core import is_refused, resumed, watch
+from adapters.live.operator_findings import MOST_REPORTED
 from adapters.live.overrides import Overrides
 from adapters.live.plan import Plan
-from adapters.live.reported import MOST_REPORTED
 from adapters.plugin import (
     Accepted,
     Doubted,

@@ -12,7 +12,7 @@ from adapters.simulated import Disturbance, Kind, Vehicle
 from bigactors.arguments import parse_arguments
 from bigactors.cli import main
 from bigactors.commands.run.flight import prepare
-from bigactors.missions import locate
+from bigactors.mission_lookup import locate
 from bigactors.mistakes import Mistake
 from bigactors.recordings import open_recording
 

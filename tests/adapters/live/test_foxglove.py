@@ -15,10 +15,10 @@ from test_recording import FLIGHT, HEADER, fly
 from adapters.live.batch import GivingBack, Ordering, Saying
 from adapters.plugin import StatusText
 from adapters.recording.foxglove import FIX, GEOJSON, LOG, MOST_ENTITIES, Showing
-from adapters.recording.reading import read_recording
+from adapters.recording.recording_reader import read_recording
 from adapters.recording.schemas import SCHEMAS
 from adapters.recording.writing import Recorder
-from bigactors.missions import fixed_places
+from bigactors.mission_lookup import fixed_places
 from physical import box, read_geojson
 from semantics.live_policy import Fallback
 

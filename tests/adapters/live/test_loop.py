@@ -10,7 +10,7 @@ from adapters.live.batch import Acknowledging, GivingBack, Ordering, Saying
 from adapters.live.core import started
 from adapters.live.loop import LiveRun, NotAsAssumed, NotHeard, PluginFailed
 from adapters.live.operator_socket import NobodyListens, acknowledge, listening, order, say, status
-from adapters.live.turn import Answer
+from adapters.live.turn_result import Answer
 from adapters.plugin import Accepted, Aged, GoTo, HandOver, LinkLost, Refused
 from physical import PhysicalProperty, centroid, point
 from semantics.live_policy import Fallback

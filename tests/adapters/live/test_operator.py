@@ -18,11 +18,11 @@ from adapters.live.operator_socket import acknowledge, fates, give_back, order, 
 from adapters.live.overrides import StandingOrder
 from adapters.plugin import Hold
 from adapters.recording.mcap_files import RecordingError
-from adapters.recording.reading import read_recording
+from adapters.recording.recording_reader import read_recording
 from adapters.recording.schemas import SCHEMAS
 from adapters.simulated import Kind, Vehicle
 from bigactors.cli import main
-from bigactors.missions import open_mission
+from bigactors.mission_lookup import open_mission
 from bigactors.recordings import mission_of, open_recording, resume, trace_of
 
 pytestmark = pytest.mark.long

@@ -9,7 +9,7 @@ from scale import examples
 
 from adapters.live import operator_socket
 from adapters.live.operator_socket import MOST_BYTES, NobodyListens, fates, order
-from adapters.live.turn import Answer
+from adapters.live.turn_result import Answer
 
 LINES = [
     {"agent": "op1", "message": "go", "by": "Ana"},

@@ -2,7 +2,7 @@
 
 import pytest
 from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, plan_of, seen
-from test_orders import ANA, HOLD, RETURN, flying, ordered
+from test_command_planning import ANA, HOLD, RETURN, flying, ordered
 
 from adapters.live.batch import GivingBack
 from adapters.live.core import is_over

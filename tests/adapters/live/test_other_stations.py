@@ -17,8 +17,8 @@ from checker.traces import SCHEMA
 from semantics.behaviours.values import Text
 from semantics.state.parcel_serialization import parcel_json
 from semantics.state.parcels import Parcel
-from semantics.state.partition import Parting, parted, station_of
 from semantics.state.physical_model import InTransit
+from semantics.state.station_partition import Parting, parted, station_of
 from semantics.timing.actor_clocks import ActorClock, Sort
 
 TEXT = (

@@ -18,19 +18,19 @@ from live_missions import TOUR, WEST, plan_of
 from test_loop import GO, Looker, Vehicle
 from worlds import World, flight, simulated, until
 
-from adapters.detections import Detections
+from adapters.detection_feed import Detections
 from adapters.live.batch import Saying
 from adapters.live.core import started
 from adapters.live.loop import LiveRun
-from adapters.mavlink import autopilot
+from adapters.mavlink import mavlink_plugin
 from adapters.mavlink.codec import Decoder
 from adapters.plugin import Aged, Failed, GoTo, Hold, Return, Trouble
-from adapters.recording.reading import read_recording
+from adapters.recording.recording_reader import read_recording
 from adapters.recording.writing import Recorder
 from adapters.stations.journal import Journal
-from adapters.stations.sharing import MOST_STRANGERS, Sharing
+from adapters.stations.station_plugin import MOST_STRANGERS, Sharing
 from adapters.web import Listen
-from bigactors.watchers import Log, Tape, Terminal
+from bigactors.flight_watchers import Log, Tape, Terminal
 from physical import PhysicalProperty, Velocity, point
 from semantics.live_policy import Fallback, LivePolicy
 
@@ -261,7 +261,7 @@ async def test_a_telemetry_log_that_is_full_is_said_once_and_the_link_goes_on():
 
 @simulated
 async def test_of_a_flood_of_packets_so_many_are_logged_and_the_rest_counted(monkeypatch):
-    monkeypatch.setattr(autopilot, "MOST_LOGGED", 3)
+    monkeypatch.setattr(mavlink_plugin, "MOST_LOGGED", 3)
     heard = []
     async with flight(
         tap=lambda time, frame: heard.append((int(time), Decoder().feed(frame)[0].system))

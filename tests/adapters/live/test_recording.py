@@ -18,7 +18,7 @@ from live_missions import BETWEEN, EAST, TOUR, WEST, Run, boat, mission, plan_of
 from scale import examples
 
 from adapters.live.batch import Acknowledging, GivingBack, Heard, Ordering, Saying
-from adapters.live.reported import Finding
+from adapters.live.operator_findings import Finding
 from adapters.plugin import (
     Accepted,
     Aged,
@@ -34,10 +34,10 @@ from adapters.plugin import (
 from adapters.recording import mcap_files
 from adapters.recording.encoding import arrival_json, command_json, finding_json, report_json, seen_json
 from adapters.recording.mcap_files import McapWriter, Message, RecordingError
-from adapters.recording.reading import is_recording, read_recording
+from adapters.recording.recording_reader import is_recording, read_recording
 from adapters.recording.schemas import COMMANDS, SCHEMAS
 from adapters.recording.writing import MOST_ARRIVALS, Recorder
-from bigactors.missions import digest_of
+from bigactors.mission_lookup import digest_of
 from bigactors.mistakes import Mistake
 from bigactors.recordings import open_recording, resume, trace_of
 from checker import ReplayError, replay, to_json

@@ -18,7 +18,7 @@ from adapters.plugin import Rejected, TakenOver
 from adapters.simulated import Kind, Vehicle, protocol
 from adapters.simulated.reporting import Reporter
 from bigactors.cli import main
-from bigactors.missions import open_mission
+from bigactors.mission_lookup import open_mission
 from bigactors.recordings import open_recording, resume
 from semantics.live_policy import Fallback, LivePolicy
 

@@ -4,7 +4,7 @@ import pytest
 from live_missions import TOUR, Run, flying, mission, plan_of
 
 from adapters.live.batch import Saying
-from adapters.recording.reading import read_recording
+from adapters.recording.recording_reader import read_recording
 from adapters.recording.writing import Recorder
 from checker import replay
 from checker.traces import SCHEMA

@@ -6,12 +6,12 @@ import aiohttp
 from live_missions import BETWEEN, EAST, TOUR, WEST, boat, flying, plan_of, seen
 from test_loop import Looker, Vehicle
 
-from adapters.detections import Detections
+from adapters.detection_feed import Detections
 from adapters.live.batch import Heard
 from adapters.live.core import started
 from adapters.live.loop import AT_ONCE, MOST_WAITING, Inbox, LiveRun
+from adapters.live.run_watchers import Watchers
 from adapters.live.unknown_entities import MOST_PLACES, MOST_STRANGERS, SHARE
-from adapters.live.watchers import Watchers
 from adapters.plugin import Aged, Gone
 from adapters.web import Listen
 from physical import PhysicalProperty, box, point

@@ -13,7 +13,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from processes import until
 
 from adapters.recording.mcap_files import RecordingError
-from adapters.recording.reading import read_recording
+from adapters.recording.recording_reader import read_recording
 from bigactors.recordings import mission_of, trace_of
 from semantics.state.abstraction import as_it_is
 

@@ -7,7 +7,7 @@ from company import EAST, NOWHERE, WEST, WORLD, Cable, Station, agree, peers_tom
 from processes import free_port, until
 
 from adapters.console.history import History
-from adapters.recording.reading import read_recording
+from adapters.recording.recording_reader import read_recording
 from bigactors.commands.console.recorded_history import rules_of
 
 pytestmark = pytest.mark.long

@@ -5,7 +5,7 @@ from company import WORLD, Station, peers_toml, running
 from processes import SIMULATOR, free_port, started, until
 
 from adapters.console.history import History
-from adapters.recording.reading import read_recording
+from adapters.recording.recording_reader import read_recording
 from bigactors.cli import main
 from bigactors.commands.console.recorded_history import rules_of
 from checker.reports.lanes import lanes_of

@@ -15,10 +15,10 @@ from adapters.live.plan import Plan
 from adapters.plugin import Delivered
 from adapters.stations.bus import Bus
 from adapters.stations.entries import Entry, Posted, entry_text
-from adapters.stations.messages import Message
 from adapters.stations.peers import read_peers
-from bigactors.commands.run.stations import digest_of
-from semantics.state.partition import Parting, parted
+from adapters.stations.station_messages import StationMessage
+from bigactors.commands.run.station_flight import digest_of
+from semantics.state.station_partition import Parting, parted
 from specs.elaboration import load_mission
 
 MISSION = (
@@ -47,7 +47,7 @@ class Liar:
 
     def _message(self):
         upto = len(self.texts)
-        return encode(Message(digest_of(self.mission), time.time(), 0, upto, upto, self.texts))
+        return encode(StationMessage(digest_of(self.mission), time.time(), 0, upto, upto, self.texts))
 
     async def lie(self, seconds):
         """Answer every question for a while."""

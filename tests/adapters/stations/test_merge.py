@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from live_missions import EAST, TOUR, WEST, Run, plan_of
 
 from adapters.live.batch import Heard
-from adapters.live.sightings import MOST_AHEAD
+from adapters.live.fresh_placements import MOST_AHEAD
 from adapters.plugin import Aged, Gone
 from adapters.stations.entries import Entry, Said
 from adapters.stations.merge import ABREAST, MOST_ENTITIES, Merge, newer

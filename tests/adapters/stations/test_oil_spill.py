@@ -13,7 +13,7 @@ from company import Station, peers_toml, running
 from processes import free_port, until
 from water import AIRFIELD, SEARCH, SPILL, Water, drifted
 
-from adapters.recording.reading import read_recording
+from adapters.recording.recording_reader import read_recording
 from bigactors.cli import main
 from physical import contains, point
 from semantics.state.abstraction import as_it_is

@@ -13,12 +13,12 @@ from json_mutations import mutated
 from live_missions import EAST, WEST
 from msgspec.json import encode
 from scale import examples
-from test_sharing import ENTRIES, MISSION, Node, World
+from test_station_plugin import ENTRIES, MISSION, Node, World
 
 from adapters.plugin import Delivered
 from adapters.stations.entries import Entry, Posted, Said, entry_of, entry_text
-from adapters.stations.messages import Message, fitting, read
 from adapters.stations.peers import peers_of
+from adapters.stations.station_messages import StationMessage, fitting, read
 from physical import PhysicalError
 
 NAMES = ("gcs0", "gcs1", "gcs2")
@@ -184,7 +184,7 @@ def test_a_message_tells_up_to_where_it_is_whole():
     assert (len(texts), upto) == (5, 5)
     assert fitting(entries[:2], 20)[1] == 20
     assert len(fitting(entries[:1] * 2_000, 7)[0]) <= 500
-    message = read(encode(Message(MISSION, 1.5, 3, upto, 20, texts)))
+    message = read(encode(StationMessage(MISSION, 1.5, 3, upto, 20, texts)))
     assert (message.mission, message.time, message.after, message.upto, message.last) == (
         MISSION,
         1.5,
@@ -198,7 +198,7 @@ def test_a_message_tells_up_to_where_it_is_whole():
 @given(st.binary(max_size=200))
 def test_what_is_no_message_is_refused(data):
     company = read_or_none(data)
-    assert company is None or isinstance(company, Message)
+    assert company is None or isinstance(company, StationMessage)
 
 
 def read_or_none(data):

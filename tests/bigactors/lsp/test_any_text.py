@@ -6,11 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bigactors.lsp.completion import complete
+from bigactors.lsp.edited_mission import reading_of
 from bigactors.lsp.fixes import fixes
 from bigactors.lsp.hover import hover
 from bigactors.lsp.outline import outline
-from bigactors.lsp.reading import reading_of
-from bigactors.lsp.renaming import Refused, rename
+from bigactors.lsp.renaming import RenameRefused, rename
 from bigactors.lsp.tokens import tokens
 
 FOLDER = Path(__file__).parents[3] / "specs/missions"
@@ -40,7 +40,7 @@ def answers(text, offset):
         yield from (fix.span for fix in fixes(found, text))
     try:
         yield from rename(reading, offset, "other")
-    except Refused:
+    except RenameRefused:
         return
 
 

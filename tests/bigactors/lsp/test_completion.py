@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from bigactors.lsp.completion import complete
-from bigactors.lsp.reading import reading_of
+from bigactors.lsp.edited_mission import reading_of
 
 MISSIONS = Path(__file__).parents[3] / "specs/missions"
 TAKEOVER = (MISSIONS / "takeover.mission").read_text(encoding="utf-8")

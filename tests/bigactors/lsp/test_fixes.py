@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from bigactors.lsp.edited_mission import reading_of
 from bigactors.lsp.fixes import fixes
-from bigactors.lsp.reading import reading_of
 from bigactors.lsp.renaming import replaced
 
 MISSIONS = Path(__file__).parents[3] / "specs/missions"

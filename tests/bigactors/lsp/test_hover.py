@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from bigactors.lsp.edited_mission import reading_of
 from bigactors.lsp.hover import SERVED_BY, hover
-from bigactors.lsp.reading import reading_of
 from specs import explain, find_code
 from specs import syntax as s
 

@@ -11,8 +11,8 @@ from bigraphs.bigraph import Node, assemble
 from bigraphs.decomposition import take_apart
 from bigraphs.engine.contexts import ConditionCheck, without_idle
 from bigraphs.engine.intern_tables import InternTables
+from bigraphs.engine.occurrence_search import Matcher
 from bigraphs.engine.patterns import compile_pattern
-from bigraphs.engine.search import Matcher
 from bigraphs.engine.state_arrays import make_state
 from bigraphs.matching import find_matches
 from bigraphs.notation import read_big

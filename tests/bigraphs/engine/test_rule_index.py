@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from bigraphs.engine.intern_tables import InternTables
 from bigraphs.engine.machine import Machine
+from bigraphs.engine.occurrence_search import Matcher
 from bigraphs.engine.occurrences import Spot
 from bigraphs.engine.reactions import CompiledReaction
 from bigraphs.engine.rule_index import ReactionIndex
-from bigraphs.engine.search import Matcher
 from bigraphs.engine.state_arrays import make_state
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system

@@ -12,8 +12,8 @@ from scale import examples
 from checker import Limits, check, explore
 from checker.engines.choose import explore_by
 from checker.verdicts import Outcome
+from semantics.hypothesis_strategies import initial_configurations
 from semantics.races.monitor import monitored
-from semantics.strategies import initial_configurations
 
 TWO_MOVERS = moves("gate0", "a", "uav0") + moves("gate0", "b", "uav1")
 SLOW = """

@@ -1,4 +1,4 @@
-"""Missions with times, drawn at random: what `semantics.strategies` draws, or some small ones, and a timing for it."""
+"""Missions with times, drawn at random: generated or small ones, each with a timing."""
 
 from dataclasses import replace
 
@@ -6,12 +6,12 @@ from checked_missions import load
 from hypothesis import strategies as st
 
 from semantics.environment import Appears, Drifts, Drops, Leaves, Says, Vanishes
+from semantics.hypothesis_strategies import initial_configurations
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 from semantics.properties.propositions import Inside
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Setting
-from semantics.strategies import initial_configurations
 from semantics.timing.flight_history import remembered_at_first, vehicles
 from semantics.timing.intervals import ANY_TIME, Interval
 from semantics.timing.timing import (

@@ -11,7 +11,7 @@ from timed_missions import timed_missions, timings, with_timing
 from checker import Limits, check
 from checker.engines.choose import explore
 from checker.engines.contract import Engine
-from checker.engines.zones.interchange import model_of
+from checker.engines.zones.automaton_export import model_of
 from checker.verdicts import Outcome
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property

@@ -8,7 +8,7 @@ from scale import examples
 
 from checker import Engine, Limits, check, explore
 from checker.properties.coverage import CoverageCount, coverage
-from checker.properties.visited import Visited
+from checker.properties.visited_statements import Visited
 from checker.reports.report import coverage_json, coverage_text
 from semantics.successors import expand
 from specs import MissionError

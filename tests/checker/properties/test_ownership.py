@@ -11,8 +11,8 @@ from checker import Limits, explore, owned
 from checker.properties.races import ControlRaces, StaleObservationRaces
 from checker.verdicts import Outcome
 from semantics.behaviours.expressions import Fault
+from semantics.hypothesis_strategies import initial_configurations
 from semantics.races.monitor import monitored
-from semantics.strategies import initial_configurations
 from specs import MissionError
 
 

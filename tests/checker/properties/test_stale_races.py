@@ -28,8 +28,8 @@ from stale_missions import (
 from checker import Engine, Limits, Trace, check, explore
 from checker.properties.races import STALE, StaleObservationRaces, asked_in_words, is_stale
 from checker.properties.stale_steps import stale_steps
-from semantics import extension
-from semantics.behaviours import stepping
+from semantics import bigactor_rules
+from semantics.behaviours import process_conversion
 from semantics.behaviours.expressions import OPERATORS
 from semantics.behaviours.observations import Nodes, Observation
 from semantics.races import monitor
@@ -264,14 +264,14 @@ def remembering_everything(c):
             patch.setattr(monitor, name, lambda *_: EVERY)
         for module, name in (
             (monitor, "heirs"),
-            (stepping, "heirs"),
+            (process_conversion, "heirs"),
             (monitor, "possible_receivers"),
-            (extension, "possible_receivers"),
+            (bigactor_rules, "possible_receivers"),
         ):
             patch.setattr(module, name, lambda *_: frozenset({ANY}))
-        for module in (monitor, stepping):
+        for module in (monitor, process_conversion):
             patch.setattr(module, "communicated_variables", lambda *_: All())
-        patch.setattr(stepping, "uses_host", lambda *_: True)
+        patch.setattr(process_conversion, "uses_host", lambda *_: True)
         return first_races(c)
 
 

@@ -13,8 +13,8 @@ from checker import ReplayError, Trace, check, print_trace, replay, to_json
 from checker.properties.races import STALE
 from checker.properties.stale_steps import stale_steps
 from checker.reduction import Reduction
-from checker.reports.comparison import comparison_text
 from checker.reports.lanes import LaneStep, Repetition, bounded, folded, lanes_of_trace, lanes_text
+from checker.reports.trace_comparison import comparison_text
 from semantics.races.monitor import monitored
 
 ALIKE = swarm(

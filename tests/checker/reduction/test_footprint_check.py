@@ -16,7 +16,7 @@ from checker import Engine, Keeping, Limits, Outcome, check, explore
 from checker.engines.contract import sample
 from checker.reduction import Ample
 from checker.reduction.footprint_check import Drift, outside, unheeded
-from checker.reduction.variables import NOTHING
+from checker.reduction.footprint_slots import NOTHING
 from semantics import control
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY

@@ -13,14 +13,14 @@ from shipped import UNTIMED
 from swarms import swarms
 
 from checker import Engine, Limits, explore
+from checker.engines.fast.access_recording import ColumnQuestion
 from checker.engines.fast.interchangeable import Likeness
-from checker.engines.fast.recording import ColumnQuestion
 from checker.engines.fast.rule_cache import Exchange, NoImage
 from checker.reduction.configuration_renaming import Renaming
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.observations import Nodes, agent_key
 from semantics.behaviours.values import Text, show
-from semantics.state.cells import is_
+from semantics.state.cell_values import is_
 from semantics.state.configuration import Label
 from semantics.state.requests import OBS
 from semantics.state.signature import REGION

@@ -5,9 +5,9 @@ from itertools import combinations
 import pytest
 from shipped import UNTIMED
 
+from checker.reduction.alpha_equivalence import Pairing, Unlike
 from checker.reduction.configuration_renaming import Renaming, requested_keys
 from checker.reduction.mission_automorphisms import Automorphisms, restated
-from checker.reduction.pairing import Pairing, Unlike
 from specs.elaboration import load_mission
 
 OF_THE_WORLD = ("they are not in the same place", "they are on different channels", "the initial state of")

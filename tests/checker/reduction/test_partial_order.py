@@ -15,9 +15,9 @@ from shipped import UNTIMED
 from checker import Engine, Limits, Outcome, Reduction, RefusedError, check, explore
 from checker.reduction import Reduced
 from checker.reduction.cycle_proviso import NOWHERE, Lead, Paths
-from checker.reduction.variables import NOTHING
+from checker.reduction.footprint_slots import NOTHING
 from checker.traces import replay, to_json
-from semantics import Control, Scheduler, strategies
+from semantics import Control, Scheduler, hypothesis_strategies
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 from semantics.properties.propositions import Ended, HasPending, Inside, LinkedWith, Present, Waiting
@@ -145,7 +145,7 @@ def fleets(draw):
     return "\n".join([*loops, f"BigActor last hosted_at {hosts[2]} with_behavior {{ {last} }}\n"])
 
 
-PROGRAMS = strategies.initial_configurations(
+PROGRAMS = hypothesis_strategies.initial_configurations(
     schedulers=(Scheduler.PROGRAM_ORDER, Scheduler.UNORDERED), monitored=False
 )
 TEXTS = st.builds(

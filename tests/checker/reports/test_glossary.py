@@ -9,7 +9,7 @@ import pytest
 from checker.properties import deadlines
 from checker.reports.glossary import ALL, PROPERTIES, RULES, WORDS, find_word
 from checker.verdicts import Outcome
-from semantics import extension, rules
+from semantics import bigactor_rules, rules
 from semantics.control import Obstacle
 from semantics.properties.property import PropertyKind
 from semantics.state.requests import Request
@@ -30,7 +30,7 @@ def test_the_properties_are_those_that_there_are():
 
 
 def test_the_rules_are_those_that_there_are():
-    every = (*rules.RULES, rules.env, *rules.TIMED_RULES, *extension.EXTENSION, extension.say)
+    every = (*rules.RULES, rules.env, *rules.TIMED_RULES, *bigactor_rules.EXTENSION, bigactor_rules.say)
     assert [rule.__name__ for rule in every] == list(RULES)
 
 

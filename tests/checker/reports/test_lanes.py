@@ -6,8 +6,8 @@ import pytest
 from checked_missions import PILOTS, WORLD, load, moves, start, verdict, violation
 
 from checker import Trace
-from checker.reports.comparison import AlignedSteps, compare, comparison_text
 from checker.reports.lanes import LeftOut, Repetition, bounded, folded, lanes_of_trace, lanes_text, steps_of
+from checker.reports.trace_comparison import AlignedSteps, compare, comparison_text
 from checker.steps import candidates
 from semantics.state.configuration import Label
 from semantics.state.differences import Difference
@@ -106,7 +106,7 @@ def test_a_trace_is_the_same_as_itself_and_parts_from_a_longer_one_at_its_end():
 
 
 def test_of_long_traces_only_so_many_steps_are_aligned(monkeypatch):
-    monkeypatch.setattr("checker.reports.comparison.MOST_ALIGNED", 1)
+    monkeypatch.setattr("checker.reports.trace_comparison.MOST_ALIGNED", 1)
     found = compare(follow(PILOTS, *ONE), follow(PILOTS, *OTHER))
     assert (found.pairs, found.beyond) == ((AlignedSteps(3, None), AlignedSteps(None, 3)), (1, 1))
 

@@ -15,10 +15,19 @@ from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault
 from semantics.behaviours.values import Text
 from semantics.state.parcel_serialization import parcel_json, parcel_of
-from semantics.state.partition import Parting, enter, is_here, leave, objection, parted, sent_cell, station_of
-from semantics.state.partition import parcel_of as parcel_here
 from semantics.state.requests import CTR, MGR, OBS, READY, SND
 from semantics.state.setting import Control, Scheduler
+from semantics.state.station_partition import (
+    Parting,
+    enter,
+    is_here,
+    leave,
+    objection,
+    parted,
+    sent_cell,
+    station_of,
+)
+from semantics.state.station_partition import parcel_of as parcel_here
 from semantics.successors import moves, served, successors
 from specs.diagnostics import Source
 from specs.elaboration import Variation, elaborate, load_mission

@@ -3,7 +3,7 @@
 from hypothesis import given
 from small_missions import mission
 
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.computation import members_of
 from semantics.behaviours.expressions import Apply, Literal, RouteOf, SetOf, Variable
@@ -84,7 +84,7 @@ def test_what_follows_an_if_runs_either_way():
         assert t.shown == expected
 
 
-@given(strategies.configurations())
+@given(hypothesis_strategies.configurations())
 def test_the_store_holds_just_what_may_still_be_read(c):
     for agent in c.alpha.names():
         live = c.setting.program.live(c.alpha.code(agent))

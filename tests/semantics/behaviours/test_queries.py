@@ -6,11 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from small_missions import aboard, mission
 
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.behaviours.observations import NOTHING_SEEN, All, Nodes, Observation, Of, Query
 from semantics.behaviours.queries import evaluate, overlay
 from semantics.state.agents import Agents
-from semantics.state.cells import Cells
+from semantics.state.cell_values import Cells
 from semantics.state.configuration import Configuration
 from semantics.state.initial import Beliefs
 from semantics.state.relations import Linked, Parent
@@ -71,7 +71,7 @@ def test_what_a_carrier_holds_are_its_children():
 
 @given(st.data())
 def test_operators_compose_pointwise(data):
-    world = data.draw(strategies.worlds())
+    world = data.draw(hypothesis_strategies.worlds())
     c = world.initial()
     names = data.draw(st.lists(st.sampled_from(sorted(world.kinds)), min_size=1, max_size=3, unique=True))
     operator = data.draw(st.sampled_from(["PARENT", "CHILDREN", "LINKED_TO"]))
@@ -81,7 +81,7 @@ def test_operators_compose_pointwise(data):
     assert set(together.relations) == set().union(*(each.relations for each in apart))
 
 
-@given(strategies.structures())
+@given(hypothesis_strategies.structures())
 def test_all_shows_exactly_the_abstraction(structure):
     seen = evaluate(All(), structure.physical, Agents(structure.physical.cells))
     physical = structure.physical
@@ -112,9 +112,9 @@ def test_a_place_of_which_only_who_is_in_it_is_known_goes_to_the_region():
 
 @given(st.data())
 def test_after_an_observation_the_structure_is_locally_consistent_with_it(data):
-    world = data.draw(strategies.worlds())
-    c = world.initial(beliefs=data.draw(strategies.beliefs(world)))
-    seen = look(c, data.draw(strategies.queries(sorted(world.kinds))))
+    world = data.draw(hypothesis_strategies.worlds())
+    c = world.initial(beliefs=data.draw(hypothesis_strategies.beliefs(world)))
+    seen = look(c, data.draw(hypothesis_strategies.queries(sorted(world.kinds))))
     after = learn(c, seen).structure
     assert after.locally_consistent(seen.relations, seen.nodes())
     check_only_answers_were_taken(c, seen, after.logical)
@@ -158,11 +158,11 @@ def test_what_is_linked_to_the_parent_of_the_region_is_the_region():
 
 @given(st.data())
 def test_the_same_is_learned_whoever_is_asked_name_by_name(data):
-    world = data.draw(strategies.worlds())
+    world = data.draw(hypothesis_strategies.worlds())
     names = sorted(world.kinds)
     unknown = data.draw(st.lists(st.sampled_from(names), unique=True))
     c = world.initial(beliefs=Beliefs(dict.fromkeys(unknown)))
-    seen = look(c, data.draw(strategies.queries(names)))
+    seen = look(c, data.draw(hypothesis_strategies.queries(names)))
     asked = Observation(
         MappingProxyType(dict(seen.family)), seen.swept
     )  # as the checker has it: no plain family

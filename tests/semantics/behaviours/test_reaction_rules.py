@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from small_missions import logical_of, mission
 
 from physical import point
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.behaviours.reaction_rules import (
     LinkVariable,
     Match,
@@ -75,9 +75,9 @@ def naive_matches(pattern: Pattern, logical: LogicalModel) -> set[Match]:
 
 @given(st.data())
 def test_matching_finds_what_a_naive_enumerator_finds(data):
-    world = data.draw(strategies.worlds())
-    logical = world.initial(beliefs=data.draw(strategies.beliefs(world))).structure.logical
-    pattern = data.draw(strategies.patterns(sorted(world.kinds)))
+    world = data.draw(hypothesis_strategies.worlds())
+    logical = world.initial(beliefs=data.draw(hypothesis_strategies.beliefs(world))).structure.logical
+    pattern = data.draw(hypothesis_strategies.patterns(sorted(world.kinds)))
     found = matches(pattern, logical)
     assert set(found) == naive_matches(pattern, logical)
     assert len(set(found)) == len(found)

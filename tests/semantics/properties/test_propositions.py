@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_missions import explore, figure_2, mission, move_to, run
 
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.behaviours.commands import COMMANDS
 from semantics.behaviours.expressions import Fault, Literal
 from semantics.behaviours.program import Program, VariableOf
@@ -166,7 +166,7 @@ def hoarding(c):
 
 @settings(deadline=None)
 @given(
-    strategies.initial_configurations(monitored=None),
+    hypothesis_strategies.initial_configurations(monitored=None),
     st.lists(st.integers(0, 15), max_size=16),
     st.booleans(),
 )

@@ -4,7 +4,7 @@ from hypothesis import given
 from scale import examples
 from small_missions import around, explore, is_in, mission, move_to, of_name, received
 
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.behaviours.expressions import Apply, Fault, Literal, TupleOf, Variable
 from semantics.behaviours.patterns import Anything, Elements
 from semantics.behaviours.statements import (
@@ -181,7 +181,7 @@ def test_an_agent_may_be_called_queue():
 
 
 @examples(40)
-@given(strategies.initial_configurations())
+@given(hypothesis_strategies.initial_configurations())
 def test_monitoring_changes_no_configuration(c):
     plain, watched = reach(c, 120), reach(monitored(c), 120)
     if plain is None or watched is None:
@@ -205,7 +205,7 @@ def reach(start, limit):
     return seen
 
 
-@given(strategies.configurations(strategies.initial_configurations(monitored=True)))
+@given(hypothesis_strategies.configurations(hypothesis_strategies.initial_configurations(monitored=True)))
 def test_what_is_remembered_runs_beside_what_it_is_about(c):
     for agent in c.alpha.names():
         watch = c.alpha.watch(agent)

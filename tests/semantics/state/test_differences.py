@@ -11,7 +11,7 @@ from semantics.behaviours.values import Text
 from semantics.environment import Says
 from semantics.races.monitor import monitored
 from semantics.state.agents import code_cell, host_cell, mailbox_cell, store_cell
-from semantics.state.cells import AGENTS
+from semantics.state.cell_values import AGENTS
 from semantics.state.configuration import Configuration
 from semantics.state.differences import PARTS, Difference, differences
 from semantics.state.initial import initial

@@ -4,7 +4,7 @@ from hypothesis import given
 from small_missions import SHAPES, SIGNATURE, aboard, mission
 
 from physical import Band, area, contains, point, translate_to
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.state.abstraction import all_as_it_is, as_it_is
 from semantics.state.physical_model import Carried, InTransit, PhysicalModel, Placed
 from semantics.state.signature import REGION, Kind, Signature
@@ -38,7 +38,7 @@ def inside(outer: Placed, inner: Placed) -> bool:
     return level and contains(outer.geometry, inner.geometry)
 
 
-reached = strategies.configurations(strategies.initial_configurations())
+reached = hypothesis_strategies.configurations(hypothesis_strategies.initial_configurations())
 
 
 @given(reached)

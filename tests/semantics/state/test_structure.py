@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from small_missions import aboard, figure_2, mission, run
 
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.behaviours.program import VariableOf
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property, watching
@@ -63,7 +63,7 @@ def test_parent_means_contains_or_carries_and_linked_means_connected():
     assert not s.consistent((Linked("w", "crate"),))
 
 
-@given(strategies.structures())
+@given(hypothesis_strategies.structures())
 def test_local_consistency_with_a_part_follows_from_that_with_the_whole(structure):
     relations = structure.relations()
     if structure.locally_consistent(relations):
@@ -76,7 +76,7 @@ def test_local_consistency_with_a_part_follows_from_that_with_the_whole(structur
 
 @given(st.data())
 def test_belief_begins_as_the_abstraction(data):
-    c = data.draw(strategies.worlds()).initial()
+    c = data.draw(hypothesis_strategies.worlds()).initial()
     logical, physical = c.structure.logical, c.structure.physical
     assert logical.nodes() == physical.entities()
     for name in physical.entities():

@@ -4,11 +4,11 @@ import pytest
 from hypothesis import given
 from scale import examples
 
-from checker.engines.fast.recording import CellRecorder
+from checker.engines.fast.access_recording import CellRecorder
 from semantics import successors
-from semantics.state.cells import Written
+from semantics.hypothesis_strategies import configurations
+from semantics.state.cell_values import Written
 from semantics.state.logical_model import LogicalModel, parent_cell
-from semantics.strategies import configurations
 
 
 def views(configuration):

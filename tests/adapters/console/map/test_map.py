@@ -15,7 +15,7 @@ from PIL import Image
 from pyproj import Geod
 from threaded import beside
 
-from adapters.console.server import HEADERS
+from adapters.console.console_server import HEADERS
 
 HERE = Path(__file__).parent
 NOW = 1_800_000_000.0

@@ -41,7 +41,7 @@ def test_hostile_texts_are_refused_soon(text):
 
 
 def test_the_work_of_one_file_is_bounded(monkeypatch):
-    monkeypatch.setattr("bigraphs.notation.big.expressions.MAX_WORK", 2_000)
+    monkeypatch.setattr("bigraphs.notation.big.expression_evaluation.MAX_WORK", 2_000)
     text = system("".join(f"big b{n} = par(100, A.1);" for n in range(20)))
     assert "reading this file takes bigraphs of more than 2000 parts in all" in [
         mistake.message for mistake in mistakes(text)

@@ -3,7 +3,7 @@ from big_files import mistakes
 
 from bigraphs import bigraph
 from bigraphs.notation import read_system
-from bigraphs.notation.big.expressions import Evaluation
+from bigraphs.notation.big.expression_evaluation import Evaluation
 
 CELLS = """
 ctrl Room = 0; fun ctrl Cell(n) = 0; atomic fun ctrl Badge(n, s) = 1; atomic ctrl Lamp = 1;

@@ -16,7 +16,7 @@ from checker.properties.coverage import Visited
 from checker.properties.inspections import Arrival, Computation, DeadlockFreedom, LocalConsistency
 from checker.properties.races import ControlRaces
 from checker.properties.temporal.decide import kept_graph
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.races.monitor import monitored
 from specs.elaboration import load_mission
 
@@ -86,7 +86,7 @@ def test_workers_visit_together_what_one_process_visits_alone(name, workers):
         )  # fmt: skip
 
 
-@given(strategies.initial_configurations())
+@given(hypothesis_strategies.initial_configurations())
 @examples(25)
 def test_workers_visit_of_generated_missions_what_one_process_visits(initial):
     limits = Limits(configurations=60)

@@ -7,7 +7,7 @@ from shipped import UNTIMED
 
 from checker import Engine, Limits, Outcome, check, explore
 from checker.properties.temporal.decide import kept_graph
-from semantics import Control, Scheduler, strategies
+from semantics import Control, Scheduler, hypothesis_strategies
 from semantics.races.monitor import monitored
 from specs.elaboration import Variation, load_mission
 
@@ -52,7 +52,7 @@ def test_a_mission_is_explored_alike_by_both_engines(name, variation):
     assert explored(initial, Engine.FAST) == explored(initial, Engine.REFERENCE)
 
 
-@given(strategies.initial_configurations())
+@given(hypothesis_strategies.initial_configurations())
 @examples(100)
 def test_generated_missions_are_explored_alike_by_both_engines(initial):
     limits = Limits(configurations=60)
@@ -65,7 +65,7 @@ def test_both_engines_come_to_the_same_report(name, variation):
     reported(mission, FEW if variation else CROWDED)
 
 
-@given(strategies.missions())
+@given(hypothesis_strategies.missions())
 @examples(60)
 def test_generated_missions_are_judged_alike_by_both_engines(mission):
     reported(mission, Limits(configurations=60))

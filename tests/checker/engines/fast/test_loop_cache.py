@@ -10,7 +10,7 @@ import pytest
 from checker.engines.fast import loop_cache
 from checker.engines.fast.loop_cache import ENGINES, LoopCache, stamp
 
-LOOPS = "from checker.engines.fast.loops import"
+LOOPS = "from checker.engines.fast.jit_decorators import"
 KERNEL = f"""\
 {LOOPS} njit
 from checker.engines.fast import (
@@ -19,7 +19,7 @@ from checker.engines.fast import (
 from semantics.times import LATE
 """
 CALLER = """\
-from checker.engines.fast.loops import njit
+from checker.engines.fast.jit_decorators import njit
 from {home} import step
 
 @njit(cache=True)
@@ -28,7 +28,7 @@ def walk(x):
 """
 
 CALLEE = """\
-from checker.engines.fast.loops import inner
+from checker.engines.fast.jit_decorators import inner
 
 @inner(cache=True)
 def step(x):

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scale import examples
 
-from checker.engines.fast.loops import njit
+from checker.engines.fast.jit_decorators import njit
 from checker.engines.fast.origins import BLOCK, WORD, Elsewhere, Rising, note_origin
 
 

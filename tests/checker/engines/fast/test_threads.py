@@ -16,7 +16,7 @@ from checker.engines.contract import Options
 from checker.engines.fast import explorer, frontier_chunks, pipeline, space, tree_compression
 from checker.engines.fast.explorer import explore_fast
 from checker.engines.fast.rows import Rows
-from semantics import strategies
+from semantics import hypothesis_strategies
 from semantics.races.monitor import monitored
 from specs.elaboration import load_mission
 
@@ -73,7 +73,7 @@ def test_a_monitored_mission_is_explored_alike_by_any_number_of_threads(name):
     assert seen(initial, 2) == seen(initial, 4) == seen(initial, 1)
 
 
-@given(strategies.initial_configurations(), st.sampled_from([1, 2]))
+@given(hypothesis_strategies.initial_configurations(), st.sampled_from([1, 2]))
 @examples(60)
 def test_generated_missions_are_explored_alike_by_any_number_of_threads(initial, plain):
     limits = Limits(configurations=300)

@@ -14,9 +14,9 @@ from checker.properties.temporal.linear import counterexample
 from checker.properties.temporal.truth import FormulaTruth
 from checker.reduction import Reduction
 from checker.verdicts import Outcome
+from semantics.hypothesis_strategies import initial_configurations
 from semantics.properties.propositions import Known
 from semantics.properties.temporal import ENVIRONMENTS, Denied, Eventually, Fairness, Globally, Now, Steps
-from semantics.strategies import initial_configurations
 
 FAIRNESS = st.sampled_from(
     [

@@ -17,7 +17,7 @@ from structures import (
     truths,
 )
 
-from checker.properties.temporal.evaluation import is_true_on
+from checker.properties.temporal.lasso_evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso
 from checker.properties.temporal.linear import counterexample
 from semantics.properties.temporal import Both, Denied, Either, Eventually, Globally, Now, Taken

@@ -15,6 +15,7 @@ from checker.properties.temporal.fairness import EACH_RULE_AND_REQUEST
 from checker.properties.temporal.linear import counterexample
 from checker.properties.temporal.served_requests import ProgressSearch, owed, pending_requests
 from checker.properties.temporal.truth import FormulaTruth
+from semantics.hypothesis_strategies import initial_configurations
 from semantics.properties.propositions import Known
 from semantics.properties.temporal import (
     SERVES,
@@ -27,7 +28,6 @@ from semantics.properties.temporal import (
     Steps,
     Taken,
 )
-from semantics.strategies import initial_configurations
 
 EXTRA = st.lists(
     st.sampled_from(

@@ -1,0 +1,203 @@
+"""Checks before take-off for parts of a mission that no vehicle here can carry out.
+
+A control commits when a report confirms it. Vehicles report their positions and their controlling stations. No report
+confirms that a vehicle is aboard another, that a load was put down, or that a channel was joined.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from itertools import islice, product
+
+from adapters.live.command_planning import is_authority
+from adapters.live.core import obeying
+from adapters.live.loop import LiveRun
+from adapters.live.surroundings import spots
+from adapters.plugin import Plugin, Preflight, preflights
+from bigactors.commands.run.geofence import placements_of
+from bigactors.mistakes import Mistake
+from bigactors.terminal import tell
+from checker.reduction.overapproximation import Overapproximation
+from checker.reduction.possible_values import Roles
+from semantics.behaviours.expressions import Fault
+from semantics.behaviours.reaction_rules import CONTROL_AUTHORITY, LinkTerm, NodeTerm, PlaceTerm, Reaction
+from semantics.behaviours.statements import ControlBy
+from semantics.state.signature import Name
+from specs.elaboration import ElaboratedMission
+
+PATIENCE = 15.0
+"""Seconds that a vehicle has to report its parameters."""
+
+MOST_INSTANCES = 5_000
+"""The most instances of a control that are checked."""
+
+Objection = Callable[[Reaction], str]
+"""Returns the objection to a control; empty if there is none."""
+
+
+def check_idle(live: LiveRun, *, takes_over: bool) -> None:
+    """Refuse to command vehicles that fly a mission of another operator; raises Mistake."""
+    if takes_over:
+        return
+    said = live.inbox.statuses
+    for name in sorted(obeying(live.plan, live.state)):
+        if name in said and said[name].follows:
+            found = f"{name} is under way already, in {said[name].mode}"
+            message = f"{found}: it flies a mission that this run did not send"
+            hint = "land it, or take it over: --take-over; a run that was interrupted goes on with --resume"
+            raise Mistake(message, hint)
+
+
+def check_flyable(mission: ElaboratedMission) -> None:
+    """Refuse controls that no report can confirm, and warn of controls that may be such; raises Mistake."""
+    _judge(mission, lambda reaction: next(_unshown(reaction, mission), ""))
+
+
+def check_places(mission: ElaboratedMission, plugins: tuple[Plugin, ...]) -> None:
+    """Refuse places too small for a vehicle, now that its kind is known, or outside one of its fences.
+
+    Raises Mistake.
+    """
+    pilots = preflights(plugins)
+    for remark in (remark for plugin in pilots for remark in plugin.remarks()):
+        tell(f"warning: {remark}")
+
+    def objection(reaction: Reaction) -> str:
+        reasons = (
+            reason
+            for vehicle, place in reaction.moves
+            for plugin in pilots
+            if isinstance(vehicle, str) and plugin.owns(vehicle)
+            for reason in (
+                *_bars(plugin, vehicle, reaction, mission),
+                *_objections(plugin, vehicle, place, mission),
+            )
+        )
+        return next((f"it cannot: {reason}" for reason in reasons if reason), "")
+
+    _judge(mission, objection)
+
+
+def _bars(
+    plugin: Preflight, vehicle: Name, reaction: Reaction, mission: ElaboratedMission
+) -> Iterator[str | None]:
+    """Yield the reasons why a vehicle can't pass the places on its way."""
+    for via in (each for each in reaction.via if isinstance(each, str)):
+        yield from (plugin.bar(vehicle, geometry, via) for geometry in placements_of(via, mission))
+
+
+def _objections(
+    plugin: Preflight, vehicle: Name, place: PlaceTerm, mission: ElaboratedMission
+) -> Iterator[str | None]:
+    """Yield the reasons why a vehicle can't stay at some position of its destination, beside the entities there."""
+    if not isinstance(place, str):
+        return
+    for geometry, around in spots(mission.initial, vehicle, place):
+        yield plugin.objection(vehicle, geometry, place, around)
+
+
+async def get_to_know(plugins: tuple[Plugin, ...], vehicles: Iterable[Name]) -> None:
+    """Wait until vehicles have reported their circles and fences, or until the timeout."""
+    asked = [plugin for plugin in preflights(plugins) if any(map(plugin.owns, vehicles))]
+    with suppress(TimeoutError):
+        async with asyncio.timeout(PATIENCE):
+            while not all(plugin.is_known() for plugin in asked):
+                await asyncio.sleep(0.1)
+
+
+def _judge(mission: ElaboratedMission, objection: Objection) -> None:
+    """Raise Mistake for a control that is always impossible, and warn of one that may be impossible."""
+    for agent, line, reactions in _controls(mission):
+        reasons = {str(reaction): objection(reaction) for reaction in reactions}
+        bad = [f"{control}: {reason}" for control, reason in reasons.items() if reason]
+        if bad and len(bad) == len(reasons):
+            hint = "nothing has been commanded; change the mission, or its vehicles"
+            raise Mistake(
+                f"{agent} would request an impossible flight: {bad[0]}", hint, _place(mission, line)
+            )
+        if bad:
+            tell(f"{_place(mission, line)}: warning: {agent} may request an impossible flight: {bad[0]}")
+
+
+def _place(mission: ElaboratedMission, line: int) -> str:
+    return f"{mission.source.name}:{line}" if line else mission.source.name
+
+
+def _controls(mission: ElaboratedMission) -> Iterator[tuple[Name, int, tuple[Reaction, ...]]]:
+    """Yield the controls of each agent, with their lines and all possible arguments."""
+    program, roles = mission.setting.program, Roles(Overapproximation(mission.initial))
+    for agent in roles.agents:
+        for number in sorted(roles[agent].statements):
+            statement = program.statements[number]
+            if isinstance(statement, ControlBy):
+                arguments = (roles.entities(agent, each) for each in statement.arguments)
+                several: tuple[Sequence[Name], ...] = (sorted(roles[agent].hosts), *arguments)
+                found = _instances(mission, program.reactions[statement.name], several)
+                yield agent, program.line(number), tuple(found)
+
+
+def _instances(
+    mission: ElaboratedMission, make: Callable[..., Reaction], several: Iterable[Sequence[Name]]
+) -> Iterator[Reaction]:
+    for chosen in islice(product(*several), MOST_INSTANCES):
+        with suppress(Fault):  # the command refuses some names
+            reaction = make(*chosen)
+            if _may_take(mission, reaction):
+                yield reaction
+
+
+def _may_take(mission: ElaboratedMission, reaction: Reaction) -> bool:
+    """Return whether a reaction's movers may be at its destinations and waypoints, and those all differ."""
+    ways = ((node, place) for node, to in reaction.moves for place in (*reaction.via, to))
+    each_once = all(len({*reaction.via, to}) == len(reaction.via) + 1 for _, to in reaction.moves)
+    return each_once and all(_may_be(mission, *way) for way in ways)
+
+
+def _may_be(mission: ElaboratedMission, node: NodeTerm, place: PlaceTerm) -> bool:
+    """Return whether a place may hold a node at all."""
+    of, holder = _kind(mission, node), _kind(mission, place)
+    unknown = of is None or holder is None
+    return node != place and (unknown or mission.setting.signature[str(holder)].may_contain(str(of)))
+
+
+def _unshown(reaction: Reaction, mission: ElaboratedMission) -> Iterator[str]:
+    signature = mission.setting.signature
+    for node, place in reaction.moves:
+        of, holder = _kind(mission, node), _kind(mission, place)
+        if of is not None and not signature[of].driven:
+            yield f"no report can confirm that {node} is put into {place}"
+        elif of is not None and holder is not None and of in signature[holder].carries:
+            yield f"no report can confirm that {node} is aboard {place}"
+    for node, links in _links(reaction):
+        of = _kind(mission, node)
+        if (
+            reaction.moves
+            or any(_is_other(link) for link in links)
+            or (of is not None and not signature[of].driven)
+        ):
+            which = sorted(link if isinstance(link, str) else "a channel" for link in links)
+            yield f"no report can confirm that {node} joins or leaves {' and '.join(dict.fromkeys(which))}"
+
+
+def _links(reaction: Reaction) -> Iterator[tuple[NodeTerm, frozenset[LinkTerm]]]:
+    """Yield the nodes whose links a reaction changes, with the changed links."""
+    changed = set(reaction.redex.links) ^ set(reaction.reactum.links)
+    for node in dict.fromkeys(node for _, node in (*reaction.redex.links, *reaction.reactum.links)):
+        links = frozenset(link for link, point in changed if point == node)
+        if links:
+            yield node, links
+
+
+def _is_other(link: LinkTerm) -> bool:
+    """Return whether a link is certainly no control authority."""
+    if isinstance(link, str):
+        return not is_authority(link)
+    return link.but == CONTROL_AUTHORITY or link.kind not in (None, CONTROL_AUTHORITY)
+
+
+def _kind(mission: ElaboratedMission, term: NodeTerm | PlaceTerm) -> str | None:
+    if isinstance(term, str):
+        return mission.setting.kinds.get(term)
+    return getattr(term, "kind", None)

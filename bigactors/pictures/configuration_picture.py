@@ -1,0 +1,202 @@
+"""Draw a configuration ⟨α | S | η⟩: L as a bigraph beside P as a map, above the agents and their requests."""
+
+import re
+from dataclasses import dataclass
+from typing import Final
+
+from bigactors.pictures.page import Page
+from bigactors.pictures.scene import (
+    Palette,
+    changed_names,
+    channels_of,
+    differing,
+    is_place,
+    map_entities,
+    palette_of,
+    shown_names,
+)
+from bigraphs.bigraph import Bigraph
+from bigraphs.drawing import draw_layout
+from bigraphs.layout import layout
+from physical.drawing import draw_map
+from physical.map_marks import draw_halo, draw_icon, draw_mark
+from physical.map_style import INK, QUIET, SQUARE, kind_shapes
+from physical.svg import Canvas, Paint, Picture, shortened, text_width
+from semantics.state.configuration import Configuration
+from semantics.state.printing import print_agent
+from semantics.state.signature import Name
+
+WIDTH: Final = 960.0
+MARGIN: Final = 26.0
+GUTTER: Final = 22.0
+PANEL: Final = (WIDTH - 2 * MARGIN - GUTTER) / 2
+"""The width of the bigraph, and of the map with its latitudes."""
+
+PANEL_HEIGHT: Final = 372.0
+LARGEST: Final = 1.2
+"""The largest magnification of a small bigraph."""
+
+ROW: Final = 15.0
+MOST_ROWS: Final = 12
+LEGEND_ROW: Final = 17.0
+
+
+@dataclass(frozen=True, slots=True)
+class LegendEntry:
+    """One entry of the legend: its look, and the name for it."""
+
+    look: str
+    name: str
+    colour: str = INK
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """The look of a configuration: its colours, the glowing names (changed) and the marked names (L and P differ)."""
+
+    palette: Palette
+    glowing: frozenset[Name]
+    marked: frozenset[Name]
+
+
+def look_of(c: Configuration, before: Configuration | None) -> Look:
+    """Return the look of a configuration after another."""
+    glowing = frozenset() if before is None else changed_names(before, c)
+    return Look(palette_of(c), glowing, differing(c))
+
+
+def draw_configuration(
+    configuration: Configuration,
+    *,
+    title: str | None = None,
+    changed: Configuration | None = None,
+) -> Picture:
+    """Return the picture of a configuration.
+
+    Entities on which L and A(P) differ have a dashed outline in both. With `changed`, the configuration before, the
+    changes since then glow.
+    """
+    c, look = configuration, look_of(configuration, changed)
+    legend = _legend_rows(_entries(c, look))
+    rows = max(1, _shown(len(c.alpha.names())), _shown(len(c.eta.all())))
+    top = MARGIN + (26.0 if title else 0.0)
+    strip = top + 18.0 + PANEL_HEIGHT + 30.0
+    foot = strip + 16.0 + rows * ROW + 12.0
+    page = Page(WIDTH, foot + len(legend) * LEGEND_ROW + 18.0)
+    if title:
+        page.write(MARGIN, MARGIN + 10, title, 14.0, bold=True, width=WIDTH - 2 * MARGIN)
+    _draw_logical(page, c, top, look)
+    _draw_physical(page, c, top, look)
+    page.rule(MARGIN, WIDTH - MARGIN, strip - 16.0)
+    _write_list(page, MARGIN, strip, ("α", "agents"), [print_agent(c, a) for a in c.alpha.names()])
+    requests = [str(each.request) for each in c.eta.all()]
+    _write_list(page, MARGIN + PANEL + GUTTER, strip, ("η", "pending requests"), requests or ["∅"])
+    page.rule(MARGIN, WIDTH - MARGIN, foot)
+    for rank, row in enumerate(legend):
+        _draw_legend_row(page, c, row, foot + 16.0 + rank * LEGEND_ROW)
+    return page.picture(title or "configuration")
+
+
+def _shown(count: int) -> int:
+    return min(count, MOST_ROWS)
+
+
+def _write_list(page: Page, x: float, y: float, heading: tuple[str, str], lines: list[str]) -> None:
+    page.heading(x, y, *heading)
+    shown = (
+        lines
+        if len(lines) <= MOST_ROWS
+        else [*lines[: MOST_ROWS - 1], f"and {len(lines) - MOST_ROWS + 1} more"]
+    )
+    for rank, line in enumerate(shown):
+        _write_line(page, x, y + 16.0 + rank * ROW, line)
+
+
+def _write_line(page: Page, x: float, y: float, line: str) -> None:
+    """Write an agent or a request with its first word in bold."""
+    word = re.match(r"[^ (]*", line)
+    head = shortened(word[0] if word else "", PANEL, 8.0, bold=True)
+    wide = text_width(head, 8.0, bold=True)
+    page.write(x, y, head, 8.0, bold=True)
+    rest = line[len(head) :]
+    gap = 3.0 if rest.startswith(" ") else 0.5
+    page.write(x + wide + gap, y, rest.lstrip(), 8.0, width=max(PANEL - wide - gap, 0.0))
+
+
+# --- the two models -------------------------------------------------------------------------------
+
+
+def _draw_logical(page: Page, c: Configuration, top: float, look: Look) -> None:
+    page.heading(MARGIN, top + 8, "L", "the logical model: beliefs")
+    canvas = draw_logical(c.structure.logical.bigraph(), look)
+    scale = min(PANEL / canvas.width, PANEL_HEIGHT / canvas.height, LARGEST)
+    left = MARGIN + (PANEL - canvas.width * scale) / 2
+    page.put(canvas, (left, top + 18.0 + (PANEL_HEIGHT - canvas.height * scale) / 2), scale)
+
+
+def draw_logical(bigraph: Bigraph, look: Look) -> Canvas:
+    """Draw L; every glowing or marked node has its own box."""
+    plan = layout(bigraph, look.glowing | look.marked)
+    return draw_layout(plan, highlight=look.glowing, marked=look.marked)
+
+
+def _draw_physical(page: Page, c: Configuration, top: float, look: Look) -> None:
+    left = MARGIN + PANEL + GUTTER
+    page.heading(left, top + 8, "P", "the physical model: reality")
+    canvas = draw_map(
+        map_entities(c),
+        (PANEL, PANEL_HEIGHT),
+        highlight=look.glowing,
+        marked=look.marked,
+        colours=look.palette.kinds,
+        channel_colours=look.palette.channels,
+    )
+    page.put(canvas, (left, top + 18.0))
+
+
+# --- the legend -----------------------------------------------------------------------------------
+
+
+def _entries(c: Configuration, look: Look) -> list[LegendEntry]:
+    kinds = sorted({c.setting.kind(name) for name in shown_names(c)})
+    entries = [LegendEntry("kind", kind, look.palette.kinds[kind]) for kind in kinds]
+    down = c.structure.physical.is_down
+    entries += [
+        LegendEntry(
+            "channel", f"{channel} (down)" if down(channel) else channel, look.palette.channels[channel]
+        )
+        for channel in channels_of(c)
+    ]
+    entries += [LegendEntry("changed", "changed in this step")] if look.glowing else []
+    return entries + ([LegendEntry("marked", "L and P differ")] if look.marked else [])
+
+
+def _legend_rows(entries: list[LegendEntry]) -> list[list[tuple[float, LegendEntry]]]:
+    """Return the entries in rows, each with its left edge."""
+    rows: list[list[tuple[float, LegendEntry]]] = [[]]
+    x = MARGIN
+    for entry in entries:
+        width = 20.0 + text_width(entry.name, 8.0)
+        if rows[-1] and x + width > WIDTH - MARGIN:
+            rows.append([])
+            x = MARGIN
+        rows[-1].append((x, entry))
+        x += width + 18.0
+    return rows
+
+
+def _draw_legend_row(page: Page, c: Configuration, row: list[tuple[float, LegendEntry]], y: float) -> None:
+    places = {c.setting.kind(name) for name in shown_names(c) if is_place(c, name)}
+    shapes = kind_shapes(c.setting.kind(name) for name in shown_names(c))
+    for x, entry in row:
+        at = (x + 7.0, y - 3.0)
+        if entry.look == "kind":
+            shape = SQUARE if entry.name in places else tuple((a, -b) for a, b in shapes[entry.name])
+            draw_icon(page, at, shape, entry.colour, radius=4.6)
+        elif entry.look == "channel":
+            page.line([(x, at[1]), (x + 14, at[1])], Paint(stroke=entry.colour, width=1.6))
+        elif entry.look == "changed":
+            draw_halo(page, at, 6.0)
+        else:
+            draw_mark(page, at, 5.5)
+        page.write(x + 19.0, y, entry.name, 8.0, ink=QUIET)
