@@ -5,6 +5,7 @@ import subprocess
 import sys
 import tomllib
 import zipfile
+from collections import Counter
 from importlib import import_module
 
 import pytest
@@ -112,3 +113,10 @@ def test_the_workflow_runs_what_there_is():
     assert "- run: .ci/run\n" in workflow
     assert set(re.search(r"target: \[(.+)\]", workflow)[1].split(", ")) <= targets
     assert set(re.findall(r"^make ([\w-]+)$", read(".ci/run"), re.MULTILINE)) <= targets
+
+
+def test_no_two_modules_beside_the_tests_have_one_name():
+    """Tests import what stands beside them by its name alone, so the first on the path would be taken for all."""
+    folders = [path for room in ("tests", "benchmarks") for path in (ROOT / room).rglob("*.py")]
+    stems = Counter(path.stem for path in folders if not path.stem.startswith(("test_", "conftest", "__")))
+    assert [stem for stem, times in stems.items() if times > 1] == []

@@ -110,8 +110,9 @@ def advance(task: Task, step: Step, vehicle: StepInput, *, lost: bool, now: floa
     if isinstance(task.doing, syncing.Sync) and task.doing.speaker != vehicle.speaker:
         # Handed over: the vehicle does not let another station continue an exchange.
         task = replace(task, since=now, reached=(0, 0, 0), doing=_exchange(step, vehicle))
-    if isinstance(task.doing, syncing.Sync) and task.doing.reached > task.reached:
-        task = replace(task, since=now, reached=task.doing.reached)
+    if isinstance(task.doing, syncing.Sync) and task.doing.reached != task.reached:
+        grows = task.doing.reached > task.reached  # on a bad link an upload may begin again, and go on
+        task = replace(task, since=now if grows else task.since, reached=task.doing.reached)
     if lost:
         return Progress(replace(task, since=now))
     if now - task.since > _patience(step):

@@ -16,7 +16,7 @@ UNITS: Final = {"utf-8": ("utf-8", 1), "utf-16": ("utf-16-le", 2), "utf-32": ("u
 class LineStarts:
     r"""The beginnings of a text's lines, and the encoding in which an editor counts within them.
 
-    >>> lines = Lines("a\r\nb🚁c", "utf-16")
+    >>> lines = LineStarts("a\r\nb🚁c", "utf-16")
     >>> lines.position(5), lines.offset(1, 3)
     ((1, 3), 5)
     """

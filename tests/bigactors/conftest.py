@@ -9,7 +9,7 @@ from bigactors.progress import COMPILING
 
 sys.path.insert(0, str(Path(__file__).parent))  # for small_missions and other helpers
 
-from small_missions import TEXTS
+from written_missions import TEXTS
 
 
 @pytest.fixture

@@ -1,5 +1,5 @@
 import pytest
-from tables import rows
+from text_tables import rows
 
 from bigactors.commands.big.formulas import MOST_NESTED, parse_claim
 from bigactors.commands.big.temporal import Decider

@@ -199,7 +199,7 @@ def test_an_operator_acts_and_sees_what_becomes_of_it_and_the_run_outlives_its_c
         assert (ana.state["clock"]["live"], ana.state["clock"]["rate"]) == (True, 1.0)
         assert await ana.act(say={"agent": "op", "message": "status"}) == ""
         await ana.until(lambda state: [each["left"] for each in state["sayings"].values()] == [1])
-        assert "may be said" in await ana.act(say={"agent": "op", "message": "land"})
+        assert "permitted now" in await ana.act(say={"agent": "op", "message": "land"})
         assert await ana.act(order={"order": "hold", "vehicle": "uav0"}) == ""
         await ana.until(lambda state: "confirmed" in fate(state, "hold"))
         card = ana.state["vehicles"]["uav0"]

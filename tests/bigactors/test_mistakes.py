@@ -5,12 +5,12 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from small_missions import TEXTS
-from tables import rows
 from test_big import DECAY, WALK
 from test_big_convert import ROOMS
-from test_stations import PEERS
+from test_station_flight import PEERS
 from test_world import write_harbour
+from text_tables import rows
+from written_missions import TEXTS
 
 from bigactors.cli import main
 

@@ -5,7 +5,7 @@ from bigactors.module_map import ROOT, main, module_map
 
 def test_a_map_has_each_module_with_a_sentence():
     found = dict(module_map(ROOT / "semantics"))
-    assert {"rules", "state/cells", "."} <= set(found)
+    assert {"rules", "state/cell_values", "."} <= set(found)
     assert all(sentence.endswith((".", ":")) for sentence in found.values())
 
 

@@ -156,7 +156,7 @@ def test_members_are_named_in_races_and_traces():
     check { race_freedom }
     """
     found = verdict_of(checked(world(2) + family), "race_freedom")
-    assert found.violations[0].message.startswith("CTR(f[uav1], MOVE_HOST_TO a0) rests on")
+    assert found.violations[0].message.startswith("CTR(f[uav1], MOVE_HOST_TO a0) depends on")
     assert str(found.violations[0].trace.steps[-1].label) == "⟨actuate : CTR(f[uav1], MOVE_HOST_TO a0)⟩"
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 from elaborating import elaborated, shown
-from tables import rows
+from text_tables import rows
 
 MISSION = """mission m
 signature { kind Cell kind UAV driven kind Spill }

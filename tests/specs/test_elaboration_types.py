@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from elaborating import elaborated, mistakes
 from hypothesis import given
-from tables import rows
+from text_tables import rows
 
 from semantics import hypothesis_strategies
 from semantics.behaviours.expressions import OPERATORS, Apply, EvaluationScope, Fault, Literal, evaluate

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from elaborating import mistakes, shown, told
 from geojson import collection, feature
-from tables import rows
+from text_tables import rows
 
 from specs.diagnostics import Source
 from specs.elaboration.mission import diagnose

@@ -2,7 +2,7 @@
 
 import pytest
 from elaborating import elaborated, mistakes, shown
-from tables import rows
+from text_tables import rows
 
 from semantics.state.setting import Control
 from specs.elaboration.variation import Variation

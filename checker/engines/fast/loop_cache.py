@@ -60,7 +60,7 @@ def stamp(engines: Path) -> str:
 def _compiled(engines: Path) -> set[Path]:
     """Return the modules with loops, the modules that they import, and the engines' modules that these import."""
     texts = {path: path.read_text(encoding="utf-8") for path in engines.rglob("*.py")}
-    loops = {path for path, text in texts.items() if ".loops import " in text}
+    loops = {path for path, text in texts.items() if ".jit_decorators import " in text}
     found, left = set[Path](), list(loops)
     while left:
         path = left.pop()

@@ -118,7 +118,7 @@ def test_there_is_no_order_to_what_is_no_vehicle():
 
 HELD, SENT, BACK = ordered(), ordered(what=RETURN), GivingBack("uav0", by="Ben")
 TAKEN, DRIFT = TakenOver("uav0", 1.0, "it is in RTL"), boat(WEST, 1.0)
-HOLDS, RETURNS = (f"told to {what} by {ANA}, not confirmed yet" for what in ("hold", "return"))
+HOLDS, RETURNS = (f"ordered to {what} by {ANA}, not confirmed yet" for what in ("hold", "return"))
 ANEW = "uav0 was given back by Ben, and is commanded again"
 OVERRULES = "this order overrules the take-over of uav0: it is in RTL"
 FOR_ITSELF = "uav0 was taken over: it is in RTL"

@@ -257,7 +257,7 @@ async def test_each_word_of_an_operator_is_understood_and_nothing_else(tmp_path)
         assert (await acknowledge(path, 3), await status(path)) == ("", "well")
     assert heard == [*(said for _, said in LINES), Ordering(Fallback.HOLD, None, "Ana"), Acknowledging(3)]
     assert [answer["refusal"] for answer in answers[: len(LINES)]] == [""] * len(LINES)
-    assert all("this is no saying" in answer["refusal"] for answer in answers[len(LINES) :])
+    assert all("this is no request" in answer["refusal"] for answer in answers[len(LINES) :])
     assert answers[4] == {"refusal": "", "left_out": {"uav1": "it is in RTL"}}
 
 

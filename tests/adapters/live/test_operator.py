@@ -10,8 +10,8 @@ from pathlib import Path
 import jsonschema
 import pytest
 from audited import flown_in
+from flown_processes import SIMULATOR, free_port, rules, started, until
 from live_missions import LIVE, TOUR, verify
-from processes import SIMULATOR, free_port, rules, started, until
 from worlds import ROUND
 
 from adapters.live.operator_socket import acknowledge, fates, give_back, order, say

@@ -10,7 +10,7 @@ import sys
 from contextlib import ExitStack, suppress
 
 import pytest
-from processes import free_port, started, until
+from flown_processes import free_port, started, until
 
 from adapters.live.operator_socket import NobodyListens, listening, status
 from adapters.live.socket_file import bound, is_taken

@@ -5,9 +5,9 @@ import socket
 import time
 
 import pytest
+from flown_processes import SIMULATOR, free_port, started
 from live_missions import TOUR
 from pyais.encode import encode_dict
-from processes import SIMULATOR, free_port, started
 
 pytestmark = pytest.mark.long
 

@@ -10,7 +10,7 @@ import sys
 import threading
 from contextlib import ExitStack, contextmanager, suppress
 
-from processes import until
+from flown_processes import until
 
 from adapters.recording.mcap_files import RecordingError
 from adapters.recording.recording_reader import read_recording

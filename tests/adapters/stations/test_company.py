@@ -4,7 +4,7 @@ from contextlib import ExitStack
 
 import pytest
 from company import EAST, NOWHERE, WEST, WORLD, Cable, Station, agree, peers_toml, running
-from processes import free_port, until
+from flown_processes import free_port, until
 
 from adapters.console.history import History
 from adapters.recording.recording_reader import read_recording

@@ -2,7 +2,7 @@
 
 import pytest
 from company import WORLD, Station, peers_toml, running
-from processes import SIMULATOR, free_port, started, until
+from flown_processes import SIMULATOR, free_port, started, until
 
 from adapters.console.history import History
 from adapters.recording.recording_reader import read_recording

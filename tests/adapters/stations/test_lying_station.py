@@ -6,10 +6,10 @@ import time
 
 import pytest
 from company import WORLD, Station, peers_toml, running
+from flown_processes import free_port, until
 from live_missions import LIVE, Run, plan_of
 from msgspec import Raw
 from msgspec.json import encode
-from processes import free_port, until
 
 from adapters.live.plan import Plan
 from adapters.plugin import Delivered

@@ -10,7 +10,7 @@ from operator import itemgetter
 
 import pytest
 from company import Station, peers_toml, running
-from processes import free_port, until
+from flown_processes import free_port, until
 from water import AIRFIELD, SEARCH, SPILL, Water, drifted
 
 from adapters.recording.recording_reader import read_recording

@@ -10,10 +10,10 @@ from itertools import groupby, pairwise
 
 import pytest
 from certificates import Authority
+from flown_processes import free_port
 from hypothesis import given
 from hypothesis import strategies as st
 from live_missions import EAST, TOUR, WEST, Run, boat, plan_of
-from processes import free_port
 from worlds import World as Told
 
 from adapters.live.live_state import LiveState
@@ -216,7 +216,7 @@ async def test_a_clock_that_is_off_is_measured_and_said_and_what_is_too_far_ahea
         gcs1.see("boat0", EAST)
         await until(lambda: "the clock of gcs1: it is +6.5 s off" in gcs0.world.troubles())
         await until(lambda: "the clock of gcs0: it is -6.5 s off" in gcs1.world.troubles())
-        await until(lambda: "time stamp in the future: gcs1 says of boat0" in gcs0.world.troubles())
+        await until(lambda: "time stamp in the future: gcs1 reports boat0" in gcs0.world.troubles())
         assert gcs0.world.at("boat0") is None
         await until(lambda: gcs0.world.at("boat0") == EAST)  # once it is only five seconds ahead
 

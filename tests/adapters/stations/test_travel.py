@@ -5,7 +5,7 @@ from contextlib import ExitStack
 
 import pytest
 from company import EAST, WEST, WORLD, Cable, Station, peers_toml, running
-from processes import free_port, until
+from flown_processes import free_port, until
 
 from bigactors.cli import main
 from checker.reports.lanes import lanes_of

@@ -203,7 +203,7 @@ def test_it_is_noticed_that_the_race_monitor_forgets_what_may_be_asked(forgotten
 
 
 FORGOTTEN = {
-    "what comes of a program": ("actors.Actors._asked_by", NOTHING, "which no footprint contains"),
+    "what comes of a program": ("actor_footprints.Actors._asked_by", NOTHING, "which no footprint contains"),
     "what a look adds": ("footprints.Footprints.telling", NOTHING, "writes ('ready', 'a')"),
     "who waits for mail": ("footprints.Footprints.waiting", NOTHING, "reads ('mailbox', 'c')"),
     "whom mail wakes": ("footprints.Footprints.mail", (), "writes ('mail', 'c'"),

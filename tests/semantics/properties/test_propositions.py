@@ -35,7 +35,7 @@ def storing(value, name="n"):
 
 
 def test_a_variable_that_nobody_keeps_is_not_evaluated():
-    with pytest.raises(ValueError, match=r"'a\.n' is forgotten .*: begin with watching"):
+    with pytest.raises(ValueError, match=r"'a\.n' is dropped .*: begin with watching"):
         holds(IsBound(N), figure_2())
 
 
