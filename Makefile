@@ -8,8 +8,8 @@ USABLE := $(VENV)/.usable
 WHEEL  := .wheel
 PAGE   := adapters/console/page
 PARTS  := $(PAGE)/parts/LICENSES.txt
-SMOKE  := $(addprefix tests/,missions paper semantics/state/test_cells.py \
-	$(addprefix bigactors/test_,big.py cli.py missions.py public_names.py run.py))
+SMOKE  := $(addprefix tests/,missions paper semantics/state/test_cell_values.py \
+	$(addprefix bigactors/test_,big.py cli.py mission_lookup.py public_names.py run.py))
 
 .PHONY: parts demo live-demo test test-long lint types test-wheel wheel constraints storm fuzz mutants bounds bench bench-bigraphs bench-time time-oracle docs pictures clean
 
