@@ -189,7 +189,7 @@ def begun(pilot: Pilot, step: Step | None) -> Pilot:
 def found(pilot: Pilot, kind: MissionType, items: Items) -> Pilot:
     """Take the items read back; an upload is over once they are its own, or somebody else's."""
     upload = pilot.uploads.get(kind)
-    if upload is not None and (items in upload.attempts[-1:] or not upload.explains(items)):
+    if upload is not None and (items in upload.attempts or not upload.explains(items)):
         pilot = changed(pilot, uploads={each: of for each, of in pilot.uploads.items() if each is not kind})
     return changed(pilot, on_board={**pilot.on_board, kind: items})
 

@@ -12,7 +12,7 @@ from typing import Final
 
 from adapters.mavlink.constants import Cmd, MissionType
 from adapters.mavlink.download import MAX_ITEMS
-from adapters.mavlink.items import Items, OnboardItem, alike, same
+from adapters.mavlink.items import Items, OnboardItem, alike, is_home, same
 from adapters.mavlink.profiles import ARDUPILOT_DIALECT, Dialect
 from adapters.mavlink.telemetry import Telemetry
 from adapters.mavlink.zones import Zone, zones
@@ -44,9 +44,12 @@ class Unconfirmed:
     def explains(self, found: Items) -> bool:
         """Return whether each item found is of the mission before, or of an upload that was begun."""
         lists = (self.before, *self.attempts)
+        home = any(
+            items and is_home(items[0]) for items in self.attempts
+        )  # the vehicle's own, which arming moves
         return len(found) <= max(map(len, lists)) and all(
             any(index < len(items) and alike(items[index], item) for items in lists)
-            for index, item in enumerate(found)
+            for index, item in list(enumerate(found))[int(home) :]
         )
 
 

@@ -93,11 +93,11 @@ def fence(polygon: Geometry) -> Items:
 
 def same(ours: Items, theirs: Items, kind: MissionType) -> bool:
     """Return whether the items on board are the wanted ones: all of a fence, all but home of a mission."""
-    first = int(kind is MissionType.MISSION and bool(ours) and _is_home(ours[0]))
+    first = int(kind is MissionType.MISSION and bool(ours) and is_home(ours[0]))
     return len(ours) == len(theirs) and all(map(alike, ours[first:], theirs[first:]))
 
 
-def _is_home(item: OnboardItem) -> bool:
+def is_home(item: OnboardItem) -> bool:
     """Return whether a first item is that for home: no flown item is at sea level."""
     return (item.command, item.z, item.frame) == (Cmd.WAYPOINT, 0.0, MavFrame.SEA_LEVEL)
 
