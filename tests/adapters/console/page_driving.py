@@ -1,4 +1,4 @@
-"""An operator before a page: what they do there, and what they see of it. No step waits for a time.
+"""An operator before a page: actions and observations. No step waits for a time.
 
 The page's clock is the test's: it goes on by itself, and by as much more as a step says. So a press of a second takes
 none, and a short press is short on the busiest machine.
@@ -114,7 +114,7 @@ class Operator:
         self.page.locator(selector, has_text=text).first.click()
 
     def writes(self, field, text, caret):
-        """Write something, and go back to somewhere in it; return what `caret` says of it."""
+        """Write a text, move the caret back into it, and return the answer of `caret`."""
         self.page.locator(field).fill("")
         self.page.keyboard.type(text)
         self.page.evaluate(f"document.activeElement.setSelectionRange({caret}, {caret})")

@@ -82,7 +82,7 @@ def show(page, shown):
 
 
 def change(chart, sections, then="null"):
-    """Take in changes, and draw at once; return what a script says then."""
+    """Take in changes, draw at once, and return the value of a script."""
     frame = {"type": "changes", "set": sections}
     return chart.evaluate(f"c => {{ store.apply(c); map.drawn(); return {then}; }}", frame)
 
