@@ -62,6 +62,7 @@ def refuse_partial_order(c: Configuration) -> None:
     if c.setting.scheduler is Scheduler.FCFS:
         reason = (
             "under 'scheduler fcfs' all requests stand in one queue, so no two of them are independent; "
-            "check it under program_order: a property of all runs there holds under fcfs too, if no react has an `after`"
+            "check it under program_order: a property of all runs there holds under fcfs too, if no react has "
+            "an `after`"
         )
         raise RefusedError(Reduction.POR, reason)
