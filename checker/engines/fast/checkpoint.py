@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from checker.engines.archive import Kinds, read_archive, write_archive
 from checker.engines.contract import CheckpointError
 from checker.engines.fast.columns import Packing
-from checker.engines.fast.kernel import CROWDS, CUT, EXPANDED, LIMIT, SIZE
+from checker.engines.fast.learned_model import CROWDS, CUT, EXPANDED, LIMIT, SIZE
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import Space
 from semantics.state.canonical import canonical

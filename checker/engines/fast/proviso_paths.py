@@ -13,7 +13,7 @@ import numpy as np
 
 from checker.engines.fast.bits import WORD, add, has, ones_in
 from checker.engines.fast.jit_decorators import inner, njit
-from checker.engines.fast.kernel import State
+from checker.engines.fast.learned_model import State
 from checker.engines.fast.mapped_arrays import Pages
 from checker.engines.fast.table import Words
 from checker.engines.fast.tree_compression import NO_ROOM, Interned, Pool, intern

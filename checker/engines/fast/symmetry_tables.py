@@ -6,6 +6,7 @@ of one shape share their *moves*: a move is a shape with the members that replac
 """
 
 from collections.abc import Sequence
+from threading import local
 from typing import Any
 
 import numpy as np
@@ -23,15 +24,33 @@ from checker.engines.fast.canonicalise import (
     Exchanges,
     RowScratch,
     enter_all,
-    represent_all,
 )
 from checker.engines.fast.columns import Packing, Writes
-from checker.engines.fast.kernel import AT, GATHERED, NODE, UNSORTED, State, SuccessorBatch
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.value_templates import holes, split_value
 from checker.reduction.member_items import Items, Member, Place, Roles
 from checker.reduction.representatives import MOST_ORDERS
 from semantics.state.cell_values import AGENTS, NAMES
+
+
+class SymmetryScratch(local):
+    """One thread's scratch space for the representatives of rows (see `RowScratch`)."""
+
+    def __init__(self, active: int, places: int, members: int, words: int) -> None:
+        super().__init__()
+        self.room = RowScratch(
+            np.zeros(3 * active, np.int32),
+            np.zeros(places, np.int64),
+            np.zeros(members, np.uint64),
+            np.zeros(members, np.uint64),
+            np.zeros(members, np.int32),
+            np.zeros(members, np.int32),
+            np.zeros(members, np.int32),
+            np.zeros(members, np.int32),
+            np.zeros(LISTED + 2 * active + members + 2, np.int32),
+            np.zeros(1, np.int64),
+            np.zeros(words, np.uint64),
+        )
 
 
 class Exchanging:
@@ -64,20 +83,6 @@ class Exchanging:
         self.entered = 0
         self.keys, self.values = np.zeros(1024, np.uint64), np.zeros(1024, np.int32)
 
-    def represent(self, batch: SuccessorBatch, state: State) -> bool:
-        """Replace successors by representatives; at one still unknown, drop its row's successors and return False."""
-        assert self.where is not None
-        gathered = int(state[GATHERED])
-        done = represent_all(self.exchanges, self.desk, batch, gathered, self.where.columns, self.where.words)
-        if done < gathered:
-            row = batch.origins[done]
-            state[AT], state[NODE], state[GATHERED] = (
-                row,
-                UNSORTED,
-                np.searchsorted(batch.origins[:gathered], row),
-            )
-        return bool(done == gathered)
-
     # --- tables for the loops -----------------------------------------------------------------------------------------
 
     def see(self, where: Packing) -> None:
@@ -101,6 +106,16 @@ class Exchanging:
             self.numbers.room,
             members,
             MOST_ORDERS,
+        )
+
+    def snapshot(self) -> Exchanges:
+        """Return the tables with copies of those that learning changes in place."""
+        shown = self.exchanges
+        return shown._replace(
+            entries=shown.entries.copy(),
+            keys=shown.keys.copy(),
+            values=shown.values.copy(),
+            payload=shown.payload.copy(),
         )
 
     def _take_columns(self, where: Packing) -> None:
@@ -131,18 +146,12 @@ class Exchanging:
         for number, known in enumerate(self.entries):
             for code, entry in known.items():
                 self._show(number, code, entry)
-        count = len(self.items.members)
-        self.desk = RowScratch(
-            np.zeros(3 * len(active), np.int32),
-            np.zeros(len(places), np.int64),
-            np.zeros(count, np.uint64),
-            np.zeros(count, np.uint64),
-            np.zeros(count, np.int32),
-            np.zeros(count, np.int32),
-            np.zeros(count, np.int32),
-            np.zeros(count, np.int32),
-            np.zeros(LISTED + 2 * len(active) + count + 2, np.int32),
-        )
+        self._desk = SymmetryScratch(len(active), len(places), len(self.items.members), where.words)
+
+    @property
+    def desk(self) -> RowScratch:
+        """The scratch space of this thread."""
+        return self._desk.room
 
     def _show(self, number: int, code: int, entry: int) -> None:
         *_, begins, widths, entries = self.columns

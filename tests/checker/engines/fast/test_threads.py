@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scale import IS_WHOLE, crossed, examples
 from shipped import UNTIMED
+from swarms import LOOKS, ORBITS, mission
 
 import checker.limits
 from bigactors.cli import main
@@ -16,6 +17,7 @@ from checker.engines.contract import Options
 from checker.engines.fast import explorer, frontier_chunks, pipeline, space, tree_compression
 from checker.engines.fast.explorer import explore_fast
 from checker.engines.fast.rows import Rows
+from checker.reduction import Reduced, Reduction
 from semantics import hypothesis_strategies
 from semantics.races.monitor import monitored
 from specs.elaboration import load_mission
@@ -71,6 +73,21 @@ def test_a_mission_is_explored_alike_by_any_number_of_threads(name, variation):
 def test_a_monitored_mission_is_explored_alike_by_any_number_of_threads(name):
     initial = monitored(start(name))
     assert seen(initial, 2) == seen(initial, 4) == seen(initial, 1)
+
+
+SWARMS = {name: (body, robots, rest) for name, (body, rest, robots) in ORBITS.items()} | {
+    "alike": (LOOKS, 6, "")
+}
+
+
+@pytest.mark.usefixtures("kept")
+@crossed(list(SWARMS), {threads: threads for threads in SEVERAL})
+def test_representatives_are_explored_alike_by_any_number_of_threads(name, variation):
+    initial = mission(*SWARMS[name]).initial
+    alone, several = (
+        seen(initial, threads, reduce=Reduced(initial, (Reduction.SYMMETRY,))) for threads in (1, variation)
+    )
+    assert several == alone
 
 
 @given(hypothesis_strategies.initial_configurations(), st.sampled_from([1, 2]))
