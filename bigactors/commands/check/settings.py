@@ -74,8 +74,8 @@ def keeping_of(options: Namespace) -> Keeping | None:
         raise Mistake("--resume goes on from a checkpoint", "give its folder: --checkpoint DIR")
     if options.checkpoint is None and options.paranoid is None:
         return None
-    if options.checkpoint is not None and (options.engine == "reference" or options.reduce):
-        raise Mistake("--checkpoint works with the fast engine only", "leave --engine and --reduce out")
+    if options.checkpoint is not None and options.engine == "reference":
+        raise Mistake("--checkpoint works with the fast and Ray engines only", "leave --engine out")
     if options.paranoid is not None and options.engine not in (None, "fast") and not options.reduce:
         raise Mistake("--paranoid works with the fast engine and with reductions only", "leave --engine out")
     return Keeping(options.checkpoint, options.resume, every=options.every, doubted=options.paranoid or 0)

@@ -313,6 +313,7 @@ class Space:
         elif self.state[NODE] == FULL:
             self._make_room(1)
         elif self.exchanging is not None and self.state[NODE] == UNSORTED:
+            self.learned += self.exchanging.missed
             self.exchanging.learn()
             self._see()
         else:
@@ -320,45 +321,40 @@ class Space:
 
     def _learn(self, row: int) -> None:
         """Learn the entry at which the walk of a row ended."""
-        unknown = (row, int(self.state[TREE]), int(self.state[NODE]), int(self.state[CODE]))
-        self.learned.append(unknown)
-        if self._settles(*unknown[2:]):
-            self.shown = None
-            return
-        self._learn_from(self.packing, self.rows.row(row), unknown[1])
-        self._see()
+        tree, node, code = int(self.state[TREE]), int(self.state[NODE]), int(self.state[CODE])
+        self.learned.append((row, tree, node, code))
+        self._learn_entry(self.packing, self.rows.row(row), tree, node, code)
 
-    def _settles(self, node: int, code: int) -> bool:
-        """Answer the question of a node for a new code; return False if a rule must run.
+    def _learn_entry(
+        self, where: Packing, words: NDArray[np.uint64], tree: int, node: int, code: int
+    ) -> None:
+        """Learn the path of a row in a tree; a new answer to a question of a node needs no rule.
 
         Then only the windows of nodes change, which the loops read in place.
         """
         trees = self.learner.trees
-        return node >= 0 and trees.settle(node, code, self.learner.columns.all[trees.column_of(node)])
-
-    def _learn_from(self, where: Packing, words: NDArray[np.uint64], tree: int) -> None:
-        """Learn the path of a row in a tree."""
+        if node >= 0 and trees.settle(node, code, self.learner.columns.all[trees.column_of(node)]):
+            self.shown = None
+            return
         self.learner.learn(tree, CodedSource(self.learner.columns, where, words.tolist()))
+        self._see()
 
     def restore(
         self,
         where: Packing,
         rows: Rows,
         size: int,
-        learned: list[list[int]],
+        learned: list[tuple[int, int, int, int]],
     ) -> None:
         """Continue from the rows of another space of the same mission, learning again everything that it had learned.
 
         Raises:
             ValueError, IndexError: The rows can't be of such a space.
         """
-        first = self.codes(0)
-        for row, tree, node, code in learned:
-            if not 0 <= row < size:
-                raise ValueError("it learned from a row that it does not have")
-            self.learned.append((row, tree, node, code))
-            self._learn_again(where, rows.row(row), tree, node, code)
-            self._agents(self._groups())  # plants the trees of new agents, in the same order
+        first, missed = self.codes(0), iter(learned)
+        for each in missed:
+            self._learn_again(where, rows, size, each, missed)
+        self.learned = learned
         sizes = np.array(self.learner.columns.sizes, np.int64)
         begins = np.concatenate(([0], np.cumsum(sizes)))
         used = np.zeros(begins[-1], np.bool_)
@@ -378,15 +374,27 @@ class Space:
         self._see()
 
     def _learn_again(
-        self, where: Packing, words: NDArray[np.uint64], tree: int, node: int, code: int
+        self,
+        where: Packing,
+        rows: Rows,
+        size: int,
+        entry: tuple[int, int, int, int],
+        others: Iterator[tuple[int, int, int, int]],
     ) -> None:
-        """Learn again from a row of another space; raise ValueError if that space can't have learned there."""
+        """Learn again as another space did; raise ValueError if that space can't have learned it."""
+        row, tree, node, code = entry
         trees = self.learner.trees
+        swaps = self.exchanging
+        if row < 0 and swaps is not None:
+            swaps.learn_again(entry, others)
+            self._see()
+            return
+        if not 0 <= row < size:
+            raise ValueError("it learned from a row that it does not have")
         if not (0 <= tree < len(trees.root) and UNPLANTED <= node < len(trees.asks)):
             raise ValueError("it learned an answer to a question of no rule")
         try:
-            if not self._settles(node, code):
-                self._learn_from(where, words, tree)
+            self._learn_entry(where, rows.row(row), tree, node, code)
         except Exception as error:  # on a row that is no configuration, rules may fail in any way
             raise ValueError(f"a rule does not run on its rows: {type(error).__name__}: {error}") from error
 
@@ -567,13 +575,15 @@ class Space:
         return max(int(within), slots_for(rows) * 3 // 4)
 
     def spill(self, folder: Path) -> None:
-        """Move rows and origins to files in a folder; the table, with its random accesses, stays in memory.
+        """Move rows, origins and paths to files in a folder; the table, with its random accesses, stays in memory.
 
         Raises:
             OSError: There is no such folder, or no room in it.
         """
         self.pipeline.rest()
         self.rows.spill(folder, self.size)
+        if self.choosing is not None:
+            self.choosing.paths.spill(folder, self.size)
 
     def _rebuild(self, slots: int) -> None:
         self.pipeline.rest()

@@ -5,7 +5,7 @@ observations. The *shape* of an entry is the item with its members replaced by t
 of one shape share their *moves*: a move is a shape with the members that replace those, and is learned once.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from threading import local
 from typing import Any
 
@@ -13,13 +13,11 @@ import numpy as np
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.canonicalise import (
-    COUNT,
     ENTRY,
     FIXED,
-    KIND,
     LISTED,
+    TARGET,
     UNKNOWN,
-    WHAT,
     WHOLE,
     Exchanges,
     RowScratch,
@@ -31,6 +29,9 @@ from checker.engines.fast.value_templates import holes, split_value
 from checker.reduction.member_items import Items, Member, Place, Roles
 from checker.reduction.representatives import MOST_ORDERS
 from semantics.state.cell_values import AGENTS, NAMES
+
+MOST_ARGUMENTS = 1 << 16
+"""A bound on a quarter of the arguments of a miss: twice the columns of a row, and its members."""
 
 
 class SymmetryScratch(local):
@@ -178,13 +179,42 @@ class Exchanging:
 
     # --- learning -------------------------------------------------------------------------------------------------
 
+    @property
+    def missed(self) -> list[tuple[int, int, int, int]]:
+        """The entry or move at which the loop stopped, in records of four numbers.
+
+        The first record has -1 - kind, the subject and the number of arguments. The others have the arguments.
+        """
+        kind, what, count = self.desk.unknown[:LISTED].tolist()
+        listed = [*self.desk.unknown[LISTED : LISTED + count].tolist(), 0, 0, 0]
+        return [(-1 - kind, what, count, 0), *zip(*[iter(listed[: -(-count // 4) * 4])] * 4, strict=True)]
+
     def learn(self) -> None:
         """Learn the entry or move at which the loop stopped."""
-        unknown = self.desk.unknown.tolist()
-        what, listed = unknown[WHAT], unknown[LISTED : LISTED + unknown[COUNT]]
-        if unknown[KIND] == ENTRY:
+        kind, what, count = self.desk.unknown[:LISTED].tolist()
+        self._learn(kind, what, self.desk.unknown[LISTED : LISTED + count].tolist())
+
+    def learn_again(self, first: Sequence[int], others: Iterator[Sequence[int]]) -> None:
+        """Learn an entry or move that tables of the same mission `missed`.
+
+        Raises:
+            ValueError: They can't have missed it.
+        """
+        kind, what, count = -1 - first[0], first[1], first[2]
+        if kind > TARGET or not 0 <= count <= 4 * MOST_ARGUMENTS:
+            raise ValueError("it learned an exchange of no kind")
+        listed = [number for _ in range(-(-count // 4)) for number in next(others, ())][:count]
+        if len(listed) != count or min((what, *listed)) < 0:
+            raise ValueError("it learned an exchange of nothing")
+        try:
+            self._learn(kind, what, listed)
+        except Exception as error:
+            raise ValueError(f"it learned no exchange: {type(error).__name__}: {error}") from error
+
+    def _learn(self, kind: int, what: int, listed: list[int]) -> None:
+        if kind == ENTRY:
             self._learn_codes(what, listed[0])
-        elif unknown[KIND] == WHOLE:
+        elif kind == WHOLE:
             self._learn_whole(what, listed[:-1], listed[-1])
         else:
             self._move(int(self.shape.room[what]), listed)
