@@ -80,8 +80,8 @@ def _explore_in_time(initial: Configuration, inspect: tuple[Inspect, ...], optio
     if options.engine is Engine.RAY:
         raise EngineError("the engine 'ray' does not explore missions with a section 'timing' yet")
     if options.engine is Engine.FAST:
-        if options.keeping != Keeping() or options.limits.spill is not None:
-            raise EngineError("missions with a section 'timing' are explored in memory, without checkpoints")
+        if options.keeping.doubted:
+            raise EngineError("missions with a section 'timing' are not checked again by the interpreter yet")
         load_numba()
         from checker.engines.zones.explorer import explore_in_zones  # noqa: PLC0415  # numba takes its time to load
 

@@ -34,19 +34,24 @@ PATHS = ("movers", "led", "leads", "sets")
 RECOUNTED = 1 << 22
 """The number of rows for which a resumed exploration recomputes transitions: some seconds' work."""
 
-KINDS: Final[Kinds] = {
+ROWS: Final[Kinds] = {
     "rows": np.uint64,
     "pieces": np.uint64,
     "nodes": np.uint64,
     "origins": np.uint64,
+    "packing": np.uint64,
+    "learned": np.int64,
+}
+"""The arrays of the rows of a space, and of what was learned from them."""
+
+KINDS: Final[Kinds] = {
+    **ROWS,
     "counts": np.int64,
     "met": np.int64,
     "movers": np.uint32,
     "led": np.uint64,
     "leads": np.uint64,
     "sets": np.uint64,
-    "packing": np.uint64,
-    "learned": np.int64,
     "state": np.int64,
 }
 
@@ -86,7 +91,6 @@ def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
     Raises:
         OSError: The file can't be written.
     """
-    columns = space.learner.columns.all
     head = {
         "schema": SCHEMA,
         "digest": digest,
@@ -96,20 +100,41 @@ def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
         "layer_end": journey.layer_end,
         "seconds": journey.seconds,
         "layers": journey.layers,
-        "columns": _digest_of_columns(space),
+        "columns": digest_of_columns(space),
     }
     arrays = (
-        space.rows.words[: space.size * space.rows.kept],
-        *space.rows.interned,
-        space.rows.origins.kept(space.size),
+        *kept_rows(space),
         space.counts.used,
         space.met.used if space.choosing is not None else space.met.used[:0],
         *_paths(space),
-        space.packing.columns[: 3 * len(columns)],
-        np.array(space.learned, np.int64),
         space.state[list(KEPT)],
     )
     write_archive(path, head, KINDS, arrays)
+
+
+def kept_rows(space: Space) -> tuple[NDArray[Any], ...]:
+    """Return the rows of a space, and what was learned from them, as arrays (see `ROWS`)."""
+    return (
+        space.rows.words[: space.size * space.rows.kept],
+        *space.rows.interned,
+        space.rows.origins.kept(space.size),
+        space.packing.columns[: 3 * len(space.learner.columns)],
+        np.array(space.learned, np.int64),
+    )
+
+
+def restore_rows(space: Space, words: int, size: int, arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Continue in a space from the rows of another one of the same mission.
+
+    Raises:
+        ValueError, IndexError: The arrays are not those of such a space.
+    """
+    learned = list(map(tuple, arrays["learned"].reshape(-1, 4).tolist()))
+    where = Packing(words, arrays["packing"])
+    if not where.is_sound:
+        raise ValueError("its rows lack some of its columns")
+    kept = (arrays[each] for each in ("rows", "origins", "pieces", "nodes"))
+    space.restore(where, Rows.of(space.ORIGINS, where.words, size, *kept), size, learned)
 
 
 def _paths(space: Space) -> tuple[NDArray[Any], ...]:
@@ -131,16 +156,10 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
     try:
         journey = Journey(head["depth"], head["layer_end"], head["seconds"], tuple(head["layers"]))
         _check(arrays, journey, int(space.state[LIMIT]))
-        learned = list(map(tuple, arrays["learned"].reshape(-1, 4).tolist()))
-        where = Packing(head["words"], arrays["packing"])
-        if not where.is_sound:
-            raise ValueError("its rows lack some of its columns")
         size = int(arrays["state"][1])
-        kept = (arrays[each] for each in ("rows", "origins", "pieces", "nodes"))
-        rows = Rows.of(where.words, size, *kept)
-        if rows.origins.origin(size - 1, size) > arrays["state"][0]:
+        restore_rows(space, head["words"], size, arrays)
+        if space.rows.origins.origin(size - 1, size) > arrays["state"][0]:
             raise ValueError("some row was reached from a later one")
-        space.restore(where, rows, size, learned)
         choosing, counts, met = space.choosing, arrays["counts"], arrays["met"]
         if choosing is not None:
             expanded = int(arrays["state"][0])
@@ -156,7 +175,7 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
         space.state[list(KEPT)] = arrays["state"]
     except (ValueError, IndexError, KeyError, TypeError) as error:
         raise CheckpointError(f"{path}: this checkpoint is damaged: {error}") from error
-    if _digest_of_columns(space) != head["columns"]:
+    if digest_of_columns(space) != head["columns"]:
         raise CheckpointError(
             f"{path}: the rules learned from this checkpoint differ from those recorded in it"
         )
@@ -219,7 +238,8 @@ def _by_label(space: Space, counts: Mapping[int, int]) -> Counter[tuple[int, str
     return found
 
 
-def _digest_of_columns(space: Space) -> str:
+def digest_of_columns(space: Space) -> str:
+    """Return a digest of the values of all columns, in order: of everything that rows are made of."""
     found = sha256()
     for line in _lines(space):
         found.update(line.encode("utf-8", "surrogatepass"))

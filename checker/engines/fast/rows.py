@@ -172,6 +172,7 @@ class Rows:
     @classmethod
     def of(
         cls,
+        reached: type[OriginPages],
         width: int,
         size: int,
         kept: NDArray[np.uint64],
@@ -188,6 +189,7 @@ class Rows:
         found = cls(
             width if into is None else tree_compression.PAIR,
             len(kept) // (width if into is None else tree_compression.PAIR) or 1,
+            reached,
         )
         if len(kept) != size * found.kept or not (into is None or into.are_rows(kept)):
             raise ValueError("it has other rows")

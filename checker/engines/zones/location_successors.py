@@ -457,12 +457,17 @@ def begin(
     g: AutomatonGrowth,
     v: LocationView,
     words: Words,
+    f: FoldedTable | None,
     windows: int,
     state: State,
     s: State,
 ) -> int:
     """Add the location of the first row; return why that ended."""
-    if not find_steps(m, t, words, 0, 0, v, state):
+    source = words
+    if f is not None:
+        unfold(f, words, 0)
+        source = f.whole
+    if not find_steps(m, t, source, 0, 0, v, state):
         return MISS
     return KNOWN if add_location(m, t, g, v, 0, windows, s) >= 0 else FULL
 

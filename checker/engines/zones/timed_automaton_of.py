@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from functools import lru_cache, partial
 from itertools import islice
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -116,13 +117,39 @@ class Network(Space):
         self.timed: LearnedClocks
         super().__init__(Learner(initial.setting, initial.state, pending), None)  # type: ignore[arg-type]  # a stored one
         self.situation = lru_cache(1 << 12)(lambda number: TimedView(self.configuration(number)))
+        self.first_ages: tuple[int, ...] = ()
+
+    def begin(self) -> None:
+        """Add the first location."""
         situation = self.situation(0)
         ages = situation.first_ages()
         windows = [age for age, each in zip(ages, situation.clocks, strict=True) if each.sort is Sort.WINDOW]
         code = sum(said * 3**at for at, said in enumerate(windows))
         loop: Callable[..., int] = location_successors.begin
-        self._run(lambda *known: loop(*known, self.rows.words, code, self.state, self.counts_of))
+
+        def work(model: object, timed: LearnedClocks, growth: AutomatonGrowth, view: LocationView) -> int:
+            rows = self.rows
+            return loop(model, timed, growth, view, rows.words, rows.folded, code, self.state, self.counts_of)
+
+        self._run(work)
         self.first_ages = self.measured(situation, ages)
+
+    def leave_again(self, locations: NDArray[np.int64]) -> None:
+        """Work out the edges of locations in the order of another network with the same rows.
+
+        Raises:
+            ValueError: No network has left them in this order.
+        """
+        if len(np.unique(locations)) != len(locations) or np.any(locations < 0):
+            raise ValueError("it left a location twice")
+        done = 0
+        while done < len(locations):
+            there = locations[done:] < len(self.automaton)
+            count = len(there) if there.all() else int(np.argmin(there))
+            if not count:
+                raise ValueError("it left a location before reaching it")
+            self.leave(locations[done : done + count])
+            done += count
 
     # --- learned clocks -------------------------------------------------------------------------------------------
 
@@ -262,6 +289,13 @@ class Network(Space):
                 self._learn(int(self.state[AT]))
             elif np.array_equal(done, self.counts_of):
                 self.margin *= 2
+
+    def spill(self, folder: Path) -> None:
+        """Move rows, origins and locations to files in a folder; raises OSError as `Space.spill`."""
+        super().spill(folder)
+        self.automaton.spill(folder)
+        for each in (self.of_rows, self.before, self.said):
+            each.spill(folder)
 
     def _reserve(self) -> None:
         self._make_room(self.margin)
