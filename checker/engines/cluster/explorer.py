@@ -12,7 +12,7 @@ from typing import TypeVar
 
 from checker.engines.cluster.checkpoints import Latest, read_latest, write_latest
 from checker.engines.cluster.crew import Crew, LostError
-from checker.engines.cluster.lookup import CrewConfigurations, CrewOrigins, CrewRows, CrewSurvey, look_at_each
+from checker.engines.cluster.lookup import CrewRows, CrewSurvey, look_at_each
 from checker.engines.cluster.merged_findings import is_mergeable, merge
 from checker.engines.cluster.numbering import Places
 from checker.engines.cluster.rounds import RoundLimits
@@ -108,8 +108,8 @@ class Expedition:
         for _, counts in summaries:
             rules.update(counts)
         return Exploration(
-            CrewConfigurations(found),
-            CrewOrigins(found),
+            found.configurations,
+            found.origins,
             places.depth,
             sum(found.expanded),
             rules.total(),

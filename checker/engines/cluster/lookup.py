@@ -1,8 +1,7 @@
 """Access to the results of a crew: configurations, origins and the graph, each from its worker."""
 
-from abc import abstractmethod
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, TypeVar, overload
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +11,7 @@ from checker.engines.cluster.crew import Crew
 from checker.engines.cluster.numbering import Places
 from checker.engines.contract import Inspect
 from checker.engines.graph import Graph
+from checker.engines.made_on_access import MadeOnAccess
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Label
 from semantics.state.requests import Request
@@ -20,8 +20,6 @@ from semantics.successors import expand
 
 BLOCK = 1 << 16
 """Rows of each worker in one request for transitions."""
-
-Value = TypeVar("Value")
 
 
 class CrewRows:
@@ -53,6 +51,27 @@ class CrewRows:
         found: list[Any] = self.surely(lambda: self.crew.every(method, *arguments))
         return found
 
+    @property
+    def configurations(self) -> Sequence[Configuration]:
+        """The configurations, each fetched at its access."""
+
+        def fetched(number: int) -> Configuration:
+            worker, row = self.places.find(number)
+            [cells] = self.one(worker, "rows", [row])
+            return Configuration(self.setting, cells)
+
+        return MadeOnAccess(fetched, range(len(self.places)))
+
+    @property
+    def origins(self) -> Sequence[int]:
+        """The configuration from which each configuration was first reached."""
+
+        def fetched(number: int) -> int:
+            worker, row = self.places.find(number)
+            return self.places.number(*self.one(worker, "origin", row))
+
+        return MadeOnAccess(fetched, range(len(self.places)))
+
     def spread(self, values: Sequence[NDArray[np.bool_]]) -> NDArray[np.bool_]:
         """Return the workers' values of rows, ordered by number."""
         found = np.zeros(len(self.places), np.bool_)
@@ -61,52 +80,10 @@ class CrewRows:
         return found
 
 
-class Numbered(Sequence[Value]):
-    """A sequence of values, one for each configuration, by its number."""
-
-    def __init__(self, found: CrewRows) -> None:
-        self.found = found
-
-    def __len__(self) -> int:
-        return len(self.found.places)
-
-    @overload
-    def __getitem__(self, number: int) -> Value: ...
-
-    @overload
-    def __getitem__(self, number: slice) -> Sequence[Value]: ...
-
-    def __getitem__(self, number: int | slice) -> Value | Sequence[Value]:
-        if isinstance(number, slice):
-            return [self[each] for each in range(*number.indices(len(self)))]
-        return self.at(*self.found.places.find(range(len(self))[number]))
-
-    @abstractmethod
-    def at(self, worker: int, row: int) -> Value:
-        """Return the value for a worker's row."""
-
-
-class CrewConfigurations(Numbered[Configuration]):
-    """The configurations, each fetched at its access."""
-
-    def at(self, worker: int, row: int) -> Configuration:
-        """Return the configuration of a row."""
-        [cells] = self.found.one(worker, "rows", [row])
-        return Configuration(self.found.setting, cells)
-
-
-class CrewOrigins(Numbered[int]):
-    """The configuration from which each configuration was first reached."""
-
-    def at(self, worker: int, row: int) -> int:
-        """Return the number of a row's origin."""
-        return self.found.places.number(*self.found.one(worker, "origin", row))
-
-
 def look_at_each(found: CrewRows, inspections: Iterable[Inspect]) -> None:
     """Run inspections on every expanded configuration: those that can't be merged from workers."""
     looking = tuple(inspections)
-    configurations = CrewConfigurations(found)
+    configurations = found.configurations
     for number in range(len(found.places) if looking else 0):
         worker, row = found.places.find(number)
         if row < found.expanded[worker]:

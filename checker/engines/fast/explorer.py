@@ -5,11 +5,11 @@ import gc
 import math
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING
 
 from bigraphs.workers import cores
 from checker.engines.contract import Exploration, Inspect, Options, Progress
@@ -20,6 +20,7 @@ from checker.engines.fast.learner import Learner
 from checker.engines.fast.row_graph import GraphSurvey
 from checker.engines.fast.row_inspection import inspect_fast
 from checker.engines.fast.space import Space
+from checker.engines.made_on_access import MadeOnAccess
 from checker.limits import Bound, BoundMet, CheckPart, Limits, Stop, bounded, is_full, memory_left
 from semantics.state.configuration import Configuration
 
@@ -38,48 +39,6 @@ HOLDING = 0.0005
 
 EXPLORING = 0.5
 """The share of the time limit for exploration; inspecting the result takes as long again."""
-
-
-class Origins(Sequence[int]):
-    """The configuration from which each configuration was first reached."""
-
-    def __init__(self, space: Space) -> None:
-        self.space = space
-
-    def __len__(self) -> int:
-        return self.space.size
-
-    @overload
-    def __getitem__(self, number: int) -> int: ...
-
-    @overload
-    def __getitem__(self, number: slice) -> Sequence[int]: ...
-
-    def __getitem__(self, number: int | slice) -> int | Sequence[int]:
-        if isinstance(number, slice):
-            return [self[each] for each in range(*number.indices(len(self)))]
-        return self.space.rows.origins.origin(range(len(self))[number], len(self))
-
-
-class Configurations(Sequence[Configuration]):
-    """The configurations of a space, each decoded at its access."""
-
-    def __init__(self, space: Space) -> None:
-        self.space = space
-
-    def __len__(self) -> int:
-        return self.space.size
-
-    @overload
-    def __getitem__(self, number: int) -> Configuration: ...
-
-    @overload
-    def __getitem__(self, number: slice) -> Sequence[Configuration]: ...
-
-    def __getitem__(self, number: int | slice) -> Configuration | Sequence[Configuration]:
-        if isinstance(number, slice):
-            return [self[each] for each in range(*number.indices(len(self)))]
-        return self.space.configuration(range(len(self))[number])
 
 
 def explore_fast(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
@@ -170,14 +129,14 @@ class _Explorer:
         with bounded(self.limits if self.limits.spill is None else replace(self.limits, memory=None), began):
             self.visit(began)
         self.keep(time.monotonic() - began)
-        space, configurations = self.space, Configurations(self.space)
+        space, numbers = self.space, range(self.space.size)
         survey = GraphSurvey(space)
         with bounded(self.limits_of_looking(), began):
             self.look_at(survey, inspect)
         rules = space.rules()
         return Exploration(
-            configurations,
-            Origins(space),
+            MadeOnAccess(space.configuration, numbers),
+            MadeOnAccess(lambda number: space.rows.origins.origin(number, space.size), numbers),
             self.journey.depth,
             space.expanded,
             sum(rules.values()),

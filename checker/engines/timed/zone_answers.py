@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence, Set
 from functools import cached_property, partial, reduce
-from typing import TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast.row_inspection import truths
+from checker.engines.made_on_access import MadeOnAccess
 from checker.engines.timed.answers import DateSpan, FirstMoments, TakenStep, TimelockRun, WaitAnswer
 from checker.engines.timed.digital_answers import control_pairs
 from checker.engines.timed.first_runs import TimedRun
@@ -45,30 +45,6 @@ from semantics.timing.actor_clocks import ActorClock, Sort, Test
 from semantics.timing.clocks import TimedStep, TimedView
 from semantics.timing.timing import Sayable
 
-Made = TypeVar("Made")
-
-
-class OfRows(Sequence[Made]):
-    """Objects made from rows on each access, in the order of the given row numbers."""
-
-    def __init__(self, make: Callable[[int], Made], rows: NDArray[np.int64]) -> None:
-        self.make = make
-        self.rows = rows
-
-    def __len__(self) -> int:
-        return len(self.rows)
-
-    @overload
-    def __getitem__(self, number: int) -> Made: ...
-
-    @overload
-    def __getitem__(self, number: slice) -> Sequence[Made]: ...
-
-    def __getitem__(self, number: int | slice) -> Made | Sequence[Made]:
-        if isinstance(number, slice):
-            return OfRows(self.make, self.rows[number])
-        return self.make(int(self.rows[number]))
-
 
 class ZoneTimes:
     """Answers from a search through zones.
@@ -93,7 +69,7 @@ class ZoneTimes:
     @property
     def situations(self) -> Sequence[TimedView]:
         """The timed situation of each configuration."""
-        return OfRows(self.network.situation, self.order)
+        return MadeOnAccess(self.network.situation, self.order)
 
     def survey(self, shown: InTime = InTime.ENABLED) -> TimedSurvey:
         """Return a survey of the configurations."""

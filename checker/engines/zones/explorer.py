@@ -12,7 +12,8 @@ import numpy as np
 
 from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError
 from checker.engines.fast.compile_progress import compilation_uncounted
-from checker.engines.timed.zone_answers import OfRows, ZoneTimes
+from checker.engines.made_on_access import MadeOnAccess
+from checker.engines.timed.zone_answers import ZoneTimes
 from checker.engines.zones.timed_automaton import ConstantTooLargeError
 from checker.engines.zones.timed_automaton_of import Network
 from checker.engines.zones.timed_checkpoint import resume, save
@@ -155,7 +156,7 @@ def _summarise(times: ZoneTimes, found: Exploration) -> None:
     network = times.network
     found.origins = times.search.origins.tolist()
     found.times, found.expanded = times, len(times.order)
-    found.configurations = OfRows(network.configuration, times.order)
+    found.configurations = MadeOnAccess(network.configuration, times.order)
     found.depth = times.search.deepest
     names = {number: name for name, number in network.learner.rules.items()}
     rules, counts = np.unique(times.taken_rules(), return_counts=True)
