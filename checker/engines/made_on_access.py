@@ -1,7 +1,9 @@
 """Sequences whose elements are made at each access."""
 
 from collections.abc import Callable, Sequence
-from typing import TypeVar, overload
+from typing import Any, TypeVar, overload
+
+from numpy.typing import NDArray
 
 Made = TypeVar("Made")
 
@@ -11,7 +13,7 @@ class MadeOnAccess(Sequence[Made]):
 
     __slots__ = ("make", "numbers")
 
-    def __init__(self, make: Callable[[int], Made], numbers: Sequence[int]) -> None:
+    def __init__(self, make: Callable[[int], Made], numbers: range | NDArray[Any]) -> None:
         self.make = make
         self.numbers = numbers
 

@@ -63,7 +63,7 @@ UNPLANTED = -1
 
 
 if TYPE_CHECKING:
-    from checker.engines.fast.canonicalise import Exchanges, RowScratch
+    from checker.engines.fast.canonicalise import Exchanges
     from checker.engines.fast.partial_order import Choosing
     from checker.engines.fast.symmetry_tables import Exchanging
 
@@ -233,16 +233,16 @@ class Space:
         )
 
     @property
-    def symmetry(self) -> "tuple[Exchanges, RowScratch] | tuple[None, None]":
+    def symmetry(self) -> tuple[Any, Any]:
         """The symmetry tables, and this thread's scratch space; None without symmetry reduction."""
         swaps = self.exchanging
         return (None, None) if swaps is None else (swaps.exchanges, swaps.desk)
 
     @property
-    def completing(self) -> tuple[Any, ...]:
+    def completing(self) -> tuple[Any, Any, Any, Any]:
         """What completes a compressed successor: the model, symmetry and tree compression; None for plain rows."""
         folded = self.rows.folded
-        return (None,) * 4 if folded is None else (self.model, *self.symmetry, folded)
+        return (None, None, None, None) if folded is None else (self.model, *self.symmetry, folded)
 
     def store(self, batch: SuccessorBatch, steps: tuple[int, int], found: tuple[int, int], at: int) -> None:
         """Store part of a batch: transitions and possibly new successors of the rows before row `at`."""
