@@ -41,6 +41,7 @@ GROUPS: Final = {
     },
     "begin": {
         "demo": "check and draw two missions that ship",
+        "warm-up": "compile all loops now, for an image of a container",
         "completion": "print the script that completes command lines in bash, zsh or fish",
     },
 }
