@@ -6,11 +6,14 @@ in a packed block takes some 40 bytes. Packing and unpacking take a tenth of the
 
 from __future__ import annotations
 
+from array import array
 from collections import deque
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any, Final, TypeAlias
 
+from bigraphs.engine.decoding import slots_of
 from bigraphs.engine.intern_tables import Codes
 from bigraphs.engine.occurrences import Spot
 
@@ -18,7 +21,7 @@ BLOCK: Final = 512
 """The number of states in a block."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Block:
     """Packed spots.
 
@@ -26,11 +29,13 @@ class Block:
         packed: The compressed spots.
         kept: The positions of the spots that still wait.
         codes: The translation of their subtree codes, if another process packed them.
+        slots: The slots of their nodes, compressed, once they were needed.
     """
 
     packed: bytes
     kept: Sequence[int]
     codes: Codes | None = None
+    slots: bytes = b""
 
     def __len__(self) -> int:
         return len(self.kept)
@@ -68,12 +73,18 @@ class Frontier:
             self._pieces.append(block)
             self._length += len(block)
 
-    def popleft(self) -> Spot:
-        """Remove and return the spot that has waited longest."""
+    def peek(self) -> Spot:
+        """Return the spot that has waited longest."""
         if not self._head:
             self._head.extend(self._spots(self._next()))
+        return self._head[0]
+
+    def popleft(self) -> Spot:
+        """Remove and return the spot that has waited longest."""
+        spot = self.peek()
+        self._head.popleft()
         self._length -= 1
-        return self._head.popleft()
+        return spot
 
     def drop(self, count: int) -> None:
         """Remove the spots that have waited longest; it unpacks only a block that is partly removed."""
@@ -93,6 +104,26 @@ class Frontier:
         """Return all waiting spots, packed."""
         pieces = [list(self._head), *self._pieces, self._tail]
         return [piece if isinstance(piece, Block) else pack(piece) for piece in pieces if piece]
+
+    def slots(self, count: int) -> array[int]:
+        """Return the slots of the nodes of the first `count` spots, in the order of `slots_of`."""
+        found = array("I")
+        for piece in (list(self._head), *self._pieces, self._tail):
+            if isinstance(piece, Block) and len(piece) <= count:
+                found.frombytes(self._slots_in(piece))
+            else:
+                for spot in islice(self._spots(piece), count):
+                    found.extend(slots_of(spot.state))
+            count -= min(count, len(piece))
+        return found
+
+    def _slots_in(self, block: Block) -> bytes:
+        import zlib  # noqa: PLC0415 - a small system packs nothing
+
+        if not block.slots:
+            found = array("I", (slot for spot in unpack(block, self._one) for slot in slots_of(spot.state)))
+            block.slots = zlib.compress(found.tobytes(), 1)
+        return zlib.decompress(block.slots)
 
     def _next(self) -> _Piece:
         if not self._pieces:

@@ -1,0 +1,100 @@
+"""Lists of numbers in files: the columns of an exploration that exceeded its memory."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, Final, overload
+
+import numpy as np
+
+from bigraphs.mapped_arrays import Pages, more
+
+TAIL: Final = 1 << 16
+"""The least number of elements that are written at once."""
+
+KINDS: Final = {"B": np.uint8, "I": np.uint32, "Q": np.uint64}
+
+
+class FileColumn(Sequence[int]):
+    """A list of numbers in an unnamed file, with its end in memory.
+
+    Only `write` changes the file. So an addition never fails, and a forked process adds to its own copy alone. A slice
+    of bytes is `bytes`, any other an array.
+    """
+
+    __slots__ = ("_file", "_tail", "_view", "_written", "typecode")
+
+    def __init__(self, given: array[int] | bytearray, folder: Path) -> None:
+        """Move numbers to a file in a folder.
+
+        Raises:
+            OSError: There is no such folder, or no room in it.
+        """
+        self.typecode = "B" if isinstance(given, bytearray) else given.typecode
+        self._file = Pages(KINDS[self.typecode], max(len(given), TAIL))
+        self._file.spill(folder, 0)
+        self._tail = array(self.typecode)
+        self._written = len(given)
+        self._file.room[: len(given)] = np.frombuffer(given, KINDS[self.typecode])
+        self._view = memoryview(self._file.room)
+
+    def append(self, number: int) -> None:
+        """Add a number."""
+        self._tail.append(number)
+
+    def extend(self, numbers: Iterable[int]) -> None:
+        """Add numbers."""
+        self._tail.extend(numbers)
+
+    def __iadd__(self, numbers: Iterable[int]) -> FileColumn:
+        """Add numbers."""
+        self._tail.extend(numbers)
+        return self
+
+    def write(self, least: int = TAIL) -> None:
+        """Write the end to the file if it has so many elements.
+
+        Raises:
+            OSError: The file has no room; the list is unchanged.
+        """
+        size = len(self)
+        if len(self._tail) < least:
+            return
+        if size > len(self._file.room):
+            self._file.grow(max(more(len(self._file.room)), size))
+            self._view = memoryview(self._file.room)
+        self._file.room[self._written : size] = self._tail
+        self._tail = array(self.typecode)
+        self._written = size
+
+    def __len__(self) -> int:
+        return self._written + len(self._tail)
+
+    @overload
+    def __getitem__(self, place: int) -> int: ...
+    @overload
+    def __getitem__(self, place: slice) -> Any: ...
+    def __getitem__(self, place: int | slice) -> Any:
+        if isinstance(place, slice):
+            start, end, _ = place.indices(len(self))
+            return self._slice(start, max(start, end))
+        place = range(len(self))[place]
+        return self._view[place] if place < self._written else self._tail[place - self._written]
+
+    def _slice(self, start: int, end: int) -> bytes | array[int]:
+        written = self._written
+        found = self._view[min(start, written) : min(end, written)].tobytes()
+        if end > written:
+            found += self._tail[max(start - written, 0) : end - written].tobytes()
+        return found if self.typecode == "B" else array(self.typecode, found)
+
+    def beginning(self, count: int) -> memoryview:
+        """Write the end to the file; return the first `count` numbers.
+
+        Raises:
+            OSError: The file has no room; the list is unchanged.
+        """
+        self.write(0)
+        return self._view[:count]
