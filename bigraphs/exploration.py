@@ -128,7 +128,7 @@ class _Search:
         self.begun = self.kept = time.monotonic()
         self.next_look = self.begun + LOOK_EVERY
         self.limits, self.watch, self.saving = limits, watch, saving
-        self.end = self.memory = math.inf  # no limit before a saved search is complete again
+        self.end = self.memory = math.inf
         self.is_due = self.is_whole = False
         self.process = os.getpid()
         self.machine = Machine(system, self.look)
@@ -161,11 +161,16 @@ class _Search:
             from bigraphs.resumption import resume  # noqa: PLC0415 - few searches are saved
 
             self.begun -= resume(self.reached, self.saving.saved, self.saving.place)
+            self.limit()
         else:
+            self.limit()
             self.reached.begin()
+        self.is_due = self.is_whole = True
+
+    def limit(self) -> None:
+        """Begin to check the limits: a saved search is first read as a whole."""
         self.end = math.inf if self.limits.seconds is None else self.begun + self.limits.seconds
         self.memory = math.inf if self.limits.memory is None else self.limits.memory
-        self.is_due = self.is_whole = True
 
     def visit(self) -> None:
         """Explore all states."""

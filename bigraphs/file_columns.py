@@ -53,15 +53,13 @@ class FileColumn(Sequence[int]):
         self._tail.extend(numbers)
         return self
 
-    def write(self, least: int = TAIL) -> None:
-        """Write the end to the file if it has so many elements.
+    def write(self) -> None:
+        """Write the end to the file if it is long; raises OSError if the file has no room."""
+        if len(self._tail) >= TAIL:
+            self._write()
 
-        Raises:
-            OSError: The file has no room; the list is unchanged.
-        """
+    def _write(self) -> None:
         size = len(self)
-        if len(self._tail) < least:
-            return
         if size > len(self._file.room):
             self._file.grow(max(more(len(self._file.room)), size))
             self._view = memoryview(self._file.room)
@@ -91,10 +89,6 @@ class FileColumn(Sequence[int]):
         return found if self.typecode == "B" else array(self.typecode, found)
 
     def beginning(self, count: int) -> memoryview:
-        """Write the end to the file; return the first `count` numbers.
-
-        Raises:
-            OSError: The file has no room; the list is unchanged.
-        """
-        self.write(0)
+        """Write the end to the file; return the first `count` numbers; raises OSError if the file has no room."""
+        self._write()
         return self._view[:count]

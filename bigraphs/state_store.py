@@ -58,6 +58,8 @@ class StateStore:
         self.kinds: DictionaryColumn[TransitionKind] = DictionaryColumn()
         self.rule_sets: dict[frozenset[int], tuple[str, ...]] = {}
         self.occurrences = 0
+        self.start = machine.first()
+        self.waiting = Frontier(self.start)
         self.in_files: tuple[FileColumn, ...] = ()
 
     def __len__(self) -> int:
@@ -76,7 +78,6 @@ class StateStore:
     def begin(self) -> None:
         """Add the initial state."""
         self.start, self.occurrences = self.machine.start()
-        self.waiting = Frontier(self.start)
         self.number(self.start, 0)
 
     def number(self, spot: Spot, source: int) -> int:
