@@ -172,6 +172,6 @@ class Numbering:
 
 def spilled(given: bytearray | Column, folder: Path) -> FileColumn:
     """Return numbers in a file in a folder; raises OSError if that has no room."""
-    from bigraphs.file_columns import FileColumn  # noqa: PLC0415 - numpy is slow to import
+    from bigraphs.file_columns import FileColumn  # noqa: PLC0415 - few explorations spill
 
     return given if isinstance(given, FileColumn) else FileColumn(given, folder)

@@ -2,29 +2,26 @@
 
 from __future__ import annotations
 
+import mmap
 from array import array
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final, overload
 
-import numpy as np
-
-from bigraphs.mapped_arrays import Pages, more
+from bigraphs.unnamed_files import reserve, unnamed_file
 
 TAIL: Final = 1 << 16
 """The least number of elements that are written at once."""
-
-KINDS: Final = {"B": np.uint8, "I": np.uint32, "Q": np.uint64}
 
 
 class FileColumn(Sequence[int]):
     """A list of numbers in an unnamed file, with its end in memory.
 
-    Only `write` changes the file. So an addition never fails, and a forked process adds to its own copy alone. A slice
-    of bytes is `bytes`, any other an array.
+    Only `write` and `beginning` change the file. So an addition never fails, and a forked process adds to its own copy
+    alone. A slice of bytes is `bytes`, any other an array.
     """
 
-    __slots__ = ("_file", "_tail", "_view", "_written", "typecode")
+    __slots__ = ("__weakref__", "_file", "_tail", "_view", "_written", "typecode")
 
     def __init__(self, given: array[int] | bytearray, folder: Path) -> None:
         """Move numbers to a file in a folder.
@@ -33,12 +30,11 @@ class FileColumn(Sequence[int]):
             OSError: There is no such folder, or no room in it.
         """
         self.typecode = "B" if isinstance(given, bytearray) else given.typecode
-        self._file = Pages(KINDS[self.typecode], max(len(given), TAIL))
-        self._file.spill(folder, 0)
+        self._file = unnamed_file(self, folder)
+        self._view: memoryview[int] = memoryview(b"")
+        self._written = 0
         self._tail = array(self.typecode)
-        self._written = len(given)
-        self._file.room[: len(given)] = np.frombuffer(given, KINDS[self.typecode])
-        self._view = memoryview(self._file.room)
+        self._put(memoryview(given))
 
     def append(self, number: int) -> None:
         """Add a number."""
@@ -53,19 +49,28 @@ class FileColumn(Sequence[int]):
         self._tail.extend(numbers)
         return self
 
-    def write(self) -> None:
+    def write(self, least: int | None = None) -> None:
         """Write the end to the file if it is long; raises OSError if the file has no room."""
-        if len(self._tail) >= TAIL:
-            self._write()
+        if len(self._tail) >= (TAIL if least is None else least):
+            self._put(memoryview(self._tail))
+            self._tail = array(self.typecode)
 
-    def _write(self) -> None:
-        size = len(self)
-        if size > len(self._file.room):
-            self._file.grow(max(more(len(self._file.room)), size))
-            self._view = memoryview(self._file.room)
-        self._file.room[self._written : size] = self._tail
-        self._tail = array(self.typecode)
+    def _put(self, numbers: memoryview[int]) -> None:
+        """Write numbers behind the others; raise OSError, and change nothing, if the file has no room."""
+        if not numbers:
+            return
+        size = self._written + len(numbers)
+        if size > len(self._view):
+            room = max(size, self._written * 3 // 2, TAIL) * self._tail.itemsize
+            reserve(self._file, room)
+            self._view = memoryview(mmap.mmap(self._file, room)).cast(self.typecode)  # type: ignore[call-overload]  # B, I or Q
+        self._view[self._written : size] = numbers
         self._written = size
+
+    def beginning(self, count: int) -> memoryview[int]:
+        """Write the end to the file; return the first `count` numbers; raises OSError if the file has no room."""
+        self.write(0)
+        return self._view[:count]
 
     def __len__(self) -> int:
         return self._written + len(self._tail)
@@ -87,8 +92,3 @@ class FileColumn(Sequence[int]):
         if end > written:
             found += self._tail[max(start - written, 0) : end - written].tobytes()
         return found if self.typecode == "B" else array(self.typecode, found)
-
-    def beginning(self, count: int) -> memoryview:
-        """Write the end to the file; return the first `count` numbers; raises OSError if the file has no room."""
-        self._write()
-        return self._view[:count]

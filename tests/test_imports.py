@@ -37,8 +37,6 @@ LIBRARIES = {
     "networkx": ("bigraphs/", "checker/", "specs/elaboration/bodies.py"),  # where a graph is a graph
     "numpy": (
         "bigraphs/simulation.py",  # independent streams of random numbers
-        "bigraphs/mapped_arrays.py",  # arrays in files
-        "bigraphs/file_columns.py",
         "checker/",
         "bigactors/commands/big/states_file.py",
         "bigactors/commands/big/temporal.py",

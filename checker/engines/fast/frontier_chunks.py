@@ -2,9 +2,9 @@
 
 from typing import Protocol
 
-from bigraphs.mapped_arrays import Pages
 from checker.engines.fast import kernel
 from checker.engines.fast.kernel import AT, GATHERED, PUT_OFF, SEEN, SIFTED
+from checker.engines.fast.mapped_arrays import Pages
 from checker.engines.fast.pipeline import Pipeline, RowSlice
 from checker.engines.fast.rows import Rows
 

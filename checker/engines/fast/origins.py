@@ -18,9 +18,9 @@ from numba import types
 from numba.extending import overload
 from numpy.typing import NDArray
 
-from bigraphs.mapped_arrays import Pages
 from checker.engines.fast.bits import WORD, lowest, ones_in
 from checker.engines.fast.jit_decorators import njit
+from checker.engines.fast.mapped_arrays import Pages
 from checker.engines.fast.table import Words
 
 BLOCK = 64

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bigraphs.mapped_arrays import Pages
 from checker.engines.fast.bits import WORD, add, has, ones_in
 from checker.engines.fast.jit_decorators import inner, njit
 from checker.engines.fast.kernel import State
+from checker.engines.fast.mapped_arrays import Pages
 from checker.engines.fast.table import Words
 from checker.engines.fast.tree_compression import NO_ROOM, Interned, Pool, intern
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from bigraphs.mapped_arrays import Pages, more
 from checker.engines.fast import tree_compression
 from checker.engines.fast.kernel import repack
+from checker.engines.fast.mapped_arrays import Pages, more
 from checker.engines.fast.origins import OriginPages, Rising
 
 BLOCK = 1 << 12

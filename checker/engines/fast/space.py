@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from bigraphs.mapped_arrays import Pages
 from checker.engines.fast import kernel
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.columns import WORD, Packing, bits_of, packing, packing_in_order, shifts
@@ -38,6 +37,7 @@ from checker.engines.fast.kernel import (
     WORDS,
 )
 from checker.engines.fast.learner import CodedSource, Learner, TransitionGroup
+from checker.engines.fast.mapped_arrays import Pages
 from checker.engines.fast.origins import OriginPages, Rising
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.table import most_in, rebuild, slots_for, slots_within

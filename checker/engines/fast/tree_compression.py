@@ -20,8 +20,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bigraphs.mapped_arrays import Pages, more
 from checker.engines.fast.jit_decorators import inner, njit
+from checker.engines.fast.mapped_arrays import Pages, more
 from checker.engines.fast.table import (
     Words,
     alone,
