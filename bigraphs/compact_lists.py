@@ -96,7 +96,7 @@ class Texts(Sequence[bytes]):
 
     def append(self, text: bytes) -> None:
         """Add a text."""
-        self.whole += text
+        self.whole.extend(text)
         self.ends.append(len(self.whole))
 
     def spill(self, folder: Path) -> tuple[FileColumn, FileColumn]:

@@ -29,7 +29,7 @@ class FileColumn(Sequence[int]):
         Raises:
             OSError: There is no such folder, or no room in it.
         """
-        self.typecode = "B" if isinstance(given, bytearray) else given.typecode
+        self.typecode: Any = "B" if isinstance(given, bytearray) else given.typecode
         self._file = unnamed_file(self, folder)
         self._view: memoryview[int] = memoryview(b"")
         self._written = 0
@@ -42,12 +42,10 @@ class FileColumn(Sequence[int]):
 
     def extend(self, numbers: Iterable[int]) -> None:
         """Add numbers."""
-        self._tail.extend(numbers)
-
-    def __iadd__(self, numbers: Iterable[int]) -> FileColumn:
-        """Add numbers."""
-        self._tail.extend(numbers)
-        return self
+        if isinstance(numbers, bytes):
+            self._tail.frombytes(numbers)
+        else:
+            self._tail.extend(numbers)
 
     def write(self, least: int | None = None) -> None:
         """Write the end to the file if it is long; raises OSError if the file has no room."""
@@ -63,7 +61,7 @@ class FileColumn(Sequence[int]):
         if size > len(self._view):
             room = max(size, self._written * 3 // 2, TAIL) * self._tail.itemsize
             reserve(self._file, room)
-            self._view = memoryview(mmap.mmap(self._file, room)).cast(self.typecode)  # type: ignore[call-overload]  # B, I or Q
+            self._view = memoryview(mmap.mmap(self._file, room)).cast(self.typecode)
         self._view[self._written : size] = numbers
         self._written = size
 

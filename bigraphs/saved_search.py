@@ -67,7 +67,7 @@ def save(store: StateStore, seconds: float) -> SavedSearch:
         "holding": store.holding.values,
         "kinds": store.kinds.values,
     }
-    arrays = {
+    arrays: dict[str, Bytes] = {
         "rows": memoryview(rows),
         "keys": beginning(store.keys.whole, store.keys.ends[states]),
         "ends": beginning(store.keys.ends, states + 1),

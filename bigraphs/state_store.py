@@ -175,25 +175,17 @@ class StateStore:
         return found
 
     def spill(self, folder: Path) -> None:
-        """Move states and transitions to files in a folder; their index and the waiting states stay in memory.
+        """Move states and transitions to files in a folder; the index and the interned subtrees stay in memory.
 
         Raises:
             OSError: There is no such folder, or no room in it.
         """
+        self.found_from = found_from = spilled(self.found_from, folder)
+        self.first, self.targets = first, targets = spilled(self.first, folder), spilled(self.targets, folder)
+        coded = self.holding.spill(folder), self.kinds.spill(folder), self.waiting.spill(folder)
         texts = {id(each): each for each in (self.keys, self.visited.texts)}.values()
-        self.found_from, self.first = found_from, first = (
-            spilled(self.found_from, folder),
-            spilled(self.first, folder),
-        )
-        self.targets = targets = spilled(self.targets, folder)
-        coded = self.holding.spill(folder), self.kinds.spill(folder)
-        self.in_files = (
-            found_from,
-            first,
-            targets,
-            *coded,
-            *(file for each in texts for file in each.spill(folder)),
-        )
+        files = (file for each in texts for file in each.spill(folder))
+        self.in_files = (found_from, first, targets, *coded, *files)
 
     def write(self) -> None:
         """Write additions to the files, if they are large; raises OSError if a file has no room."""

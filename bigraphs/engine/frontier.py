@@ -11,11 +11,15 @@ from collections import deque
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any, Final, TypeAlias
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from bigraphs.engine.decoding import slots_of
 from bigraphs.engine.intern_tables import Codes
 from bigraphs.engine.occurrences import Spot
+
+if TYPE_CHECKING:
+    from bigraphs.file_columns import FileColumn
 
 BLOCK: Final = 512
 """The number of states in a block."""
@@ -26,13 +30,13 @@ class Block:
     """Packed spots.
 
     Attributes:
-        packed: The compressed spots.
+        packed: The compressed spots, or their part of the file.
         kept: The positions of the spots that still wait.
         codes: The translation of their subtree codes, if another process packed them.
         slots: The slots of their nodes, compressed, once they were needed.
     """
 
-    packed: bytes
+    packed: bytes | slice
     kept: Sequence[int]
     codes: Codes | None = None
     slots: bytes = b""
@@ -53,6 +57,7 @@ class Frontier:
         self._pieces: deque[_Piece] = deque()
         self._tail: list[Spot] = []
         self._length = 0
+        self._file: FileColumn | None = None
 
     def __len__(self) -> int:
         return self._length
@@ -63,14 +68,14 @@ class Frontier:
         self._tail.append(spot)
         self._length += 1
         if len(self._tail) == BLOCK:
-            self._pieces.append(pack(self._tail))
+            self._pieces.append(self._kept(pack(self._tail)))
             self._tail = []
 
     def extend(self, blocks: Iterable[Block]) -> None:
         """Add packed spots."""
         self._end_tail()
         for block in blocks:
-            self._pieces.append(block)
+            self._pieces.append(self._kept(block))
             self._length += len(block)
 
     def peek(self) -> Spot:
@@ -121,7 +126,7 @@ class Frontier:
         import zlib  # noqa: PLC0415 - a small system packs nothing
 
         if not block.slots:
-            found = array("I", (slot for spot in unpack(block, self._one) for slot in slots_of(spot.state)))
+            found = array("I", (slot for spot in self._spots(block) for slot in slots_of(spot.state)))
             block.slots = zlib.compress(found.tobytes(), 1)
         return zlib.decompress(block.slots)
 
@@ -133,11 +138,38 @@ class Frontier:
     def _end_tail(self) -> None:
         """Turn the tail into a piece, packed if the queue is long."""
         if self._tail:
-            self._pieces.append(pack(self._tail) if self._length > 2 * BLOCK else self._tail)
+            self._pieces.append(self._kept(pack(self._tail)) if self._length > 2 * BLOCK else self._tail)
             self._tail = []
 
     def _spots(self, piece: _Piece) -> Iterable[Spot]:
-        return piece if isinstance(piece, list) else unpack(piece, self._one)
+        if isinstance(piece, list):
+            return piece
+        return unpack(piece, self._bytes(piece.packed), self._one)
+
+    def spill(self, folder: Path) -> FileColumn:
+        """Keep packed spots in a file in a folder from now on, and return it; raises OSError if that has no room."""
+        from bigraphs.file_columns import FileColumn  # noqa: PLC0415 - few explorations spill
+
+        self._file = FileColumn(bytearray(), folder)
+        for piece in self._pieces:
+            if isinstance(piece, Block):
+                self._kept(piece)
+        return self._file
+
+    def _kept(self, block: Block) -> Block:
+        """Move a block to the file, if there is one."""
+        if self._file is not None:
+            start = len(self._file)
+            self._file.extend(self._bytes(block.packed))
+            block.packed = slice(start, len(self._file))
+        return block
+
+    def _bytes(self, packed: bytes | slice) -> bytes:
+        if isinstance(packed, bytes):
+            return packed
+        assert self._file is not None  # a part of it
+        found: bytes = self._file[packed]
+        return found
 
 
 def pack(spots: Sequence[Spot]) -> Block:
@@ -149,12 +181,12 @@ def pack(spots: Sequence[Spot]) -> Block:
     return Block(zlib.compress(pickle.dumps(parts, pickle.HIGHEST_PROTOCOL), 1), range(len(spots)))
 
 
-def unpack(block: Block, one: Spot) -> Iterable[Spot]:
-    """Yield the waiting spots of a block; `one` is any spot of the same system."""
+def unpack(block: Block, packed: bytes, one: Spot) -> Iterable[Spot]:
+    """Yield the waiting spots of a block, given its bytes; `one` is any spot of the same system."""
     import pickle  # noqa: PLC0415 - a small system packs nothing
     import zlib  # noqa: PLC0415
 
-    parts: list[tuple[Any, ...]] = pickle.loads(zlib.decompress(block.packed))
+    parts: list[tuple[Any, ...]] = pickle.loads(zlib.decompress(packed))
     for place in block.kept:
         spot = one.remade(parts[place])
         if block.codes is not None:

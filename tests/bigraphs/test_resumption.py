@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from scale import crossed
 
 from bigraphs import exploration, file_columns, resumption, workers
+from bigraphs.engine import frontier
 from bigraphs.errors import BigraphError
 from bigraphs.exploration import ExplorationLimits, Saving, explore, explore_long
 from bigraphs.notation import read_system
@@ -60,8 +61,9 @@ def everything(found):
 
 @pytest.fixture
 def _often(monkeypatch):
-    """Look at the clock at every opportunity, and start workers at once."""
+    """Look at the clock at every opportunity, start workers at once, and pack waiting states in small blocks."""
     monkeypatch.setattr(exploration, "LOOK_EVERY", 0.0)
+    monkeypatch.setattr(frontier, "BLOCK", 2)
     monkeypatch.setattr(workers, "BEGIN", 0.0)
     monkeypatch.setattr(workers, "LEAST", 0.0)
 
