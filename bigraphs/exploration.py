@@ -84,8 +84,8 @@ def explore(
     """Return the transition system of a system; it is marked incomplete if the search stopped early.
 
     After half a second, up to `threads` processes share the work, where the platform supports fork. The result does not
-    depend on their number. `watch` receives regular progress reports. No limit ends it before
-    its first state. A KeyboardInterrupt after that ends the search and keeps the states found so far.
+    depend on their number. `watch` receives regular progress reports. A KeyboardInterrupt ends the search and keeps the
+    states found so far.
 
     Raises:
         BigraphError: If the system cannot run.
@@ -128,7 +128,7 @@ class _Search:
         self.begun = self.kept = time.monotonic()
         self.next_look = self.begun + LOOK_EVERY
         self.limits, self.watch, self.saving = limits, watch, saving
-        self.end = self.memory = math.inf  # until the first state, or a whole saved search, is there
+        self.end = self.memory = math.inf
         self.is_due = self.is_whole = False
         self.process = os.getpid()
         self.machine = Machine(system, self.look)
@@ -145,8 +145,6 @@ class _Search:
         except SearchEnd as ended:
             reason = str(ended)
         except KeyboardInterrupt:  # at any moment
-            if not len(self.reached):
-                raise
             self.is_whole, reason = False, "it was interrupted"
         finally:
             self.workers.close()
@@ -163,9 +161,14 @@ class _Search:
             from bigraphs.resumption import resume  # noqa: PLC0415 - few searches are saved
 
             self.begun -= resume(self.reached, self.saving.saved, self.saving.place)
+            self.limit()
         else:
+            self.limit()
             self.reached.begin()
         self.is_due = self.is_whole = True
+
+    def limit(self) -> None:
+        """Begin to check the limits: a saved search is first read as a whole."""
         self.end = math.inf if self.limits.seconds is None else self.begun + self.limits.seconds
         self.memory = math.inf if self.limits.memory is None else self.limits.memory
 
@@ -211,8 +214,6 @@ class _Search:
                 )
             )
         except KeyboardInterrupt:
-            if not self.is_whole:
-                raise
             raise SearchEnd("it was interrupted") from None
 
     def is_full(self) -> bool:

@@ -177,19 +177,6 @@ def test_instantaneous_rules_that_never_come_to_rest_are_an_error():
         run(text)
 
 
-def test_a_search_without_any_time_has_its_first_state():
-    text = """
-    ctrl A = 0; atomic ctrl B = 0; atomic ctrl C = 0;
-    big start = A.(B | B | B | B);
-    react fade = B --> C;
-    react still = C --> C;
-    begin brs init start; rules = [ (fade), {still} ]; end
-    """
-    found = run(text, max_time=0.0)
-    assert is_just(found, "A.(C | C | C | C)")
-    assert found.reason == "the limit of 0 seconds was reached"
-
-
 def test_a_lower_class_waits_until_nothing_higher_can_happen():
     text = """
     atomic ctrl A = 0; atomic ctrl B = 0; atomic ctrl C = 0;

@@ -51,10 +51,8 @@ def interrupted(one, moment, threads=1):
         if next(looks, None) is None:
             raise KeyboardInterrupt
 
-    try:
-        return run(one, shelf=shelf, watch=watch, threads=threads).reason, shelf.saved[-1]
-    except KeyboardInterrupt:  # before the first state
-        return "", None
+    found = run(one, shelf=shelf, watch=watch, threads=threads)
+    return found.reason, shelf.saved[-1] if shelf.saved else None  # nothing before the first state
 
 
 def everything(found):
