@@ -4,15 +4,19 @@ import json
 import os
 from array import array
 from contextlib import suppress
+from dataclasses import replace
 from functools import cache
 
 import pytest
+from bigraph_strategies import grounds
+from engine_strategies import solid_rules, system
 from explored_systems import GROWING, SYSTEMS, WALK, told
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scale import crossed
+from scale import crossed, examples
 
 from bigraphs import exploration, file_columns, resumption, workers
+from bigraphs.algebra import lean
 from bigraphs.engine import frontier
 from bigraphs.errors import BigraphError
 from bigraphs.exploration import ExplorationLimits, Saving, explore, explore_long
@@ -84,6 +88,27 @@ def test_a_search_that_was_interrupted_anywhere_goes_on_to_the_same_end(name, va
         again = run(one, saved=saved, threads=threads)
         assert everything(again) == everything(whole)
         assert again.world.rows[: len(whole.world.rows)] == whole.world.rows
+
+
+@examples(25)
+@given(
+    st.lists(solid_rules(sharing=True), min_size=1, max_size=3),
+    grounds(max_nodes=5, controls=("A", "B", "Z"), sharing=True),
+    st.integers(1, 30),
+)
+def test_so_it_is_for_generated_systems(rules, initial, most):
+    rules = [replace(rule, name=f"r{number}") for number, rule in enumerate(rules)]
+    one, shelf = system(lean(initial), *rules), Shelf()
+    try:
+        whole = explore(one, max_states=60)
+    except BigraphError:
+        return
+    run(one, shelf=shelf, most=most)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(resumption, "REPEATED", 0.0)
+        again = run(one, saved=shelf.saved[-1], most=60)
+    assert everything(again) == everything(whole)
+    assert again.world.rows == whole.world.rows
 
 
 @pytest.mark.parametrize("seconds", [0.0, 9.0])
