@@ -125,7 +125,7 @@ def check(  # noqa: PLR0913 - independent options
         found = _Check(initial, asked, exploration, violations, times=times)
         return found.run(notes, limits)
 
-    if (keeping is not None and reducer is None) or limits.spill is not None:
+    if kept.folder is not None or (kept.doubted and reducer is None) or limits.spill is not None:
         engine = engine or Engine.FAST
     impatient = limits.seconds is None or limits.seconds > PATIENCE
     if engine is None and impatient:

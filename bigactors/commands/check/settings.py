@@ -70,8 +70,8 @@ def keeping_of(options: Namespace) -> Keeping | None:
     folder = checkpoint_folder(options)
     if folder is None and options.paranoid is None:
         return None
-    if folder is not None and (options.engine == "reference" or options.reduce):
-        raise Mistake("--checkpoint works with the fast engine only", "leave --engine and --reduce out")
+    if folder is not None and options.engine == "reference":
+        raise Mistake("--checkpoint works with the fast and Ray engines only", "leave --engine out")
     if options.paranoid is not None and options.engine not in (None, "fast") and not options.reduce:
         raise Mistake("--paranoid works with the fast engine and with reductions only", "leave --engine out")
     return Keeping(folder, options.resume, every=options.every, doubted=options.paranoid or 0)

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast import tree_compression
-from checker.engines.fast.kernel import repack
 from checker.engines.fast.mapped_arrays import Pages, more
 from checker.engines.fast.origins import OriginPages, Rising
+from checker.engines.fast.repacking import repack
 
 BLOCK = 1 << 12
 """The number of rows that are decompressed at once."""

@@ -7,7 +7,6 @@ constants of a clock are the largest seen so far; the search restarts when one g
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from functools import lru_cache, partial
 from itertools import islice
@@ -18,7 +17,7 @@ from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.decision_leaves import LEAF
-from checker.engines.fast.kernel import AT, LIMIT
+from checker.engines.fast.learned_model import AT, LIMIT
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.origins import OriginPages
 from checker.engines.fast.space import Space
@@ -90,7 +89,6 @@ class Network(Space):
         first_ages: The clock values of the first location.
     """
 
-    PLAIN = sys.maxsize  # its loops index into rows
     ORIGINS = OriginPages  # origins are read in the order of the timed search
 
     def __init__(self, initial: Configuration, pending: int) -> None:
@@ -235,9 +233,12 @@ class Network(Space):
         choices = np.zeros(CHOICE * (len(self.restored) + len(self.windows) + 1), np.int32)
 
         def work(model: object, timed: LearnedClocks, growth: AutomatonGrowth, view: LocationView) -> int:
-            other, arrays = self._view(), (self.rows.words, self.rows.origins.loops, self.table.room)
-            most = min(self.rows.room, most_in(len(self.table.room)), int(self.state[LIMIT]))
-            scratch = np.zeros(self.packing.words, np.uint64), np.zeros(2 * self.margin, np.int32), choices
+            rows, folded = self.rows, self.rows.folded
+            other, arrays = self._view(), (rows.words, folded, rows.origins.loops, self.table.room)
+            most = min(rows.room, most_in(len(self.table.room)), int(self.state[LIMIT]))
+            target = np.zeros(self.packing.words, np.uint64)
+            kept = target if folded is None else np.zeros(rows.kept, np.uint64)
+            scratch = target, kept, np.zeros(2 * self.margin, np.int32), choices
             loop: Callable[..., int] = location_successors.leave
             known = (model, timed, growth, view, other)
             return loop(*known, *arrays, most, *scratch, locations, self.state, self.counts_of)
@@ -250,6 +251,7 @@ class Network(Space):
         """Run a loop to its end, with more room and more learned rules where it stops."""
         while True:
             look()  # each location is recorded whole
+            self._compress()
             self._reserve()
             done = self.counts_of.copy()
             why = loop(self.model, self.timed, self._growth(), self._view())
