@@ -169,8 +169,8 @@ def _take_over(store: StateStore, found: SearchContent) -> None:
         if store.visited.find(key) >= 0:
             raise ValueError("it has a state twice")
         store.add(key, raw, found.found_from[state], found.holding[state])
-    for kind in found.kinds[transitions:]:
-        store.kinds.append(kind)
+    for number in range(transitions, len(found.kinds)):
+        store.kinds.append(found.kinds[number])
     store.targets.extend(found.targets[transitions:])
     store.first.extend(found.first[len(store.first) :])
     counted = sum(kind.occurrences for kind in found.kinds)
@@ -185,10 +185,10 @@ def _take_over(store: StateStore, found: SearchContent) -> None:
 def _waiting(store: StateStore, found: SearchContent) -> Iterator[Spot]:
     """Yield the waiting states, each with its nodes in their slots."""
     machine, slots = store.machine, iter(found.slots)
-    for key in found.keys[found.expanded :]:
+    for number in range(found.expanded, len(found.keys)):
         machine.pause()
-        state = from_key(machine.world, key, slots)
-        if state.key() != key:
+        state = from_key(machine.world, found.keys[number], slots)
+        if state.key() != found.keys[number]:
             raise ValueError("a waiting state has its nodes in wrong slots")
         yield Spot(state, machine.index)
     if next(slots, None) is not None:

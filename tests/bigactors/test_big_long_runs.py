@@ -31,6 +31,16 @@ react call = /x /y (Phone{x,h} | Phone{y,h}) | Line{h} -[1.5]-> /x (Phone{x,h} |
 react quit = /x (Phone{x,h} | Phone{x,h}) -[0.1]-> /x /y (Phone{x,h} | Phone{y,h}) | Line{h};
 begin sbrs init quiet; rules = [ {call, quit} ]; preds = { busy }; end
 """
+LAMPS = """\
+%active Lamp : 0;
+%passive On : 0;
+%passive Off : 0;
+Lamp.Off -> Lamp.On;
+Lamp.On -> Lamp.Off;
+Lamp.Off | Lamp.Off | Lamp.Off;
+%property dark !matches(Lamp.On | Lamp.On);
+%check
+"""
 STATES = "balls.big/states.checkpoint"
 
 
@@ -38,6 +48,7 @@ STATES = "balls.big/states.checkpoint"
 def systems(missions):
     (missions / "balls.big").write_text(BALLS, encoding="utf-8")
     (missions / "calls.big").write_text(CALLS, encoding="utf-8")
+    (missions / "lamps.bgm").write_text(LAMPS, encoding="utf-8")
     return missions
 
 
@@ -93,12 +104,17 @@ def test_an_exploration_that_is_interrupted_is_saved_and_goes_on(systems, sent):
 class TestCheckpoints:
     def test_what_a_limit_ended_goes_on_with_a_higher_one(self, bigactors, refused):
         claims = ["--reachable", "busy", "--ltl", "[]<> busy", "--no-deadlock"]
-        for task, *words in (["full", "calls.big"], ["check", "calls.big", *claims]):
-            more = ["--checkpoint", task, "--resume", "--json", "-"]
+        for task, *words in (
+            ["full", "calls.big"],
+            ["check", "calls.big", *claims],
+            ["full", "sensor_network"],
+            ["check", "lamps.bgm"],
+        ):
+            more = ["--checkpoint", f"{task} kept", "--resume", "--json", "-"]
             whole = bigactors("big", task, *words, "--json", "-")
             assert bigactors("big", task, *words, *more, "--max-states", "2")[0] == 3
             assert bigactors("big", task, *words, *more) == whole
-        err = refused("big", "full", "calls.big", *more, "--max-states", "2")
+        err = refused("big", "check", "lamps.bgm", *more, "--max-states", "2")
         assert re.search(r"it has \d+ states, more than the limit of 2", err)
 
     def test_of_another_system_or_constant_it_is_refused(self, done, refused, systems):
