@@ -126,8 +126,8 @@ def test_an_interruption_ends_the_workers(monkeypatch):
     seen = []
 
     def interrupt(progress):
-        if progress.states > 30:
-            seen.extend(multiprocessing.active_children())
+        seen.extend(multiprocessing.active_children())
+        if seen and progress.states > 30:
             raise KeyboardInterrupt
 
     found = explore(read_system(GROWING), threads=3, watch=interrupt, max_states=10_000)
