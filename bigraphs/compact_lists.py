@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Hashable, Iterable, Sequence
-from typing import Any, Final, TypeVar, overload
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TypeAlias, TypeVar, overload
+
+if TYPE_CHECKING:
+    from bigraphs.file_columns import FileColumn
+
+Column: TypeAlias = "array[int] | FileColumn"
+"""A list of numbers, in memory or in a file."""
 
 Value = TypeVar("Value", bound=Hashable)
 
@@ -23,7 +30,7 @@ class DictionaryColumn(Sequence[Value]):
 
     def __init__(self, given: Iterable[Value] = ()) -> None:
         self.values: list[Value] = []
-        self.codes: array[int] = array("B")
+        self.codes: Column = array("B")
         self._numbers: dict[Value, int] = {}
         for value in given:
             self.append(value)
@@ -44,6 +51,11 @@ class DictionaryColumn(Sequence[Value]):
         except OverflowError:
             self.codes = array(_WIDER[self.codes.typecode], self.codes)
             self.codes.append(code)
+
+    def spill(self, folder: Path) -> FileColumn:
+        """Move the codes to a file in a folder, and return them; raises OSError if that has no room."""
+        self.codes = found = spilled(array("I", self.codes), folder)
+        return found
 
     def code(self, value: Value) -> int:
         """Return the code of a value; a new value gets the next code."""
@@ -77,15 +89,20 @@ class Texts(Sequence[bytes]):
     __slots__ = ("ends", "whole")
 
     def __init__(self, given: Iterable[bytes] = ()) -> None:
-        self.whole = bytearray()
-        self.ends = array("Q", (0,))
+        self.whole: bytearray | FileColumn = bytearray()
+        self.ends: Column = array("Q", (0,))
         for text in given:
             self.append(text)
 
     def append(self, text: bytes) -> None:
         """Add a text."""
-        self.whole += text
+        self.whole.extend(text)
         self.ends.append(len(self.whole))
+
+    def spill(self, folder: Path) -> tuple[FileColumn, FileColumn]:
+        """Move the texts to files in a folder, and return these; raises OSError if that has no room."""
+        self.whole, self.ends = found = spilled(self.whole, folder), spilled(self.ends, folder)
+        return found
 
     def __len__(self) -> int:
         return len(self.ends) - 1
@@ -151,3 +168,10 @@ class Numbering:
         self._places = array("I", bytes(8 * len(self._places)))
         for number, text in enumerate(self.texts, 1):
             self._put(text, number)
+
+
+def spilled(given: bytearray | Column, folder: Path) -> FileColumn:
+    """Return numbers in a file in a folder; raises OSError if that has no room."""
+    from bigraphs.file_columns import FileColumn  # noqa: PLC0415 - few explorations spill
+
+    return given if isinstance(given, FileColumn) else FileColumn(given, folder)

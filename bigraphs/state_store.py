@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from array import array
+from bisect import bisect_left
 from dataclasses import dataclass, field
-from typing import Final
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
-from bigraphs.compact_lists import DictionaryColumn, Numbering, Texts
+from bigraphs.compact_lists import Column, DictionaryColumn, Numbering, Texts, spilled
 from bigraphs.engine.frontier import Frontier
 from bigraphs.engine.machine import Machine
 from bigraphs.engine.occurrences import Spot
 from bigraphs.engine.state_arrays import Key
 from bigraphs.system import SystemKind
 from bigraphs.transitions import TransitionKind, TransitionSystem
+
+if TYPE_CHECKING:
+    from bigraphs.file_columns import FileColumn
 
 MOST_REMEMBERED: Final = 200_000
 """The largest number of cached state numbers; the cache saves the computation of canonical keys."""
@@ -35,6 +40,7 @@ class StateStore:
         remembered: A cache of state numbers by raw (non-canonical) keys.
         keys: The raw key of each state when it was first found (`State.key`).
         start: The initial state.
+        in_files: The columns in files.
         waiting: The unexpanded states, by number.
 
     The other attributes are those of a `TransitionSystem`.
@@ -45,12 +51,16 @@ class StateStore:
         self.visited = Numbering()
         self.remembered: dict[Key, int] = {}
         self.keys = self.visited.texts if machine.world.plain else Texts()
-        self.found_from = array("I")
+        self.found_from: Column = array("I")
         self.holding: DictionaryColumn[tuple[int, ...]] = DictionaryColumn()
-        self.first, self.targets = array("Q", (0,)), array("I")
+        self.first: Column = array("Q", (0,))
+        self.targets: Column = array("I")
         self.kinds: DictionaryColumn[TransitionKind] = DictionaryColumn()
         self.rule_sets: dict[frozenset[int], tuple[str, ...]] = {}
         self.occurrences = 0
+        self.start = machine.first()
+        self.waiting = Frontier(self.start)
+        self.in_files: tuple[FileColumn, ...] = ()
 
     def __len__(self) -> int:
         return len(self.keys)
@@ -60,10 +70,14 @@ class StateStore:
         """The number of expanded states; these are the first ones."""
         return len(self.first) - 1
 
+    @property
+    def reached(self) -> int:
+        """The number of states that the expanded ones lead to; a state that is being expanded may have added more."""
+        return bisect_left(self.found_from, self.expanded) or 1
+
     def begin(self) -> None:
         """Add the initial state."""
         self.start, self.occurrences = self.machine.start()
-        self.waiting = Frontier(self.start)
         self.number(self.start, 0)
 
     def number(self, spot: Spot, source: int) -> int:
@@ -86,8 +100,9 @@ class StateStore:
     def _append(self, spot: Spot, key: Key, raw: Key, source: int) -> int:
         if self.full():
             return -1
+        found = self.add(key, raw, source, tuple(sorted(self.machine.holding(spot.state))))
         self.waiting.append(spot)
-        return self.add(key, raw, source, tuple(sorted(self.machine.holding(spot.state))))
+        return found
 
     def full(self) -> bool:
         """Return whether the limit of states is reached."""
@@ -107,6 +122,13 @@ class StateStore:
         if len(self.remembered) >= MOST_REMEMBERED:
             self.remembered.clear()
         self.remembered[raw] = number
+
+    def expand_next(self) -> bool:
+        """Expand the state that has waited longest; it waits until all its transitions are added."""
+        if not self.expand(self.waiting.peek(), self.expanded):
+            return False
+        self.waiting.popleft()
+        return True
 
     def expand(self, spot: Spot, state: int) -> bool:
         """Add the transitions of a state; return whether the limit allowed all their targets."""
@@ -151,6 +173,24 @@ class StateStore:
             found = tuple(sorted(self.machine.reactions[rule].label for rule in rules))
             self.rule_sets[rules] = found
         return found
+
+    def spill(self, folder: Path) -> None:
+        """Move states and transitions to files in a folder; the index and the interned subtrees stay in memory.
+
+        Raises:
+            OSError: There is no such folder, or no room in it.
+        """
+        self.found_from = found_from = spilled(self.found_from, folder)
+        self.first, self.targets = first, targets = spilled(self.first, folder), spilled(self.targets, folder)
+        coded = self.holding.spill(folder), self.kinds.spill(folder), self.waiting.spill(folder)
+        texts = {id(each): each for each in (self.keys, self.visited.texts)}.values()
+        files = (file for each in texts for file in each.spill(folder))
+        self.in_files = (found_from, first, targets, *coded, *files)
+
+    def write(self) -> None:
+        """Write additions to the files, if they are large; raises OSError if a file has no room."""
+        for column in self.in_files:
+            column.write()
 
     def result(self, seconds: float, reason: str) -> TransitionSystem:
         """Return the transition system, found in `seconds`; a nonempty reason marks it as incomplete."""

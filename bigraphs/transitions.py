@@ -10,7 +10,7 @@ from itertools import repeat
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from bigraphs.bigraph import Bigraph
-from bigraphs.compact_lists import DictionaryColumn, Texts
+from bigraphs.compact_lists import Column, DictionaryColumn, Texts
 from bigraphs.engine.decoding import from_key, to_bigraph
 from bigraphs.engine.intern_tables import InternTables
 from bigraphs.system import Rule, System, SystemKind
@@ -61,10 +61,10 @@ class TransitionSystem:
     world: InternTables
     keys: Texts
     holding: DictionaryColumn[tuple[int, ...]]
-    first: array[int]
-    targets: array[int]
+    first: Column
+    targets: Column
     kinds: DictionaryColumn[TransitionKind]
-    found_from: array[int]
+    found_from: Column
     occurrences: int
     seconds: float
     reason: str = ""

@@ -40,11 +40,6 @@ Work: TypeAlias = Callable[[Sequence[Piece]], Iterator[bytes]]
 Memory = TypeVar("Memory")
 
 
-def cores() -> int:
-    """Return the number of cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 @dataclass(eq=False, slots=True)
 class _Worker(Generic[Memory]):
     """A running process, and the data needed to interpret its answers."""

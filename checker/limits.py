@@ -6,14 +6,14 @@ configurations, and a later phase after a short grace.
 """
 
 import math
-import resource
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from time import monotonic
+
+from bigraphs.resources import memory_taken
 
 MOST_PENDING = 64
 """The most pending requests of one agent, or messages in one mailbox, in a configuration that is expanded."""
@@ -146,20 +146,6 @@ def is_full(limits: Limits) -> bool:
 def memory_left(limits: Limits) -> float:
     """Return how many more bytes of memory the process may take."""
     return math.inf if limits.memory is None else limits.memory - memory_taken()
-
-
-def memory_taken() -> int:
-    """Return the bytes of memory of the process; its peak on a system without `/proc`.
-
-    Pages of files don't count: the system reclaims them under pressure.
-    """
-    try:
-        with open("/proc/self/statm", encoding="ascii") as file:
-            resident, of_files = map(int, file.read().split()[1:3])
-            return (resident - of_files) * resource.getpagesize()
-    except OSError:
-        unit = 1 if sys.platform == "darwin" else 1024
-        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
 
 
 class BoundMet(Exception):  # named for the event, not the error

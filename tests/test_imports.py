@@ -38,6 +38,7 @@ LIBRARIES = {
     "numpy": (
         "bigraphs/simulation.py",  # independent streams of random numbers
         "checker/",
+        "bigactors/commands/big/states_file.py",
         "bigactors/commands/big/temporal.py",
         "adapters/camera/",
         "adapters/ros/position_messages.py",  # arrays of ROS's messages

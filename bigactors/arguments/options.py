@@ -4,7 +4,7 @@ import argparse
 from typing import Final
 
 from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import identity, named, substitute
+from bigactors.arguments.values import identity, named, seconds, size, substitute
 
 EXITS: Final = """\
 exit codes:
@@ -57,6 +57,48 @@ def add_foreign_names(parser: Parser) -> None:
         type=identity,
         help="the name in the mission of a source in a recording by other programs, such as mavlink:1=uav0 or "
         "mmsi:244660274=drifter0; may be repeated",
+    )
+
+
+def add_memory(parser: argparse._ActionsContainer) -> None:
+    """Add the option that limits the memory of a search."""
+    parser.add_argument(
+        "--max-memory",
+        metavar="SIZE",
+        type=size,
+        help="stop when the process or a worker takes more than SIZE bytes of memory, such as 800M or 12G "
+        "(default: no limit)",
+    )
+
+
+def add_checkpoints(parser: argparse._ActionsContainer) -> None:
+    """Add the options that save a search and continue it."""
+    parser.add_argument(
+        "--checkpoint",
+        metavar="DIR",
+        type=named,
+        help="save the search in DIR, regularly and at the end, so that --resume can continue it",
+    )
+    parser.add_argument(
+        "--every",
+        metavar="SECONDS",
+        type=seconds,
+        default=60.0,
+        help="the time between two checkpoints (default: 60)",
+    )
+    parser.add_argument(
+        "--resume", action="store_true", help="continue from the checkpoint in DIR, if there is one"
+    )
+
+
+def add_spill(parser: argparse._ActionsContainer, moved: str) -> None:
+    """Add the option that continues a search in files when memory ends."""
+    parser.add_argument(
+        "--spill",
+        metavar="DIR",
+        type=named,
+        help=f"when --max-memory is reached, move {moved} to unnamed temporary files in DIR, which should "
+        "be on a disk",
     )
 
 

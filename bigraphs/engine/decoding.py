@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from itertools import count
+
 from bigraphs.bigraph import Bigraph, Link, Node, assemble
 from bigraphs.canonical_form import canonical
 from bigraphs.engine.intern_tables import REFERENCE, InternTables
@@ -30,9 +33,13 @@ def _live_edges(state: GroundState) -> list[int]:
     return [edge for edge in range(len(state.world.names), len(state.points)) if state.points[edge]]
 
 
-def from_key(world: InternTables, key: Key) -> GroundState:
-    """Return a state with this key of `GroundState.key`; the key alone determines the order of its nodes."""
-    builder = _Builder(world)
+def from_key(world: InternTables, key: Key, slots: Iterable[int] | None = None) -> GroundState:
+    """Return a state with this key of `GroundState.key`, its nodes in the next `slots`; else the key alone orders them.
+
+    Raises:
+        ValueError: There are too few slots, or one slot twice.
+    """
+    builder = _Builder(world, slots)
     *regions, shared = codes_in(world, key)
     for region, codes in enumerate(regions):
         builder.region(region, codes)
@@ -43,11 +50,10 @@ def from_key(world: InternTables, key: Key) -> GroundState:
 class _Builder:
     """A state under construction, from the regions inwards."""
 
-    def __init__(self, world: InternTables) -> None:
+    def __init__(self, world: InternTables, slots: Iterable[int] | None) -> None:
         self.world = world
-        self.labels: list[int] = []
-        self.parents: list[list[int]] = []
-        self.ports: list[tuple[int, ...]] = []
+        self.slots = count() if slots is None else iter(slots)
+        self.nodes: list[tuple[int, int, tuple[int, ...], list[int]]] = []  # slot, label, ports and places
         self.homes: dict[int, list[int]] = {}  # the places of each shared node
 
     def region(self, region: int, codes: list[int]) -> None:
@@ -62,10 +68,11 @@ class _Builder:
             if label == REFERENCE:
                 self.homes.setdefault(ports[0], []).append(place)
                 continue
-            slot = len(self.labels)
-            self.labels.append(label)
-            self.ports.append(ports)
-            self.parents.append([place] if itself == 0 else self.homes.setdefault(itself, []))
+            slot = next(self.slots, -1)
+            if slot < 0:
+                raise ValueError("a state has more nodes than slots")
+            places = [place] if itself == 0 else self.homes.setdefault(itself, [])
+            self.nodes.append((slot, label, ports, places))
             waiting += [(kid, slot) for kid in reversed(kids)]
 
     def shared(self, codes: list[int]) -> None:
@@ -75,20 +82,44 @@ class _Builder:
     def finish(self) -> GroundState:
         world = self.world
         state = GroundState(world)
-        state.labels, state.ports = self.labels, self.ports
-        state.parents = [tuple(sorted(places)) for places in self.parents]
-        state.kids = [0] * (len(self.labels) + world.regions)
-        last = max((link for ports in self.ports for link in ports), default=-1)
+        size = max((slot for slot, *_ in self.nodes), default=-1) + 1
+        state.labels, state.parents, state.ports = [-1] * size, [()] * size, [()] * size
+        state.kids = [0] * (size + world.regions)
+        last = max((link for _, _, ports, _ in self.nodes for link in ports), default=-1)
         state.points = [0] * max(last + 1, len(world.names))
-        state.codes = [0] * len(self.labels)
-        for slot, label in enumerate(self.labels):
+        state.codes = [-1] * size
+        state.free = (1 << size) - 1
+        for slot, label, ports, places in self.nodes:
+            if not state.free >> slot & 1:
+                raise ValueError("two nodes of a state have one slot")
+            state.labels[slot], state.ports[slot], state.parents[slot] = label, ports, tuple(sorted(places))
+            state.free &= ~(1 << slot)
             state.by_control[world.control_of[label]] |= 1 << slot
-            for place in state.parents[slot]:
+            for place in places:
                 state.kids[place] |= 1 << slot
-            for link in self.ports[slot]:
+            for link in ports:
                 state.points[link] |= 1 << slot
         state.recode(state.occupied())
         return state
+
+
+def slots_of(state: GroundState) -> Iterator[int]:
+    """Yield the slots of a state's nodes, in the order in which `from_key` makes the nodes of its key."""
+
+    def below(place: int) -> list[int]:
+        found = bits(state.kids[place])
+        return sorted([slot for slot in found if len(state.parents[slot]) == 1], key=in_order)
+
+    def in_order(slot: int) -> int:
+        return -state.codes[slot]
+
+    shared = [slot for slot in bits(state.occupied()) if len(state.parents[slot]) > 1]
+    tops = [slot for region in range(state.world.regions) for slot in reversed(below(~region))]
+    for top in (*tops, *sorted(shared, key=state.codes.__getitem__)):
+        waiting = [top]
+        while waiting:
+            yield (slot := waiting.pop())
+            waiting += below(slot)
 
 
 def history_free(state: GroundState) -> str:

@@ -54,7 +54,7 @@ def _facts(shown: TransitionSystem) -> dict[str, Any]:
     return {
         "states": states,
         "nodes": [json.loads(node) for node in nodes],
-        "regions": bigraphs[0].regions,
+        "regions": shown.world.regions,
         "labels": [list(shown.labels_of(state)) for state in range(len(shown))],
         "moves": moves,
         "rules": list(rules),

@@ -24,8 +24,8 @@ def graph_svg(system: TransitionSystem) -> str:
     States stand in rows by their distance from the initial state, each near its predecessors.
     """
     places = places_of(system)
-    width = max(x for x, _ in places) + 2 * RADIUS + 20
-    height = max(y for _, y in places) + 2 * RADIUS + 20
+    width = max((x for x, _ in places), default=0.0) + 2 * RADIUS + 20
+    height = max((y for _, y in places), default=0.0) + 2 * RADIUS + 20
     canvas = Canvas(width, height)
     for each in system.transitions():
         arrow = Canvas(width, height)
@@ -40,13 +40,13 @@ def graph_svg(system: TransitionSystem) -> str:
 def places_of(system: TransitionSystem) -> list[tuple[float, float]]:
     """Return the position of each state: in rows by distance from the initial state, near its predecessor."""
     depth = [0] * len(system)
-    rows: list[list[int]] = [[0]]
-    for state in range(1, len(system)):
-        depth[state] = depth[system.found_from[state]] + 1
+    rows: list[list[int]] = []
+    for state in range(len(system)):
+        depth[state] = depth[system.found_from[state]] + 1 if state else 0
         if depth[state] == len(rows):
             rows.append([])
         rows[depth[state]].append(state)
-    widest = max(map(len, rows))
+    widest = max(map(len, rows), default=0)
     x = [0.0] * len(system)
     for row in rows:
         row.sort(key=lambda state: (x[system.found_from[state]], state))

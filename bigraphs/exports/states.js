@@ -199,6 +199,7 @@
     }
   }
 
+  if (!data.states.length) return;
   begin();
   show(0);
   window.addEventListener("resize", () => show(chosen));

@@ -18,11 +18,25 @@ def load_system(path: Path | str, *, constants: Mapping[str, Value] | None = Non
         NotationError: For mistakes in the text.
         BigraphError: For an unreadable file, and for any other suffix.
     """
+    return system_in(text_of(path), path, constants=constants)
+
+
+def text_of(path: Path | str) -> str:
+    """Return the text of a `.big` or `.bgm` file.
+
+    Raises:
+        NotationError: For a text that is too long.
+        BigraphError: For an unreadable file, and for any other suffix.
+    """
     file = Path(path)
     if file.suffix not in (".big", ".bgm") and file.exists():
         raise BigraphError("file", f"'{file.name}' is neither a .big nor a .bgm file", "name it so")
-    text = read_text(file)
-    if file.suffix == ".big":
+    return read_text(file)
+
+
+def system_in(text: str, path: Path | str, *, constants: Mapping[str, Value] | None = None) -> System:
+    """Return the system of the text of a file; raises NotationError for mistakes in it."""
+    if Path(path).suffix == ".big":
         return read_system(text, constants=constants)
     if constants:
         raise BigraphError("file", "a .bgm file has no constants", "leave them out")

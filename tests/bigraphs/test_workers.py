@@ -3,13 +3,12 @@
 import multiprocessing
 import os
 import signal
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from bigraph_strategies import grounds
 from engine_strategies import solid_rules, system
+from explored_systems import GROWING, SYSTEMS, WALK, told
 from hypothesis import given
 from hypothesis import strategies as st
 from scale import crossed, examples
@@ -17,40 +16,9 @@ from scale import crossed, examples
 from bigraphs import workers
 from bigraphs.algebra import lean
 from bigraphs.errors import BigraphError
-from bigraphs.examples import example_text
 from bigraphs.exploration import explore
-from bigraphs.notation import read_system, write_big
+from bigraphs.notation import read_system
 from bigraphs.workers import Workers
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
-import bigraph_shapes as shapes
-import uav_family
-
-# Actions, weights, edges, and instantaneous rules that do not agree, so that least forms are looked for.
-CHANCE = """
-ctrl Box = 0; atomic ctrl Red = 1; atomic ctrl Blue = 1; atomic ctrl Grey = 0; atomic ctrl Spark = 1;
-big boxes = /x /y (Box.(Red{x} | Red{x} | Spark{y} | Grey) | Box.(Red{y} | Grey) | Box.1);
-big three = Spark{x} | Spark{x} | id;
-react blue = Red{x} -[2]-> Blue{x} | Spark{x};
-react red = Blue{x} -[1]-> Red{x};
-react carry = Box.(Red{x} | id) | Box.id -[1]-> Box.id | Box.(Red{x} | id) @ [1, 0];
-react fade = Spark{x} | Spark{x} | Grey -[1]-> {x} | Grey | Spark{x};
-react leap = Box.(Spark{x} | Grey | id) | Box.id -[1]-> Box.(Grey | id) | Box.(Spark{x} | id);
-begin pbrs init boxes; rules = [ (fade), {blue, red, carry}, {leap} ]; end
-"""
-GROWING = """
-ctrl A = 0; atomic ctrl B = 0;
-big one = A.B;
-react grow = A.id --> A.(B | id);
-react nest = A.(B | id) --> A.(A.B | id);
-begin brs init one; rules = [ {grow, nest} ]; end
-"""
-WALK = """
-ctrl Room = 1; atomic ctrl Ball = 0;
-big six = Room{a}.(Ball | Ball | Ball | Ball | Ball | Ball) | Room{b}.1 | Room{c}.1 | Room{d}.1;
-react move = Room{x}.(Ball | id) | Room{y}.id --> Room{x}.id | Room{y}.(Ball | id);
-begin brs init six; rules = [ {move} ]; end
-"""
 
 
 @pytest.fixture(autouse=True)
@@ -58,31 +26,6 @@ def _soon(monkeypatch):
     """Start workers at once, for any work."""
     monkeypatch.setattr(workers, "BEGIN", 0.0)
     monkeypatch.setattr(workers, "LEAST", 0.0)
-
-
-def told(found):
-    """Return all that a transition system says."""
-    states = [write_big(found.state(number)) for number in range(len(found))]
-    return states, list(found.transitions()), list(found.found_from), list(found.holding), found.occurrences
-
-
-MODELS = {
-    "many subtrees": shapes.nest(3, 6),
-    "many rules": shapes.batteries(3, 5),
-    "priorities": shapes.agenda(4, 6),
-    "edges": shapes.calls(5),
-    "sharing": shapes.motes(5),
-}
-CASES = {
-    "names": uav_family.Case("row", 2, 4, distinct=True, open=True),
-    "closed links": uav_family.Case("2x2", 3, 4, distinct=False, open=False),
-}
-SYSTEMS = {
-    **{name: (model.text, model.states) for name, model in MODELS.items()},
-    **{name: (uav_family.text(case), uav_family.counts(case)[0]) for name, case in CASES.items()},
-    "predicates": (example_text("sensor_network"), 24),
-    "weights": (CHANCE, 12),
-}
 
 
 @crossed(list(SYSTEMS), {"2 processes": 2, "3 processes": 3, "4 processes": 4})
@@ -183,8 +126,8 @@ def test_an_interruption_ends_the_workers(monkeypatch):
     seen = []
 
     def interrupt(progress):
-        if progress.states > 30:
-            seen.extend(multiprocessing.active_children())
+        seen.extend(multiprocessing.active_children())
+        if seen and progress.states > 30:
             raise KeyboardInterrupt
 
     found = explore(read_system(GROWING), threads=3, watch=interrupt, max_states=10_000)

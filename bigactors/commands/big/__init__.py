@@ -4,6 +4,7 @@ import argparse
 from collections.abc import Callable
 from typing import Final
 
+from bigactors.arguments.options import add_checkpoints, add_memory, add_spill
 from bigactors.arguments.parser import Parser
 from bigactors.arguments.values import at_least_one, at_least_zero, named, seconds
 from bigactors.exits import Exit
@@ -92,6 +93,10 @@ def _limits(task: Parser) -> None:
         help="let at most N processes share the search after half a second; the results are the same for every N "
         "(default: one a core)",
     )
+    add_memory(task)
+    long = task.add_argument_group("long runs")
+    add_checkpoints(long)
+    add_spill(long, "states")
 
 
 def _full(task: Parser) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from bigactors.commands.big.output import check_outputs, write_data, write_outputs
 from bigactors.commands.big.states import state_line, state_text
 from bigactors.exits import Exit, worst
+from bigactors.long_runs import checkpoint_folder, spill_folder
 from bigactors.mistakes import Mistake
 from bigactors.progress import Watch, watching
 from bigactors.terminal import is_terminal, say, tell
@@ -18,12 +19,13 @@ from bigraphs import BigraphError, NotationError
 from bigraphs.confluence import MOST_REACTIONS, Divergence, compare_orders
 from bigraphs.engine.machine import Machine
 from bigraphs.examples import example_names, example_text
-from bigraphs.exploration import ExplorationProgress, explore
+from bigraphs.exploration import ExplorationLimits, ExplorationProgress, explore, explore_long
 from bigraphs.exports.json import bigraph_json
-from bigraphs.notation import load_system, read_system
+from bigraphs.notation import read_system
+from bigraphs.notation.system_files import system_in, text_of
+from bigraphs.resources import cores
 from bigraphs.system import System, SystemKind
 from bigraphs.transitions import TransitionSystem
-from bigraphs.workers import cores
 from physical.wordings import counted
 
 if TYPE_CHECKING:
@@ -42,30 +44,38 @@ def run_task(options: Namespace) -> Exit:
 
 def read_file(options: Namespace) -> System:
     """Return the system in a file, or in an example that ships."""
+    return read_with_text(options)[0]
+
+
+def read_with_text(options: Namespace) -> tuple[System, str]:
+    """Return the system in a file, or in an example that ships, and its text."""
     constants = dict(options.const)
     if options.file in example_names() and not Path(options.file).exists():
-        return read_system(example_text(options.file), constants=constants)
-    found = load_system(options.file, constants=constants)
+        text = example_text(options.file)
+        return read_system(text, constants=constants), text
+    text = text_of(options.file)
+    found = system_in(text, options.file, constants=constants)
     for warning in found.warnings:
         tell(f"warning: {warning.render(options.file)}")
-    return found
+    return found, text
 
 
-def explored(options: Namespace, system: System) -> TransitionSystem:
-    """Explore within the limits of the command line, with progress on a terminal."""
-    name = Path(options.file).name
+def explored(options: Namespace, system: System, text: str) -> TransitionSystem:
+    """Explore a system with this text within the limits of the command line, with progress on a terminal."""
+    name, folder, saving = Path(options.file).name, checkpoint_folder(options), None
+    limits = ExplorationLimits(
+        options.max_states, options.max_time, options.max_memory, spill_folder(options)
+    )
+    if folder is not None:
+        from bigactors.commands.big.states_file import saving_of  # numpy is slow to import
+
+        saving = saving_of(options, folder, text)
     with watching(name) as watch:
 
         def told(progress: ExplorationProgress) -> None:
             _show_progress(watch, name, progress)
 
-        return explore(
-            system,
-            max_states=options.max_states,
-            max_time=options.max_time,
-            threads=options.threads or cores(),
-            watch=told,
-        )
+        return explore_long(system, limits, options.threads or cores(), told, saving)
 
 
 def warn_of_orders(options: Namespace, system: System) -> None:
@@ -107,9 +117,9 @@ def _show_progress(watch: Watch, name: str, progress: ExplorationProgress) -> No
 def full(options: Namespace) -> Exit:
     """Explore every state, and write the requested files."""
     check_outputs(options)
-    system = read_file(options)
+    system, text = read_with_text(options)
     warn_of_orders(options, system)
-    found = explored(options, system)
+    found = explored(options, system, text)
     if options.json != "-":
         say(summary(options.file, found))
         for line in _occurrence_lines(found):
@@ -205,7 +215,7 @@ def check(options: Namespace) -> Exit:
     """Decide the claims."""
     from bigactors.commands.big import checks  # only this task decides claims
 
-    system = read_file(options)
+    system, text = read_with_text(options)
     if checks.asks_nothing(options, system):
         raise Mistake(
             "there is nothing to check",
@@ -215,7 +225,7 @@ def check(options: Namespace) -> Exit:
         )
     checks.check_formulas(options, system)
     warn_of_orders(options, system)
-    found = explored(options, system)
+    found = explored(options, system, text)
     decided = list(checks.verdicts_on(options, found))
     if options.json != "-":
         say(summary(options.file, found))

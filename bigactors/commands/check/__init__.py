@@ -4,9 +4,16 @@ import argparse
 from argparse import Namespace
 from typing import Final
 
-from bigactors.arguments.options import EXITS, MISSION, add_variation
+from bigactors.arguments.options import (
+    EXITS,
+    MISSION,
+    add_checkpoints,
+    add_memory,
+    add_spill,
+    add_variation,
+)
 from bigactors.arguments.parser import Parser
-from bigactors.arguments.values import FORMATS, at_least_one, named, output, reductions, seconds, size
+from bigactors.arguments.values import FORMATS, at_least_one, named, output, reductions, seconds
 from bigactors.exits import Exit
 
 DESCRIPTION: Final = f"""\
@@ -124,13 +131,7 @@ def _limits(parser: Parser) -> None:
         type=seconds,
         help="explore and decide for at most SECONDS; the fast engine explores in at most half (default: no limit)",
     )
-    group.add_argument(
-        "--max-memory",
-        metavar="SIZE",
-        type=size,
-        help="stop when the process or a worker takes more than SIZE bytes of memory, such as 800M or 12G "
-        "(default: no limit)",
-    )
+    add_memory(group)
 
 
 def _exploring(parser: Parser) -> None:
@@ -160,29 +161,8 @@ def _exploring(parser: Parser) -> None:
 
 def _long_runs(parser: Parser) -> None:
     group = parser.add_argument_group("long runs, by --engine fast or ray")
-    group.add_argument(
-        "--checkpoint",
-        metavar="DIR",
-        type=named,
-        help="save the search in DIR, regularly and at the end, so that --resume can continue it",
-    )
-    group.add_argument(
-        "--every",
-        metavar="SECONDS",
-        type=seconds,
-        default=60.0,
-        help="the time between two checkpoints (default: 60)",
-    )
-    group.add_argument(
-        "--resume", action="store_true", help="continue from the checkpoint in DIR, if there is one"
-    )
-    group.add_argument(
-        "--spill",
-        metavar="DIR",
-        type=named,
-        help="when --max-memory is reached, move configurations to unnamed temporary files in DIR, which should "
-        "be on a disk",
-    )
+    add_checkpoints(group)
+    add_spill(group, "configurations")
     group.add_argument(
         "--paranoid",
         metavar="N",

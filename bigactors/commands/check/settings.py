@@ -3,7 +3,7 @@
 from argparse import Namespace
 
 from bigactors.checking import How
-from bigactors.files import make_folder
+from bigactors.long_runs import checkpoint_folder, spill_folder
 from bigactors.mistakes import Mistake
 from checker import Cluster, Engine, Keeping, Limits, Reduction
 from checker.limits import MOST_PENDING
@@ -29,15 +29,12 @@ def how_of(options: Namespace) -> How:
 
 def limits_of(options: Namespace) -> Limits:
     """Return the limits of the exploration."""
-    if options.spill is not None:
-        if options.max_memory is None:
-            raise Mistake("--spill needs a limit on memory", "give it: --max-memory SIZE")
-        if options.engine in ("reference", "ray"):
-            raise Mistake("--spill works with the fast engine only", "leave --engine out")
-        make_folder(options.spill)
+    spill = spill_folder(options)
+    if spill is not None and options.engine in ("reference", "ray"):
+        raise Mistake("--spill works with the fast engine only", "leave --engine out")
     most, memory = most_of(options), options.max_memory
     pending = options.max_pending or MOST_PENDING
-    return Limits(most, options.max_time, pending=pending, memory=memory, spill=options.spill)
+    return Limits(most, options.max_time, pending=pending, memory=memory, spill=spill)
 
 
 def most_of(options: Namespace) -> int:
@@ -70,12 +67,11 @@ def threads_of(options: Namespace) -> int | None:
 
 def keeping_of(options: Namespace) -> Keeping | None:
     """Return the options on checkpoints and re-checking; None without any."""
-    if options.resume and options.checkpoint is None:
-        raise Mistake("--resume goes on from a checkpoint", "give its folder: --checkpoint DIR")
-    if options.checkpoint is None and options.paranoid is None:
+    folder = checkpoint_folder(options)
+    if folder is None and options.paranoid is None:
         return None
-    if options.checkpoint is not None and options.engine == "reference":
+    if folder is not None and options.engine == "reference":
         raise Mistake("--checkpoint works with the fast and Ray engines only", "leave --engine out")
     if options.paranoid is not None and options.engine not in (None, "fast") and not options.reduce:
         raise Mistake("--paranoid works with the fast engine and with reductions only", "leave --engine out")
-    return Keeping(options.checkpoint, options.resume, every=options.every, doubted=options.paranoid or 0)
+    return Keeping(folder, options.resume, every=options.every, doubted=options.paranoid or 0)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from checker.limits import memory_taken
+from bigraphs.resources import memory_taken
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bigraphs.resources import memory_taken
 from checker.engines.cluster import kernel
 from checker.engines.cluster.row_keys import Keys
 from checker.engines.cluster.transfer import ColumnUpdate, Dictionary, RowParcel, SentValues
@@ -26,7 +27,6 @@ from checker.engines.fast.learner import Learner
 from checker.engines.fast.origins import Elsewhere
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import FIRST_ROWS, MOST_ROWS, Space
-from checker.limits import memory_taken
 from semantics.state.configuration import Configuration
 
 SENT = 1 << 17

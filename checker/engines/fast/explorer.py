@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bigraphs.workers import cores
+from bigraphs.resources import cores
 from checker.engines.contract import Exploration, Inspect, Options, Progress
 from checker.engines.estimate import estimate
 from checker.engines.fast.checkpoint import Journey, resume, save

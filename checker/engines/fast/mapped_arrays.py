@@ -5,14 +5,13 @@ it remains, however the process ends.
 """
 
 import mmap
-import os
-import weakref
 from pathlib import Path
-from tempfile import TemporaryFile
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from bigraphs.unnamed_files import reserve, unnamed_file
 
 PIECE = 1 << 20
 """The number of elements copied at once."""
@@ -89,9 +88,7 @@ class Pages:
         Raises:
             OSError: There is no such folder, or no room in it.
         """
-        with TemporaryFile(dir=folder) as opened:
-            file = os.dup(opened.fileno())
-        weakref.finalize(self, os.close, file)
+        file = unnamed_file(self, folder)
         reserve(file, self.room.nbytes)
         pages = mmap.mmap(file, self.room.nbytes)
         room: NDArray[Any] = np.frombuffer(pages, self._kind)
@@ -110,14 +107,6 @@ class Pages:
     @property
     def _is_large(self) -> bool:
         return len(self._pages) >= LARGE
-
-
-def reserve(file: int, size: int) -> None:
-    """Allocate the full size of a file: a write to a hole that can't be filled would kill the process."""
-    if hasattr(os, "posix_fallocate"):
-        os.posix_fallocate(file, 0, size)
-    else:
-        os.ftruncate(file, size)
 
 
 def more(room: int) -> int:

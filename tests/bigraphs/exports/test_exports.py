@@ -117,6 +117,21 @@ def test_an_incomplete_system_says_so_wherever_it_is_written():
     assert "style=dashed" in to_dot(system)
 
 
+def test_a_system_whose_first_state_was_not_found_is_written_too():
+    settling = """
+    atomic ctrl Off = 0; atomic ctrl On = 0;
+    big off = Off;
+    react press = Off --> On;
+    react again = On --> On;
+    begin brs init off; rules = [ (press), {again} ]; end
+    """
+    system = explore(read_system(settling), max_time=0)
+    assert to_json(system)["states"] == []
+    assert "incomplete: the limit of 0 seconds was reached" in to_html(system, "settling")
+    assert graph_svg(system).startswith("<svg")
+    assert all((to_dot(system), prism_files(system), storm_files(system)))
+
+
 def test_dot_has_each_state_and_transition():
     text = to_dot(gambler())
     assert '  0 [label="0", penwidth=2];' in text

@@ -3,8 +3,8 @@ import sys
 import numpy as np
 import pytest
 
+from bigraphs.resources import memory_taken
 from checker.engines.fast.mapped_arrays import HUGE, Pages
-from checker.limits import memory_taken
 
 
 def test_pages_grow_in_place_and_keep_what_was_written():

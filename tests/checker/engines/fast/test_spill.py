@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import checker.limits
+from bigraphs.resources import memory_taken
 from checker import Engine, Limits, explore
 from checker.engines.fast.mapped_arrays import Pages
-from checker.limits import memory_taken
 from specs.elaboration import load_mission
 
 MEGABYTE = 1_000_000
