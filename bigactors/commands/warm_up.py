@@ -37,6 +37,7 @@ SETS: Final = (
     ("symmetry", "alike", ("symmetry",)),
     ("both reductions", "alike", ("por", "symmetry")),
     ("races", "rendezvous", ("por",)),
+    ("large graphs", "takeover", ()),
     ("times", "handover_timed", ()),
 )
 """What is compiled: its name, and a mission with reductions that needs it."""

@@ -23,7 +23,7 @@ def loops(folder):
 @pytest.mark.long
 def test_afterwards_checks_compile_nothing(tmp_path):
     shown = bigactors(tmp_path, "warm-up").stdout
-    assert len(shown.splitlines()) == 12
+    assert len(shown.splitlines()) == 14
     compiled = loops(tmp_path)
     assert len(compiled) > 50
     for words in CHECKS:
