@@ -253,6 +253,12 @@ class _Parts:
         return all(_normal(_image(part, renaming)) in self.normal for part in changed)
 
 
+def changing(formula: Proposition, renamings: Iterable[Renaming]) -> Renaming | None:
+    """Return the first of some transpositions under which a proposition is not invariant."""
+    parts = _Parts(formula)
+    return next((each for each in renamings if not parts.kept(each)), None)
+
+
 def _image(part: Any, renaming: Renaming) -> Any:
     return renaming.value(part)
 

@@ -4,10 +4,20 @@ from collections.abc import Iterable, Sequence
 
 from checker.reduction.ample import Ample, Followed, Reached
 from checker.reduction.cycle_proviso import Paths
-from checker.reduction.refusals import Reduction, refusal, refuse_partial_order, refuse_symmetry
+from checker.reduction.preserved_runs import (
+    distinguished,
+    distinguished_by,
+    follows_names,
+    refused_by_por,
+    refused_by_symmetry,
+    refused_formula,
+    told_apart,
+)
+from checker.reduction.refusals import Reduction, RefusedError, refuse_partial_order, refuse_symmetry
 from checker.reduction.symmetry import MissionSymmetry
 from semantics.properties.property import Property
 from semantics.properties.propositions import Proposition
+from semantics.properties.temporal import Temporal
 from semantics.state.configuration import Configuration
 from semantics.successors import Expansion
 
@@ -15,8 +25,15 @@ from semantics.successors import Expansion
 class Reduced:
     """Applies reductions to one mission.
 
+    Args:
+        initial: The initial configuration.
+        reductions: The reductions.
+        formulas: The propositions of invariants and of reachability.
+        runs: The properties of runs.
+
     Attributes:
         names: Their names, in a fixed order.
+        runs: The properties of runs that the reductions preserve.
     """
 
     def __init__(
@@ -24,16 +41,19 @@ class Reduced:
         initial: Configuration,
         reductions: Iterable[Reduction],
         formulas: Sequence[Proposition] = (),
+        runs: Iterable[Property] = (),
     ) -> None:
-        asked = set(reductions)
-        self.names = tuple(each for each in Reduction if each in asked)
-        if Reduction.POR in asked:
-            refuse_partial_order(initial)
-        self.ample = Ample(initial, formulas) if Reduction.POR in asked else None
+        self.reductions = frozenset(reductions)
+        self.names = tuple(each for each in Reduction if each in self.reductions)
         self.symmetry: MissionSymmetry | None = None
-        if Reduction.SYMMETRY in asked:
+        if Reduction.POR in self.reductions:
+            refuse_partial_order(initial)
+        asked = [each for each in runs if self.refuses(each) is None]
+        if Reduction.SYMMETRY in self.reductions:
             refuse_symmetry(initial)
-            self.symmetry = MissionSymmetry(initial, formulas)
+            self.symmetry = _symmetry(initial, formulas, asked)
+        self.runs = tuple(each for each in asked if self.refuses(each) is None)
+        self.ample = Ample(initial, formulas, self.runs) if Reduction.POR in self.reductions else None
 
     @property
     def putting_off(self) -> bool:
@@ -42,7 +62,19 @@ class Reduced:
 
     def refuses(self, asked: Property) -> str | None:
         """Return why a property is undecided under these reductions, None if it is decided."""
-        return refusal(asked)
+        if not asked.is_of_runs:
+            kept = asked.kind.about.reducible
+            return None if kept else f"it is not known to be kept for properties of the kind '{asked.kind}'"
+        reason = refused_by_por(asked) if Reduction.POR in self.reductions else None
+        if reason is None and self.symmetry is not None:
+            reason = refused_by_symmetry(asked, self.symmetry)
+        return reason
+
+    def keeps(self, formula: Temporal) -> bool:
+        """Return whether the runs of a reduced search decide a formula whose propositions it was told of."""
+        if self.ample is not None and refused_formula(formula) is not None:
+            return False
+        return self.symmetry is None or told_apart(distinguished_by(formula), self.symmetry) is None
 
     def representative(self, c: Configuration) -> Configuration:
         """Return the representative of a configuration."""
@@ -72,3 +104,19 @@ class Reduced:
             crosscheck(self.ample, c)
         if self.symmetry is not None:
             exchange(self.symmetry, c)
+
+
+def _symmetry(
+    initial: Configuration, formulas: Sequence[Proposition], runs: Iterable[Property]
+) -> MissionSymmetry:
+    """Return the exchanges that preserve a mission, and the properties of runs too unless no exchange is left."""
+    every = MissionSymmetry(initial, formulas)
+    asked = [each for each in runs if follows_names(each, every) is None]
+    if all(refused_by_symmetry(each, every) is None for each in asked):
+        return every
+    try:
+        return MissionSymmetry(
+            initial, [*formulas, *(part for each in asked for part in distinguished(each))]
+        )
+    except RefusedError:
+        return every
