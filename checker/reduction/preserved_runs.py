@@ -194,8 +194,8 @@ def _proposition(formula: Temporal) -> Proposition | None:
             return None if known is None else Not(known)
         case Both() | Either():
             operands = [_proposition(each) for each in _chain(formula, type(formula))]
-            known = [each for each in operands if each is not None]
-            return _joined(type(formula), known) if len(known) == len(operands) else None
+            about = [each for each in operands if each is not None]
+            return _joined(type(formula), about) if len(about) == len(operands) else None
     return None
 
 

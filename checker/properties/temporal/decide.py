@@ -115,8 +115,8 @@ class TemporalDecider:
         if is_judged(self.graph):  # part by part
             propositions = [atom for each in propositions for atom in atoms_of(each)]
         truth = FormulaTruth(self.graph, where_true(found, propositions))
-        kept = every_formula if found.reducer is None else found.reducer.keeps
-        self.formulas = FormulaDecider(truth, found.complete, partial(is_still, found), kept)
+        is_kept = every_formula if found.reducer is None else found.reducer.keeps
+        self.formulas = FormulaDecider(truth, found.complete, partial(is_still, found), is_kept)
 
     def decide(self, asked: Property) -> Verdict:
         """Return the verdict on a property; it holds only after a complete exploration."""
