@@ -52,10 +52,7 @@ def refused_by_por(asked: Property) -> str | None:
     if asked.kind is PropertyKind.DEADLOCK_FREEDOM:
         return None
     if asked.fairness or asked.kind is PropertyKind.PROGRESS:
-        return (
-            "fairness asks which steps stay enabled, and this depends on the order of the independent steps "
-            "of others, of which one order is searched"
-        )
+        return "fairness asks which steps stay enabled, and this depends on the order of independent steps"
     assert asked.temporal is not None
     return refused_formula(asked.temporal)
 
@@ -63,11 +60,13 @@ def refused_by_por(asked: Property) -> str | None:
 def refused_formula(formula: Temporal) -> str | None:
     """Return why partial-order reduction does not preserve a formula, None if it does."""
     if any(isinstance(each, Next) for each in _within(formula)):
-        return "'X' counts steps, and the independent steps of others are left out before it"
+        return "'X' counts steps, and independent steps of others are left out"
     if any(isinstance(each, Enabled) for each in atoms(formula)):
         return "'enabled' asks which steps are possible, and some of these are left out"
     if not is_stutter_invariant(formula):
-        return "'taken' asks here which step is the very next one, and the independent steps of others are left out"
+        return (
+            "'taken' asks here for the very next step, and independent steps of others are left out before it"
+        )
     return None
 
 

@@ -277,7 +277,7 @@ REFUSED = {
     "X": (POR, 'ltl "p": X actually robot0 in room0', "'X' counts steps"),
     "next in ctl": (POR, 'ctl "p": EX actually robot0 in room0', "'X' counts steps"),
     "enabled": (POR, 'ltl "p": [] not enabled sense r0', "'enabled' asks which steps are possible"),
-    "the next step": (POR, 'ltl "p": taken req_obs r0', "'taken' asks here which step is the very next one"),
+    "the next step": (POR, 'ltl "p": taken req_obs r0', "'taken' asks here for the very next step"),
     "fairness": (POR, 'ltl "p" under weak fairness of agents: <> ended r0', "fairness asks which steps stay enabled"),
     "progress": (POR, "progress", "fairness asks which steps stay enabled"),
     "progress of likes": (SYMMETRY, "progress", "progress follows each request by its name"),
