@@ -244,13 +244,13 @@ class _Parts:
     def __init__(self, formula: Proposition) -> None:
         self.formula = formula
         self.parts = list(_flat(And, (formula,)))
-        self.normal = frozenset(map(_normal, self.parts))
+        self.normal = frozenset(map(normal, self.parts))
         self.mentions = Mentions((number, partial(_image, part)) for number, part in enumerate(self.parts))
 
     def kept(self, renaming: Renaming) -> bool:
         """Return whether the property is invariant under a transposition."""
         changed = (self.parts[number] for number in self.mentions.of(renaming))
-        return all(_normal(_image(part, renaming)) in self.normal for part in changed)
+        return all(normal(_image(part, renaming)) in self.normal for part in changed)
 
 
 def changing(formula: Proposition, renamings: Iterable[Renaming]) -> Renaming | None:
@@ -263,11 +263,12 @@ def _image(part: Any, renaming: Renaming) -> Any:
     return renaming.value(part)
 
 
-def _normal(formula: Any) -> Any:
+def normal(formula: Any) -> Any:
+    """Return a value that is the same for propositions that differ in the order of operands."""
     if isinstance(formula, And | Or):
-        return (type(formula).__name__, frozenset(map(_normal, _flat(type(formula), formula.formulas))))
+        return (type(formula).__name__, frozenset(map(normal, _flat(type(formula), formula.formulas))))
     inner = getattr(formula, "formula", None)
-    return formula if inner is None else ("not", _normal(inner))
+    return formula if inner is None else ("not", normal(inner))
 
 
 def _flat(kind: type, formulas: Iterable[Any]) -> Iterator[Any]:

@@ -25,6 +25,7 @@ from semantics.properties.temporal import (
     Taken,
     Temporal,
     atoms,
+    chain,
     parts,
 )
 
@@ -135,6 +136,11 @@ def distinguished(asked: Property) -> Iterator[Proposition]:
     """Yield propositions: an exchange that preserves each of them preserves the property."""
     if asked.temporal is not None:
         yield from distinguished_by(asked.temporal)
+    yield from named_in_fairness(asked)
+
+
+def named_in_fairness(asked: Property) -> Iterator[Proposition]:
+    """Yield the presence of each bigActor that a fairness condition names."""
     for each in asked.fairness:
         yield from _named(each.steps)
 
@@ -160,7 +166,7 @@ def distinguished_by(formula: Temporal) -> Iterator[Proposition]:
     elif isinstance(formula, Taken | Enabled):
         yield from _named(formula.steps)
     elif isinstance(formula, Both | Either):
-        operands = list(_chain(formula, type(formula)))
+        operands = list(chain(formula, type(formula)))
         about = [each for each in map(_proposition, operands) if each is not None]
         if about:
             yield _joined(type(formula), about)
@@ -172,17 +178,6 @@ def distinguished_by(formula: Temporal) -> Iterator[Proposition]:
             yield from distinguished_by(each)
 
 
-def _chain(formula: Temporal, connective: type[Both | Either]) -> Iterator[Temporal]:
-    """Yield the operands of a chain of one connective."""
-    waiting = [formula]
-    while waiting:
-        one = waiting.pop()
-        if isinstance(one, connective):
-            waiting += [one.right, one.left]
-        else:
-            yield one
-
-
 def _proposition(formula: Temporal) -> Proposition | None:
     """Return a formula as a proposition, None if it is about more than a single configuration."""
     match formula:
@@ -192,7 +187,7 @@ def _proposition(formula: Temporal) -> Proposition | None:
             known = _proposition(inner)
             return None if known is None else Not(known)
         case Both() | Either():
-            operands = [_proposition(each) for each in _chain(formula, type(formula))]
+            operands = [_proposition(each) for each in chain(formula, type(formula))]
             about = [each for each in operands if each is not None]
             return _joined(type(formula), about) if len(about) == len(operands) else None
     return None

@@ -1,13 +1,16 @@
 """The reductions of an exploration: partial-order reduction, symmetry, or both."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from checker.reduction.ample import Ample, Followed, Reached
+from checker.reduction.conjunct_orbits import one_of_each
 from checker.reduction.cycle_proviso import Paths
 from checker.reduction.preserved_runs import (
     distinguished,
     distinguished_by,
     follows_names,
+    named_in_fairness,
     refused_by_por,
     refused_by_symmetry,
     refused_formula,
@@ -48,11 +51,14 @@ class Reduced:
         self.symmetry: MissionSymmetry | None = None
         if Reduction.POR in self.reductions:
             refuse_partial_order(initial)
+        self.standing: dict[Property, Property] = {}
         asked = [each for each in runs if self.refuses(each) is None]
         if Reduction.SYMMETRY in self.reductions:
             refuse_symmetry(initial)
-            self.symmetry = _symmetry(initial, formulas, asked)
-        self.runs = tuple(each for each in asked if self.refuses(each) is None)
+            every = MissionSymmetry(initial, formulas)
+            self.standing = {each: _standing(each, every) for each in asked}
+            self.symmetry = _narrowed(every, formulas, self.standing.values())
+        self.runs = tuple(self.decided_for(each) for each in asked if self.refuses(each) is None)
         self.ample = Ample(initial, formulas, self.runs) if Reduction.POR in self.reductions else None
 
     @property
@@ -67,8 +73,12 @@ class Reduced:
             return None if kept else f"it is not known to be kept for properties of the kind '{asked.kind}'"
         reason = refused_by_por(asked) if Reduction.POR in self.reductions else None
         if reason is None and self.symmetry is not None:
-            reason = refused_by_symmetry(asked, self.symmetry)
+            reason = refused_by_symmetry(self.decided_for(asked), self.symmetry)
         return reason
+
+    def decided_for(self, asked: Property) -> Property:
+        """Return the property that is decided for a property of runs: with one of the conjuncts that are exchanged."""
+        return self.standing.get(asked, asked)
 
     def keeps(self, formula: Temporal) -> bool:
         """Return whether the runs of a reduced search decide a formula whose propositions it was told of."""
@@ -106,17 +116,24 @@ class Reduced:
             exchange(self.symmetry, c)
 
 
-def _symmetry(
-    initial: Configuration, formulas: Sequence[Proposition], runs: Iterable[Property]
+def _standing(asked: Property, symmetry: MissionSymmetry) -> Property:
+    """Return a property with one of the conjuncts that exchanges map to one another, if these preserve its fairness."""
+    if asked.temporal is None or refused_by_symmetry(asked, symmetry) is None:
+        return asked
+    if told_apart(named_in_fairness(asked), symmetry) is not None:
+        return asked
+    return replace(asked, temporal=one_of_each(asked.temporal, symmetry.exchanges))
+
+
+def _narrowed(
+    every: MissionSymmetry, formulas: Sequence[Proposition], runs: Iterable[Property]
 ) -> MissionSymmetry:
-    """Return the exchanges that preserve a mission, and the properties of runs too unless no exchange is left."""
-    every = MissionSymmetry(initial, formulas)
+    """Return the exchanges that preserve properties of runs, too, unless none is left."""
     asked = [each for each in runs if follows_names(each, every) is None]
     if all(refused_by_symmetry(each, every) is None for each in asked):
         return every
     try:
-        return MissionSymmetry(
-            initial, [*formulas, *(part for each in asked for part in distinguished(each))]
-        )
+        told = (part for each in asked for part in distinguished(each))
+        return MissionSymmetry(every.initial, [*formulas, *told])
     except RefusedError:
         return every

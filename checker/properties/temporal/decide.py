@@ -110,7 +110,8 @@ class TemporalDecider:
         self.setting = found.configurations[0].setting
         kept = kept_graph(found)
         self.graph: Graph = kept.total(optional(kept.labels, self.setting.arriving))
-        asked = (atom for each in properties if each.temporal is not None for atom in atoms(each.temporal))
+        decided = properties if found.reducer is None else map(found.reducer.decided_for, properties)
+        asked = (atom for each in decided if each.temporal is not None for atom in atoms(each.temporal))
         propositions = [atom.proposition for atom in asked if isinstance(atom, Now)]
         if is_judged(self.graph):  # part by part
             propositions = [atom for each in propositions for atom in atoms_of(each)]
@@ -136,8 +137,7 @@ class TemporalDecider:
 
     def linear(self, asked: Property) -> Verdict:
         """Return the verdict on a formula about every fair run."""
-        assert asked.temporal is not None
-        found = self.formulas.linear(asked.temporal, self.conditions(asked.fairness), asked.ranges)
+        found = self.formulas.linear(self.formula(asked), self.conditions(asked.fairness), asked.ranges)
         if found.run is None or found.outcome is not Outcome.VIOLATED:
             return self.unviolated(asked, found)
         message = f"false{'' if found.run.loop else ', whatever follows'}: {asked.shown}"
@@ -145,14 +145,19 @@ class TemporalDecider:
 
     def branching(self, asked: Property) -> Verdict:
         """Return the verdict on a formula about the tree of fair runs."""
-        assert asked.temporal is not None
-        found = self.formulas.branching(asked.temporal, self.conditions(asked.fairness), asked.ranges)
+        found = self.formulas.branching(self.formula(asked), self.conditions(asked.fairness), asked.ranges)
         if found.run is None or found.outcome is not Outcome.VIOLATED:
             return self.unviolated(asked, found)
         shown = tuple(self.pauses(found.run))
         if not len(found.run):
             shown = ("no single run shows it: it is about all continuations",)
         return self.violated(asked, f"false at c0: {asked.shown}", found.run, shown)
+
+    def formula(self, asked: Property) -> Temporal:
+        """Return the formula to decide for a property."""
+        decided = asked if self.found.reducer is None else self.found.reducer.decided_for(asked)
+        assert decided.temporal is not None
+        return decided.temporal
 
     def unviolated(self, asked: Property, found: Decision) -> Verdict:
         """Return the verdict on a formula without a counterexample."""

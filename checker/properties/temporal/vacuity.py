@@ -19,11 +19,11 @@ from checker.properties.temporal.digraph import shortest
 from checker.properties.temporal.effort import Exhausted
 from checker.properties.temporal.lasso_evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso, component_of, fair_cycle, tightened
-from checker.properties.temporal.linear import conjuncts, counterexample
+from checker.properties.temporal.linear import counterexample
 from checker.properties.temporal.truth import FormulaTruth
 from semantics.properties.property import Ranges
 from semantics.properties.propositions import Always, Not, Or
-from semantics.properties.temporal import Denied, Either, Globally, Now, OnAllPaths, Temporal
+from semantics.properties.temporal import Denied, Either, Globally, Now, OnAllPaths, Temporal, conjuncts
 
 MOST_EDGES: Final = 1_000_000
 """The budget for deciding a formula's variants, in edges; each decision costs the edges of the graph."""

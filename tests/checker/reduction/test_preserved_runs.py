@@ -1,6 +1,8 @@
 """Properties of runs under reductions: decided as by the full search, by runs of the mission, or refused."""
 
 from contextlib import suppress
+from dataclasses import replace
+from functools import reduce
 
 import pytest
 from checked_missions import load, visited
@@ -10,16 +12,19 @@ from mission_texts import missions
 from random_formulas import atoms_of, branching, linear, shared_atoms_of, violates
 from replaying import assert_replays
 from scale import IS_WHOLE, examples
-from swarms import LOOKS, swarm, swarms
+from swarms import LOOKS, STEPS, swarm, swarms
 from test_partial_order import fleets
 
 from checker import Engine, Limits, Outcome, Reduction, RefusedError, check, explore
 from checker.reduction import Reduced
 from checker.reduction.ample import Ample
+from checker.reduction.configuration_renaming import Renaming
+from checker.reduction.conjunct_orbits import image
 from checker.reduction.visible_slots import Eyes
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
-from semantics.properties.temporal import ENVIRONMENTS, Enabled, Fairness, Steps, atoms
+from semantics.properties.propositions import Ended, HasPending, Inside, Waiting
+from semantics.properties.temporal import ENVIRONMENTS, Both, Enabled, Fairness, Steps, atoms
 from specs import MissionError
 
 POR, SYMMETRY = (Reduction.POR,), (Reduction.SYMMETRY,)
@@ -31,12 +36,12 @@ ENGINES = [Engine.REFERENCE, Engine.FAST]
 # --- beside the full search -----------------------------------------------------------------------------------
 
 
-def compared(initial, asked, reductions):
+def compared(initial, asked, reductions, most=MOST):
     """Assert that a reduced search decides properties as the full one does, or refuses them; return how many."""
-    full = check(initial, asked, limits=MOST, engine=Engine.REFERENCE)
+    full = check(initial, asked, limits=most, engine=Engine.REFERENCE)
     if not full.complete:
         return 0
-    found = check(initial, asked, limits=MOST, engine=Engine.REFERENCE, reduce=reductions)
+    found = check(initial, asked, limits=most, engine=Engine.REFERENCE, reduce=reductions)
     assert_replays(found)
     decided = 0
     for one, other in zip(found.verdicts, full.verdicts, strict=True):
@@ -83,7 +88,36 @@ OF_ALL = (
     (Fairness(True, Steps(("sense",)), (), "sense"),),
     (Fairness(False, Steps((), "base"), (), "base"),),
     (Fairness(False, Steps(), ("agent",), "agents"),),
+    (Fairness(False, Steps((), "r0"), (), "r0"),),
 )
+
+
+def of_each(formula, robots):
+    """Return the conjunction of a formula about robot0 and its images about the other ones."""
+    swaps = (
+        Renaming({"robot0": f"robot{k}", f"robot{k}": "robot0", "r0": f"r{k}", f"r{k}": "r0"})
+        for k in range(1, robots)
+    )
+    return reduce(Both, (image(formula, swap) for swap in swaps), formula)
+
+
+OWN = [each for each in STEPS if "base" not in each]
+"""Steps that need no other bigActor."""
+
+
+@given(st.sampled_from(OWN), st.sampled_from(OWN), st.data())
+@examples(60 if IS_WHOLE else 15)
+def test_conjuncts_about_each_of_a_swarm_are_decided_as_by_the_full_search(one, other, data):
+    initial = load(swarm(f"choose {{ {one} }} or {{ {other} }}", 3), "").initial
+    about_one = st.one_of(
+        st.builds(Inside, st.just("robot0"), st.sampled_from(["room0", "dock0"]), st.booleans()),
+        *(st.builds(atom, st.just("r0")) for atom in (Ended, Waiting, HasPending)),
+    )
+    asked = [
+        replace(each, temporal=of_each(each.temporal, 3)) for each in drawn(data, initial, about_one, OF_ALL)
+    ]
+    with suppress(RefusedError):
+        compared(initial, asked, data.draw(st.sampled_from([SYMMETRY, BOTH])), Limits(configurations=600))
 
 
 @given(swarms(), st.data())
@@ -207,10 +241,11 @@ EACH = """check {
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_a_formula_of_symmetric_parts_is_decided_and_one_that_is_symmetric_as_a_whole_is_not(engine):
-    right, _ = outcomes(swarm(LOOKS, 3, EACH), world="")
-    found, _ = outcomes(swarm(LOOKS, 3, EACH), SYMMETRY, engine, world="")
-    assert found == [Outcome.INCOMPLETE] * 3 + right[3:]
+def test_a_formula_of_symmetric_parts_is_decided_and_one_about_each_only_where_others_are_left(engine):
+    for robots, others in ((3, True), (2, False)):
+        right, _ = outcomes(swarm(LOOKS, robots, EACH), world="")
+        found, _ = outcomes(swarm(LOOKS, robots, EACH), SYMMETRY, engine, world="")
+        assert found == (right if others else [Outcome.INCOMPLETE] * 3 + right[3:])
 
 
 def test_if_asymmetric_parts_were_taken_for_symmetric_the_verdict_would_be_wrong(monkeypatch):
@@ -233,6 +268,27 @@ def test_a_formula_about_one_leaves_the_others_interchangeable():
 
 
 LOOK = "observe(PARENT(HOST)) react { case o => skip }"
+
+
+def test_one_conjunct_stands_for_those_that_exchanges_map_to_it():
+    body = f"choose {{ control(MOVE_HOST_TO room0) {LOOK} }} or {{ skip }}"
+    asked = """check {
+      ltl "each comes in": forall u: Robot . <> actually u in room0
+      ltl "each stays": forall u: Robot . [] (actually u in room0 -> [] actually u in room0)
+      ctl "each may come in": forall u: Robot . EF actually u in room0
+    }
+    """
+    text = swarm(body, 3, asked)
+    right, _ = outcomes(text, world="")
+    assert right == [Outcome.VIOLATED, Outcome.HOLDS, Outcome.HOLDS]
+    for reductions in (SYMMETRY, BOTH):
+        found = check(load(text, ""), reduce=reductions)
+        assert [each.outcome for each in found.verdicts if each.property.is_of_runs] == right
+        assert violates(
+            found.verdicts["each comes in"].violations[0].trace, found.verdicts[0].property.temporal
+        )
+
+
 ROUNDS = swarm(
     f"loop {{ control(MOVE_HOST_TO room0) {LOOK} control(MOVE_HOST_TO dock0) {LOOK} }}",
     2,
