@@ -1,6 +1,6 @@
 """The automorphisms of a mission: transpositions of names that preserve it, and the reasons against others."""
 
-from collections.abc import Callable, Iterable, Iterator, Set
+from collections.abc import Callable, Hashable, Iterable, Iterator, Set
 from dataclasses import fields, is_dataclass
 from functools import cached_property, partial
 from itertools import product
@@ -263,12 +263,15 @@ def _image(part: Any, renaming: Renaming) -> Any:
     return renaming.value(part)
 
 
-def normal(formula: Any) -> Any:
+def normal(formula: Any) -> Hashable:
     """Return a value that is the same for propositions that differ in the order of operands."""
     if isinstance(formula, And | Or):
         return (type(formula).__name__, frozenset(map(normal, _flat(type(formula), formula.formulas))))
     inner = getattr(formula, "formula", None)
-    return formula if inner is None else ("not", normal(inner))
+    if inner is not None:
+        return ("not", normal(inner))
+    known: Hashable = formula
+    return known
 
 
 def _flat(kind: type, formulas: Iterable[Any]) -> Iterator[Any]:
