@@ -171,6 +171,17 @@ check { ctl "open": EF (actually z0 in p2 and (EF actually a0 in q2) and EF AG n
 """
 """Where z has moved, a may still have both ways before it."""
 
+AGAIN = """
+BigActor a hosted_at a0 with_behavior { loop { react { case "go" => skip after 5 s => skip } } }
+BigActor z hosted_at z0 with_behavior { control(MOVE_HOST_TO p2) }
+check { ltl "z stays": [] not actually z0 in p2 }
+"""
+"""A step of a leads back to the same configuration."""
+
+CONDITIONS = pytest.mark.parametrize(
+    "text", [CIRCLES, IN_TURN, OPEN, AGAIN], ids=["circles", "in turn", "open", "again"]
+)
+
 
 def outcomes(text, reductions=(), engine=Engine.REFERENCE, world=APART):
     """Return the outcomes of a mission's properties of runs, and whether steps were left out."""
@@ -181,7 +192,7 @@ def outcomes(text, reductions=(), engine=Engine.REFERENCE, world=APART):
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("text", [CIRCLES, IN_TURN, OPEN], ids=["circles", "in turn", "open"])
+@CONDITIONS
 def test_por_decides_what_needs_a_condition_of_its_own(text, engine):
     right, _ = outcomes(text)
     assert outcomes(text, POR, engine) == (right, True)
@@ -216,7 +227,7 @@ def test_searches_without_formulas_of_runs_choose_the_sets_that_they_chose():
     assert (one.configurations, one.transitions) == (other.configurations, other.transitions)
 
 
-@pytest.mark.parametrize("text", [CIRCLES, IN_TURN, OPEN], ids=["circles", "in turn", "open"])
+@CONDITIONS
 def test_both_explorers_choose_the_same_sets_for_formulas(text):
     mission = load(text, APART)
     slow, fast = (
