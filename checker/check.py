@@ -114,7 +114,8 @@ def check(  # noqa: PLR0913 - independent options
     timed = initial.setting.timing is not None
     if timed and reductions:
         raise RefusedError(reductions[0], "it is not proved sound for missions with a section `timing`")
-    reducer = _reduced(initial, reductions, formulas) if reductions else None
+    runs = [each for each in asked if each.is_of_runs]
+    reducer = _reduced(initial, reductions, formulas, runs) if reductions else None
     if reducer is not None and engine is Engine.RAY:
         raise RefusedError(reducer.names[0], "the ray explorer does not reduce; leave --engine out")
     kept, crew = keeping or Keeping(), cluster or Cluster()
@@ -148,11 +149,14 @@ def _asked(
 
 
 def _reduced(
-    initial: Configuration, reductions: Iterable[Reduction], formulas: Sequence[Proposition] = ()
+    initial: Configuration,
+    reductions: Iterable[Reduction],
+    formulas: Sequence[Proposition] = (),
+    runs: Iterable[Property] = (),
 ) -> Reduced:
     from checker.reduction.reducer import Reduced  # noqa: PLC0415 - few explorations are reduced
 
-    return Reduced(initial, reductions, formulas)
+    return Reduced(initial, reductions, formulas, runs)
 
 
 def reductions_of(start: Checkable) -> tuple[Reduction, ...]:
@@ -287,7 +291,10 @@ class _Check:
         if reason is None:
             return self.decided(asked)
         undecided = Verdict(asked, Outcome.INCOMPLETE, note=f"not decided under this reduction: {reason}")
-        if asked.is_of_runs:  # runs and their fairness need every transition
+        if asked.kind is PropertyKind.DEADLOCK_FREEDOM:  # without any deadlock, no fair run has one
+            literal = self.decide_deadlock(asked)
+            return literal if literal.outcome is Outcome.HOLDS else undecided
+        if asked.is_of_runs:  # a violating run of the reduced search may be no run of the mission
             return undecided
         found = self.decided(asked)
         return found if found.outcome is Outcome.VIOLATED else undecided

@@ -103,8 +103,6 @@ class _Explorer:
     def reduced(self, number: int, c: Configuration, expansion: Expansion, reducer: Reduced) -> None:
         """Follow the chosen transitions, and record the target of the onward one for the cycle proviso."""
         followed = reducer.choose(c, expansion, number, self.reached, self.paths)
-        if len(followed.steps) < len(expansion.transitions):
-            self.missing(number)
         self.follow_all(number, followed.steps)
         if followed.onward is not None and (target := self.reached(followed.onward)) is not None:
             self.paths.lead(number, target, followed.taken)

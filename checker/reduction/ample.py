@@ -10,7 +10,10 @@ from typing import NamedTuple
 from checker.properties.inspections import is_unfair
 from checker.reduction.actor_footprints import Acting, Actor, Actors
 from checker.reduction.cycle_proviso import Parts, Paths, part_of, parts_of
+from checker.reduction.preserved_runs import propositions_of, steps_of
 from checker.reduction.visible_slots import Eyes
+from semantics.properties.kinds import PropertyKind
+from semantics.properties.property import Property
 from semantics.properties.propositions import Proposition
 from semantics.state.configuration import Configuration, Transition
 from semantics.state.signature import Name
@@ -36,11 +39,23 @@ class Followed(NamedTuple):
 
 
 class Ample:
-    """Chooses ample sets within one mission."""
+    """Chooses ample sets within one mission.
 
-    def __init__(self, initial: Configuration, formulas: Iterable[Proposition] = ()) -> None:
+    Attributes:
+        forward: Whether every step of an ample set leads to a configuration of a greater number, so that each cycle has
+            a configuration where all steps are followed. Formulas about runs need this.
+        single: Whether an ample set has a single step. Formulas of branching time need this.
+        stored: Whether the followed steps are needed after the search.
+    """
+
+    def __init__(
+        self, initial: Configuration, formulas: Iterable[Proposition] = (), runs: Sequence[Property] = ()
+    ) -> None:
         self.actors = Actors(initial)
-        self.eyes = Eyes(initial, formulas)
+        self.eyes = Eyes(initial, (*formulas, *propositions_of(runs)), steps_of(runs))
+        self.forward = any(each.temporal is not None for each in runs)
+        self.stored = bool(runs)
+        self.single = any(each.kind is PropertyKind.CTL for each in runs)
 
     def choose(
         self, c: Configuration, expansion: Expansion, number: int, reached: Reached, paths: Paths
@@ -50,6 +65,9 @@ class Ample:
         If every step of the sets so far leads back here, another set joins, with an actor that is ignored on the cycle.
         """
         acting, owners = self.actors.of(c), self.owners(c, expansion)
+        if self.forward:
+            candidates = self.candidates(expansion, acting, owners, paths.movers.get(number))
+            return self.first_forward(c, expansion, candidates, number, reached)
         inside: frozenset[Actor] = frozenset()
         taken: Parts = frozenset()
         for found in self.candidates(expansion, acting, owners, paths.movers.get(number)):
@@ -70,9 +88,26 @@ class Ample:
                 return Followed(steps, taken)
         return Followed(expansion.transitions)
 
+    def first_forward(
+        self,
+        c: Configuration,
+        expansion: Expansion,
+        candidates: Iterable[Persistent],
+        number: int,
+        reached: Reached,
+    ) -> Followed:
+        """Return the steps of the first ample set of which every step leads forward, or all."""
+        for found in candidates:
+            small = len(found.steps) == 1 or not self.single
+            if small and self.is_ample(c, found.steps):
+                ends = [reached(step) for step in found.steps]
+                if all(end is None or end > number for end in ends):
+                    return Followed(found.steps)
+        return Followed(expansion.transitions)
+
     def is_ample(self, c: Configuration, chosen: tuple[Transition, ...]) -> bool:
         """Return whether the steps are invisible to all properties, and one of them must be taken eventually."""
-        if any(self.eyes.differ(c, each.target) for each in chosen):
+        if any(self.eyes.sees(c, each) for each in chosen):
             return False
         return any(each.label.agent is not None and not is_unfair(c, each) for each in chosen)
 

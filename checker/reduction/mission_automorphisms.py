@@ -1,6 +1,6 @@
 """The automorphisms of a mission: transpositions of names that preserve it, and the reasons against others."""
 
-from collections.abc import Callable, Iterable, Iterator, Set
+from collections.abc import Callable, Hashable, Iterable, Iterator, Set
 from dataclasses import fields, is_dataclass
 from functools import cached_property, partial
 from itertools import product
@@ -244,24 +244,34 @@ class _Parts:
     def __init__(self, formula: Proposition) -> None:
         self.formula = formula
         self.parts = list(_flat(And, (formula,)))
-        self.normal = frozenset(map(_normal, self.parts))
+        self.normal = frozenset(map(normal, self.parts))
         self.mentions = Mentions((number, partial(_image, part)) for number, part in enumerate(self.parts))
 
     def kept(self, renaming: Renaming) -> bool:
         """Return whether the property is invariant under a transposition."""
         changed = (self.parts[number] for number in self.mentions.of(renaming))
-        return all(_normal(_image(part, renaming)) in self.normal for part in changed)
+        return all(normal(_image(part, renaming)) in self.normal for part in changed)
+
+
+def changing(formula: Proposition, renamings: Iterable[Renaming]) -> Renaming | None:
+    """Return the first of some transpositions under which a proposition is not invariant."""
+    parts = _Parts(formula)
+    return next((each for each in renamings if not parts.kept(each)), None)
 
 
 def _image(part: Any, renaming: Renaming) -> Any:
     return renaming.value(part)
 
 
-def _normal(formula: Any) -> Any:
+def normal(formula: Any) -> Hashable:
+    """Return a value that is the same for propositions that differ in the order of operands."""
     if isinstance(formula, And | Or):
-        return (type(formula).__name__, frozenset(map(_normal, _flat(type(formula), formula.formulas))))
+        return (type(formula).__name__, frozenset(map(normal, _flat(type(formula), formula.formulas))))
     inner = getattr(formula, "formula", None)
-    return formula if inner is None else ("not", _normal(inner))
+    if inner is not None:
+        return ("not", normal(inner))
+    known: Hashable = formula
+    return known
 
 
 def _flat(kind: type, formulas: Iterable[Any]) -> Iterator[Any]:

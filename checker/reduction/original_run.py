@@ -1,63 +1,119 @@
-"""Unfolding: the run of the unreduced mission behind a configuration of a reduced exploration."""
+"""Unfolding: the run of the unreduced mission behind a path of a reduced exploration."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from checker.engines.contract import Exploration
-from semantics.state.configuration import Configuration, Transition
+from checker.limits import look
+from semantics.state.configuration import Configuration, Label, Transition
 from semantics.successors import expand
 
 if TYPE_CHECKING:
     from checker.reduction.configuration_renaming import Renaming
     from checker.reduction.reducer import Reduced
 
+Edge = tuple[int, Label, int]
+"""An edge between visited configurations: its source, its label and its target."""
+
 
 def run_to(found: Exploration, number: int, by: Transition | None = None) -> tuple[Transition, ...]:
     """Return an unreduced run to the configuration that a visited one represents, and then through `by`."""
-    assert found.reducer is not None
-    steps, real, renaming = _unfold(found, found.reducer, number)
+    run = _run_to(found, number)
     if by is not None:
-        steps.append(_really(found.reducer, by, real, renaming))
-    return tuple(steps)
+        run.take(by)
+    return tuple(run.steps)
 
 
 def in_original_names(found: Exploration, number: int, text: str) -> str:
     """Return a text about a visited configuration in the names of the unreduced run to it."""
     if found.reducer is None or found.reducer.symmetry is None:
         return text
-    return _unfold(found, found.reducer, number)[2].inverse.text(text)
+    return _run_to(found, number).renaming.inverse.text(text)
 
 
-def _unfold(
-    found: Exploration, reducer: Reduced, number: int
-) -> tuple[list[Transition], Configuration, Renaming]:
-    """Return the unreduced run, its end, and the renaming from there to the visited configuration."""
-    real = found.configurations[0] if found.start is None else found.start
-    renaming = _sorting(reducer, real)
-    steps: list[Transition] = []
+def lasso_of(
+    found: Exploration, stem: Iterable[Edge], loop: Sequence[Edge]
+) -> tuple[tuple[Transition, ...], int]:
+    """Return an unreduced run behind a stem and a loop of visited configurations, and the length of its stem.
+
+    One round of the loop may exchange names. The rounds are powers of one permutation, so after finitely many of them
+    the run is where the first one began.
+    """
+    run = _Run(found)
+    run.follow(stem)
+    begin, entry = len(run.steps), run.real
+    while loop:
+        look()
+        run.follow(loop)
+        if run.real == entry:
+            break
+    return tuple(run.steps), begin
+
+
+class _Run:
+    """An unreduced run beside a path of representatives.
+
+    Attributes:
+        steps: Its steps.
+        real: Its last configuration.
+        renaming: The renaming from there to the visited configuration.
+    """
+
+    def __init__(self, found: Exploration) -> None:
+        assert found.reducer is not None
+        self.found = found
+        self.reducer: Reduced = found.reducer
+        self.real: Configuration = found.configurations[0] if found.start is None else found.start
+        self.renaming = self.sorting(self.real)
+        self.steps: list[Transition] = []
+
+    def take(self, taken: Transition) -> None:
+        """Go on by the step that corresponds to a step of the representative."""
+        self.steps.append(self.really(taken))
+        self.real = self.steps[-1].target
+        self.renaming = self.sorting(taken.target).after(self.renaming)
+
+    def follow(self, edges: Iterable[Edge]) -> None:
+        """Go on along edges."""
+        for source, label, target in edges:
+            after = self.found.configurations[target]
+            self.take(
+                next(
+                    t
+                    for t in expand(self.found.configurations[source]).transitions
+                    if (t.label.rule, t.label.agent) == (label.rule, label.agent)
+                    and self.reducer.representative(t.target) == after
+                )
+            )
+
+    def sorting(self, c: Configuration) -> Renaming:
+        from checker.reduction.configuration_renaming import Renaming  # noqa: PLC0415 - only reduced explorations are unfolded
+
+        return Renaming() if self.reducer.symmetry is None else self.reducer.symmetry.sorting(c)[0]
+
+    def really(self, taken: Transition) -> Transition:
+        """Return the step of the unreduced run that corresponds to a step of the representative."""
+        if self.reducer.symmetry is None:
+            return taken
+        back = self.renaming.inverse
+        target, label = back.configuration(taken.target), back.text(str(taken.label))
+        agent = None if taken.label.agent is None else back.name(taken.label.agent)
+        alike = [
+            each
+            for each in expand(self.real).transitions
+            if each.target == target and (each.label.rule, each.label.agent) == (taken.label.rule, agent)
+        ]
+        return next((each for each in alike if str(each.label) == label), alike[0])
+
+
+def _run_to(found: Exploration, number: int) -> _Run:
+    """Return the unreduced run to a visited configuration."""
+    run = _Run(found)
     for source, target in pairwise(found.path(number)):
         after = found.configurations[target]
         allowed = expand(found.configurations[source]).transitions
-        taken = next(t for t in allowed if reducer.representative(t.target) == after)
-        steps.append(_really(reducer, taken, real, renaming))
-        real = steps[-1].target
-        renaming = _sorting(reducer, taken.target).after(renaming)
-    return steps, real, renaming
-
-
-def _sorting(reducer: Reduced, c: Configuration) -> Renaming:
-    from checker.reduction.configuration_renaming import Renaming  # noqa: PLC0415 - only reduced explorations are unfolded
-
-    return Renaming() if reducer.symmetry is None else reducer.symmetry.sorting(c)[0]
-
-
-def _really(reducer: Reduced, taken: Transition, real: Configuration, renaming: Renaming) -> Transition:
-    """Return the step of the unreduced run that corresponds to a step of the representative."""
-    if reducer.symmetry is None:
-        return taken
-    target = renaming.inverse.configuration(taken.target)
-    label = renaming.inverse.text(str(taken.label))
-    alike = [each for each in expand(real).transitions if each.target == target]
-    return next((each for each in alike if str(each.label) == label), alike[0])
+        run.take(next(t for t in allowed if run.reducer.representative(t.target) == after))
+    return run

@@ -1,13 +1,26 @@
 """The reductions of an exploration: partial-order reduction, symmetry, or both."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from checker.reduction.ample import Ample, Followed, Reached
+from checker.reduction.conjunct_orbits import one_of_each
 from checker.reduction.cycle_proviso import Paths
-from checker.reduction.refusals import Reduction, refusal, refuse_partial_order, refuse_symmetry
+from checker.reduction.preserved_runs import (
+    distinguished,
+    distinguished_by,
+    follows_names,
+    named_in_fairness,
+    refused_by_por,
+    refused_by_symmetry,
+    refused_formula,
+    told_apart,
+)
+from checker.reduction.refusals import Reduction, RefusedError, refuse_partial_order, refuse_symmetry
 from checker.reduction.symmetry import MissionSymmetry
 from semantics.properties.property import Property
 from semantics.properties.propositions import Proposition
+from semantics.properties.temporal import Temporal
 from semantics.state.configuration import Configuration
 from semantics.successors import Expansion
 
@@ -15,9 +28,16 @@ from semantics.successors import Expansion
 class Reduced:
     """Applies reductions to one mission.
 
+    Args:
+        initial: The initial configuration.
+        reductions: The reductions.
+        formulas: The propositions of invariants and of reachability.
+        runs: The properties of runs.
+
     Attributes:
         names: Their names, in a fixed order.
-        identity: Their names, and the propositions that they keep: whatever decides which configurations are visited.
+        runs: The properties of runs that the reductions preserve.
+        identity: Whatever decides which configurations are visited, as text.
     """
 
     def __init__(
@@ -25,17 +45,23 @@ class Reduced:
         initial: Configuration,
         reductions: Iterable[Reduction],
         formulas: Sequence[Proposition] = (),
+        runs: Iterable[Property] = (),
     ) -> None:
-        asked = set(reductions)
-        self.names = tuple(each for each in Reduction if each in asked)
-        self.identity = f"{', '.join(map(str, self.names))}: {tuple(formulas)!r}"
-        if Reduction.POR in asked:
-            refuse_partial_order(initial)
-        self.ample = Ample(initial, formulas) if Reduction.POR in asked else None
+        self.reductions = frozenset(reductions)
+        self.names = tuple(each for each in Reduction if each in self.reductions)
         self.symmetry: MissionSymmetry | None = None
-        if Reduction.SYMMETRY in asked:
+        if Reduction.POR in self.reductions:
+            refuse_partial_order(initial)
+        self.standing: dict[Property, Property] = {}
+        asked = [each for each in runs if self.refuses(each) is None]
+        if Reduction.SYMMETRY in self.reductions:
             refuse_symmetry(initial)
-            self.symmetry = MissionSymmetry(initial, formulas)
+            every = MissionSymmetry(initial, formulas)
+            self.standing = {each: _standing(each, every) for each in asked}
+            self.symmetry = _narrowed(every, formulas, self.standing.values())
+        self.runs = tuple(self.decided_for(each) for each in asked if self.refuses(each) is None)
+        self.ample = Ample(initial, formulas, self.runs) if Reduction.POR in self.reductions else None
+        self.identity = repr((tuple(map(str, self.names)), tuple(formulas), self.runs))
 
     @property
     def putting_off(self) -> bool:
@@ -44,7 +70,23 @@ class Reduced:
 
     def refuses(self, asked: Property) -> str | None:
         """Return why a property is undecided under these reductions, None if it is decided."""
-        return refusal(asked)
+        if not asked.is_of_runs:
+            kept = asked.kind.about.reducible
+            return None if kept else f"it is not known to be kept for properties of the kind '{asked.kind}'"
+        reason = refused_by_por(asked) if Reduction.POR in self.reductions else None
+        if reason is None and self.symmetry is not None:
+            reason = refused_by_symmetry(self.decided_for(asked), self.symmetry)
+        return reason
+
+    def decided_for(self, asked: Property) -> Property:
+        """Return the property that is decided for a property of runs: with one of the conjuncts that are exchanged."""
+        return self.standing.get(asked, asked)
+
+    def keeps(self, formula: Temporal) -> bool:
+        """Return whether the runs of a reduced search decide a formula whose propositions it was told of."""
+        if self.ample is not None and refused_formula(formula) is not None:
+            return False
+        return self.symmetry is None or told_apart(distinguished_by(formula), self.symmetry) is None
 
     def representative(self, c: Configuration) -> Configuration:
         """Return the representative of a configuration."""
@@ -74,3 +116,26 @@ class Reduced:
             crosscheck(self.ample, c)
         if self.symmetry is not None:
             exchange(self.symmetry, c)
+
+
+def _standing(asked: Property, symmetry: MissionSymmetry) -> Property:
+    """Return a property with one of the conjuncts that exchanges map to one another, if these preserve its fairness."""
+    if asked.temporal is None or refused_by_symmetry(asked, symmetry) is None:
+        return asked
+    if told_apart(named_in_fairness(asked), symmetry) is not None:
+        return asked
+    return replace(asked, temporal=one_of_each(asked.temporal, symmetry.exchanges))
+
+
+def _narrowed(
+    every: MissionSymmetry, formulas: Sequence[Proposition], runs: Iterable[Property]
+) -> MissionSymmetry:
+    """Return the exchanges that preserve properties of runs, too, unless none is left."""
+    asked = [each for each in runs if follows_names(each, every) is None]
+    if all(refused_by_symmetry(each, every) is None for each in asked):
+        return every
+    try:
+        told = (part for each in asked for part in distinguished(each))
+        return MissionSymmetry(every.initial, [*formulas, *told])
+    except RefusedError:
+        return every

@@ -2,7 +2,6 @@
 
 from enum import Enum
 
-from semantics.properties.property import Property
 from semantics.state.configuration import Configuration
 from semantics.state.setting import Scheduler
 
@@ -29,15 +28,6 @@ class RefusedError(ValueError):
         super().__init__(f"the reduction '{reduction}' is refused: {reason}")
         self.reduction = reduction
         self.reason = reason
-
-
-def refusal(asked: Property) -> str | None:
-    """Return why a property is undecided under reductions, None if it is decided."""
-    if asked.kind.about.reducible and not asked.is_of_runs:
-        return None
-    if asked.kind.about.reducible:
-        return "it is not known to be kept under fairness"
-    return f"it is not known to be kept for properties of the kind '{asked.kind}'"
 
 
 def refuse_symmetry(c: Configuration) -> None:

@@ -4,7 +4,7 @@ The symmetry group contains every permutation of the members of a class.
 """
 
 from collections.abc import Iterable, Iterator
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import combinations
 from typing import Any
 
@@ -111,6 +111,20 @@ class MissionSymmetry:
             if number == 0:
                 yield tuple(side[0] for side in sides)
             yield tuple(side[1] for side in sides)
+
+    @cached_property
+    def exchanges(self) -> tuple[Renaming, ...]:
+        """The exchanges of the first member of a class with each other one; they generate the group."""
+        return tuple(
+            Renaming(*each.moving((other, *range(1, other), 0, *range(other + 1, len(each.members)))))
+            for each in self.classes
+            for other in range(1, len(each.members))
+        )
+
+    @property
+    def moves_agents(self) -> bool:
+        """Whether some exchange changes the name of a bigActor."""
+        return any(name in self.initial.alpha for each in self.exchanges for name in each.names)
 
     # --- representatives --------------------------------------------------------------------------------------
 

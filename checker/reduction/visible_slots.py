@@ -23,9 +23,10 @@ from semantics.properties.propositions import (
     atoms_of,
     is_true_of,
 )
+from semantics.properties.temporal import Steps
 from semantics.state.agents import code_cell, host_cell, is_over, store_cell
 from semantics.state.cell_values import AGENTS, Cell, Question, has, is_something
-from semantics.state.configuration import Configuration
+from semantics.state.configuration import Configuration, Label, Transition
 from semantics.state.eta import line_cell, sends_cell
 from semantics.state.logical_model import links_cell, parent_cell
 from semantics.state.physical_model import channels_cell, down_cell, placement_cell
@@ -53,14 +54,25 @@ class VisiblePart:
 
 
 class Eyes:
-    """The visible parts of some propositions."""
+    """The visible parts of some propositions, and the visible steps: those that a formula names."""
 
-    def __init__(self, c: Configuration, formulas: Iterable[Proposition]) -> None:
+    def __init__(
+        self, c: Configuration, formulas: Iterable[Proposition], steps: Iterable[Steps] = ()
+    ) -> None:
+        self.steps = tuple(steps)
         self.bounds = Overapproximation(c)
         self.program = c.setting.program
         self.formulas = tuple(formulas)
         atoms = dict.fromkeys(_anywhere(atom) for formula in self.formulas for atom in atoms_of(formula))
         self.seen = tuple(dict.fromkeys(each for atom in atoms for each in self._sees(atom)))
+
+    def sees(self, c: Configuration, step: Transition) -> bool:
+        """Return whether a step from a configuration is visible."""
+        return self.names(step.label) or self.differ(c, step.target)
+
+    def names(self, label: Label) -> bool:
+        """Return whether a formula names steps with this label."""
+        return any(each.has(label) for each in self.steps)
 
     def differ(self, before: Configuration, after: Configuration) -> bool:
         """Return whether two configurations differ visibly."""

@@ -31,7 +31,8 @@ class About:
         says: The meaning of such a property, in a sentence.
         asked: The way in which a mission asks for it.
         examined: The singular and plural of the items that are examined for it; empty if they are not reported.
-        reducible: Whether reductions preserve it: they may omit nothing that decides it (`checker.reduction`).
+        reducible: Whether reductions preserve it: they may omit nothing that decides it (`checker.reduction`). Some
+            properties of runs are not preserved all the same (`checker.reduction.preserved_runs`).
         nothing: The meaning of an empty examination, if that is no shortcoming.
         vacuous: The meaning of an empty examination, if a verdict that holds is then vacuous.
         counted: Whether all violations are counted, instead of searching for one.
@@ -139,14 +140,14 @@ ABOUT: Final = {
         "A formula of linear time is true of every fair run.",
         RequestMode.OF_RUNS,
         CONFIGURATIONS,
-        reducible=False,
+        reducible=True,
         counted=False,
     ),
     PropertyKind.CTL: About(
         "A formula of branching time is true of the tree of fair runs.",
         RequestMode.OF_RUNS,
         CONFIGURATIONS,
-        reducible=False,
+        reducible=True,
         counted=False,
     ),
     PropertyKind.PROGRESS: About(

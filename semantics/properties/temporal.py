@@ -237,3 +237,26 @@ def atoms(formula: Temporal) -> Iterator[State]:
         if isinstance(one, State):
             yield one
         waiting.extend(reversed(parts(one)))
+
+
+def chain(formula: Temporal, connective: type[Both | Either]) -> Iterator[Temporal]:
+    """Yield the operands of a chain of one connective, from left to right."""
+    waiting = [formula]
+    while waiting:
+        one = waiting.pop()
+        if isinstance(one, connective):
+            waiting += [one.right, one.left]
+        else:
+            yield one
+
+
+def conjuncts(formula: Temporal) -> list[Temporal]:
+    """Return the conjuncts of a formula, with `[]` and `A []` distributed over them."""
+    match formula:
+        case Both(left, right):
+            return [*conjuncts(left), *conjuncts(right)]
+        case Globally(Both(left, right)):
+            return [*conjuncts(Globally(left)), *conjuncts(Globally(right))]
+        case OnAllPaths(Globally(Both(left, right))):
+            return [each for one in (left, right) for each in conjuncts(OnAllPaths(Globally(one)))]
+    return [formula]

@@ -27,7 +27,7 @@ def test_a_property_that_it_would_be_unsound_for_is_incomplete(bigactors):
     code, out, _ = bigactors("check", "tanker", "--reduce", "por")
     assert code == 3
     (line,) = [line for line in out.splitlines() if line.startswith("  ? met ")]
-    assert "incomplete; not decided under this reduction: it is not known to be kept for properties" in line
+    assert "incomplete; not decided under this reduction: fairness asks which steps stay enabled" in line
 
 
 def test_stale_observations_are_searched_for_with_less_to_visit(done):

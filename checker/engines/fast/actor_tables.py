@@ -25,8 +25,8 @@ MADE, STORED = 1, 2
 TRIED = -1
 """The size of a set that is not ample, or that was added."""
 
-FAIR, AGENTS_OWN = 1, 2
-"""The flags of a transition: an agent's that must eventually be taken; an agent's."""
+FAIR, AGENTS_OWN, NAMED = 1, 2, 4
+"""The flags of a transition: an agent's that must eventually be taken; an agent's; one that a formula names."""
 
 MEMBER, NOW, EVER, ASIDE, FOLLOWER = range(5)
 RECORD = 5

@@ -20,6 +20,7 @@ from checker.engines.fast.actor_tables import (
     KINDS,
     MEMBER,
     MOST_HERE,
+    NAMED,
     NOBODY_LEFT,
     RECORD,
     TRIED,
@@ -48,7 +49,18 @@ from checker.engines.fast.learned_model import (
 )
 from checker.engines.fast.learned_model import UNKNOWN as NOT_LEARNED
 from checker.engines.fast.persistent import find_set
-from checker.engines.fast.proviso_paths import Trails, begin_row, end_of, lead_on
+from checker.engines.fast.proviso_paths import (
+    FORWARD,
+    NOWHERE,
+    SINGLE,
+    Trails,
+    begin_row,
+    end_of,
+    end_row,
+    has_room,
+    lead_on,
+    store_transition,
+)
 from checker.engines.fast.row_successors import make, make_stored, without_repetitions
 from checker.engines.fast.table import Words, bits_for, entry_of, find
 from checker.engines.fast.tree_compression import NO_ROOM, FoldedTable, intern, unfold
@@ -97,6 +109,8 @@ def is_ample(
     width, fair = state[WORDS], np.int64(0)
     for k in range(count):
         if has(r.sets, at, r.whose[k]):
+            if r.step_flags[batch.steps[k]] & NAMED:
+                return 0
             if not make(m, r, f, here, batch, k, state):
                 return UNKNOWN
             if r.visible[k] == 0:  # visibility concerns the successor, not its representative
@@ -161,6 +175,8 @@ def join(
 ) -> int:
     """Add a set if it is ample and has an ignored actor (cycle proviso).
 
+    If all steps must lead forward, the set is added only if they do, and no other joins it.
+
     Returns:
         A transition of the set whose successor's path does not return to this row. If there is none: NOBODY_LEFT if no
         enabled actor is ignored any more, else GOING_ON. UNKNOWN if something is not learned yet.
@@ -171,13 +187,19 @@ def join(
     ample = is_ample(m, r, f, here, batch, count, at, state)
     if ample <= 0:
         return UNKNOWN if ample == UNKNOWN else GOING_ON
-    let_join(r, actors, wide, at)
+    forward = trails.asked & FORWARD
+    if not forward:
+        let_join(r, actors, wide, at)
     bits = np.uint32(bits_for(len(table)))
     for k in range(count):
         if has(r.sets, at, r.whose[k]):
             if not make_stored(m, r, x, d, f, here, batch, k, state):
                 return UNKNOWN
             number = find(words, table, batch.kept, k, batch.hashes[k], kept, bits)
+            if forward:
+                if 0 <= number <= row:
+                    return GOING_ON
+                continue
             if number < 0:
                 return k
             r.more[:] = np.uint64(0)
@@ -186,6 +208,9 @@ def join(
             if x is None:  # an exchange renames actors along the path
                 for word in range(len(r.taken)):
                     r.taken[word] |= r.more[word]
+    if forward:
+        let_join(r, actors, wide, at)
+        return NOBODY_LEFT
     return GOING_ON if ignores(r, r.owners, 0, wide) else NOBODY_LEFT
 
 
@@ -249,7 +274,7 @@ def choose(
                 onward = join(m, r, x, d, trails, f, here, words, table, batch, count, actors, at, state)
                 if onward != GOING_ON:
                     return onward
-        for _ in range(begin, found):
+        for _ in range(begin, 0 if trails.asked & SINGLE else found):
             least = np.int64(-1)
             for j in range(begin, found):
                 if r.sizes[j] >= 0 and (least < 0 or r.sizes[j] < r.sizes[least]):
@@ -293,7 +318,7 @@ def expand_reduced(
     """
     kept = state[KEPT]
     bits = np.uint32(bits_for(len(table)))
-    while state[AT] < until and state[SIZE] + len(batch.steps) <= room:
+    while state[AT] < until and state[SIZE] + len(batch.steps) <= room and has_room(trails, len(batch.steps)):
         row = state[AT]
         begin_row(trails, row)
         here = words[row * kept : (row + 1) * kept]
@@ -336,11 +361,14 @@ def expand_reduced(
                 entry = entry_of(batch.hashes[k], number, bits)
                 add_row(words, origins, table, slot, entry, batch.kept, k, row, state)
                 if number == state[SIZE]:  # the limit left it out
+                    store_transition(trails, step, NOWHERE)
                     continue
                 agent = np.int64(r.part[r.step_actor[step]]) // KINDS
                 trails.movers[number] = agent + 1 if agent < r.agents else 0
+            store_transition(trails, step, number)
             if k == onward:
                 lead_on(trails, row, number, path)
+        end_row(trails, row)
         state[AT] += 1
         state[EXPANDED] = state[AT]
     return True

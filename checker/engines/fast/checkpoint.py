@@ -28,7 +28,7 @@ SCHEMA = "bigactors.checkpoint/6"
 KEPT = (EXPANDED, SIZE, CUT, CROWDS)
 """The entries of the loops' state in a checkpoint; the others follow from the mission."""
 
-PATHS = ("movers", "led", "leads", "sets")
+PATHS = ("movers", "led", "leads", "sets", "followed", "ends")
 """The arrays of the cycle proviso's paths."""
 
 RECOUNTED = 1 << 22
@@ -52,6 +52,8 @@ KINDS: Final[Kinds] = {
     "led": np.uint64,
     "leads": np.uint64,
     "sets": np.uint64,
+    "followed": np.uint64,
+    "ends": np.uint64,
     "state": np.int64,
 }
 
@@ -141,7 +143,7 @@ def _paths(space: Space) -> tuple[NDArray[Any], ...]:
     """Return the stored paths of partial-order reduction; empty without it."""
     if space.choosing is None:
         return (np.zeros(0, np.uint64),) * len(PATHS)
-    return space.choosing.paths.kept(space.size)
+    return space.choosing.paths.kept(space.size, space.expanded)
 
 
 def resume(space: Space, digest: str, path: Path) -> Journey:
@@ -166,8 +168,9 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
             paths = tuple(arrays[name] for name in PATHS)
             choosing.paths.restore(paths, size, expanded, len(choosing.everyone))
             _check_counts(space, met, arrays["state"])
-            if np.any(counts > met):
-                raise ValueError("it followed more transitions than there are")
+            taken = np.bincount(choosing.paths.steps(), minlength=len(counts))
+            if np.any(counts > met) or (choosing.paths.has_transitions and not np.array_equal(taken, counts)):
+                raise ValueError("it followed other transitions than it counted")
         _check_counts(space, counts, arrays["state"])
         _recount(space, counts if choosing is None else met, arrays["state"])
         space.met.used[: len(met)] = met

@@ -15,6 +15,7 @@ from checker.engines.fast.actor_tables import (
     FAIR,
     KINDS,
     MOST_HERE,
+    NAMED,
     PARTS,
     RECORD,
     Members,
@@ -24,7 +25,7 @@ from checker.engines.fast.bits import WORD
 from checker.engines.fast.columns import Packing
 from checker.engines.fast.decision_leaves import LEAF
 from checker.engines.fast.learner import Learner
-from checker.engines.fast.proviso_paths import SearchPaths
+from checker.engines.fast.proviso_paths import EDGES, FORWARD, SINGLE, SearchPaths
 from checker.engines.fast.value_templates import agents_of
 from checker.properties.inspections import never_ends
 from checker.reduction.actor_footprints import Acting, Actor
@@ -73,7 +74,8 @@ class Choosing:
         self.actors = Growing(np.int32)
         self.step_actor = Growing(np.int32)
         self.step_flags = Growing(np.int32)
-        self.paths = SearchPaths(len(self.everyone), self.wide)
+        asked = {FORWARD: ample.forward, SINGLE: ample.single, EDGES: ample.stored}
+        self.paths = SearchPaths(len(self.everyone), self.wide, sum(bit for bit in asked if asked[bit]))
         self.stride = self.width = 0
         self.roomy: tuple[int, int] | None = None
         self.room: tuple[Any, ...] = ()
@@ -118,6 +120,7 @@ class Choosing:
 
     def _room(self, successors: int) -> tuple[Any, ...]:
         """Return the scratch space for one row; its contents are meaningless."""
+        self.paths.most = successors
         size = (len(self.part.room), successors)
         if size == self.roomy:
             return self.room
@@ -185,7 +188,7 @@ class Choosing:
                 continue
             label = learner.steps[number]
             self.step_actor.append(self._number(self._actor(label, whose.about)))
-            self.step_flags.append(_flags(label, learner))
+            self.step_flags.append(_flags(label, learner) | (NAMED if self.ample.eyes.names(label) else 0))
 
     def _actor(self, label: Label, about: Any) -> Actor:
         if label.agent is not None:

@@ -1,4 +1,4 @@
-"""Paths for the cycle proviso (see `checker.reduction.cycle_proviso`), in arrays for the compiled loops.
+"""Paths for the cycle proviso (see `checker.reduction.cycle_proviso`), and followed transitions, in arrays for loops.
 
 Rows are expanded in order, and the next row of a path is stored only for rows that have one, consecutively. A bit for
 each row marks these; the number of set bits before it is the index into the stored ones.
@@ -26,6 +26,17 @@ BLOCK = 8
 SETS = 1 << 8
 """Free room for sets that exists at least when the expansion of rows begins."""
 
+FORWARD, SINGLE, EDGES = 1, 2, 4
+"""What is asked of a search, as bits: ample sets lead forward, have a single step (see `checker.reduction.ample`), and
+followed transitions are stored.
+"""
+
+LED, FOLLOWED = range(2)
+"""The numbers of stored leads and of stored transitions, in `Trails.count`."""
+
+NOWHERE = 0xFFFFFFFF
+"""The target of a stored transition that the limit left out."""
+
 _HALF, _LOW = np.uint64(32), np.uint64(0xFFFFFFFF)
 
 
@@ -37,9 +48,12 @@ class Trails(NamedTuple):
         led: A bit for each row from which a path continues.
         before: The number of set bits before each block.
         leads: For each of these rows, the next row and the number of the set of parts taken on the way.
-        count: The number of these rows.
+        count: The numbers of stored leads and transitions.
         sets: The sets of parts by number, as words of bits: there are few.
         sought: Scratch space for a set to look up.
+        asked: What is asked of the search, as bits.
+        followed: The followed transitions, row by row: target and step.
+        ends: For each expanded row, the number of transitions up to its last one.
     """
 
     movers: Any
@@ -49,21 +63,45 @@ class Trails(NamedTuple):
     count: State
     sets: Interned
     sought: Words
+    asked: int
+    followed: Words
+    ends: Any
+
+
+@njit(cache=True, forceinline=True)
+def has_room(trails: Trails, transitions: int) -> bool:
+    """Return whether so many transitions can be stored, if they are."""
+    return not trails.asked & EDGES or trails.count[FOLLOWED] + transitions <= len(trails.followed)
+
+
+@njit(cache=True, forceinline=True)
+def store_transition(trails: Trails, step: int, to: int) -> None:
+    """Store a followed transition of the last begun row."""
+    if trails.asked & EDGES:
+        trails.followed[trails.count[FOLLOWED]] = (np.uint64(to) << _HALF) | np.uint64(step)
+        trails.count[FOLLOWED] += 1
+
+
+@njit(cache=True, forceinline=True)
+def end_row(trails: Trails, row: int) -> None:
+    """End the transitions of a row."""
+    if trails.asked & EDGES:
+        trails.ends[row] = trails.count[FOLLOWED]
 
 
 @njit(cache=True, forceinline=True)
 def begin_row(trails: Trails, row: int) -> None:
     """Note the number of leads before a row that begins a block; rows must begin in order."""
     if row % (BLOCK * WORD) == 0:
-        trails.before[row // (BLOCK * WORD)] = trails.count[0]
+        trails.before[row // (BLOCK * WORD)] = trails.count[LED]
 
 
 @njit(cache=True, forceinline=True)
 def lead_on(trails: Trails, row: int, to: int, taken: int) -> None:
     """Let the path of the last begun row continue at row `to`, taking set number `taken`."""
     add(trails.led, 0, row)
-    trails.leads[trails.count[0]] = (np.uint64(to) << _HALF) | np.uint64(taken)
-    trails.count[0] += 1
+    trails.leads[trails.count[LED]] = (np.uint64(to) << _HALF) | np.uint64(taken)
+    trails.count[LED] += 1
 
 
 @njit(cache=True, forceinline=True)
@@ -110,34 +148,59 @@ class SearchPaths:
     Args:
         agents: The greatest number of agents.
         wide: The number of words of a set of parts.
+        asked: What is asked of the search, as bits.
+
+    Attributes:
+        most: The greatest number of transitions of a row.
     """
 
-    def __init__(self, agents: int, wide: int) -> None:
+    def __init__(self, agents: int, wide: int, asked: int = 0) -> None:
         self.wide = wide
+        self.asked = asked
+        self.most = 0
         self.movers = Pages(np.min_scalar_type(agents).type, 1)
         self.led, self.leads = Pages(np.uint64, 1), Pages(np.uint64, 1)
         self.before = Pages(np.uint32, 1)
-        self.count = np.zeros(1, np.int64)
+        self.count = np.zeros(2, np.int64)
         self.sets = Pool(wide, np.zeros(0, np.uint64))
+        self.followed, self.ends = Pages(np.uint64, 1), Pages(np.uint64, 1)
 
     @property
     def trails(self) -> Trails:
         """The paths in the form that the loops read. Growing replaces them: don't keep them."""
         rooms = (self.movers.room, self.led.room, self.before.room, self.leads.room)
-        return Trails(*rooms, self.count, self.sets.interned, np.zeros(self.wide, np.uint64))
+        sought, stored = np.zeros(self.wide, np.uint64), (self.followed.room, self.ends.room)
+        return Trails(*rooms, self.count, self.sets.interned, sought, self.asked, *stored)
 
     def reserve(self, rows: int) -> None:
-        """Make room for the paths of `rows` rows, and for more sets of parts."""
+        """Make room for the paths of `rows` rows, for more sets of parts, and for more transitions."""
         self.movers.grow(rows)
         self.leads.grow(rows)
         self.led.grow(rows // WORD + 1)
         self.before.grow(rows // (BLOCK * WORD) + 1)
         self.sets.reserve(SETS)
+        if self.asked & EDGES:
+            self.followed.grow(2 * int(self.count[FOLLOWED]) + 4 * self.most)
+            self.ends.grow(rows)
 
     def held(self, rows: int) -> int:
         """Return the bytes that the paths of `rows` rows take."""
         bits = self.led.held(rows // WORD + 1) + self.before.held(rows // (BLOCK * WORD) + 1)
-        return self.movers.held(rows) + bits + self.leads.held(int(self.count[0])) + self.sets.held
+        stored = self.followed.held(int(self.count[FOLLOWED])) + self.ends.held(rows)
+        return self.movers.held(rows) + bits + self.leads.held(int(self.count[LED])) + self.sets.held + stored
+
+    @property
+    def has_transitions(self) -> bool:
+        """Whether the followed transitions are stored."""
+        return bool(self.asked & EDGES)
+
+    def transitions(self, rows: int) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.int64]]:
+        """Return the followed transitions of the first rows: origins, steps, and targets (< 0: none)."""
+        ends = self.ends.room[:rows].astype(np.int64)
+        stored = self.followed.room[: int(ends[-1]) if rows else 0]
+        targets = (stored >> _HALF).astype(np.int64)
+        targets[targets == NOWHERE] = -1
+        return np.repeat(np.arange(rows), np.diff(ends, prepend=0)), (stored & _LOW).astype(np.int32), targets
 
     def spill(self, folder: Path, rows: int) -> None:
         """Move the paths of `rows` rows to files in a folder; the sets of parts, which are few, stay in memory.
@@ -146,16 +209,23 @@ class SearchPaths:
             OSError: There is no such folder, or no room in it.
         """
         self.movers.spill(folder, rows)
-        self.leads.spill(folder, int(self.count[0]))
+        self.leads.spill(folder, int(self.count[LED]))
         self.led.spill(folder, rows // WORD + 1)
         self.before.spill(folder, rows // (BLOCK * WORD) + 1)
+        self.followed.spill(folder, int(self.count[FOLLOWED]))
+        self.ends.spill(folder, rows if self.has_transitions else 0)
 
-    def kept(self, rows: int) -> tuple[NDArray[Any], ...]:
-        """Return the stored form of the paths of `rows` rows: movers, bits, leads and sets."""
-        if not rows:
-            return self.movers.room[:0], self.led.room[:0], self.leads.room[:0], self.sets.words[:0]
-        bits = self.led.room[: -(-rows // WORD)]
-        return self.movers.room[:rows], bits, self.leads.room[: self.count[0]], self.sets.words
+    def kept(self, rows: int, expanded: int) -> tuple[NDArray[Any], ...]:
+        """Return the stored form of the paths of `rows` rows: movers, bits, leads, sets, transitions and their ends."""
+        ends = self.ends.room[: expanded if self.has_transitions else 0]
+        return (
+            self.movers.room[:rows],
+            self.led.room[: -(-rows // WORD)],
+            self.leads.room[: self.count[LED]],
+            self.sets.words,
+            self.followed.room[: self.count[FOLLOWED]],
+            ends,
+        )
 
     def restore(self, kept: tuple[NDArray[Any], ...], rows: int, expanded: int, agents: int) -> None:
         """Load the stored paths of `rows` rows, of which the first are expanded.
@@ -163,31 +233,51 @@ class SearchPaths:
         Raises:
             ValueError: No search has these paths.
         """
-        movers, led, leads, sets = kept
+        movers, led, leads, sets, followed, ends = kept
         sets = sets.reshape(-1, self.wide) if len(sets) % self.wide == 0 else sets
         if len(movers) != rows or len(led) != -(-rows // WORD) or sets.ndim != 2:
             raise ValueError("it has paths of other rows")
         bits = np.unpackbits(led.view(np.uint8), bitorder="little")
-        origins, ends = np.flatnonzero(bits), (leads >> _HALF).astype(np.int64)
+        origins, to = np.flatnonzero(bits), (leads >> _HALF).astype(np.int64)
         if len(origins) != len(leads) or np.any(origins >= expanded) or np.any(movers > agents):
             raise ValueError("it has other paths")
-        if (
-            np.any(ends >= rows)
-            or np.any(leads & _LOW >= len(sets))
-            or len(np.unique(sets, axis=0)) != len(sets)
-        ):
+        known = len(np.unique(sets, axis=0)) == len(sets) and not np.any(leads & _LOW >= len(sets))
+        if not known or np.any(to >= rows):
             raise ValueError("its paths take other steps")
         following = np.arange(rows)
-        following[origins] = ends
+        following[origins] = to
         for _ in range(rows.bit_length()):  # each round doubles the length
             following = following[following]
         if np.any(bits[following]):
             raise ValueError("a path of it has no end")
+        self._look_at_transitions(followed, ends, rows, expanded)
+        self.count[:] = len(leads), len(followed)
         self.reserve(rows)
-        self.movers.room[:rows], self.led.room[: len(led)], self.leads.room[: len(leads)] = movers, led, leads
-        self.count[0] = len(leads)
         self.sets = Pool(self.wide, sets.ravel())
-        blocks = np.zeros(-(-len(bits) // (BLOCK * WORD)) * BLOCK * WORD, np.int64)
-        blocks[: len(bits)] = bits
-        before = np.concatenate(([0], np.cumsum(blocks.reshape(-1, BLOCK * WORD).sum(1))))[:-1]
-        self.before.room[: len(before)] = before
+        pairs = ((self.movers, movers), (self.led, led), (self.leads, leads), (self.followed, followed))
+        for pages, known_before in (*pairs, (self.ends, ends), (self.before, _ones_before(bits))):
+            pages.room[: len(known_before)] = known_before
+
+    def _look_at_transitions(
+        self, followed: NDArray[Any], ends: NDArray[Any], rows: int, expanded: int
+    ) -> None:
+        """Raise ValueError unless the stored transitions are those of so many rows."""
+        targets = followed >> _HALF
+        wanted = expanded if self.has_transitions else 0
+        last = int(ends[-1]) if len(ends) else 0
+        rises = bool(np.all(ends[:-1] <= ends[1:]))
+        if len(ends) != wanted or last != len(followed) or not rises:
+            raise ValueError("it has transitions of other rows")
+        if np.any((targets >= rows) & (targets != NOWHERE)):
+            raise ValueError("it has transitions to rows that it does not have")
+
+    def steps(self) -> NDArray[np.int64]:
+        """Return the steps of the stored transitions."""
+        return (self.followed.room[: self.count[FOLLOWED]] & _LOW).astype(np.int64)
+
+
+def _ones_before(bits: NDArray[np.uint8]) -> NDArray[np.int64]:
+    """Return the number of set bits before each block."""
+    blocks = np.zeros(-(-len(bits) // (BLOCK * WORD)) * BLOCK * WORD, np.int64)
+    blocks[: len(bits)] = bits
+    return np.concatenate(([0], np.cumsum(blocks.reshape(-1, BLOCK * WORD).sum(1))))[:-1]

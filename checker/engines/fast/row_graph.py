@@ -35,13 +35,16 @@ class GraphSurvey(RowSurvey):
 
 
 def graph_of_space(survey: RowSurvey) -> Graph:
-    """Return every transition of the expanded configurations, in the order of the rules.
+    """Return every followed transition of the expanded configurations, in the order of the rules.
 
     The label of a `rcv_obs` omits the received observation, which only a decoded configuration has.
     """
     space, size = survey.space, survey.space.size
     found = [(np.zeros(0, np.int64), np.zeros(0, np.int32), np.zeros(0, np.int64))]
-    found += space.edges(range(survey.size))
+    if space.choosing is not None and space.choosing.paths.has_transitions:
+        found.append(space.choosing.paths.transitions(survey.size))
+    else:
+        found += space.edges(range(survey.size))
     origins, steps, targets = (np.concatenate(each) for each in zip(*found, strict=True))
     numbers: dict[Label, int] = {}
     action_of = np.zeros(len(space.learner.leaves.rule), np.int32)

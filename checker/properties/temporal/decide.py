@@ -26,14 +26,16 @@ from checker.properties.temporal.served_requests import (
     pending_requests,
 )
 from checker.properties.temporal.truth import FormulaTruth, Valuation, valuation
-from checker.properties.temporal.vacuity import is_judged
-from checker.steps import step_of
+from checker.properties.temporal.vacuity import every_formula, is_judged
+from checker.reduction.original_run import lasso_of
+from checker.steps import Step, step_of
 from checker.traces import Trace, replay, to_json
 from checker.verdicts import Outcome, Verdict, Violation
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
 from semantics.properties.propositions import Proposition, atoms_of
 from semantics.properties.temporal import ENVIRONMENTS, Fairness, Now, Steps, Temporal, atoms
+from semantics.state.configuration import Configuration
 from semantics.successors import expand
 
 
@@ -76,6 +78,13 @@ def where_pending(found: Exploration) -> Pending:
     return pending_requests(found.configurations)
 
 
+def deadlock_at(number: int, c: Configuration) -> Finding | None:
+    """Return the deadlock at a configuration where no agent can move, None without remaining work."""
+    inspection = DeadlockFreedom()
+    inspection(number, c, expand(c))
+    return next(iter(inspection.collected.first.values()), None)
+
+
 _RULES, _REQUESTS = EACH_RULE_AND_REQUEST
 _WORLD = Fairness(False, Steps(ENVIRONMENTS), (), "environment")
 ENOUGH: Final = {
@@ -101,12 +110,14 @@ class TemporalDecider:
         self.setting = found.configurations[0].setting
         kept = kept_graph(found)
         self.graph: Graph = kept.total(optional(kept.labels, self.setting.arriving))
-        asked = (atom for each in properties if each.temporal is not None for atom in atoms(each.temporal))
+        decided = properties if found.reducer is None else map(found.reducer.decided_for, properties)
+        asked = (atom for each in decided if each.temporal is not None for atom in atoms(each.temporal))
         propositions = [atom.proposition for atom in asked if isinstance(atom, Now)]
         if is_judged(self.graph):  # part by part
             propositions = [atom for each in propositions for atom in atoms_of(each)]
         truth = FormulaTruth(self.graph, where_true(found, propositions))
-        self.formulas = FormulaDecider(truth, found.complete, partial(is_still, found))
+        is_kept = every_formula if found.reducer is None else found.reducer.keeps
+        self.formulas = FormulaDecider(truth, found.complete, partial(is_still, found), is_kept)
 
     def decide(self, asked: Property) -> Verdict:
         """Return the verdict on a property; it holds only after a complete exploration."""
@@ -126,8 +137,7 @@ class TemporalDecider:
 
     def linear(self, asked: Property) -> Verdict:
         """Return the verdict on a formula about every fair run."""
-        assert asked.temporal is not None
-        found = self.formulas.linear(asked.temporal, self.conditions(asked.fairness), asked.ranges)
+        found = self.formulas.linear(self.formula(asked), self.conditions(asked.fairness), asked.ranges)
         if found.run is None or found.outcome is not Outcome.VIOLATED:
             return self.unviolated(asked, found)
         message = f"false{'' if found.run.loop else ', whatever follows'}: {asked.shown}"
@@ -135,14 +145,19 @@ class TemporalDecider:
 
     def branching(self, asked: Property) -> Verdict:
         """Return the verdict on a formula about the tree of fair runs."""
-        assert asked.temporal is not None
-        found = self.formulas.branching(asked.temporal, self.conditions(asked.fairness), asked.ranges)
+        found = self.formulas.branching(self.formula(asked), self.conditions(asked.fairness), asked.ranges)
         if found.run is None or found.outcome is not Outcome.VIOLATED:
             return self.unviolated(asked, found)
         shown = tuple(self.pauses(found.run))
         if not len(found.run):
             shown = ("no single run shows it: it is about all continuations",)
         return self.violated(asked, f"false at c0: {asked.shown}", found.run, shown)
+
+    def formula(self, asked: Property) -> Temporal:
+        """Return the formula to decide for a property."""
+        decided = asked if self.found.reducer is None else self.found.reducer.decided_for(asked)
+        assert decided.temporal is not None
+        return decided.temporal
 
     def unviolated(self, asked: Property, found: Decision) -> Verdict:
         """Return the verdict on a formula without a counterexample."""
@@ -158,7 +173,7 @@ class TemporalDecider:
     def violated(self, asked: Property, message: str, run: Lasso, shown: tuple[str, ...]) -> Verdict:
         """Return the verdict on a violated formula, and whether only unfair runs violate it."""
         assert asked.temporal is not None
-        if not asked.fairness:
+        if not asked.fairness and self.found.reducer is None:
             ways = ((words, self.conditions(each)) for words, each in ENOUGH.items())
             enough = self.formulas.enough(asked.temporal, asked.kind is PropertyKind.LTL, ways)
             shown += (f"only unfair runs violate it: it holds under {enough}",) if enough else ()
@@ -215,11 +230,10 @@ class TemporalDecider:
         found = deadlocks.found()
         violations = []
         for each in found[: self.most]:
-            message = f"{each.finding.message}, and no promised step leads on"
             trace = self.trace(deadlocks.run(each))
-            violations.append(
-                Violation("deadlock", message, trace, each.finding.details, each.finding.subject)
-            )
+            finding = self.in_original_names(each.finding, trace)
+            message = f"{finding.message}, and no promised step leads on"
+            violations.append(Violation("deadlock", message, trace, finding.details, finding.subject))
         ends = sum((each.components >= 0 for each in found), np.zeros(self.graph.size, dtype=np.bool_))
         fine = deadlocks.still() & ~ends
         outcome = Outcome.VIOLATED if violations else self.unless_violated()
@@ -238,9 +252,13 @@ class TemporalDecider:
 
     def stuck(self, number: int) -> Finding | None:
         """Return the deadlock at a configuration where no agent can move, None without remaining work."""
-        inspection, c = DeadlockFreedom(), self.found.configurations[number]
-        inspection(number, c, expand(c))
-        return next(iter(inspection.collected.first.values()), None)
+        return deadlock_at(number, self.found.configurations[number])
+
+    def in_original_names(self, finding: Finding, trace: Trace) -> Finding:
+        """Return a deadlock as it is in the mission's own run, where exchanges changed the names in the finding."""
+        if self.found.reducer is None or self.found.reducer.symmetry is None or trace.loop is None:
+            return finding
+        return deadlock_at(finding.at, trace.configurations[trace.loop]) or finding
 
     # --- shared parts
 
@@ -275,17 +293,26 @@ class TemporalDecider:
         """Return a run as a trace, replayed through the rules; stutter steps are left out."""
         stem, loop = ([e for e in edges if self.graph.actions[e] >= 0] for edges in (lasso.stem, lasso.loop))
         stays = lasso.loop or (lasso.stem and self.graph.actions[lasso.stem[-1]] < 0)
-        configurations = self.found.configurations
-        steps = (
-            step_of(
-                configurations[self.graph.sources[edge]],
-                self.graph.labels[self.graph.actions[edge]],
-                configurations[self.graph.targets[edge]],
-            )
-            for edge in (*stem, *loop)
-        )
+        initial, steps, begin = self.run(stem, loop)
         shortest = lasso.shortest and self.found.reducer is None
-        trace = Trace(configurations[0], tuple(steps), len(stem) if stays else None, shortest)
+        trace = Trace(initial, steps, begin if stays else None, shortest)
         if replay(trace.initial, to_json(trace, "", "")) != trace:
             raise AssertionError("the rules do not replay a run that they gave")
         return trace
+
+    def run(self, stem: list[int], loop: list[int]) -> tuple[Configuration, tuple[Step, ...], int]:
+        """Return the initial configuration of the mission's run along edges, its steps, and the length of its stem."""
+        found, graph = self.found, self.graph
+        edges = [
+            (int(graph.sources[edge]), graph.labels[graph.actions[edge]], int(graph.targets[edge]))
+            for edge in (*stem, *loop)
+        ]
+        configurations = found.configurations
+        if found.reducer is None or found.reducer.symmetry is None:
+            steps = (step_of(configurations[a], label, configurations[b]) for a, label, b in edges)
+            return configurations[0], tuple(steps), len(stem)
+        taken, begin = lasso_of(found, edges[: len(stem)], edges[len(stem) :])
+        trace = Trace(configurations[0] if found.start is None else found.start)
+        for each in taken:
+            trace = trace.extended(each)
+        return trace.initial, trace.steps, begin

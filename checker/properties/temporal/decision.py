@@ -11,7 +11,7 @@ from checker.properties.temporal.lasso_evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso
 from checker.properties.temporal.linear import counterexample
 from checker.properties.temporal.truth import FormulaTruth
-from checker.properties.temporal.vacuity import Judged, judge_branching, judge_linear
+from checker.properties.temporal.vacuity import IsKept, Judged, every_formula, judge_branching, judge_linear
 from checker.verdicts import Outcome
 from semantics.properties.property import Ranges
 from semantics.properties.temporal import Temporal
@@ -44,11 +44,13 @@ class FormulaDecider:
         truth: The truth of their atoms.
         complete: Whether the graph is complete; else no formula is known to hold.
         is_still: Returns whether the values that a formula reads never change.
+        is_kept: Returns whether the graph decides a formula: one that a reduction made does not decide all.
     """
 
     truth: FormulaTruth
     complete: bool
     is_still: Callable[[Temporal], bool]
+    is_kept: IsKept = every_formula
 
     def linear(self, formula: Temporal, fairness: Conditions, ranges: Ranges = ()) -> Decision:
         """Decide a formula about every fair run."""
@@ -63,7 +65,9 @@ class FormulaDecider:
         size = self.truth.graph.size
         if not self.complete:
             return Decision(Outcome.INCOMPLETE, size)
-        judged = self.judged(formula, lambda: judge_linear(self.truth, formula, fairness, ranges))
+        judged = self.judged(
+            formula, lambda: judge_linear(self.truth, formula, fairness, ranges, self.is_kept)
+        )
         return Decision(Outcome.HOLDS, size, judged.witness, judged.remarks)
 
     def branching(self, formula: Temporal, fairness: Conditions, ranges: Ranges = ()) -> Decision:
@@ -75,7 +79,7 @@ class FormulaDecider:
         witness, examined = tree.evidence(formula) if surely else None, int(tree.where(formula).sum())
         if not self.complete:
             return Decision(Outcome.INCOMPLETE, examined, witness)
-        judged = self.judged(formula, lambda: judge_branching(tree, formula, ranges))
+        judged = self.judged(formula, lambda: judge_branching(tree, formula, ranges, self.is_kept))
         return Decision(Outcome.HOLDS, examined, judged.witness or witness, judged.remarks)
 
     def judged(self, formula: Temporal, judge: Callable[[], Judged]) -> Judged:

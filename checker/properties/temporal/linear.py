@@ -6,7 +6,7 @@ from checker.properties.temporal.components import Conditions, fair_components
 from checker.properties.temporal.lassos import Lasso, fair_cycles, tightened
 from checker.properties.temporal.product import Product, product_of
 from checker.properties.temporal.truth import FormulaTruth
-from semantics.properties.temporal import Both, Globally, Temporal
+from semantics.properties.temporal import Temporal, conjuncts
 
 
 def counterexample(
@@ -29,16 +29,6 @@ def counterexample(
     runs = (_counterexample(graph, truth, each, fairness) for each in conjuncts(formula))
     found = (each for each in runs if each is not None)
     return min(found, key=lambda lasso: (bool(lasso.loop), len(lasso)), default=None)
-
-
-def conjuncts(formula: Temporal) -> list[Temporal]:
-    """Return the conjuncts of a formula, with `[]` distributed over them."""
-    match formula:
-        case Both(left, right):
-            return [*conjuncts(left), *conjuncts(right)]
-        case Globally(Both(left, right)):
-            return [*conjuncts(Globally(left)), *conjuncts(Globally(right))]
-    return [formula]
 
 
 def _counterexample(

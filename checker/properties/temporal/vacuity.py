@@ -19,14 +19,23 @@ from checker.properties.temporal.digraph import shortest
 from checker.properties.temporal.effort import Exhausted
 from checker.properties.temporal.lasso_evaluation import is_true_on
 from checker.properties.temporal.lassos import Lasso, component_of, fair_cycle, tightened
-from checker.properties.temporal.linear import conjuncts, counterexample
+from checker.properties.temporal.linear import counterexample
 from checker.properties.temporal.truth import FormulaTruth
 from semantics.properties.property import Ranges
 from semantics.properties.propositions import Always, Not, Or
-from semantics.properties.temporal import Denied, Either, Globally, Now, OnAllPaths, Temporal
+from semantics.properties.temporal import Denied, Either, Globally, Now, OnAllPaths, Temporal, conjuncts
 
 MOST_EDGES: Final = 1_000_000
 """The budget for deciding a formula's variants, in edges; each decision costs the edges of the graph."""
+
+
+IsKept = Callable[[Temporal], bool]
+"""Returns whether a graph decides a formula; the graph of a reduced exploration does not decide all."""
+
+
+def every_formula(_: Temporal) -> bool:
+    """Return whether a graph with every run decides a formula: it does."""
+    return True
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,21 +48,41 @@ class Judged:
 
 @dataclass(eq=False)
 class _Trials:
-    """Decides strengthened formulas within a bound, and records those that fail."""
+    """Decides strengthened formulas within a bound, and records those that fail.
 
+    A formula that the graph does not decide is taken to fail.
+
+    Attributes:
+        truth: The truth of atoms.
+        decide: Returns whether a formula holds.
+        left: The number of decisions left.
+        is_kept: Returns whether the graph decides a formula.
+    """
+
+    truth: FormulaTruth
     decide: Callable[[Temporal], bool]
     left: int
+    is_kept: IsKept
     failed: list[Temporal] = field(default_factory=list)
 
     def holds(self, formula: Formula) -> bool:
+        strengthened = cast("Temporal", formula)  # the original is a temporal formula
+        if not self.is_kept(strengthened):
+            return False
         if self.left == 0:
             raise Exhausted
         self.left -= 1
-        strengthened = cast("Temporal", formula)  # the original is a temporal formula
         held = self.decide(strengthened)
         if not held:
             self.failed.append(strengthened)
         return held
+
+    def is_never(self, condition: Temporal) -> bool:
+        """Return whether a condition about one configuration or step is never true."""
+        if not self.is_kept(Globally(Denied(condition))):
+            return False
+        true = self.truth.everywhere(condition)
+        return true is not None and not true.any()
 
 
 def is_judged(graph: Graph) -> bool:
@@ -61,7 +90,13 @@ def is_judged(graph: Graph) -> bool:
     return len(graph.targets) <= MOST_EDGES
 
 
-def judge_linear(truth: FormulaTruth, formula: Temporal, fairness: Conditions, ranges: Ranges) -> Judged:
+def judge_linear(
+    truth: FormulaTruth,
+    formula: Temporal,
+    fairness: Conditions,
+    ranges: Ranges,
+    is_kept: IsKept = every_formula,
+) -> Judged:
     """Return the judgement on a formula that all fair runs of a complete graph satisfy."""
     graph, held = truth.graph, set(conjuncts(formula))
 
@@ -69,8 +104,8 @@ def judge_linear(truth: FormulaTruth, formula: Temporal, fairness: Conditions, r
         changed = (each for each in conjuncts(strengthened) if each not in held)
         return all(counterexample(graph, truth, each, fairness) is None for each in changed)
 
-    trials = _Trials(decide, MOST_EDGES // max(1, len(graph.targets)))
-    remarks = _remarks(truth, formula, ranges, trials)
+    trials = _Trials(truth, decide, MOST_EDGES // max(1, len(graph.targets)), is_kept)
+    remarks = _remarks(formula, ranges, trials)
     if not trials.left or (remarks and not trials.failed):
         return Judged(remarks)
     try:
@@ -82,10 +117,13 @@ def judge_linear(truth: FormulaTruth, formula: Temporal, fairness: Conditions, r
     return Judged(remarks, witness)
 
 
-def judge_branching(tree: Branching, formula: Temporal, ranges: Ranges) -> Judged:
+def judge_branching(
+    tree: Branching, formula: Temporal, ranges: Ranges, is_kept: IsKept = every_formula
+) -> Judged:
     """Return the judgement on a true formula; with a witness if its own evidence is empty."""
-    trials = _Trials(lambda each: bool(tree.where(each)[0]), MOST_EDGES // max(1, len(tree.graph.targets)))
-    remarks = _remarks(tree.truth, formula, ranges, trials)
+    most = MOST_EDGES // max(1, len(tree.graph.targets))
+    trials = _Trials(tree.truth, lambda each: bool(tree.where(each)[0]), most, is_kept)
+    remarks = _remarks(formula, ranges, trials)
     if len(tree.evidence(formula)):
         return Judged(remarks)
     found = (tree.evidence(each, claimed=False) for each in trials.failed)
@@ -98,32 +136,32 @@ def judge_branching(tree: Branching, formula: Temporal, ranges: Ranges) -> Judge
 # --- unneeded parts -------------------------------------------------------------------------------------------
 
 
-def _remarks(truth: FormulaTruth, formula: Temporal, ranges: Ranges, trials: _Trials) -> tuple[str, ...]:
+def _remarks(formula: Temporal, ranges: Ranges, trials: _Trials) -> tuple[str, ...]:
     """Return the remarks on parts, as far as bounds allow."""
-    found = list(_never_begun(truth, formula))
+    found = list(_never_begun(formula, trials))
     if found:
         return tuple(found)
     try:
-        found.extend(_remark(truth, formula, *each) for each in unneeded(formula, ranges, trials.holds))
+        found.extend(_remark(formula, *each, trials) for each in unneeded(formula, ranges, trials.holds))
     except (Exhausted, AutomatonTooLargeError, BoundMet):
         trials.left = 0
     return few(found)
 
 
-def _never_begun(truth: FormulaTruth, formula: Temporal) -> Iterator[str]:
+def _never_begun(formula: Temporal, trials: _Trials) -> Iterator[str]:
     """Yield a remark if the condition of an implication is never true; this needs no decision."""
     match formula:
         case Globally(Either(Denied(condition), conclusion)) | OnAllPaths(
             Globally(Either(Denied(condition), conclusion))
         ):
-            if _is_never(truth, condition):
+            if trials.is_never(condition):
                 yield f"vacuous: '{condition}' is never true, so that '{conclusion}' is never needed"
 
 
-def _remark(truth: FormulaTruth, formula: Temporal, around: Subformula, part: Subformula) -> str:
+def _remark(formula: Temporal, around: Subformula, part: Subformula, trials: _Trials) -> str:
     said = never_needed(around, part)
     conditions = [_condition_before(formula, path) for path in part.paths]
-    if all(each is not None and _is_never(truth, each) for each in conditions):
+    if all(each is not None and trials.is_never(each) for each in conditions):
         never = "and its like are" if len(conditions) > 1 else "is"
         return f"vacuous: '{conditions[0]}' {never} never true, so that {said}"
     return f"{said}: it holds without"
@@ -139,11 +177,6 @@ def _condition_before(formula: Temporal, path: tuple[int, ...]) -> Temporal | No
         case Or((Not(condition), _)):
             return Now(condition)
     return None
-
-
-def _is_never(truth: FormulaTruth, condition: Temporal) -> bool:
-    true = truth.everywhere(condition)
-    return true is not None and not true.any()
 
 
 # --- an interesting witness -----------------------------------------------------------------------------------

@@ -9,6 +9,7 @@ from everything_found import everything, stale_races
 from hypothesis import given
 from hypothesis import strategies as st
 from mission_texts import missions
+from random_formulas import atoms_of
 from scale import IS_WHOLE, crossed, examples
 from shipped import UNTIMED
 
@@ -20,7 +21,7 @@ from checker.traces import replay, to_json
 from semantics import Control, Scheduler, hypothesis_strategies
 from semantics.properties.kinds import PropertyKind
 from semantics.properties.property import Property
-from semantics.properties.propositions import Ended, HasPending, Inside, LinkedWith, Present, Waiting
+from semantics.properties.propositions import Inside, Waiting
 from semantics.races.monitor import monitored
 from specs import MissionError
 from specs.elaboration import Variation, load_mission
@@ -110,18 +111,6 @@ def agreed(initial, formulas=(), most=600):
 # --- generated ------------------------------------------------------------------------------------------------
 
 
-def atoms_of(initial):
-    """Return a strategy of propositions about a mission's entities and agents."""
-    name = st.sampled_from(sorted(initial.setting.kinds))
-    agent = st.sampled_from(initial.alpha.names())
-    return st.one_of(
-        st.builds(Inside, name, name, st.booleans()),
-        st.builds(LinkedWith, name, name, st.booleans()),
-        st.builds(Present, name),
-        *(st.builds(atom, agent) for atom in (Ended, Waiting, HasPending)),
-    )
-
-
 HOSTS = ("uav0", "uav1", "vessel0", "gcs0")
 LOOK = "observe(PARENT(HOST)) react { case obs => skip }"
 ROUNDS = (
@@ -209,8 +198,8 @@ def test_what_it_does_not_preserve_is_refused():
         check(mission, reduce=POR)
     found = Reduced(load_mission("oil_spill").initial, POR)
     assert (
-        found.refuses(Property(PropertyKind.CTL, "EF p"))
-        == "it is not known to be kept for properties of the kind 'ctl'"
+        found.refuses(Property(PropertyKind.WITHIN, "p"))
+        == "it is not known to be kept for properties of the kind 'within'"
     )
 
 

@@ -13,6 +13,7 @@ from swarms import LOOKS, ORBITS, mission, swarms
 from checker import CheckpointError, Engine, Keeping, Limits, RefusedError, Stop, explore
 from checker.engines.fast import explorer, space
 from checker.reduction import Reduced, Reduction
+from semantics.properties.property import watching
 from specs.elaboration import load_mission
 
 POR, SYMMETRY = (Reduction.POR,), (Reduction.SYMMETRY,)
@@ -35,8 +36,8 @@ def kept(request, monkeypatch):
     monkeypatch.setattr(space.Space, "COMPRESSED_FROM", 0)
 
 
-def searched(initial, reductions, **options):
-    reduced = Reduced(initial, reductions) if reductions else None
+def searched(initial, reductions, runs=(), **options):
+    reduced = Reduced(initial, reductions, runs=runs) if reductions else None
     limits = options.pop("limits", Limits(configurations=MOST))
     return explore(initial, engine=Engine.FAST, reduce=reduced, limits=limits, **options)
 
@@ -44,20 +45,22 @@ def searched(initial, reductions, **options):
 def seen(found):
     """Return everything that an exploration found."""
     numbers = (found.depth, found.expanded, found.transitions, found.allowed, found.rules)
-    return list(found.configurations), list(map(int, found.origins)), numbers
+    graph = found.survey.graph()
+    edges = (graph.starts.tolist(), graph.targets.tolist())
+    return list(found.configurations), list(map(int, found.origins)), numbers, edges
 
 
-def assert_goes_on(initial, reductions, folder, cuts, threads=1):
+def assert_goes_on(initial, reductions, folder, cuts, threads=1, runs=()):
     """Cut an exploration at some sizes, go on each time, and compare its end with that of an uncut one."""
-    whole = searched(initial, reductions)
+    whole = searched(initial, reductions, runs)
     for at in cuts:
         limits, stop = interrupted_at(at, Limits(configurations=MOST))
         keeping = Keeping(folder, True, "d")
         cut = searched(
-            initial, reductions, limits=limits, keeping=keeping, report=stop, every=0.0, threads=threads
+            initial, reductions, runs, limits=limits, keeping=keeping, report=stop, every=0.0, threads=threads
         )
         assert any(bound.stop is Stop.INTERRUPTION for bound in cut.bounds) or at >= whole.size
-    found = searched(initial, reductions, keeping=Keeping(folder, True, "d"), threads=threads)
+    found = searched(initial, reductions, runs, keeping=Keeping(folder, True, "d"), threads=threads)
     assert seen(found) == seen(whole)
     assert found.bounds == whole.bounds
     return whole
@@ -70,6 +73,17 @@ def test_what_was_cut_goes_on(tmp_path, name, variation):
     with suppress(RefusedError):
         whole = assert_goes_on(initial, variation, str(tmp_path), (2, 9, 30), threads=3)
         assert whole.size > 5
+
+
+@pytest.mark.usefixtures("kept")
+@pytest.mark.parametrize("reductions", REDUCTIONS.values(), ids=REDUCTIONS)
+def test_followed_transitions_are_kept_for_properties_of_runs(tmp_path, reductions):
+    there = "forall r: Robot . actually r in room0"
+    loaded = mission(LOOKS, 4, f'check {{ ltl "all come": F G {there} }}')
+    runs = [each for each in loaded.properties if each.is_of_runs]
+    initial = watching(loaded.initial, loaded.properties)
+    whole = assert_goes_on(initial, reductions, str(tmp_path), (5, 20), runs=runs)
+    assert whole.reducer.runs == tuple(runs)
 
 
 @crossed(UNTIMED, REDUCTIONS)

@@ -4,7 +4,6 @@ import pytest
 from structures import P, Q
 
 from checker.properties.temporal.buchi_automaton import AutomatonTooLargeError, automaton_of
-from checker.properties.temporal.linear import conjuncts
 from semantics.properties.propositions import Always, Known
 from semantics.properties.temporal import (
     Both,
@@ -18,6 +17,7 @@ from semantics.properties.temporal import (
     Release,
     Until,
     WeakUntil,
+    conjuncts,
 )
 
 p, q = Now(P), Now(Q)

@@ -120,12 +120,9 @@ def test_what_nobody_may_say_any_more_leads_nowhere():
     assert decided(said).outcome is Outcome.HOLDS
 
 
-def test_reductions_leave_it_undecided():
-    found = decided(SENDS, reduce=[Reduction.POR])
-    assert (found.outcome, found.note) == (
-        Outcome.INCOMPLETE,
-        "not decided under this reduction: it is not known to be kept under fairness",
-    )
+def test_por_leaves_out_no_step_where_only_the_environment_moves():
+    assert decided(SENDS, reduce=[Reduction.POR]).outcome is Outcome.HOLDS
+    assert decided(SENDS.replace(" and returns", ""), reduce=[Reduction.POR]).outcome is Outcome.VIOLATED
 
 
 def test_what_was_cut_off_does_not_hold():
