@@ -1,5 +1,6 @@
 from .check import Checkable as Checkable
 from .check import check as check
+from .engines.capabilities import CombinationError as CombinationError
 from .engines.choose import explore as explore
 from .engines.cluster.crew import ClusterError as ClusterError
 from .engines.contract import CheckpointError as CheckpointError

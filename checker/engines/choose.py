@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, assert_never
 
+from checker.engines.capabilities import engines, features
 from checker.engines.contract import (
     Cluster,
     CompilerError,
     Engine,
-    EngineError,
     Exploration,
     Inspect,
     Keeping,
@@ -43,20 +43,21 @@ def explore(  # noqa: PLR0913 - independent options, passed by name
 
     Each of `inspect` sees each configuration as it is expanded, in the order of discovery. The other arguments are the
     attributes of `Options`.
+
+    Raises:
+        CombinationError: Two options do not work together, or one with the mission.
     """
-    kept, crew = keeping or Keeping(), cluster or Cluster()
+    kept, crew, timing = keeping or Keeping(), cluster or Cluster(), initial.setting.timing is not None
+    names = () if reduce is None else reduce.names
+    engines(
+        features(limits or Limits(), kept, names, cluster=cluster, threads=threads, timing=timing), engine
+    )
     options = Options(limits or Limits(), report, every, engine, edges, reduce, kept, crew, threads)
     return explore_by(initial, tuple(inspect), options)
 
 
 def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
-    """Visit the reachable configurations with these options.
-
-    Raises:
-        EngineError: The engine, or its checkpoints, don't support the mission's timing; or the engine writes no files.
-    """
-    if options.engine is Engine.REFERENCE and _is_kept(options):
-        raise EngineError("the engine 'reference' explores in memory, without checkpoints and spilling")
+    """Visit the reachable configurations with these options, which work together."""
     if initial.setting.timing is not None:
         return _explore_in_time(initial, inspect, options)
     match options.engine:
@@ -72,16 +73,8 @@ def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Op
             assert_never(options.engine)
 
 
-def _is_kept(options: Options) -> bool:
-    return options.keeping.folder is not None or options.limits.spill is not None
-
-
 def _explore_in_time(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
-    if options.engine is Engine.RAY:
-        raise EngineError("the engine 'ray' does not explore missions with a section 'timing' yet")
     if options.engine is Engine.FAST:
-        if options.keeping != Keeping() or options.limits.spill is not None:
-            raise EngineError("missions with a section 'timing' are explored in memory, without checkpoints")
         load_numba()
         from checker.engines.zones.explorer import explore_in_zones  # noqa: PLC0415  # numba takes its time to load
 

@@ -15,9 +15,8 @@ from replaying import assert_replays
 from scale import IS_WHOLE
 
 import checker.limits
-from checker import Engine, Keeping, Limits, Outcome, Reduction, check
+from checker import CombinationError, Engine, Keeping, Limits, Outcome, Reduction, check
 from checker.check import reductions_of
-from checker.engines.contract import EngineError
 from checker.engines.fast import explorer
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import Space
@@ -82,7 +81,7 @@ def checked(mission, row, reductions, folder):
             {"keeping": Keeping(str(folder), digest="d")},
             {"limits": replace(MOST, spill=str(folder))},
         ):
-            with pytest.raises(EngineError, match="in memory, without checkpoints"):
+            with pytest.raises(CombinationError, match=r"in memory|without --spill"):
                 check(mission, **{"limits": MOST, **options, **more})
         return check(mission, limits=MOST, **options)
     limits = MOST
