@@ -15,6 +15,11 @@ from .limits import Bound as Bound
 from .limits import Interruption as Interruption
 from .limits import Limits as Limits
 from .limits import Stop as Stop
+from .models import MissionModel as MissionModel
+from .models import Model as Model
+from .models import ModelExploration as ModelExploration
+from .models import ModelStep as ModelStep
+from .models import ModelVerdict as ModelVerdict
 from .properties.ownership import owned as owned
 from .reduction import Reduction as Reduction
 from .reduction import RefusedError as RefusedError

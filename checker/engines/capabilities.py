@@ -31,6 +31,7 @@ class Feature(Enum):
     MEMORY = "--max-memory"
     PARANOID = "--paranoid"
     RUNS = "ltl, ctl, progress"
+    MODEL = "a model of your own"
 
 
 class Why(Enum):
@@ -126,6 +127,13 @@ UNSUPPORTED: Final = (
         "missions with a section 'timing' are not re-checked by --paranoid", "leave --paranoid out"),
     _P(_F.TIMING, _F.RUNS, _W.UNDECIDED,
         "properties of runs without times are not decided beside a section 'timing'", "ask for times: within, time"),
+    _P(_F.MODEL, _F.FAST, _W.DESIGN, "a model of your own is explored by the reference engine: the others learn the "
+        "rules of missions", "leave engine out"),
+    _P(_F.MODEL, _F.RAY, _W.DESIGN, "a model of your own is explored by the reference engine: the others learn the "
+        "rules of missions", "leave engine out"),
+    _P(_F.MODEL, _F.POR, _W.DESIGN, "the reduction 'por' is made for the rules of missions", "leave reduce out"),
+    _P(_F.MODEL, _F.SYMMETRY, _W.DESIGN, "the reduction 'symmetry' is made for the rules of missions",
+        "leave reduce out"),
     _P(_F.THREADS, _F.POR, _W.IDLE, "the search runs on one thread", ""),
     _P(_F.THREADS, _F.SYMMETRY, _W.IDLE, "the search runs on one thread", ""),
     _P(_F.THREADS, _F.TIMING, _W.IDLE, "the search runs on one thread", ""),

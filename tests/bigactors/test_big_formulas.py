@@ -7,7 +7,7 @@ from bigraphs.errors import NotationError
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system
 from bigraphs.notation.formulas import MOST_WORDS
-from checker.properties.temporal.claim_text import MOST_NESTED, parse_claim, vocabulary_of
+from checker.properties.temporal.claim_text import MOST_NESTED, claim_words_of, parse_claim
 
 SYSTEM = read_system("""\
 ctrl Room = 0; atomic ctrl Ball = 0; atomic fun ctrl Lamp(n) = 0;
@@ -25,7 +25,7 @@ begin brs
   preds = { lit(n), until, ball };
 end
 """)
-WORDS = vocabulary_of(SYSTEM)
+WORDS = claim_words_of(SYSTEM)
 
 
 @pytest.mark.parametrize(

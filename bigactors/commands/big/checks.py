@@ -76,12 +76,12 @@ def check_formulas(options: Namespace, system: System) -> None:
     """Refuse an invalid formula before a long exploration, not after it."""
     for logic, text in asked_formulas(options):
         from checker.properties.temporal.claim_text import (  # geometry is slow to load
+            claim_words_of,
             parse_claim,
-            vocabulary_of,
         )
 
         try:
-            parse_claim(text, logic, vocabulary_of(system))
+            parse_claim(text, logic, claim_words_of(system))
         except NotationError as error:
             raise _mistake(error, options, logic) from error
     if options.storm:

@@ -1,6 +1,6 @@
 """LTL and CTL on systems of bigraphs: the checker's engine on their transition systems.
 
-A weight only makes a step possible; `checker.properties.temporal.claims` says which runs there are.
+A weight only makes a step possible; `checker.properties.temporal.claim_decider` says which runs there are.
 """
 
 from collections.abc import Iterable, Iterator
@@ -13,8 +13,8 @@ import numpy as np
 from bigraphs.claims import ClaimOutcome, Decided, WitnessRun, WitnessStep
 from bigraphs.transitions import TransitionSystem
 from checker.engines.graph import STUTTER, Graph
-from checker.properties.temporal.claim_text import parse_claim, vocabulary_of
-from checker.properties.temporal.claims import ClaimDecider
+from checker.properties.temporal.claim_decider import ClaimDecider
+from checker.properties.temporal.claim_text import claim_words_of, parse_claim
 from checker.properties.temporal.decision import Decision
 from checker.properties.temporal.lassos import Lasso
 from checker.verdicts import Outcome
@@ -63,7 +63,7 @@ class Decider:
             predicate.label: np.frombuffer(bytes(holds), dtype=np.uint8) > 0 for predicate, holds in columns
         }
         return ClaimDecider(
-            graph_of(self.found), values, self.found.complete, vocabulary_of(self.found.system)
+            graph_of(self.found), values, self.found.complete, claim_words_of(self.found.system)
         )
 
     def decide(self, logic: str, text: str) -> Decided:
@@ -73,7 +73,7 @@ class Decider:
         """
         said = f"{logic} {' '.join(text.split())}"
         if not len(self.found):
-            parse_claim(text, logic, vocabulary_of(self.found.system))
+            parse_claim(text, logic, claim_words_of(self.found.system))
             return Decided(said, ClaimOutcome.INCOMPLETE)
         found = self.claims.decide(logic, text)
         linear = logic == "ltl"

@@ -71,7 +71,7 @@ def fair_to(strong: bool, steps: t.Steps, word: str) -> t.Fairness:
     return t.Fairness(strong, steps, ("rule",), word)
 
 
-class Vocabulary(NamedTuple):
+class ClaimWords(NamedTuple):
     """The words of formulas.
 
     Attributes:
@@ -87,11 +87,11 @@ class Vocabulary(NamedTuple):
     instantaneous: Collection[str] = ()
 
 
-def vocabulary_of(system: System) -> Vocabulary:
+def claim_words_of(system: System) -> ClaimWords:
     """Return the vocabulary of a system of bigraphs; a group has the rules of one name."""
     rules = [rule for each in system.classes if not each.instantaneous for rule in each.rules]
     at_once = [rule for each in system.classes if each.instantaneous for rule in each.rules]
-    return Vocabulary(
+    return ClaimWords(
         tuple(predicate.label for predicate in system.predicates),
         tuple(dict.fromkeys(chain.from_iterable((rule.name, rule.label) for rule in rules))),
         {rule.label for rule in rules},
@@ -99,7 +99,7 @@ def vocabulary_of(system: System) -> Vocabulary:
     )
 
 
-def parse_claim(text: str, logic: str, words: Vocabulary) -> Claim:
+def parse_claim(text: str, logic: str, words: ClaimWords) -> Claim:
     """Parse a formula of a logic, `ltl` or `ctl`; raises NotationError for an invalid formula."""
     elaboration = _Elaboration(text, logic, words)
     term = s.parse_formula(text)
@@ -134,7 +134,7 @@ class _Part:
 class _Elaboration:
     """Builds the formulas of one logic from syntax trees."""
 
-    def __init__(self, text: str, logic: str, words: Vocabulary) -> None:
+    def __init__(self, text: str, logic: str, words: ClaimWords) -> None:
         self.text, self.logic, self.words = text, logic, words
 
     def state(self, part: _Part) -> t.Temporal:
@@ -180,7 +180,7 @@ class _Elaboration:
             yield fair_to(strength.text == "strong", steps, word.text)
 
     def steps(self, word: s.FormulaWord) -> t.Steps:
-        """Return the steps of a rule, or of all rules of a name (see `Vocabulary`)."""
+        """Return the steps of a rule, or of all rules of a name (see `ClaimWords`)."""
         name = _unquoted(word.text)
         if name not in self.words.rules and name in self.words.instantaneous:
             message = f"the rule '{name}' is instantaneous, so no step is its own"

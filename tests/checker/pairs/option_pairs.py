@@ -13,7 +13,9 @@ from checker.engines.capabilities import Feature, Why, pair_of
 from checker.engines.contract import Cluster
 from specs.elaboration import read_mission
 
-FEATURES = tuple(each for each in Feature if each not in (Feature.WORKERS, Feature.RESUME, Feature.MEMORY))
+FEATURES = tuple(
+    each for each in Feature if each not in (Feature.WORKERS, Feature.RESUME, Feature.MEMORY, Feature.MODEL)
+)
 ENGINES = {Feature.REFERENCE: Engine.REFERENCE, Feature.FAST: Engine.FAST, Feature.RAY: Engine.RAY}
 PAIRS = tuple(pair for pair in combinations(FEATURES, 2) if not {*pair} <= {*ENGINES})
 REDUCTIONS = {Feature.POR: Reduction.POR, Feature.SYMMETRY: Reduction.SYMMETRY}

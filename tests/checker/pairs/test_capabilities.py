@@ -7,8 +7,10 @@ import pytest
 from option_pairs import PAIRS, marked, text_of
 from repository import name_of, parsed, sources
 
+from bigactors.arguments import make_parser
 from bigactors.cli import main
-from checker.engines.capabilities import NEEDS, UNSUPPORTED, Feature, pair_of
+from checker import Engine, Reduction
+from checker.engines.capabilities import ENGINES, NEEDS, REDUCTIONS, UNSUPPORTED, Feature, pair_of
 
 WORDS = {
     Feature.WORKERS: ["--workers", "2"],
@@ -20,7 +22,7 @@ WORDS = {
 }
 HAS_RAY = importlib.util.find_spec("ray") is not None
 IDS = [f"{one.name}-{other.name}" for one, other in PAIRS]
-REFUSED = [pair for pair in UNSUPPORTED if pair.why.is_refusal]
+REFUSED = [pair for pair in UNSUPPORTED if pair.why.is_refusal and pair.one is not Feature.MODEL]
 
 
 @pytest.mark.parametrize(("one", "other"), PAIRS, ids=IDS)
@@ -66,6 +68,13 @@ def test_no_pair_is_refused_outside_the_table():
     assert files["CombinationError"] == {"checker/engines/capabilities.py"}
     assert files["EngineError"] == set()
     assert all(file.startswith("checker/reduction/") for file in files["RefusedError"])
+
+
+def test_every_engine_and_reduction_is_a_feature():
+    options = make_parser()[1]["check"].parse_args
+    assert {ENGINES[engine].value for engine in Engine} == {f"--engine {each.value}" for each in Engine}
+    assert {REDUCTIONS[each].value for each in Reduction} == {f"--reduce {each}" for each in Reduction}
+    assert all(options(["x", "--engine", each.value]).engine == each.value for each in Engine)
 
 
 def test_each_pair_has_one_row():

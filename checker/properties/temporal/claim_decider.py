@@ -12,8 +12,8 @@ from checker.engines.graph import Bools, Graph
 from checker.properties.temporal.claim_text import (
     EACH_RULE,
     Claim,
+    ClaimWords,
     Occurs,
-    Vocabulary,
     fair_to,
     parse_claim,
 )
@@ -46,7 +46,7 @@ class ClaimDecider:
     rows: Graph
     values: Mapping[str, Bools]
     complete: bool
-    words: Vocabulary
+    words: ClaimWords
 
     @cached_property
     def graph(self) -> Graph:
