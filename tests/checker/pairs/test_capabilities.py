@@ -4,7 +4,7 @@ import ast
 import importlib.util
 
 import pytest
-from option_pairs import PAIRS, marked, text_of
+from option_pairs import FEATURES, PAIRS, WRONG, folded, marked, of_system, text_of
 from repository import name_of, parsed, sources
 
 from bigactors.arguments import make_parser
@@ -21,17 +21,28 @@ WORDS = {
     Feature.TIMING: [],
 }
 HAS_RAY = importlib.util.find_spec("ray") is not None
-IDS = [f"{one.name}-{other.name}" for one, other in PAIRS]
+CASES = [
+    pytest.param(
+        *pair, id="-".join(each.name for each in pair), marks=[pytest.mark.long] * (Feature.RAY in pair)
+    )
+    for pair in PAIRS
+]
 REFUSED = [pair for pair in UNSUPPORTED if pair.why.is_refusal and pair.one is not Feature.MODEL]
 
 
-@pytest.mark.parametrize(("one", "other"), PAIRS, ids=IDS)
+@pytest.mark.parametrize(("one", "other"), CASES)
 def test_each_pair_runs_as_the_reference_engine_does_or_is_refused_by_the_table(one, other):
     pair = pair_of(one, other)
     if Feature.RAY in (one, other) and not HAS_RAY and (pair is None or not pair.why.is_refusal):
         pytest.skip("Ray is not installed")
     mark = marked(one, other)
     assert mark.startswith("✓") or (pair is not None and mark == pair.reason)
+
+
+@pytest.mark.parametrize("other", FEATURES[2:], ids=lambda each: each.name)
+def test_folded_rows_and_systems_of_bigraphs_agree_with_the_reference_too(other):
+    assert not folded(other).startswith(WRONG)
+    assert not of_system(other).startswith(WRONG)
 
 
 @pytest.mark.parametrize("pair", REFUSED, ids=lambda pair: f"{pair.one.name}-{pair.other.name}")

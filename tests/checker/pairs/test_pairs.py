@@ -11,14 +11,13 @@ import pytest
 from checked_missions import interrupted_at, load
 from covering import covering_array, pairs_of, spread
 from features import LANGUAGE, NO, OPTIONS, YES, text_of
+from option_pairs import spilled_rows
 from replaying import assert_replays
 from scale import IS_WHOLE
 
-import checker.limits
 from checker import CombinationError, Engine, Keeping, Limits, Outcome, Reduction, check
 from checker.check import reductions_of
 from checker.engines.fast import explorer
-from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import Space
 from checker.reduction.refusals import RefusedError
 from specs.diagnostics import MissionError
@@ -66,7 +65,7 @@ def reduced(mission, row):
         if each in reductions_of(mission):
             allowed.append(each)
             continue
-        with pytest.raises(RefusedError, match=f"the reduction '{each}' is refused: "):
+        with pytest.raises((CombinationError, RefusedError), match=f"the reduction '{each}' is refused: "):
             check(mission, limits=MOST, reduce=[each])
     return tuple(allowed)
 
@@ -98,22 +97,15 @@ def checked(mission, row, reductions, folder):
 
 @pytest.fixture
 def rows_that_move(monkeypatch):
-    """Let memory end until rows are in files, and return what lets them be compressed amid the search."""
-    spill, spilled = Rows.spill, []
-
-    def noted(*given):
-        spill(*given)
-        spilled.append(given)
-
-    monkeypatch.setattr(Rows, "spill", noted)
-    monkeypatch.setattr(checker.limits, "memory_taken", lambda: 0 if spilled else 2)
+    """Let memory end until rows are in files, and yield what lets them be compressed amid the search."""
     monkeypatch.setattr(explorer, "CHUNK", 8)
 
     def compress():
         monkeypatch.setattr(Space, "PLAIN", 1)
         monkeypatch.setattr(Space, "COMPRESSED_FROM", 8)
 
-    return compress
+    with spilled_rows():
+        yield compress
 
 
 @pytest.mark.fuzz
