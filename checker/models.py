@@ -5,15 +5,15 @@ A model has an `initial` state and `successors(state)`. States are any hashable 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Generic, NamedTuple, Protocol, TypeVar
 
 from checker.engines.breadth_first import BreadthFirst
 from checker.engines.contract import Options
-from checker.limits import Bound
+from checker.limits import Bound, BoundMet, Limits, bounded, look
 from checker.verdicts import Outcome
 from semantics.state.configuration import Configuration, Label
 from semantics.successors import successors
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from checker.properties.temporal.lassos import Lasso
 
 State = TypeVar("State", bound=Hashable)
+
+OFTEN = 1024
+"""The number of states between two looks at the bounds."""
 
 
 class Model(Protocol[State]):
@@ -82,6 +85,7 @@ class ModelExploration(Generic[State]):
         bounds: The bounds that were met; empty for a complete exploration.
         seconds: The duration.
         edges: The transitions.
+        limits: The limits, which hold for the decision of a formula, too.
     """
 
     states: list[State]
@@ -92,6 +96,7 @@ class ModelExploration(Generic[State]):
     bounds: list[Bound]
     seconds: float
     edges: Edges = field(repr=False)
+    limits: Limits = field(repr=False)
 
     def __repr__(self) -> str:
         return (
@@ -176,18 +181,29 @@ class ModelExploration(Generic[State]):
         from checker.properties.temporal.claim_decider import ClaimDecider  # noqa: PLC0415
         from checker.properties.temporal.claim_text import ClaimWords  # noqa: PLC0415 - numpy, too
 
-        values = {
-            name: np.fromiter(map(holds, self.states), dtype=np.bool_, count=len(self.states))
-            for name, holds in predicates.items()
-        }
+        size = len(self.states)
         rules = dict.fromkeys(label.rule for label in self.graph.labels)
         groups = dict.fromkeys(label.agent for label in self.graph.labels if label.agent is not None)
-        words = ClaimWords(tuple(values), tuple(rules | groups), rules)
-        decider = ClaimDecider(self.graph, values, self.complete, words)
-        found = decider.decide(logic, formula)
+        words = ClaimWords(tuple(predicates), tuple(rules | groups), rules)
+        try:
+            with bounded(replace(self.limits, spent=self.limits.spent + self.seconds)):
+                values = {
+                    name: np.fromiter(self._values(holds), dtype=np.bool_, count=size)
+                    for name, holds in predicates.items()
+                }
+                decider = ClaimDecider(self.graph, values, self.complete, words)
+                found = decider.decide(logic, formula)
+        except BoundMet as met:
+            return ModelVerdict(Outcome.INCOMPLETE, note=f"not decided: {met.bound} was met")
         run = None if found.run is None else self._run(decider.graph, found.run)
         loop = len(found.run.stem) if found.run is not None and found.run.loop else None
         return ModelVerdict(found.outcome, run, loop, found.note, found.remarks)
+
+    def _values(self, predicate: Callable[[State], bool]) -> Iterator[bool]:
+        for number, state in enumerate(self.states):
+            if number % OFTEN == 0:
+                look()
+            yield predicate(state)
 
     def _run(self, graph: Graph, lasso: Lasso) -> tuple[ModelStep[State], ...]:
         edges = (*lasso.stem, *lasso.loop)
@@ -215,11 +231,12 @@ def explore_model(model: Model[State], options: Options) -> ModelExploration[Sta
         search.bounds,
         search.seconds,
         search.edges,
+        options.limits,
     )
 
 
 def _label_of(label: str | Label) -> Label:
-    return label if isinstance(label, Label) else Label(label, label)
+    return label if isinstance(label, Label) else Label(str(label), str(label))
 
 
 @dataclass(frozen=True, slots=True)

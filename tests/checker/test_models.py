@@ -144,6 +144,15 @@ def test_an_interruption_ends_it_and_progress_is_reported():
     assert 20 < seen[-1] <= len(found.states)
 
 
+def test_an_interruption_ends_the_decision_of_a_formula(monkeypatch):
+    monkeypatch.setattr("checker.limits.GRACE", 0.0)
+    limits = Limits()
+    found = explore(table(3), limits=limits)
+    limits.interruption.wish()
+    verdict = found.ltl("<> fed", fed=lambda state: state[0] == 2)
+    assert (verdict.outcome, verdict.note) == (Outcome.INCOMPLETE, "not decided: an interruption was met")
+
+
 # --- missions and systems as models -----------------------------------------------------------------------------------
 
 
