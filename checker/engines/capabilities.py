@@ -89,15 +89,14 @@ class OptionNeed:
 
 
 _P, _N, _F, _W = UnsupportedPair, OptionNeed, Feature, Why
-_ENGINE, _REDUCE, _KEEP = "leave --engine out", "leave --reduce out", "leave --checkpoint out"
+_ENGINE, _REDUCE = "leave --engine out", "leave --reduce out"
 
 UNSUPPORTED: Final = (
     _P(_F.REFERENCE, _F.THREADS, _W.DESIGN, "--threads works with the fast engine only",
         "leave --engine out, or give --workers with --engine ray"),
     _P(_F.RAY, _F.THREADS, _W.DESIGN, "--threads works with the fast engine only",
         "leave --engine out, or give --workers with --engine ray"),
-    _P(_F.REFERENCE, _F.CHECKPOINT, _W.DESIGN,
-        "--checkpoint works with the engines fast and ray only: the reference engine explores in memory", _ENGINE),
+    _P(_F.REFERENCE, _F.CHECKPOINT, _W.DESIGN, "--checkpoint works with the fast and Ray engines only", _ENGINE),
     _P(_F.REFERENCE, _F.SPILL, _W.DESIGN,
         "--spill works with the fast engine only: the reference engine explores in memory", _ENGINE),
     _P(_F.RAY, _F.SPILL, _W.UNBUILT, "--spill works with the fast engine only", _ENGINE),
@@ -113,16 +112,6 @@ UNSUPPORTED: Final = (
         "section 'timing', whose one clock makes the order of independent steps observable", _REDUCE),
     _P(_F.SYMMETRY, _F.TIMING, _W.UNBUILT,
         "the reduction 'symmetry' is refused: it is not proved sound for missions with a section 'timing'", _REDUCE),
-    _P(_F.POR, _F.CHECKPOINT, _W.UNBUILT,
-        "--checkpoint does not work with --reduce por: no checkpoint holds the paths of its cycle proviso",
-        "leave --checkpoint or --reduce out"),
-    _P(_F.SYMMETRY, _F.CHECKPOINT, _W.UNBUILT,
-        "--checkpoint does not work with --reduce symmetry: no checkpoint holds its representatives",
-        "leave --checkpoint or --reduce out"),
-    _P(_F.TIMING, _F.CHECKPOINT, _W.UNBUILT,
-        "missions with a section 'timing' are explored in memory, without checkpoints", _KEEP),
-    _P(_F.TIMING, _F.SPILL, _W.UNBUILT,
-        "missions with a section 'timing' are explored in memory, without --spill", "leave --spill out"),
     _P(_F.TIMING, _F.PARANOID, _W.UNBUILT,
         "missions with a section 'timing' are not re-checked by --paranoid", "leave --paranoid out"),
     _P(_F.TIMING, _F.RUNS, _W.UNDECIDED,
@@ -135,7 +124,6 @@ UNSUPPORTED: Final = (
     _P(_F.MODEL, _F.SYMMETRY, _W.DESIGN, "the reduction 'symmetry' is made for the rules of missions",
         "leave reduce out"),
     _P(_F.THREADS, _F.POR, _W.IDLE, "the search runs on one thread", ""),
-    _P(_F.THREADS, _F.SYMMETRY, _W.IDLE, "the search runs on one thread", ""),
     _P(_F.THREADS, _F.TIMING, _W.IDLE, "the search runs on one thread", ""),
     _P(_F.RUNS, _F.POR, _W.UNDECIDED, "por does not preserve them: such a property stays incomplete", _REDUCE),
     _P(_F.RUNS, _F.SYMMETRY, _W.UNDECIDED,

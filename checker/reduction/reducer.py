@@ -17,6 +17,7 @@ class Reduced:
 
     Attributes:
         names: Their names, in a fixed order.
+        identity: Their names, and the propositions that they keep: whatever decides which configurations are visited.
     """
 
     def __init__(
@@ -27,6 +28,7 @@ class Reduced:
     ) -> None:
         asked = set(reductions)
         self.names = tuple(each for each in Reduction if each in asked)
+        self.identity = f"{', '.join(map(str, self.names))}: {tuple(formulas)!r}"
         if Reduction.POR in asked:
             refuse_partial_order(initial)
         self.ample = Ample(initial, formulas) if Reduction.POR in asked else None

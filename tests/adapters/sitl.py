@@ -20,6 +20,8 @@ SPEED = 10
 STATIONS = Stations({"gcs0": 255, "gcs1": 254}, ("gcs0", "gcs1"))
 CRAFT = Craft("uav0", system=1)
 PROGRAMS = {"plane": "arduplane", "quad": "arducopter", "rover": "ardurover"}
+HOLD_AT_START = ("MODE6", 4)
+"""The mode of the simulated radio: Rover 4.7 leaves MANUAL for HOLD only, unless by its radio."""
 
 needs_simulators = pytest.mark.skipif(
     not FOLDER, reason="BIGACTORS_SITL names no folder with ArduPilot's simulators"
@@ -37,6 +39,7 @@ def autopilot(model, port, tmp_path, parameters=()):
         pytest.skip(f"{program} is not there")
     given, defaults = Path(FOLDER) / f"{model}.parm", tmp_path / f"{model}.parm"
     lines = [given.read_text()] if given.exists() else []
+    parameters = (HOLD_AT_START, *parameters) if model == "rover" else parameters
     defaults.write_text("\n".join([*lines, *(f"{name} {value}" for name, value in parameters), ""]))
     where = ",".join(map(str, (*HOME, 0)))
     command = [

@@ -22,7 +22,7 @@ check --watch --json - holds.mission  # --watch prints its reports
 check --trace race.mission holds.mission  # race.mission: there is a file where a folder should be
 check race.mission --engine ray --reduce por  # the ray explorer does not reduce
 check race.mission --engine reference --paranoid 1  # --paranoid works with the fast engine and with reductions only
-check race.mission --reduce por --checkpoint there  # --checkpoint does not work with --reduce por
+check race.mission --engine reference --checkpoint there  # --checkpoint works with the fast and Ray engines only
 check race.mission --hash-compact 32  # it is gone, since a configuration takes some 24 bytes: --max-memory
 check race.mission --spill there  # --spill needs a limit on memory
 check race.mission --spill there --max-memory 1G --engine reference  # --spill works with the fast engine only

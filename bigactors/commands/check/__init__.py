@@ -146,7 +146,7 @@ def _exploring(parser: Parser) -> None:
         metavar="N",
         type=at_least_one,
         help="let the fast engine use at most N threads; the results are the same for every N (default: one a "
-        "core; with --reduce one)",
+        "core; with --reduce por one)",
     )
     group.add_argument(
         "--reduce",

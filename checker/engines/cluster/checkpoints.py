@@ -17,10 +17,10 @@ from checker.engines.cluster import kernel
 from checker.engines.cluster.row_keys import DIGEST
 from checker.engines.cluster.shard import Shard, spelling
 from checker.engines.contract import CheckpointError
-from checker.engines.fast import kernel as loops
+from checker.engines.fast import repacking
 from checker.engines.fast.checkpoint import is_time
 from checker.engines.fast.columns import Packing
-from checker.engines.fast.kernel import CROWDS, CUT, EXPANDED, LIMIT, SIZE
+from checker.engines.fast.learned_model import CROWDS, CUT, EXPANDED, LIMIT, SIZE
 from checker.engines.fast.space import MOST_ROWS
 
 SCHEMA = "bigactors.shard/2"
@@ -177,7 +177,7 @@ class Loading:
         fits = fits and all(0 <= row < count for row in self.learned)
         if not fits or not self._has_come_so_far(count):
             return False
-        return loops.mark_used(self.rows, where.words, where.columns, self.begins, self.used)
+        return repacking.mark_used(self.rows, where.words, where.columns, self.begins, self.used)
 
     def _has_come_so_far(self, count: int) -> bool:
         """Return whether state, layers and counts are possible in a search."""

@@ -15,7 +15,7 @@ from checker.engines.cluster.transfer import RowParcel
 from checker.engines.cluster.worker_links import Links
 from checker.engines.contract import CheckpointError, Inspect
 from checker.engines.fast import kernel as loops
-from checker.engines.fast.kernel import AT, GATHERED
+from checker.engines.fast.learned_model import AT, GATHERED
 from checker.engines.fast.row_graph import pending_in_space
 from checker.engines.fast.row_inspection import inspect_fast, is_still, truths
 from checker.engines.fast.row_survey import RowSurvey
@@ -180,9 +180,7 @@ class Worker:
         until = min(first + most, shard.expanded)
         shard.state[AT], found = min(first, until), []
         while shard.state[AT] < until:
-            known = loops.gather(
-                shard.model, shard.rows.words, shard.rows.folded, shard.batch, shard.state, until
-            )
+            known = shard.gather(until)
             found.append(self._point())
             if not known:
                 shard.go_on()
@@ -208,7 +206,7 @@ class Worker:
     def _found(self, count: int) -> NDArray[np.int64]:
         """Return the row number of each successor in the batch, less than 0 for none."""
         shard, found = self.shard, np.zeros(count, np.int64)
-        loops.look_up(shard.rows.words, shard.table.room, None, None, shard.batch, found, shard.state)
+        loops.look_up(shard.rows.words, shard.table.room, *shard.completing, shard.batch, found, shard.state)
         return found
 
     def _edges(self, found: Sequence[tuple[NDArray[Any], ...]]) -> Edges:

@@ -9,7 +9,8 @@ import numpy as np
 
 from checker.engines.fast.columns import WORD
 from checker.engines.fast.jit_decorators import inner, njit
-from checker.engines.fast.kernel import PLACE, SIZE, WORDS, State, SuccessorBatch, add_row
+from checker.engines.fast.kernel import add_row
+from checker.engines.fast.learned_model import PLACE, SIZE, WORDS, State, SuccessorBatch
 from checker.engines.fast.prefetch import prefetch
 from checker.engines.fast.table import AHEAD, Words, bits_for, entry_of, fetch, find, hashed
 

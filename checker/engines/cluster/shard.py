@@ -18,9 +18,10 @@ from checker.engines.cluster import kernel
 from checker.engines.cluster.row_keys import Keys
 from checker.engines.cluster.transfer import ColumnUpdate, Dictionary, RowParcel, SentValues
 from checker.engines.fast import kernel as loops
+from checker.engines.fast import repacking
 from checker.engines.fast.columns import WORD, Packing, shifts
 from checker.engines.fast.effects import Deeper, Varies
-from checker.engines.fast.kernel import AT, CROWDS, CUT, EXPANDED, GATHERED, LIMIT, SIZE
+from checker.engines.fast.learned_model import AT, CROWDS, CUT, EXPANDED, GATHERED, LIMIT, SIZE
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.origins import Elsewhere
 from checker.engines.fast.rows import Rows
@@ -110,7 +111,7 @@ class Outbox:
         for rows, to in zip(self.rows, packed, strict=True):
             flat = to.ravel()
             flat[: rows.size] = rows.ravel()
-            loops.repack(flat, len(rows), shifts(old, new), old.words, new.words)
+            repacking.repack(flat, len(rows), shifts(old, new), old.words, new.words)
         self.rows = packed
 
     def taken_out(self, peer: int, words: int) -> tuple[NDArray[np.uint64], NDArray[np.uint32]]:
@@ -226,7 +227,7 @@ class Shard(Space):
         self.state[AT] = self.expanded
         while self.expanded < until:
             self._make_room(len(self.batch.hashes))
-            known = loops.gather(self.model, self.rows.words, self.rows.folded, self.batch, self.state, until)
+            known = self.gather(until)
             self._deal()
             if not known:
                 self._miss()
@@ -291,7 +292,7 @@ class Shard(Space):
         for peer, parcel in enumerate(parcels):
             for count in self.translated(peer, parcel):
                 arrays = (self.rows.words, self.rows.origins.loops, self.table.room)
-                loops.store(*arrays, None, None, self.batch, 0, count, self.state)
+                loops.store(*arrays, *self.completing, self.batch, 0, count, self.state)
 
     def hear(self, parcels: Sequence[RowParcel]) -> None:
         """Add the values that the others have sent."""
@@ -346,7 +347,7 @@ class Shard(Space):
         self.rows.words[: self.packing.words] = self.packed(codes)
         self.state[SIZE], self.state[AT] = 1, 0
         while not self.state[AT]:
-            known = loops.gather(self.model, self.rows.words, self.rows.folded, self.batch, self.state, 1)
+            known = self.gather(1)
             self.state[GATHERED] = 0
             if not known:
                 self._miss()

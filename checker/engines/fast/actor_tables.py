@@ -9,7 +9,7 @@ import numpy as np
 
 from checker.engines.fast.bits import WORD
 from checker.engines.fast.jit_decorators import inner
-from checker.engines.fast.kernel import ALPHA, TREE, Ints, LearnedModel, State, code_at, walk
+from checker.engines.fast.learned_model import ALPHA, TREE, Ints, LearnedModel, State, code_at, walk
 from checker.engines.fast.table import Words
 
 MOST_HERE = 8 * WORD
@@ -19,8 +19,8 @@ EVERYBODY, UNKNOWN, NOBODY_LEFT, GOING_ON = -1, -2, -3, -4
 """Codes instead of the transition on which a path continues: all transitions are followed; something is unknown; no
 ignored actor remains; another set is needed."""
 
-MADE, REPRESENTED = 1, 2
-"""The states of a successor: made, and replaced by its representative."""
+MADE, STORED = 1, 2
+"""The states of a successor: its words are made, and so is its stored form."""
 
 TRIED = -1
 """The size of a set that is not ample, or that was added."""

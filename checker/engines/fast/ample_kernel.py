@@ -29,8 +29,11 @@ from checker.engines.fast.actor_tables import (
 )
 from checker.engines.fast.bits import WORD, add, has
 from checker.engines.fast.jit_decorators import inner, njit
-from checker.engines.fast.kernel import (
+from checker.engines.fast.kernel import add_row
+from checker.engines.fast.learned_model import (
     AT,
+    CROWDED,
+    CROWDS,
     EXPANDED,
     FULL,
     KEPT,
@@ -40,12 +43,13 @@ from checker.engines.fast.kernel import (
     LearnedModel,
     State,
     SuccessorBatch,
-    add_row,
     code_at,
+    list_steps,
 )
+from checker.engines.fast.learned_model import UNKNOWN as NOT_LEARNED
 from checker.engines.fast.persistent import find_set
 from checker.engines.fast.proviso_paths import Trails, begin_row, end_of, lead_on
-from checker.engines.fast.row_successors import list_steps, make, make_representative, without_repetitions
+from checker.engines.fast.row_successors import make, make_stored, without_repetitions
 from checker.engines.fast.table import Words, bits_for, entry_of, find
 from checker.engines.fast.tree_compression import NO_ROOM, FoldedTable, intern, unfold
 
@@ -171,7 +175,7 @@ def join(
     bits = np.uint32(bits_for(len(table)))
     for k in range(count):
         if has(r.sets, at, r.whose[k]):
-            if x is not None and not make_representative(m, r, x, d, f, here, batch, k, state):
+            if not make_stored(m, r, x, d, f, here, batch, k, state):
                 return UNKNOWN
             number = find(words, table, batch.kept, k, batch.hashes[k], kept, bits)
             if number < 0:
@@ -296,8 +300,13 @@ def expand_reduced(
         if f is not None:
             unfold(f, words, row)
             here = f.whole
-        count = list_steps(m, here, batch, state)
-        if count > 0:
+        count = list_steps(m, here, 0, batch, 0, state)
+        if count == NOT_LEARNED:
+            return False
+        if count == CROWDED:
+            state[CROWDS] += 1
+            count = np.int64(0)
+        if count:
             count = without_repetitions(m, r, f, here, batch, count, state)
         if count == UNKNOWN:
             return False
@@ -312,10 +321,7 @@ def expand_reduced(
                 known = False
         for k in range(count if known else 0):
             if onward == EVERYBODY or has(r.inside, 0, r.whose[k]):
-                if x is None:  # a call would pass all of `Members`
-                    known = known and make(m, r, f, here, batch, k, state)
-                else:
-                    known = known and make_representative(m, r, x, d, f, here, batch, k, state)
+                known = known and make_stored(m, r, x, d, f, here, batch, k, state)
         if not known:
             return False
         for k in range(count):

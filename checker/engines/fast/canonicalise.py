@@ -1,6 +1,6 @@
-"""Symmetry reduction in a compiled loop: replaces gathered rows by their canonical representatives.
+"""Symmetry reduction in compiled loops: replaces a row by its canonical representative.
 
-It computes the same as `checker.reduction.representatives`, from the tables of `exchanging`.
+They compute the same as `checker.reduction.representatives`, from the tables of `symmetry_tables`.
 """
 
 # mypy: disable-error-code="return-value, assignment, arg-type"
@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from checker.engines.fast.jit_decorators import inner, njit
-from checker.engines.fast.kernel import PLACE, Ints, State, SuccessorBatch, code_at
-from checker.engines.fast.table import Words, hashed
+from checker.engines.fast.learned_model import PLACE, Ints, State, code_at
+from checker.engines.fast.table import Words
 
 UNKNOWN, FIXED = 0, 1
 """Codes instead of an entry: not learned yet; mentions no member."""
@@ -74,12 +74,14 @@ class RowScratch(NamedTuple):
 
     Attributes:
         here: Its columns with a code other than 0, with their codes and entries.
-        whole: For each skeleton column, the last row, counted from 1, that read its cell as one item.
+        whole: For each skeleton column, the last row that read its cell as one item.
         colours, met: Two numbers for each member.
         order, place: The members in order, and the position of each.
         beside: Whether an item mentions the member together with others.
         best: The positions in the best order so far.
         unknown: The missing entry or move.
+        stamp: The number of rows so far, which identifies the row in `whole`.
+        image: The words of its representative.
     """
 
     here: Ints
@@ -91,6 +93,8 @@ class RowScratch(NamedTuple):
     beside: Ints
     best: Ints
     unknown: Ints
+    stamp: State
+    image: Words
 
 
 @njit(cache=True, forceinline=True)
@@ -146,9 +150,11 @@ def read_whole(
 
 
 @inner(cache=True)
-def read_row(x: Exchanges, d: RowScratch, words: Words, at: int, columns: Words, stamp: int) -> int:
+def read_row(x: Exchanges, d: RowScratch, words: Words, at: int, columns: Words) -> int:
     """Note the entries of a row and colour its members; return the number of entries, -1 if one is unknown."""
     count = np.int64(0)
+    d.stamp[0] += 1
+    stamp = d.stamp[0]
     d.colours[:] = np.uint64(0)
     d.beside[:] = 0
     for a in range(len(x.active)):
@@ -427,11 +433,9 @@ def order_members(x: Exchanges, d: RowScratch, count: int) -> int:
 
 
 @inner(cache=True)
-def represent(
-    x: Exchanges, d: RowScratch, words: Words, at: int, width: int, columns: Words, stamp: int
-) -> bool:
+def represent(x: Exchanges, d: RowScratch, words: Words, at: int, width: int, columns: Words) -> bool:
     """Replace a row by its canonical representative; return False if an entry or move is unknown."""
-    count = read_row(x, d, words, at, columns, stamp)
+    count = read_row(x, d, words, at, columns)
     moved = order_members(x, d, count) if count >= 0 else np.int64(UNSETTLED)
     if moved != 1:
         return moved == 0
@@ -452,16 +456,3 @@ def represent(
             for k in range(x.writes_from[to], x.writes_from[to + 1], 2):
                 put(words, at, columns, x.writes[k], x.writes[k + 1])
     return True
-
-
-@njit(cache=True, nogil=True)
-def represent_all(
-    x: Exchanges, d: RowScratch, batch: SuccessorBatch, gathered: int, columns: Words, width: int
-) -> int:
-    """Replace gathered rows by their representatives; return the number done before the first unknown entry or move."""
-    d.whole[:] = 0
-    for k in range(gathered):
-        if not represent(x, d, batch.words, k * width, width, columns, k + 1):
-            return k
-        batch.hashes[k] = hashed(batch.words, k * width, width)
-    return gathered

@@ -1,7 +1,8 @@
 """Checkpoints: the state from which an exploration continues after its process was killed.
 
-A checkpoint stores rows, origins and counts. It stores no decision tree: the trees are learned again from the same rows
-in the same order, so nothing in a checkpoint is ever evaluated. A digest of all columns verifies the result.
+A checkpoint stores rows, origins and counts, and with partial-order reduction the paths of its cycle proviso. It stores
+no decision tree: the trees, and the tables of symmetry, are learned again from the same rows in the same order, so
+nothing in a checkpoint is ever evaluated. A digest of all columns verifies the result.
 """
 
 import math
@@ -18,26 +19,39 @@ from numpy.typing import NDArray
 from checker.engines.archive import Kinds, read_archive, write_archive
 from checker.engines.contract import CheckpointError
 from checker.engines.fast.columns import Packing
-from checker.engines.fast.kernel import CROWDS, CUT, EXPANDED, LIMIT, SIZE
+from checker.engines.fast.learned_model import CROWDS, CUT, EXPANDED, LIMIT, SIZE
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import Space
 from semantics.state.canonical import canonical
 
-SCHEMA = "bigactors.checkpoint/5"
+SCHEMA = "bigactors.checkpoint/6"
 KEPT = (EXPANDED, SIZE, CUT, CROWDS)
 """The entries of the loops' state in a checkpoint; the others follow from the mission."""
+
+PATHS = ("movers", "led", "leads", "sets")
+"""The arrays of the cycle proviso's paths."""
 
 RECOUNTED = 1 << 22
 """The number of rows for which a resumed exploration recomputes transitions: some seconds' work."""
 
-KINDS: Final[Kinds] = {
+ROWS: Final[Kinds] = {
     "rows": np.uint64,
     "pieces": np.uint64,
     "nodes": np.uint64,
     "origins": np.uint64,
-    "counts": np.int64,
     "packing": np.uint64,
     "learned": np.int64,
+}
+"""The arrays of the rows of a space, and of what was learned from them."""
+
+KINDS: Final[Kinds] = {
+    **ROWS,
+    "counts": np.int64,
+    "met": np.int64,
+    "movers": np.uint32,
+    "led": np.uint64,
+    "leads": np.uint64,
+    "sets": np.uint64,
     "state": np.int64,
 }
 
@@ -77,7 +91,6 @@ def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
     Raises:
         OSError: The file can't be written.
     """
-    columns = space.learner.columns.all
     head = {
         "schema": SCHEMA,
         "digest": digest,
@@ -87,18 +100,48 @@ def save(space: Space, journey: Journey, digest: str, path: Path) -> None:
         "layer_end": journey.layer_end,
         "seconds": journey.seconds,
         "layers": journey.layers,
-        "columns": _digest_of_columns(space),
+        "columns": digest_of_columns(space),
     }
     arrays = (
-        space.rows.words[: space.size * space.rows.kept],
-        *space.rows.interned,
-        space.rows.origins.kept(space.size),
+        *kept_rows(space),
         space.counts.used,
-        space.packing.columns[: 3 * len(columns)],
-        np.array(space.learned, np.int64),
+        space.met.used if space.choosing is not None else space.met.used[:0],
+        *_paths(space),
         space.state[list(KEPT)],
     )
     write_archive(path, head, KINDS, arrays)
+
+
+def kept_rows(space: Space) -> tuple[NDArray[Any], ...]:
+    """Return the rows of a space, and what was learned from them, as arrays (see `ROWS`)."""
+    return (
+        space.rows.words[: space.size * space.rows.kept],
+        *space.rows.interned,
+        space.rows.origins.kept(space.size),
+        space.packing.columns[: 3 * len(space.learner.columns)],
+        np.array(space.learned, np.int64),
+    )
+
+
+def restore_rows(space: Space, words: int, size: int, arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Continue in a space from the rows of another one of the same mission.
+
+    Raises:
+        ValueError, IndexError: The arrays are not those of such a space.
+    """
+    learned = list(map(tuple, arrays["learned"].reshape(-1, 4).tolist()))
+    where = Packing(words, arrays["packing"])
+    if not where.is_sound:
+        raise ValueError("its rows lack some of its columns")
+    kept = (arrays[each] for each in ("rows", "origins", "pieces", "nodes"))
+    space.restore(where, Rows.of(space.ORIGINS, where.words, size, *kept), size, learned)
+
+
+def _paths(space: Space) -> tuple[NDArray[Any], ...]:
+    """Return the stored paths of partial-order reduction; empty without it."""
+    if space.choosing is None:
+        return (np.zeros(0, np.uint64),) * len(PATHS)
+    return space.choosing.paths.kept(space.size)
 
 
 def resume(space: Space, digest: str, path: Path) -> Journey:
@@ -113,24 +156,26 @@ def resume(space: Space, digest: str, path: Path) -> Journey:
     try:
         journey = Journey(head["depth"], head["layer_end"], head["seconds"], tuple(head["layers"]))
         _check(arrays, journey, int(space.state[LIMIT]))
-        learned = arrays["learned"].reshape(-1, 4).tolist()
-        where = Packing(head["words"], arrays["packing"])
-        if not where.is_sound:
-            raise ValueError("its rows lack some of its columns")
         size = int(arrays["state"][1])
-        kept = (arrays[each] for each in ("rows", "origins", "pieces", "nodes"))
-        rows = Rows.of(where.words, size, *kept)
-        if rows.origins.origin(size - 1, size) > arrays["state"][0]:
+        restore_rows(space, head["words"], size, arrays)
+        if space.rows.origins.origin(size - 1, size) > arrays["state"][0]:
             raise ValueError("some row was reached from a later one")
-        space.restore(where, rows, size, learned)
-        _check_counts(space, arrays["counts"], arrays["state"])
-        if space.choosing is None:
-            _recount(space, arrays["counts"], arrays["state"])
-        space.counts.used[: len(arrays["counts"])] = arrays["counts"]
+        choosing, counts, met = space.choosing, arrays["counts"], arrays["met"]
+        if choosing is not None:
+            expanded = int(arrays["state"][0])
+            paths = tuple(arrays[name] for name in PATHS)
+            choosing.paths.restore(paths, size, expanded, len(choosing.everyone))
+            _check_counts(space, met, arrays["state"])
+            if np.any(counts > met):
+                raise ValueError("it followed more transitions than there are")
+        _check_counts(space, counts, arrays["state"])
+        _recount(space, counts if choosing is None else met, arrays["state"])
+        space.met.used[: len(met)] = met
+        space.counts.used[: len(counts)] = counts
         space.state[list(KEPT)] = arrays["state"]
     except (ValueError, IndexError, KeyError, TypeError) as error:
         raise CheckpointError(f"{path}: this checkpoint is damaged: {error}") from error
-    if _digest_of_columns(space) != head["columns"]:
+    if digest_of_columns(space) != head["columns"]:
         raise CheckpointError(
             f"{path}: the rules learned from this checkpoint differ from those recorded in it"
         )
@@ -172,7 +217,7 @@ def _recount(space: Space, counts: NDArray[np.int64], state: NDArray[np.int64]) 
     for _, steps, targets in (each for part in parts for each in space.edges(part)):
         taken = np.bincount(steps)
         found.update({int(step): int(taken[step]) for step in np.flatnonzero(taken)})
-        if not cut and np.any(targets < 0):
+        if not cut and space.choosing is None and np.any(targets < 0):
             raise ValueError("it lacks successors of its rows")
         reached[targets[targets >= 0]] = True
     rest = expanded - sum(map(len, parts))
@@ -193,7 +238,8 @@ def _by_label(space: Space, counts: Mapping[int, int]) -> Counter[tuple[int, str
     return found
 
 
-def _digest_of_columns(space: Space) -> str:
+def digest_of_columns(space: Space) -> str:
+    """Return a digest of the values of all columns, in order: of everything that rows are made of."""
     found = sha256()
     for line in _lines(space):
         found.update(line.encode("utf-8", "surrogatepass"))

@@ -154,12 +154,17 @@ class _Explorer:
         name = "monitored.checkpoint" if self.learner.setting.monitored else "exploration.checkpoint"
         return None if self.keeping.folder is None else Path(self.keeping.folder) / name
 
+    @property
+    def digest(self) -> str:
+        """The digest of the exploration that a checkpoint belongs to; reductions visit other configurations."""
+        return self.keeping.digest + ("" if self.reduce is None else f", {self.reduce.identity}")
+
     def run(self, inspect: tuple[Inspect, ...]) -> Exploration:
         began = time.monotonic()
         self.exploring = EXPLORING if inspect or self.keeping.doubted else 1.0
         path = self.checkpoint
         if path is not None and self.keeping.resumed and path.exists():
-            self.journey = resume(self.space, self.keeping.digest, path)
+            self.journey = resume(self.space, self.digest, path)
             self.layers = list(self.journey.layers)
         began -= self.journey.seconds
         with bounded(self.limits if self.limits.spill is None else replace(self.limits, memory=None), began):
@@ -226,7 +231,7 @@ class _Explorer:
             return
         journey = replace(self.journey, seconds=seconds, layers=tuple(self.layers))
         try:
-            save(self.space, journey, self.keeping.digest, path)
+            save(self.space, journey, self.digest, path)
         except OSError as error:
             unkept = Bound(Stop.NO_CHECKPOINT, (str(path), error.strerror))
             self.bounds += [] if unkept in self.bounds else [unkept]

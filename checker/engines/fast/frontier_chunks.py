@@ -1,9 +1,18 @@
 """Slices of a space's rows, expanded ahead of the stored rows with the trees known at their start."""
 
-from typing import Protocol
+from typing import Any, Protocol
 
 from checker.engines.fast import kernel
-from checker.engines.fast.kernel import AT, GATHERED, PUT_OFF, SEEN, SIFTED
+from checker.engines.fast.learned_model import (
+    AT,
+    GATHERED,
+    PUT_OFF,
+    SEEN,
+    SIFTED,
+    LearnedModel,
+    State,
+    SuccessorBatch,
+)
 from checker.engines.fast.mapped_arrays import Pages
 from checker.engines.fast.pipeline import Pipeline, RowSlice
 from checker.engines.fast.rows import Rows
@@ -20,8 +29,8 @@ class Storing(Protocol):
 
     rows: Rows
     table: Pages
-    batch: kernel.SuccessorBatch
-    state: kernel.State
+    batch: SuccessorBatch
+    state: State
     actors: int
     stored: int
 
@@ -37,18 +46,20 @@ class Storing(Protocol):
     def epoch(self) -> int:
         """A number that changes when results found ahead become void."""
 
-    def known(self) -> kernel.LearnedModel:
-        """Return a snapshot of the trees that other threads may read during learning."""
+    @property
+    def symmetry(self) -> tuple[Any, Any]:
+        """The symmetry tables, and this thread's scratch space; None without symmetry reduction."""
+
+    def known(self) -> tuple[LearnedModel, Any]:
+        """Return a snapshot of trees and symmetry tables that other threads may read during learning."""
 
     def show(self) -> None:
         """Publish the stored rows to other threads."""
 
-    def new_batch(self, successors: int = 0, later: int = 0) -> kernel.SuccessorBatch:
+    def new_batch(self, successors: int = 0, later: int = 0) -> SuccessorBatch:
         """Return an empty batch with room for `later` deferred rows."""
 
-    def store(
-        self, batch: kernel.SuccessorBatch, steps: tuple[int, int], found: tuple[int, int], at: int
-    ) -> None:
+    def store(self, batch: SuccessorBatch, steps: tuple[int, int], found: tuple[int, int], at: int) -> None:
         """Store transitions and possibly new successors of the rows before row `at`."""
 
     def expand_here(self, until: int) -> None:
@@ -70,7 +81,7 @@ class Slices:
         self.space = space
         self.pipeline = Pipeline(threads, self._expand, self._sift)
         self.pace, self.breadth = FEW, 1.0
-        self.spare: list[kernel.SuccessorBatch] = []
+        self.spare: list[SuccessorBatch] = []
 
     def advance(self, end: int) -> None:
         """Store the results of the next slice, while others go ahead; no slice crosses `end`."""
@@ -96,18 +107,19 @@ class Slices:
     def _slice(self, begin: int, end: int) -> RowSlice:
         """Return rows as a slice, with the trees known now."""
         space = self.space
-        known = space.known()
+        model, exchanges = space.known()
         space.show()
         state = space.state.copy()
         state[[AT, GATHERED, PUT_OFF]] = begin, 0, 0
         batch = self.spare.pop() if self.spare else space.new_batch(later=LATER_ROWS)
-        return RowSlice(begin, end, space.epoch, known, batch, state)
+        return RowSlice(begin, end, space.epoch, model, exchanges, batch, state)
 
     def _expand(self, part: RowSlice) -> None:
         """Expand a slice, in any thread."""
         rows = self.space.rows
         folded = rows.shown
-        kernel.gather(part.model, rows.words, folded, part.batch, part.state, part.end)
+        desk = self.space.symmetry[1]
+        kernel.gather(part.model, part.exchanges, desk, rows.words, folded, part.batch, part.state, part.end)
         if folded is None:
             kernel.drop_repeated(part.batch, part.state)
         else:  # a look-up takes no longer than this check

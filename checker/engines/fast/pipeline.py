@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from checker.engines.fast.kernel import (
+from checker.engines.fast.learned_model import (
     AT,
     GATHERED,
     LATER,
@@ -39,7 +39,7 @@ class RowSlice:
     Attributes:
         begin, end: The range of rows.
         epoch: The epoch at its start; its results are void if the epoch has changed since.
-        model: The trees at its start.
+        model, exchanges: The trees, and the symmetry tables if any, at its start.
         batch: Its results.
         state: Its copy of the loops' state.
         expanding: The future of its expansion; None if no thread has begun it.
@@ -49,6 +49,7 @@ class RowSlice:
     end: int
     epoch: int
     model: LearnedModel
+    exchanges: Any
     batch: SuccessorBatch
     state: State
     expanding: Future[None] | None = None

@@ -7,13 +7,15 @@ each row marks these; the number of set bits before it is the index into the sto
 # mypy: disable-error-code="return-value, assignment, arg-type"
 # numba types these functions; mypy would read their integers as Python's
 
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from checker.engines.fast.bits import WORD, add, has, ones_in
 from checker.engines.fast.jit_decorators import inner, njit
-from checker.engines.fast.kernel import State
+from checker.engines.fast.learned_model import State
 from checker.engines.fast.mapped_arrays import Pages
 from checker.engines.fast.table import Words
 from checker.engines.fast.tree_compression import NO_ROOM, Interned, Pool, intern
@@ -136,3 +138,56 @@ class SearchPaths:
         """Return the bytes that the paths of `rows` rows take."""
         bits = self.led.held(rows // WORD + 1) + self.before.held(rows // (BLOCK * WORD) + 1)
         return self.movers.held(rows) + bits + self.leads.held(int(self.count[0])) + self.sets.held
+
+    def spill(self, folder: Path, rows: int) -> None:
+        """Move the paths of `rows` rows to files in a folder; the sets of parts, which are few, stay in memory.
+
+        Raises:
+            OSError: There is no such folder, or no room in it.
+        """
+        self.movers.spill(folder, rows)
+        self.leads.spill(folder, int(self.count[0]))
+        self.led.spill(folder, rows // WORD + 1)
+        self.before.spill(folder, rows // (BLOCK * WORD) + 1)
+
+    def kept(self, rows: int) -> tuple[NDArray[Any], ...]:
+        """Return the stored form of the paths of `rows` rows: movers, bits, leads and sets."""
+        if not rows:
+            return self.movers.room[:0], self.led.room[:0], self.leads.room[:0], self.sets.words[:0]
+        bits = self.led.room[: -(-rows // WORD)]
+        return self.movers.room[:rows], bits, self.leads.room[: self.count[0]], self.sets.words
+
+    def restore(self, kept: tuple[NDArray[Any], ...], rows: int, expanded: int, agents: int) -> None:
+        """Load the stored paths of `rows` rows, of which the first are expanded.
+
+        Raises:
+            ValueError: No search has these paths.
+        """
+        movers, led, leads, sets = kept
+        sets = sets.reshape(-1, self.wide) if len(sets) % self.wide == 0 else sets
+        if len(movers) != rows or len(led) != -(-rows // WORD) or sets.ndim != 2:
+            raise ValueError("it has paths of other rows")
+        bits = np.unpackbits(led.view(np.uint8), bitorder="little")
+        origins, ends = np.flatnonzero(bits), (leads >> _HALF).astype(np.int64)
+        if len(origins) != len(leads) or np.any(origins >= expanded) or np.any(movers > agents):
+            raise ValueError("it has other paths")
+        if (
+            np.any(ends >= rows)
+            or np.any(leads & _LOW >= len(sets))
+            or len(np.unique(sets, axis=0)) != len(sets)
+        ):
+            raise ValueError("its paths take other steps")
+        following = np.arange(rows)
+        following[origins] = ends
+        for _ in range(rows.bit_length()):  # each round doubles the length
+            following = following[following]
+        if np.any(bits[following]):
+            raise ValueError("a path of it has no end")
+        self.reserve(rows)
+        self.movers.room[:rows], self.led.room[: len(led)], self.leads.room[: len(leads)] = movers, led, leads
+        self.count[0] = len(leads)
+        self.sets = Pool(self.wide, sets.ravel())
+        blocks = np.zeros(-(-len(bits) // (BLOCK * WORD)) * BLOCK * WORD, np.int64)
+        blocks[: len(bits)] = bits
+        before = np.concatenate(([0], np.cumsum(blocks.reshape(-1, BLOCK * WORD).sum(1))))[:-1]
+        self.before.room[: len(before)] = before

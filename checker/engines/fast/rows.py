@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from checker.engines.fast import tree_compression
-from checker.engines.fast.kernel import repack
 from checker.engines.fast.mapped_arrays import Pages, more
 from checker.engines.fast.origins import OriginPages, Rising
+from checker.engines.fast.repacking import repack
 
 BLOCK = 1 << 12
 """The number of rows that are decompressed at once."""
@@ -172,6 +172,7 @@ class Rows:
     @classmethod
     def of(
         cls,
+        reached: type[OriginPages],
         width: int,
         size: int,
         kept: NDArray[np.uint64],
@@ -188,6 +189,7 @@ class Rows:
         found = cls(
             width if into is None else tree_compression.PAIR,
             len(kept) // (width if into is None else tree_compression.PAIR) or 1,
+            reached,
         )
         if len(kept) != size * found.kept or not (into is None or into.are_rows(kept)):
             raise ValueError("it has other rows")

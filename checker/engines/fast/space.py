@@ -4,22 +4,21 @@ It visits the same configurations in the same order as the reference explorer, a
 """
 
 import math
-import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from itertools import accumulate, pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast import kernel
+from checker.engines.fast import kernel, repacking
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.columns import WORD, Packing, bits_of, packing, packing_in_order, shifts
 from checker.engines.fast.decision_trees import RECORD
 from checker.engines.fast.frontier_chunks import Slices
-from checker.engines.fast.kernel import (
+from checker.engines.fast.learned_model import (
     ALPHA,
     AT,
     CODE,
@@ -29,12 +28,18 @@ from checker.engines.fast.kernel import (
     FULL,
     GATHERED,
     KEPT,
+    LATER,
     LIMIT,
     NODE,
     SIZE,
+    STATE,
     TREE,
     TURNS,
+    UNSORTED,
+    WIDE,
     WORDS,
+    LearnedModel,
+    SuccessorBatch,
 )
 from checker.engines.fast.learner import CodedSource, Learner, TransitionGroup
 from checker.engines.fast.mapped_arrays import Pages
@@ -58,6 +63,7 @@ UNPLANTED = -1
 
 
 if TYPE_CHECKING:
+    from checker.engines.fast.canonicalise import Exchanges, RowScratch
     from checker.engines.fast.partial_order import Choosing
     from checker.engines.fast.symmetry_tables import Exchanging
 
@@ -100,16 +106,14 @@ class Space:
         self.left: Callable[[], float] = lambda: math.inf
         self.choosing = choosing
         self.exchanging = exchanging
-        if exchanging is not None and choosing is None:
-            self.PLAIN = sys.maxsize  # representatives are computed for whole batches
-        self.state = np.zeros(kernel.STATE, np.int64)
+        self.state = np.zeros(STATE, np.int64)
         self.state[LIMIT] = MOST_ROWS if limit is None else min(limit, MOST_ROWS)
         self.slices = Slices(self, threads)
         self.pipeline = self.slices.pipeline
         self.stored = self.changes = 0
-        self.shown: kernel.LearnedModel | None = None
+        self.shown: tuple[LearnedModel, Exchanges | None] | None = None
         self.packing: Packing
-        self.batch: kernel.SuccessorBatch
+        self.batch: SuccessorBatch
         self.state[TURNS] = learner.setting.scheduler is Scheduler.FCFS
         self.learned: list[tuple[int, int, int, int]] = []
         self.clauses = [
@@ -190,15 +194,12 @@ class Space:
             return
         while self.expanded < until:
             self._compress()
-            if self.exchanging is None:
-                self.slices.advance(until if end is None else end)
-            else:
-                self.expand_here(until)
+            self.slices.advance(until if end is None else end)
 
     def expand_here(self, until: int) -> None:
         """Expand rows until row `until` or until the batch is full, learning on the way."""
         self.state[AT], self.state[GATHERED] = self.expanded, 0
-        known = self._gather(until)
+        known = self.gather(until)
         gathered = int(self.state[GATHERED])
         self.store(self.batch, (0, gathered), (0, gathered), int(self.state[AT]))
         self.state[GATHERED] = 0
@@ -220,23 +221,30 @@ class Space:
         from checker.engines.fast.ample_kernel import expand_reduced  # noqa: PLC0415  # compiled only for a reduction
 
         loop: Callable[..., bool] = expand_reduced
-        swaps = self.exchanging
-        exchanges = (None, None) if swaps is None else (swaps.exchanges, swaps.desk)
-        known = (self.model, choosing.members, *exchanges, choosing.paths.trails)
+        known = (self.model, choosing.members, *self.symmetry, choosing.paths.trails)
         arrays = (self.rows.words, self.rows.folded, self.rows.origins.loops, self.table.room, self.batch)
         return loop(*known, *arrays, until, room, self.met.room, self.counts.room, self.state)
 
-    def _gather(self, until: int) -> bool:
+    def gather(self, until: int) -> bool:
         """Gather the successors of rows, or their representatives; return False at something not learned yet."""
         rows = self.rows
-        known: bool = kernel.gather(self.model, rows.words, rows.folded, self.batch, self.state, until)
-        return (
-            known if self.exchanging is None else self.exchanging.represent(self.batch, self.state) and known
+        return bool(
+            kernel.gather(self.model, *self.symmetry, rows.words, rows.folded, self.batch, self.state, until)
         )
 
-    def store(
-        self, batch: kernel.SuccessorBatch, steps: tuple[int, int], found: tuple[int, int], at: int
-    ) -> None:
+    @property
+    def symmetry(self) -> "tuple[Exchanges, RowScratch] | tuple[None, None]":
+        """The symmetry tables, and this thread's scratch space; None without symmetry reduction."""
+        swaps = self.exchanging
+        return (None, None) if swaps is None else (swaps.exchanges, swaps.desk)
+
+    @property
+    def completing(self) -> tuple[Any, ...]:
+        """What completes a compressed successor: the model, symmetry and tree compression; None for plain rows."""
+        folded = self.rows.folded
+        return (None,) * 4 if folded is None else (self.model, *self.symmetry, folded)
+
+    def store(self, batch: SuccessorBatch, steps: tuple[int, int], found: tuple[int, int], at: int) -> None:
         """Store part of a batch: transitions and possibly new successors of the rows before row `at`."""
         kernel.count(batch.steps, *steps, self.counts.room)
         begin, end = found
@@ -251,12 +259,13 @@ class Space:
         """A number that changes when results found ahead become void."""
         return self.changes + self.learner.trees.forgotten
 
-    def known(self) -> kernel.LearnedModel:
-        """Return a snapshot of the trees that other threads may read during learning."""
+    def known(self) -> "tuple[LearnedModel, Exchanges | None]":
+        """Return a snapshot of trees and symmetry tables that other threads may read during learning."""
         if self.shown is None:
             trees = self.learner.trees
             copies = [each.used.copy() for each in (trees.root, trees.nodes, trees.next)]
-            self.shown = self.model._replace(root=copies[0], nodes=copies[1], next=copies[2])
+            model = self.model._replace(root=copies[0], nodes=copies[1], next=copies[2])
+            self.shown = model, None if self.exchanging is None else self.exchanging.snapshot()
         return self.shown
 
     def show(self) -> None:
@@ -264,12 +273,10 @@ class Space:
         self.rows.show()
         self.stored = self.size
 
-    def _store_some(self, batch: kernel.SuccessorBatch, begin: int, end: int) -> int:
+    def _store_some(self, batch: SuccessorBatch, begin: int, end: int) -> int:
         """Store successors of a batch until there is no room; return the first one not stored."""
         arrays = (self.rows.words, self.rows.origins.loops, self.table.room)
-        folded = self.rows.folded
-        model = None if folded is None else self.model
-        return int(kernel.store(*arrays, model, folded, batch, begin, end, self.state))
+        return int(kernel.store(*arrays, *self.completing, batch, begin, end, self.state))
 
     def classify(self, tree: int, rows: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return the leaf of each row in a tree, learning on the way."""
@@ -288,23 +295,25 @@ class Space:
         self.state[AT] = rows.start
         while self.state[AT] < rows.stop:
             look()
-            known = self._gather(rows.stop)
+            known = self.gather(rows.stop)
             count, self.state[GATHERED] = int(self.state[GATHERED]), 0
-            targets, folded = np.zeros(count, np.int64), self.rows.folded
-            model = None if folded is None else self.model
-            kernel.look_up(self.rows.words, self.table.room, model, folded, self.batch, targets, self.state)
+            targets = np.zeros(count, np.int64)
+            kernel.look_up(
+                self.rows.words, self.table.room, *self.completing, self.batch, targets, self.state
+            )
             yield self.batch.origins[:count].copy(), self.batch.steps[:count].copy(), targets
             if not known:
                 self._miss()
 
     def _miss(self) -> None:
         look()
-        if self.state[NODE] == kernel.WIDE:
+        if self.state[NODE] == WIDE:
             self._make_batches(2 * len(self.batch.hashes))
             self._see()
         elif self.state[NODE] == FULL:
             self._make_room(1)
-        elif self.exchanging is not None and self.state[NODE] == kernel.UNSORTED:
+        elif self.exchanging is not None and self.state[NODE] == UNSORTED:
+            self.learned += self.exchanging.missed
             self.exchanging.learn()
             self._see()
         else:
@@ -312,50 +321,45 @@ class Space:
 
     def _learn(self, row: int) -> None:
         """Learn the entry at which the walk of a row ended."""
-        unknown = (row, int(self.state[TREE]), int(self.state[NODE]), int(self.state[CODE]))
-        self.learned.append(unknown)
-        if self._settles(*unknown[2:]):
-            self.shown = None
-            return
-        self._learn_from(self.packing, self.rows.row(row), unknown[1])
-        self._see()
+        tree, node, code = int(self.state[TREE]), int(self.state[NODE]), int(self.state[CODE])
+        self.learned.append((row, tree, node, code))
+        self._learn_entry(self.packing, self.rows.row(row), tree, node, code)
 
-    def _settles(self, node: int, code: int) -> bool:
-        """Answer the question of a node for a new code; return False if a rule must run.
+    def _learn_entry(
+        self, where: Packing, words: NDArray[np.uint64], tree: int, node: int, code: int
+    ) -> None:
+        """Learn the path of a row in a tree; a new answer to a question of a node needs no rule.
 
         Then only the windows of nodes change, which the loops read in place.
         """
         trees = self.learner.trees
-        return node >= 0 and trees.settle(node, code, self.learner.columns.all[trees.column_of(node)])
-
-    def _learn_from(self, where: Packing, words: NDArray[np.uint64], tree: int) -> None:
-        """Learn the path of a row in a tree."""
+        if node >= 0 and trees.settle(node, code, self.learner.columns.all[trees.column_of(node)]):
+            self.shown = None
+            return
         self.learner.learn(tree, CodedSource(self.learner.columns, where, words.tolist()))
+        self._see()
 
     def restore(
         self,
         where: Packing,
         rows: Rows,
         size: int,
-        learned: list[list[int]],
+        learned: list[tuple[int, int, int, int]],
     ) -> None:
         """Continue from the rows of another space of the same mission, learning again everything that it had learned.
 
         Raises:
             ValueError, IndexError: The rows can't be of such a space.
         """
-        first = self.codes(0)
-        for row, tree, node, code in learned:
-            if not 0 <= row < size:
-                raise ValueError("it learned from a row that it does not have")
-            self.learned.append((row, tree, node, code))
-            self._learn_again(where, rows.row(row), tree, node, code)
-            self._agents(self._groups())  # plants the trees of new agents, in the same order
+        first, missed = self.codes(0), iter(learned)
+        for each in missed:
+            self._learn_again(where, rows, size, each, missed)
+        self.learned = learned
         sizes = np.array(self.learner.columns.sizes, np.int64)
         begins = np.concatenate(([0], np.cumsum(sizes)))
         used = np.zeros(begins[-1], np.bool_)
         if len(where.mask) != len(sizes) or not all(
-            kernel.mark_used(words, where.words, where.columns, begins, used)
+            repacking.mark_used(words, where.words, where.columns, begins, used)
             for _, words in rows.blocks(size)
         ):
             raise ValueError("it has other columns, or values outside of theirs")
@@ -370,15 +374,27 @@ class Space:
         self._see()
 
     def _learn_again(
-        self, where: Packing, words: NDArray[np.uint64], tree: int, node: int, code: int
+        self,
+        where: Packing,
+        rows: Rows,
+        size: int,
+        entry: tuple[int, int, int, int],
+        others: Iterator[tuple[int, int, int, int]],
     ) -> None:
-        """Learn again from a row of another space; raise ValueError if that space can't have learned there."""
+        """Learn again as another space did; raise ValueError if that space can't have learned it."""
+        row, tree, node, code = entry
         trees = self.learner.trees
+        swaps = self.exchanging
+        if row < 0 and swaps is not None:
+            swaps.learn_again(entry, others)
+            self._see()
+            return
+        if not 0 <= row < size:
+            raise ValueError("it learned from a row that it does not have")
         if not (0 <= tree < len(trees.root) and UNPLANTED <= node < len(trees.asks)):
             raise ValueError("it learned an answer to a question of no rule")
         try:
-            if not self._settles(node, code):
-                self._learn_from(where, words, tree)
+            self._learn_entry(where, rows.row(row), tree, node, code)
         except Exception as error:  # on a row that is no configuration, rules may fail in any way
             raise ValueError(f"a rule does not run on its rows: {type(error).__name__}: {error}") from error
 
@@ -404,19 +420,19 @@ class Space:
             leaves.writes,
             leaves.part,
         )
-        self.model = kernel.LearnedModel._make(
+        self.model = LearnedModel._make(
             (*(each.room for each in learned), self.masks.room, self.packing.columns, *self.trees)
         )
-        self.shown = self.model if self.pipeline.threads == 1 else None
         if self.choosing is not None:
             self.choosing.see(groups, self.packing, len(self.batch.hashes))
         if self.exchanging is not None:
             self.exchanging.see(self.packing)
+        self.shown = (self.model, self.symmetry[0]) if self.pipeline.threads == 1 else None
 
     def _locate(self) -> None:
         """Write the column positions into new inner nodes, or into all of them after a repacking."""
         nodes = self.learner.trees.nodes
-        kernel.locate(nodes.used, self.packing.columns, self.located)
+        repacking.locate(nodes.used, self.packing.columns, self.located)
         self.located = len(nodes) // RECORD
 
     def _make_masks(self) -> None:
@@ -429,9 +445,9 @@ class Space:
             counts.extend(len(leaves.rule) - len(counts))
         arrays = (self.masks.used, leaves.steps.room, leaves.writes.room, self.packing.columns)
         if folded is None:
-            kernel.make_masks(*arrays, self.packing.words, known)
+            repacking.make_masks(*arrays, self.packing.words, known)
         else:
-            kernel.note_pieces(*arrays, folded.piece_of, known)
+            repacking.note_pieces(*arrays, folded.piece_of, known)
 
     def _groups(self) -> list[tuple[Name, ...]]:
         """Return the agents for each value of the cell that names them."""
@@ -523,20 +539,22 @@ class Space:
             self.actors = actors
             self._make_batches(len(self.batch.hashes))
 
-    def new_batch(self, successors: int = 0, later: int = 0) -> kernel.SuccessorBatch:
+    def new_batch(self, successors: int = 0, later: int = 0) -> SuccessorBatch:
         """Return an empty batch for `successors` successors (default: `BATCH`), with room for `later` deferred rows."""
         successors = successors or BATCH
-        folded = self.rows.folded is not None
-        whole = 0 if folded and self.choosing is None else successors
-        words = np.zeros(whole * self.packing.words, np.uint64)
-        return kernel.SuccessorBatch(
+        reduced = self.choosing is not None or self.exchanging is not None
+        words = np.zeros(
+            self.packing.words * successors if reduced or self.rows.folded is None else 0, np.uint64
+        )
+        is_stored_as_made = self.rows.folded is None and self.exchanging is None
+        return SuccessorBatch(
             words,
-            np.zeros(self.rows.kept * successors, np.uint64) if folded else words,
+            words if is_stored_as_made else np.zeros(self.rows.kept * successors, np.uint64),
             np.zeros(successors, np.uint64),
             np.zeros(successors, np.int64),
             np.zeros(successors, np.int32),
             np.zeros(self.actors, np.int32),
-            np.zeros(kernel.LATER * later, np.int64),
+            np.zeros(LATER * later, np.int64),
             np.zeros(BATCH if later else 0, np.int32),
         )
 
@@ -557,13 +575,15 @@ class Space:
         return max(int(within), slots_for(rows) * 3 // 4)
 
     def spill(self, folder: Path) -> None:
-        """Move rows and origins to files in a folder; the table, with its random accesses, stays in memory.
+        """Move rows, origins and paths to files in a folder; the table, with its random accesses, stays in memory.
 
         Raises:
             OSError: There is no such folder, or no room in it.
         """
         self.pipeline.rest()
         self.rows.spill(folder, self.size)
+        if self.choosing is not None:
+            self.choosing.paths.spill(folder, self.size)
 
     def _rebuild(self, slots: int) -> None:
         self.pipeline.rest()

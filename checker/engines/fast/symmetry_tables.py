@@ -5,33 +5,53 @@ observations. The *shape* of an entry is the item with its members replaced by t
 of one shape share their *moves*: a move is a shape with the members that replace those, and is learned once.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from threading import local
 from typing import Any
 
 import numpy as np
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.canonicalise import (
-    COUNT,
     ENTRY,
     FIXED,
-    KIND,
     LISTED,
+    TARGET,
     UNKNOWN,
-    WHAT,
     WHOLE,
     Exchanges,
     RowScratch,
     enter_all,
-    represent_all,
 )
 from checker.engines.fast.columns import Packing, Writes
-from checker.engines.fast.kernel import AT, GATHERED, NODE, UNSORTED, State, SuccessorBatch
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.value_templates import holes, split_value
 from checker.reduction.member_items import Items, Member, Place, Roles
 from checker.reduction.representatives import MOST_ORDERS
 from semantics.state.cell_values import AGENTS, NAMES
+
+MOST_ARGUMENTS = 1 << 16
+"""A bound on a quarter of the arguments of a miss: twice the columns of a row, and its members."""
+
+
+class SymmetryScratch(local):
+    """One thread's scratch space for the representatives of rows (see `RowScratch`)."""
+
+    def __init__(self, active: int, places: int, members: int, words: int) -> None:
+        super().__init__()
+        self.room = RowScratch(
+            np.zeros(3 * active, np.int32),
+            np.zeros(places, np.int64),
+            np.zeros(members, np.uint64),
+            np.zeros(members, np.uint64),
+            np.zeros(members, np.int32),
+            np.zeros(members, np.int32),
+            np.zeros(members, np.int32),
+            np.zeros(members, np.int32),
+            np.zeros(LISTED + 2 * active + members + 2, np.int32),
+            np.zeros(1, np.int64),
+            np.zeros(words, np.uint64),
+        )
 
 
 class Exchanging:
@@ -64,20 +84,6 @@ class Exchanging:
         self.entered = 0
         self.keys, self.values = np.zeros(1024, np.uint64), np.zeros(1024, np.int32)
 
-    def represent(self, batch: SuccessorBatch, state: State) -> bool:
-        """Replace successors by representatives; at one still unknown, drop its row's successors and return False."""
-        assert self.where is not None
-        gathered = int(state[GATHERED])
-        done = represent_all(self.exchanges, self.desk, batch, gathered, self.where.columns, self.where.words)
-        if done < gathered:
-            row = batch.origins[done]
-            state[AT], state[NODE], state[GATHERED] = (
-                row,
-                UNSORTED,
-                np.searchsorted(batch.origins[:gathered], row),
-            )
-        return bool(done == gathered)
-
     # --- tables for the loops -----------------------------------------------------------------------------------------
 
     def see(self, where: Packing) -> None:
@@ -101,6 +107,16 @@ class Exchanging:
             self.numbers.room,
             members,
             MOST_ORDERS,
+        )
+
+    def snapshot(self) -> Exchanges:
+        """Return the tables with copies of those that learning changes in place."""
+        shown = self.exchanges
+        return shown._replace(
+            entries=shown.entries.copy(),
+            keys=shown.keys.copy(),
+            values=shown.values.copy(),
+            payload=shown.payload.copy(),
         )
 
     def _take_columns(self, where: Packing) -> None:
@@ -131,18 +147,12 @@ class Exchanging:
         for number, known in enumerate(self.entries):
             for code, entry in known.items():
                 self._show(number, code, entry)
-        count = len(self.items.members)
-        self.desk = RowScratch(
-            np.zeros(3 * len(active), np.int32),
-            np.zeros(len(places), np.int64),
-            np.zeros(count, np.uint64),
-            np.zeros(count, np.uint64),
-            np.zeros(count, np.int32),
-            np.zeros(count, np.int32),
-            np.zeros(count, np.int32),
-            np.zeros(count, np.int32),
-            np.zeros(LISTED + 2 * len(active) + count + 2, np.int32),
-        )
+        self._desk = SymmetryScratch(len(active), len(places), len(self.items.members), where.words)
+
+    @property
+    def desk(self) -> RowScratch:
+        """The scratch space of this thread."""
+        return self._desk.room
 
     def _show(self, number: int, code: int, entry: int) -> None:
         *_, begins, widths, entries = self.columns
@@ -169,13 +179,42 @@ class Exchanging:
 
     # --- learning -------------------------------------------------------------------------------------------------
 
+    @property
+    def missed(self) -> list[tuple[int, int, int, int]]:
+        """The entry or move at which the loop stopped, in records of four numbers.
+
+        The first record has -1 - kind, the subject and the number of arguments. The others have the arguments.
+        """
+        kind, what, count = self.desk.unknown[:LISTED].tolist()
+        listed = [*self.desk.unknown[LISTED : LISTED + count].tolist(), 0, 0, 0]
+        return [(-1 - kind, what, count, 0), *zip(*[iter(listed[: -(-count // 4) * 4])] * 4, strict=True)]
+
     def learn(self) -> None:
         """Learn the entry or move at which the loop stopped."""
-        unknown = self.desk.unknown.tolist()
-        what, listed = unknown[WHAT], unknown[LISTED : LISTED + unknown[COUNT]]
-        if unknown[KIND] == ENTRY:
+        kind, what, count = self.desk.unknown[:LISTED].tolist()
+        self._learn(kind, what, self.desk.unknown[LISTED : LISTED + count].tolist())
+
+    def learn_again(self, first: Sequence[int], others: Iterator[Sequence[int]]) -> None:
+        """Learn an entry or move that tables of the same mission `missed`.
+
+        Raises:
+            ValueError: They can't have missed it.
+        """
+        kind, what, count = -1 - first[0], first[1], first[2]
+        if kind > TARGET or not 0 <= count <= 4 * MOST_ARGUMENTS:
+            raise ValueError("it learned an exchange of no kind")
+        listed = [number for _ in range(-(-count // 4)) for number in next(others, ())][:count]
+        if len(listed) != count or min((what, *listed)) < 0:
+            raise ValueError("it learned an exchange of nothing")
+        try:
+            self._learn(kind, what, listed)
+        except Exception as error:
+            raise ValueError(f"it learned no exchange: {type(error).__name__}: {error}") from error
+
+    def _learn(self, kind: int, what: int, listed: list[int]) -> None:
+        if kind == ENTRY:
             self._learn_codes(what, listed[0])
-        elif unknown[KIND] == WHOLE:
+        elif kind == WHOLE:
             self._learn_whole(what, listed[:-1], listed[-1])
         else:
             self._move(int(self.shape.room[what]), listed)

@@ -91,6 +91,7 @@ class FoldedTable(NamedTuple):
         before, fresh: Scratch space for numbers of pieces, and of nodes.
         sought: Scratch space for the piece or node of a look-up.
         memory, results: A cache of changed pieces: its keys (transition and piece) and the resulting pieces.
+        target: Scratch space for the words of a successor.
     """
 
     pieces: Interned
@@ -106,6 +107,7 @@ class FoldedTable(NamedTuple):
     sought: Words
     memory: Words
     results: Numbers
+    target: Words
 
 
 @njit(cache=True, forceinline=True)
@@ -233,23 +235,6 @@ def seek_piece(f: FoldedTable, piece: int) -> None:
         f.sought[k] = f.pieces.words[begin + k]
 
 
-@njit(cache=True, forceinline=True)
-def seek_piece_of_row(f: FoldedTable, piece: int) -> None:
-    """Copy the words of a piece of the unfolded row to `sought`."""
-    begin = f.begins[piece]
-    for k in range(f.pieces.counts[WIDE]):
-        f.sought[k] = f.whole[begin + k]
-
-
-@njit(cache=True, forceinline=True)
-def put_sought(f: FoldedTable, piece: int, touched: int) -> int:
-    """Set a piece of the successor to `sought` unless it is the row's; return the successor's own pieces."""
-    differs, begin = False, f.begins[piece]
-    for k in range(f.pieces.counts[WIDE]):
-        differs = differs or f.sought[k] != f.whole[begin + k]
-    return put_piece(f, piece, intern(f.pieces, f.sought, False), touched) if differs else touched
-
-
 @njit(cache=True)
 def fold_rows(f: FoldedTable, words: Words, width: int, kept: Words, begin: int) -> int:
     """Compress rows from number `begin` on; return the first one without room, or the number of rows."""
@@ -363,6 +348,7 @@ class FoldingScratch(local):
             np.zeros(max(width, PAIR), np.uint64),
             np.zeros(MEMORY, np.uint64),
             np.zeros(MEMORY, np.int64),
+            np.zeros(count * width, np.uint64),
         )
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -13,10 +15,53 @@ from checker.engines.fast.compile_progress import compilation_uncounted
 from checker.engines.timed.zone_answers import OfRows, ZoneTimes
 from checker.engines.zones.timed_automaton import ConstantTooLargeError
 from checker.engines.zones.timed_automaton_of import Network
+from checker.engines.zones.timed_checkpoint import resume, save
 from checker.engines.zones.zone_inspection import inspect_zones
 from checker.engines.zones.zone_search import CHUNK, Search
 from checker.limits import Bound, BoundMet, Limits, Stop, bounded, is_full
 from semantics.state.configuration import Configuration
+
+
+class _Files:
+    """The files of a timed search: its checkpoint, and its zones when memory is full.
+
+    Attributes:
+        seconds: The time that the search had taken at the checkpoint from which it goes on.
+    """
+
+    def __init__(self, network: Network, options: Options) -> None:
+        self.network, self.keeping, self.folder = network, options.keeping, options.limits.spill
+        folder = self.keeping.folder
+        name = "monitored" if network.learner.setting.monitored else "exploration"
+        self.path = None if folder is None else Path(folder) / f"{name}.timed.checkpoint"
+        self.seconds, self.kept = 0.0, time.monotonic()
+
+    def begin(self) -> None:
+        """Begin the search, or go on from the checkpoint."""
+        if self.path is not None and self.keeping.resumed and self.path.exists():
+            self.seconds = resume(self.network, self.keeping.digest, self.path)
+        else:
+            self.network.begin()
+
+    def keep(self, seconds: float, *, always: bool) -> list[Bound]:
+        """Write a checkpoint if one is due; return a bound if it can't be written."""
+        if self.path is None or not (always or time.monotonic() - self.kept >= self.keeping.every):
+            return []
+        try:
+            save(self.network, seconds, self.keeping.digest, self.path)
+        except OSError as error:
+            return [Bound(Stop.NO_CHECKPOINT, (str(self.path), error.strerror))]
+        self.kept = time.monotonic()
+        return []
+
+    def makes_room(self, search: Search, limits: Limits) -> bool:
+        """Spill to files if that is enabled and not done yet; return whether memory is free again."""
+        if self.folder is None:
+            return False
+        folder, self.folder = Path(self.folder), None
+        self.network.spill(folder)
+        search.spill(folder)
+        return not is_full(limits)
 
 
 class _Learning(Search):
@@ -43,9 +88,14 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
         with compilation_uncounted(options) as counted:
             uncounted = counted.limits.uncounted
             network = Network(initial, options.limits.pending)
+            files = _Files(network, counted)
+            files.begin()
+            started -= files.seconds
             search = _Learning(network)
-            with bounded(counted.limits, started):
-                _visit_all(network, search, found, counted, started)
+            within = counted.limits if counted.limits.spill is None else replace(counted.limits, memory=None)
+            with bounded(within, started):
+                _visit_all(network, search, files, found, counted, started)
+            found.bounds += files.keep(time.monotonic() - started, always=True)
     except BoundMet as met:  # within the learning of rules
         found.bounds.append(met.bound)
     except ConstantTooLargeError as error:
@@ -60,7 +110,7 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
 
 
 def _visit_all(
-    network: Network, search: Search, found: Exploration, options: Options, started: float
+    network: Network, search: Search, files: _Files, found: Exploration, options: Options, started: float
 ) -> None:
     reported, goes_on = started, True
     most = options.limits.configurations
@@ -71,22 +121,28 @@ def _visit_all(
             search.again()
             goes_on = True
         now = time.monotonic()
-        stop = _stop(search, options.limits, now - started, goes_on=goes_on)
-        if stop is not None:
-            found.bounds.append(stop)
+        found.bounds += _stop(search, files, options.limits, now - started, goes_on=goes_on)
+        if found.bounds:
             return
         if options.report is not None and now - reported >= options.every:
             options.report(_progress(search, now - started))
             reported = now
 
 
-def _stop(search: Search, limits: Limits, seconds: float, *, goes_on: bool) -> Bound | None:
+def _stop(search: Search, files: _Files, limits: Limits, seconds: float, *, goes_on: bool) -> list[Bound]:
+    """Return the bounds that end the search now; keep a checkpoint, or move to files, where that is due."""
     if limits.configurations is not None and search.count > limits.configurations:
-        return limits.bound(Stop.CONFIGURATIONS)
+        return [limits.bound(Stop.CONFIGURATIONS)]
     if not goes_on:
-        return None
-    end = limits.end(seconds)
-    return end or (limits.bound(Stop.MEMORY) if is_full(limits) else None)
+        return []
+    if (end := limits.end(seconds)) is not None:
+        return [end]
+    try:
+        if is_full(limits) and not files.makes_room(search, limits):
+            return [limits.bound(Stop.MEMORY)]
+    except OSError as error:
+        return [Bound(Stop.NO_ROOM, (limits.spill or "memory", error.strerror))]
+    return files.keep(seconds, always=False)
 
 
 def _progress(search: Search, seconds: float) -> Progress:

@@ -12,35 +12,34 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from checker.engines.fast import kernel
 from checker.engines.fast.decision_leaves import (
     ALIKE,
-    COPIES,
-    COPIES_END,
     CROWDED,
     END,
     FIRST,
     FLAGS,
     LEAF,
-    PARTS,
-    PARTS_END,
     STEP,
     TURN,
 )
 from checker.engines.fast.jit_decorators import inner, njit
-from checker.engines.fast.kernel import (
+from checker.engines.fast.kernel import add_row
+from checker.engines.fast.learned_model import (
+    ALPHA,
     AT,
+    KEPT,
     SIZE,
     TREE,
     TURNS,
     WORDS,
-    add_row,
-    conclude,
-    copy_columns,
+    LearnedModel,
+    code_at,
+    first_turn,
     walk,
-    write_part,
 )
+from checker.engines.fast.make_successors import make_plain, put_stored
 from checker.engines.fast.table import Words, bits_for, entry_of, find, hashed
+from checker.engines.fast.tree_compression import FoldedTable, unfold
 from checker.engines.zones import timed_automaton as automata
 from checker.engines.zones.difference_bounds import NONE
 from checker.engines.zones.timed_automaton import DEADLINE, EDGE, LOCATION, TEST
@@ -142,13 +141,13 @@ KNOWN, MISS, FULL = range(3)
 
 @inner(cache=True)
 def find_steps(
-    m: kernel.LearnedModel, t: LearnedClocks, words: Words, row: int, v: LocationView, state: State
+    m: LearnedModel, t: LearnedClocks, words: Words, at: int, row: int, v: LocationView, state: State
 ) -> bool:
-    """Find the steps and clocks of a row; False if a tree lacks an answer."""
-    state[AT], at = row, row * state[WORDS]
+    """Find the steps and clocks of a row whose words begin at `at`; False if a tree lacks an answer."""
+    state[AT] = row
     first, last = np.int64(0), np.int64(len(m.agents))
-    if state[kernel.ALPHA] >= 0:
-        group = kernel.code_at(words, at, m.columns, state[kernel.ALPHA])
+    if state[ALPHA] >= 0:
+        group = code_at(words, at, m.columns, state[ALPHA])
         first, last = np.int64(m.agents_from[group]), np.int64(m.agents_from[group + 1])
     agents, vehicles = last - first, len(t.vehicles)
     actors = agents + len(m.clauses)
@@ -174,7 +173,7 @@ def find_steps(
             return False
         v.answers[k] = -reference - 1
     v.counts[AGENTS], v.counts[ACTORS] = agents, actors
-    v.counts[ITS_TURN] = kernel.first_turn(m.leaves, m.steps, v.leaves, agents) if state[TURNS] else -1
+    v.counts[ITS_TURN] = first_turn(m.leaves, m.steps, v.leaves, agents) if state[TURNS] else -1
     v.counts[IS_CROWDED] = flags & CROWDED
     v.counts[STAMP] += 1
     note_clocks(m, t, v)
@@ -182,7 +181,7 @@ def find_steps(
 
 
 @inner(cache=True)
-def note_clocks(m: kernel.LearnedModel, t: LearnedClocks, v: LocationView) -> None:
+def note_clocks(m: LearnedModel, t: LearnedClocks, v: LocationView) -> None:
     """Record the first index of each clock, and the bound clocks: those that an in-turn step ends."""
     stamp, index = v.counts[STAMP], np.int64(1)
     for clock in t.lasting:
@@ -210,7 +209,7 @@ def note_clocks(m: kernel.LearnedModel, t: LearnedClocks, v: LocationView) -> No
 
 
 @inner(cache=True)
-def steps_of_clause(m: kernel.LearnedModel, v: LocationView, clause: int) -> int:
+def steps_of_clause(m: LearnedModel, v: LocationView, clause: int) -> int:
     """Return the number of steps of a clause."""
     leaf = LEAF * v.leaves[v.counts[AGENTS] + clause]
     return m.leaves[leaf + END] - m.leaves[leaf + FIRST]
@@ -224,7 +223,7 @@ def digit(windows: int, window: int) -> int:
 
 @inner(cache=True)
 def add_location(
-    m: kernel.LearnedModel,
+    m: LearnedModel,
     t: LearnedClocks,
     g: AutomatonGrowth,
     v: LocationView,
@@ -275,7 +274,7 @@ def add_location(
 
 @inner(cache=True)
 def add_deadlines(
-    m: kernel.LearnedModel, t: LearnedClocks, g: AutomatonGrowth, v: LocationView, windows: int, begin: int
+    m: LearnedModel, t: LearnedClocks, g: AutomatonGrowth, v: LocationView, windows: int, begin: int
 ) -> int:
     """Add the deadline of a crowded location, or else of the windows; return the end of the deadlines."""
     least = np.int64(NONE)
@@ -295,38 +294,39 @@ def add_deadlines(
 
 @inner(cache=True)
 def target_row(
-    m: kernel.LearnedModel,
+    m: LearnedModel,
+    f: FoldedTable | None,
     words: Words,
+    source: Words,
+    at: int,
     row: int,
     step: int,
-    scratch: Words,
+    target: Words,
+    kept: Words,
     origins: Any,
     table: Any,
     most: int,
     state: State,
 ) -> int:
-    """Return the row that a step leads to, new at the first visit; -1 if a tree lacks an answer, -2 without room."""
-    width = state[WORDS]
-    at, record = row * width, STEP * step
-    conclude(words, at, m.masks, step, scratch, 0, width)
-    begin, end = m.steps[record + COPIES], m.steps[record + COPIES_END]
-    copy_columns(words, at, m.columns, m.copies, begin, end, scratch, 0)
-    for part in range(m.steps[record + PARTS], m.steps[record + PARTS_END]):
-        tree = m.part[part]
-        reference = walk(words, at, m.root[tree], m.nodes, m.next, state)
-        if reference == 0:
-            state[AT], state[TREE] = row, tree
-            return -1
-        write_part(m.columns, m.writes, m.steps, m.leaves[LEAF * (-reference - 1) + FIRST], scratch, 0)
-    digest = hashed(scratch, 0, width)
+    """Return the row that a step leads to, new at the first visit; -1 if a tree lacks an answer, -2 without room.
+
+    Its words are then in `target`.
+    """
+    width, stored = state[WORDS], state[KEPT]
+    if make_plain(m, f, source, at, step, target, 0, width, state) < 0:
+        state[AT] = row
+        return -1
+    if put_stored(m, None, None, f, target, 0, width, True, kept, 0, state) < 0:
+        return -2
+    digest = hashed(kept, 0, stored)
     bits = np.uint32(bits_for(len(table)))
-    found = find(words, table, scratch, 0, digest, width, bits)
+    found = find(words, table, kept, 0, digest, stored, bits)
     if found >= 0:
         return found
     new = state[SIZE]
     if new >= most:
         return -2
-    add_row(words, origins, table, -found - 1, entry_of(digest, new, bits), scratch, 0, row, state)
+    add_row(words, origins, table, -found - 1, entry_of(digest, new, bits), kept, 0, row, state)
     return new
 
 
@@ -346,7 +346,7 @@ def source_of(t: LearnedClocks, a: LocationView, done: int, end: int, clock: int
 
 @inner(cache=True)
 def add_edges(  # each argument is another part of the state
-    m: kernel.LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
+    m: LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
     here: int, row: int, times: int, number: int, step: int,
     choices: Ints, s: State,
 ) -> int:  # fmt: skip
@@ -452,38 +452,48 @@ def add_sources(
 
 @njit(cache=True)
 def begin(
-    m: kernel.LearnedModel,
+    m: LearnedModel,
     t: LearnedClocks,
     g: AutomatonGrowth,
     v: LocationView,
     words: Words,
+    f: FoldedTable | None,
     windows: int,
     state: State,
     s: State,
 ) -> int:
     """Add the location of the first row; return why that ended."""
-    if not find_steps(m, t, words, 0, v, state):
+    source = words
+    if f is not None:
+        unfold(f, words, 0)
+        source = f.whole
+    if not find_steps(m, t, source, 0, 0, v, state):
         return MISS
     return KNOWN if add_location(m, t, g, v, 0, windows, s) >= 0 else FULL
 
 
 @njit(cache=True)
 def leave(
-    m: kernel.LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
-    words: Words, origins: Any, table: Any, most: int,
-    scratch: Words, taken: Ints, choices: Ints, locations: State, state: State, s: State,
+    m: LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
+    words: Words, f: FoldedTable | None, origins: Any, table: Any, most: int,
+    target: Words, kept: Words, taken: Ints, choices: Ints, locations: State, state: State, s: State,
 ) -> int:  # fmt: skip
     """Add the edges of the given locations, from the next undone one; return why that ended."""
     while s[DONE] < len(locations):
         here = locations[s[DONE]]
         row, began = np.int64(g.rows[here]), (s[LEAVING], s[TESTED], s[SOURCED])
-        if not find_steps(m, t, words, row, a, state):
+        source, at = words, row * state[WORDS]
+        if f is not None:
+            unfold(f, words, row)
+            source, at = f.whole, np.int64(0)
+        if not find_steps(m, t, source, at, row, a, state):
             return MISS
         why = KNOWN
         if not a.counts[IS_CROWDED]:
             why = leave_by_steps(
-                m, t, g, a, b, words, origins, table, most, scratch, taken, choices, here, row, state, s
-            )
+                m, t, g, a, b, words, source, at, f, origins, table, most, target, kept, taken, choices, here, row,
+                state, s,
+            )  # fmt: skip
         if why != KNOWN:
             s[LEAVING], s[TESTED], s[SOURCED] = began
             return why
@@ -495,9 +505,9 @@ def leave(
 
 @inner(cache=True)
 def leave_by_steps(
-    m: kernel.LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
-    words: Words, origins: Any, table: Any, most: int,
-    scratch: Words, taken: Ints, choices: Ints, here: int, row: int, state: State, s: State,
+    m: LearnedModel, t: LearnedClocks, g: AutomatonGrowth, a: LocationView, b: LocationView,
+    words: Words, source: Words, at: int, f: FoldedTable | None, origins: Any, table: Any, most: int,
+    target: Words, kept: Words, taken: Ints, choices: Ints, here: int, row: int, state: State, s: State,
 ) -> int:  # fmt: skip
     """Add the edges of each in-turn step of a location; equal steps of an agent count once."""
     number = np.int64(0)
@@ -508,21 +518,21 @@ def leave_by_steps(
             turn, alike = m.steps[STEP * step + TURN], m.steps[STEP * step + ALIKE]
             if turn >= 0 and turn != a.counts[ITS_TURN]:
                 continue
-            target = target_row(m, words, row, step, scratch, origins, table, most, state)
-            if target < 0:
-                return MISS if target == -1 else FULL
-            if target >= len(g.of_rows) or 2 * number + 2 > len(taken):
+            to = target_row(m, f, words, source, at, row, step, target, kept, origins, table, most, state)
+            if to < 0:
+                return MISS if to == -1 else FULL
+            if to >= len(g.of_rows) or 2 * number + 2 > len(taken):
                 return FULL
             again = False
             for other in range(own, number if k < a.counts[AGENTS] and alike >= 0 else own):
-                again = again or (taken[2 * other] == target and taken[2 * other + 1] == alike)
+                again = again or (taken[2 * other] == to and taken[2 * other + 1] == alike)
             if again:
                 continue
-            taken[2 * number], taken[2 * number + 1] = target, alike
-            if not find_steps(m, t, words, target, b, state):
+            taken[2 * number], taken[2 * number + 1] = to, alike
+            if not find_steps(m, t, target, 0, to, b, state):
                 return MISS
             times = TIMES * (t.answers[record + 2] + step - first)
-            if add_edges(m, t, g, a, b, here, target, times, number, step, choices, s) == FULL:
+            if add_edges(m, t, g, a, b, here, to, times, number, step, choices, s) == FULL:
                 return FULL
             number += 1
     return KNOWN

@@ -7,6 +7,7 @@ are dropped.
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -174,6 +175,29 @@ class TimedAutomaton:
         sources = np.repeat(order, counts[order])
         taken = edges[:, FIRST] >= 0
         return sources[taken], edges[taken, TARGET].astype(np.int64)
+
+    def left(self) -> NDArray[np.int64]:
+        """Return the locations whose edges are known, in the order in which they were worked out."""
+        begins = self.locations.used[EDGES::LOCATION]
+        known = np.flatnonzero(begins != UNKNOWN)
+        return known[np.argsort(begins[known], kind="stable")]
+
+    def spill(self, folder: Path) -> None:
+        """Move the arrays that grow with the locations to files in a folder.
+
+        Raises:
+            OSError: There is no such folder, or no room in it.
+        """
+        for each in (
+            self.locations,
+            self.edges,
+            self.tests,
+            self.sources,
+            self.deadlines,
+            self.clocks,
+            self.rows,
+        ):
+            each.spill(folder)
 
     def firsts(self, location: int) -> list[tuple[int, int]]:
         """Return each taken step of a location, with the least number of steps before it."""

@@ -7,10 +7,10 @@ constants of a clock are the largest seen so far; the search restarts when one g
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from functools import lru_cache, partial
 from itertools import islice
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from checker.engines.fast.arrays import Growing
 from checker.engines.fast.decision_leaves import LEAF
-from checker.engines.fast.kernel import AT, LIMIT
+from checker.engines.fast.learned_model import AT, LIMIT
 from checker.engines.fast.learner import Learner
 from checker.engines.fast.origins import OriginPages
 from checker.engines.fast.space import Space
@@ -90,7 +90,6 @@ class Network(Space):
         first_ages: The clock values of the first location.
     """
 
-    PLAIN = sys.maxsize  # its loops index into rows
     ORIGINS = OriginPages  # origins are read in the order of the timed search
 
     def __init__(self, initial: Configuration, pending: int) -> None:
@@ -118,13 +117,39 @@ class Network(Space):
         self.timed: LearnedClocks
         super().__init__(Learner(initial.setting, initial.state, pending), None)  # type: ignore[arg-type]  # a stored one
         self.situation = lru_cache(1 << 12)(lambda number: TimedView(self.configuration(number)))
+        self.first_ages: tuple[int, ...] = ()
+
+    def begin(self) -> None:
+        """Add the first location."""
         situation = self.situation(0)
         ages = situation.first_ages()
         windows = [age for age, each in zip(ages, situation.clocks, strict=True) if each.sort is Sort.WINDOW]
         code = sum(said * 3**at for at, said in enumerate(windows))
         loop: Callable[..., int] = location_successors.begin
-        self._run(lambda *known: loop(*known, self.rows.words, code, self.state, self.counts_of))
+
+        def work(model: object, timed: LearnedClocks, growth: AutomatonGrowth, view: LocationView) -> int:
+            rows = self.rows
+            return loop(model, timed, growth, view, rows.words, rows.folded, code, self.state, self.counts_of)
+
+        self._run(work)
         self.first_ages = self.measured(situation, ages)
+
+    def leave_again(self, locations: NDArray[np.int64]) -> None:
+        """Work out the edges of locations in the order of another network with the same rows.
+
+        Raises:
+            ValueError: No network has left them in this order.
+        """
+        if len(np.unique(locations)) != len(locations) or np.any(locations < 0):
+            raise ValueError("it left a location twice")
+        done = 0
+        while done < len(locations):
+            there = locations[done:] < len(self.automaton)
+            count = len(there) if there.all() else int(np.argmin(there))
+            if not count:
+                raise ValueError("it left a location before reaching it")
+            self.leave(locations[done : done + count])
+            done += count
 
     # --- learned clocks -------------------------------------------------------------------------------------------
 
@@ -235,9 +260,12 @@ class Network(Space):
         choices = np.zeros(CHOICE * (len(self.restored) + len(self.windows) + 1), np.int32)
 
         def work(model: object, timed: LearnedClocks, growth: AutomatonGrowth, view: LocationView) -> int:
-            other, arrays = self._view(), (self.rows.words, self.rows.origins.loops, self.table.room)
-            most = min(self.rows.room, most_in(len(self.table.room)), int(self.state[LIMIT]))
-            scratch = np.zeros(self.packing.words, np.uint64), np.zeros(2 * self.margin, np.int32), choices
+            rows, folded = self.rows, self.rows.folded
+            other, arrays = self._view(), (rows.words, folded, rows.origins.loops, self.table.room)
+            most = min(rows.room, most_in(len(self.table.room)), int(self.state[LIMIT]))
+            target = np.zeros(self.packing.words, np.uint64)
+            kept = target if folded is None else np.zeros(rows.kept, np.uint64)
+            scratch = target, kept, np.zeros(2 * self.margin, np.int32), choices
             loop: Callable[..., int] = location_successors.leave
             known = (model, timed, growth, view, other)
             return loop(*known, *arrays, most, *scratch, locations, self.state, self.counts_of)
@@ -250,6 +278,7 @@ class Network(Space):
         """Run a loop to its end, with more room and more learned rules where it stops."""
         while True:
             look()  # each location is recorded whole
+            self._compress()
             self._reserve()
             done = self.counts_of.copy()
             why = loop(self.model, self.timed, self._growth(), self._view())
@@ -260,6 +289,13 @@ class Network(Space):
                 self._learn(int(self.state[AT]))
             elif np.array_equal(done, self.counts_of):
                 self.margin *= 2
+
+    def spill(self, folder: Path) -> None:
+        """Move rows, origins and locations to files in a folder; raises OSError as `Space.spill`."""
+        super().spill(folder)
+        self.automaton.spill(folder)
+        for each in (self.of_rows, self.before, self.said):
+            each.spill(folder)
 
     def _reserve(self) -> None:
         self._make_room(self.margin)

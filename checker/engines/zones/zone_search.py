@@ -1,6 +1,7 @@
 """A search through the zones of a timed automaton."""
 
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,6 +114,16 @@ class Search:
         """Restart the search."""
         self.automaton.forget()
         self._begin()
+
+    def spill(self, folder: Path) -> None:
+        """Move the zones to files in a folder.
+
+        Raises:
+            OSError: There is no such folder, or no room in it.
+        """
+        for each in (self.begins, self.sums, self.bounds, self.places, self.following):
+            each.spill(folder)
+        self._see(1)
 
     def finish(self, look: Callable[[], None]) -> None:
         """Search to the end or to the goal, with periodic checks of the time."""

@@ -31,6 +31,7 @@ from checker.engines.capabilities import Feature, Why, pair_of
 from checker.engines.contract import Cluster
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import Space
+from checker.engines.zones import explorer as zones
 from specs.elaboration import read_mission
 
 FEATURES = tuple(
@@ -133,12 +134,13 @@ def spilled_rows():
 
 def run(mission, asked):
     """Check a mission with some features; memory ends for a search that may spill, one with checkpoints is resumed."""
-    if Feature.SPILL in asked:
+    with patch.object(zones, "CHUNK", 8):
+        if Feature.SPILL not in asked:
+            return _run(mission, asked)
         with spilled_rows() as moves:
             report = _run(mission, asked)
         assert moves
         return report
-    return _run(mission, asked)
 
 
 def _run(mission, asked):
@@ -164,9 +166,8 @@ def _run(mission, asked):
         for resumed in range(3 if Feature.CHECKPOINT in asked else 0):  # each goes one layer further
             early = replace(limits, interruption=Interruption())
             early.interruption.wish()
-            assert not check(
-                mission, limits=early, keeping=replace(kept, resumed=resumed > 0), **options
-            ).complete
+            again = replace(kept, resumed=resumed > 0)
+            assert not check(mission, limits=early, keeping=again, **options).complete
         kept = replace(kept, resumed=Feature.CHECKPOINT in asked)
         return check(mission, limits=limits, keeping=kept, **options)
 

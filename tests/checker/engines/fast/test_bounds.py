@@ -19,7 +19,7 @@ from checker import Engine, Keeping, Limits, check, explore
 from checker.engines.cluster import explorer as cluster
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
-from checker.engines.fast import explorer, kernel, pipeline, space, tree_compression
+from checker.engines.fast import explorer, learned_model, pipeline, space, tree_compression
 from checker.engines.fast.rows import Rows
 from checker.reduction import Reduced, Reduction
 from semantics import Scheduler
@@ -92,7 +92,7 @@ def initials(name):
 @checked
 def test_the_loops_are_compiled_with_checks_of_bounds():
     with pytest.raises(IndexError):
-        kernel.first_turn(*(np.zeros(0, np.int32) for _ in range(2)), np.zeros(1, np.int32), 1)
+        learned_model.first_turn(*(np.zeros(0, np.int32) for _ in range(2)), np.zeros(1, np.int32), 1)
 
 
 @of_each_mission

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from local_crew import LocalCrew
 from scale import IS_WHOLE
+from swarms import LOOKS, mission
 
 from checker import CheckpointError, Engine, Keeping, Limits, Stop, explore
 from checker.engines.archive import read_archive, write_archive
@@ -20,6 +21,7 @@ from checker.engines.cluster import checkpoints as shards
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
 from checker.engines.fast import checkpoint, explorer
+from checker.reduction import Reduced, Reduction
 from specs.elaboration import load_mission
 
 MISSION = Path(__file__).parents[4] / "specs" / "missions" / "two_gates.mission"
@@ -77,7 +79,32 @@ def files_of(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in Path(folder).rglob("*.checkpoint")}
 
 
-ENGINES = {"fast": (kept_fast, resume_fast), "cluster": (kept_cluster, resume_cluster)}
+@cache
+def swarm():
+    return mission(LOOKS, 5).initial
+
+
+def explore_reduced(folder, limits=LIMITS, **options):
+    reduced = Reduced(swarm(), tuple(Reduction))
+    keeping = Keeping(folder, True, "d")
+    return explore(swarm(), engine=Engine.FAST, limits=limits, keeping=keeping, reduce=reduced, **options)
+
+
+@cache
+def kept_reduced():
+    """Return the files of a checkpoint of a reduced search that was cut."""
+    with TemporaryDirectory() as folder, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(explorer, "CHUNK", 8)
+        limits, stop = interrupted_at(12, LIMITS)
+        explore_reduced(folder, limits, report=stop, every=0.0)
+        return files_of(folder)
+
+
+ENGINES = {
+    "fast": (kept_fast, resume_fast),
+    "reduced": (kept_reduced, explore_reduced),
+    "cluster": (kept_cluster, resume_cluster),
+}
 
 
 def resumed(engine, files, alter=None):
@@ -93,7 +120,9 @@ def resumed(engine, files, alter=None):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_what_was_not_altered_is_gone_on_with(engine):
-    assert len(resumed(engine, ENGINES[engine][0]()).configurations) == whole()
+    with TemporaryDirectory() as folder:
+        size = len(explore_reduced(folder).configurations) if engine == "reduced" else whole()
+    assert len(resumed(engine, ENGINES[engine][0]()).configurations) == size
 
 
 @st.composite

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from checker.engines.fast import kernel
+from checker.engines.fast import repacking
 from checker.engines.fast.columns import packing, shifts
 
 
@@ -19,7 +19,7 @@ def test_rows_that_are_packed_anew_keep_the_code_of_each_column(data):
     for row, values in enumerate(codes):
         for word, shift, code in zip(old.word, old.shift, values, strict=True):
             words[row * old.words + word] |= np.uint64(code) << shift
-    kernel.repack(words, len(codes), shifts(old, new), old.words, new.words)
+    repacking.repack(words, len(codes), shifts(old, new), old.words, new.words)
     for row, values in enumerate(codes):
         packed = words[row * new.words : (row + 1) * new.words]
         assert list((packed[new.word] >> new.shift) & new.mask) == values

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scale import IS_WHOLE, crossed, examples
 from shipped import UNTIMED
+from swarms import LOOKS, ORBITS, mission
 
 import checker.limits
 from bigactors.cli import main
@@ -16,6 +17,7 @@ from checker.engines.contract import Options
 from checker.engines.fast import explorer, frontier_chunks, pipeline, space, tree_compression
 from checker.engines.fast.explorer import explore_fast
 from checker.engines.fast.rows import Rows
+from checker.reduction import Reduced, Reduction
 from semantics import hypothesis_strategies
 from semantics.races.monitor import monitored
 from specs.elaboration import load_mission
@@ -54,7 +56,7 @@ def seen(initial, threads, **options):
     numbers = (found.depth, found.expanded, found.transitions, found.rules, found.bounds, found.rule_runs)
     interned = [each.tolist() for each in inner.rows.interned]
     targets = [each for _, _, each in inner.edges(range(inner.expanded))]
-    if found.complete:  # though rows were packed anew meanwhile, every transition leads to one
+    if found.complete and found.reducer is None:  # every transition leads to a row, also of a new packing
         assert sum(map(len, targets)) == found.transitions
         assert all((each >= 0).all() for each in targets)
     return (rows.tolist(), list(map(int, found.origins)), numbers, inner.learned, interned)
@@ -71,6 +73,21 @@ def test_a_mission_is_explored_alike_by_any_number_of_threads(name, variation):
 def test_a_monitored_mission_is_explored_alike_by_any_number_of_threads(name):
     initial = monitored(start(name))
     assert seen(initial, 2) == seen(initial, 4) == seen(initial, 1)
+
+
+SWARMS = {name: (body, robots, rest) for name, (body, rest, robots) in ORBITS.items()} | {
+    "alike": (LOOKS, 6, "")
+}
+
+
+@pytest.mark.usefixtures("kept")
+@crossed(list(SWARMS), {threads: threads for threads in SEVERAL})
+def test_representatives_are_explored_alike_by_any_number_of_threads(name, variation):
+    initial = mission(*SWARMS[name]).initial
+    alone, several = (
+        seen(initial, threads, reduce=Reduced(initial, (Reduction.SYMMETRY,))) for threads in (1, variation)
+    )
+    assert several == alone
 
 
 @given(hypothesis_strategies.initial_configurations(), st.sampled_from([1, 2]))
@@ -134,9 +151,9 @@ def test_other_threads_expand_slices_and_sift_them(monkeypatch):
     assert ("_sift", True) not in done
 
 
-@pytest.mark.usefixtures("kept")
-@pytest.mark.parametrize("threads", SEVERAL if IS_WHOLE else (3,))
-def test_rows_go_over_to_files_under_several_threads(tmp_path, monkeypatch, threads):
+@pytest.fixture
+def full_memory(monkeypatch):
+    """Let memory be full in the middle of a search, until its rows are in files; return the sizes then."""
     spill, spilled, asked = Rows.spill, [], []
 
     def noted(rows, folder, used):
@@ -147,12 +164,30 @@ def test_rows_go_over_to_files_under_several_threads(tmp_path, monkeypatch, thre
         asked.append(True)
         return 2 if len(asked) > 20 and not spilled else 0
 
-    monkeypatch.setattr(explorer, "CHUNK", 128)
     monkeypatch.setattr(Rows, "spill", noted)
     monkeypatch.setattr(checker.limits, "memory_taken", taken)
+    return spilled
+
+
+@pytest.mark.usefixtures("kept")
+@pytest.mark.parametrize("threads", SEVERAL if IS_WHOLE else (3,))
+def test_rows_go_over_to_files_under_several_threads(tmp_path, monkeypatch, threads, full_memory):
+    monkeypatch.setattr(explorer, "CHUNK", 128)
     limits = Limits(memory=1, spill=str(tmp_path))
     assert seen(start("rendezvous"), threads, limits=limits) == seen(start("rendezvous"), 1, limits=Limits())
-    assert 100 < spilled[0] < 18_000
+    assert 100 < full_memory[0] < 18_000
+
+
+@pytest.mark.usefixtures("kept")
+@pytest.mark.parametrize("reductions", [(Reduction.POR,), (Reduction.SYMMETRY,), tuple(Reduction)])
+def test_reduced_searches_go_over_to_files(tmp_path, monkeypatch, reductions, full_memory):
+    monkeypatch.setattr(explorer, "CHUNK", 2)
+    initial = mission(LOOKS, 6).initial
+    reduced = Reduced(initial, reductions)
+    limits = Limits(memory=1, spill=str(tmp_path))
+    found = seen(initial, 3, limits=limits, reduce=reduced)
+    assert found == seen(initial, 1, limits=Limits(), reduce=reduced)
+    assert 10 < full_memory[0] < len(found[1])
 
 
 @pytest.mark.long

@@ -64,14 +64,14 @@ def test_rows_that_are_kept_elsewhere_are_taken_or_refused(whole):
     origins = Rising(size).kept(size).copy()
     for k in range(size):  # all are reached from the first
         origins[k // 64] |= np.uint64(1 << k % 64)
-    again = Rows.of(into.width, size, kept, origins, *interned)
+    again = Rows.of(Rising, into.width, size, kept, origins, *interned)
     assert [again.row(k).tolist() for k in range(len(whole))] == whole.tolist()
     broken = kept.copy()
     broken[-1] |= np.uint64(0xFFFF)  # there are not so many pieces or nodes
     twice = tuple(np.concatenate((each, each)) for each in interned)
     for numbers, told in ((broken, interned), (kept, twice), (kept[1:], interned)):
         with pytest.raises(ValueError, match="other rows"):
-            Rows.of(into.width, size, numbers, origins, *told)
+            Rows.of(Rising, into.width, size, numbers, origins, *told)
 
 
 def test_many_pieces_and_nodes_find_room():

@@ -1,0 +1,93 @@
+"""Checkpoints of reduced explorations: what was cut goes on to the configurations, counts and paths of an uncut one."""
+
+from contextlib import suppress
+
+import pytest
+from checked_missions import interrupted_at, load
+from hypothesis import given
+from hypothesis import strategies as st
+from scale import IS_WHOLE, crossed, examples
+from shipped import UNTIMED
+from swarms import LOOKS, ORBITS, mission, swarms
+
+from checker import CheckpointError, Engine, Keeping, Limits, RefusedError, Stop, explore
+from checker.engines.fast import explorer, space
+from checker.reduction import Reduced, Reduction
+from specs.elaboration import load_mission
+
+POR, SYMMETRY = (Reduction.POR,), (Reduction.SYMMETRY,)
+REDUCTIONS = {"por": POR, "symmetry": SYMMETRY, "both": POR + SYMMETRY}
+SWARMS = {name: (body, robots, rest) for name, (body, rest, robots) in ORBITS.items()} | {
+    "alike": (LOOKS, 5, "")
+}
+MOST = 2_000 if IS_WHOLE else 400
+
+
+@pytest.fixture(autouse=True)
+def small_chunks(monkeypatch):
+    """Let a small search be cut in the middle, repeatedly."""
+    monkeypatch.setattr(explorer, "CHUNK", 8)
+
+
+@pytest.fixture(params=[space.Space.PLAIN, 1], ids=["plain", "folded"])
+def kept(request, monkeypatch):
+    monkeypatch.setattr(space.Space, "PLAIN", request.param)
+    monkeypatch.setattr(space.Space, "COMPRESSED_FROM", 0)
+
+
+def searched(initial, reductions, **options):
+    reduced = Reduced(initial, reductions) if reductions else None
+    limits = options.pop("limits", Limits(configurations=MOST))
+    return explore(initial, engine=Engine.FAST, reduce=reduced, limits=limits, **options)
+
+
+def seen(found):
+    """Return everything that an exploration found."""
+    numbers = (found.depth, found.expanded, found.transitions, found.allowed, found.rules)
+    return list(found.configurations), list(map(int, found.origins)), numbers
+
+
+def assert_goes_on(initial, reductions, folder, cuts, threads=1):
+    """Cut an exploration at some sizes, go on each time, and compare its end with that of an uncut one."""
+    whole = searched(initial, reductions)
+    for at in cuts:
+        limits, stop = interrupted_at(at, Limits(configurations=MOST))
+        keeping = Keeping(folder, True, "d")
+        cut = searched(
+            initial, reductions, limits=limits, keeping=keeping, report=stop, every=0.0, threads=threads
+        )
+        assert any(bound.stop is Stop.INTERRUPTION for bound in cut.bounds) or at >= whole.size
+    found = searched(initial, reductions, keeping=Keeping(folder, True, "d"), threads=threads)
+    assert seen(found) == seen(whole)
+    assert found.bounds == whole.bounds
+    return whole
+
+
+@pytest.mark.usefixtures("kept")
+@crossed(list(SWARMS), REDUCTIONS)
+def test_what_was_cut_goes_on(tmp_path, name, variation):
+    initial = mission(*SWARMS[name]).initial
+    with suppress(RefusedError):
+        whole = assert_goes_on(initial, variation, str(tmp_path), (2, 9, 30), threads=3)
+        assert whole.size > 5
+
+
+@crossed(UNTIMED, REDUCTIONS)
+def test_missions_that_ship_go_on(tmp_path, name, variation):
+    with suppress(RefusedError):
+        assert_goes_on(load_mission(name).initial, variation, str(tmp_path), (5, 40))
+
+
+@given(text=swarms(), reductions=st.sampled_from(list(REDUCTIONS.values())), at=st.integers(1, 60))
+@examples(20)
+def test_generated_swarms_go_on(tmp_path_factory, text, reductions, at):
+    with suppress(RefusedError):
+        assert_goes_on(load(text, "").initial, reductions, str(tmp_path_factory.mktemp("kept")), (at, 2 * at))
+
+
+@pytest.mark.parametrize(("before", "after"), [(POR, SYMMETRY), (SYMMETRY, POR + SYMMETRY), (POR, ())])
+def test_a_checkpoint_of_another_reduction_is_refused(tmp_path, before, after):
+    initial = mission(*SWARMS["alike"]).initial
+    searched(initial, before, keeping=Keeping(str(tmp_path), digest="d"))
+    with pytest.raises(CheckpointError, match="of another mission, variation, limit or version"):
+        searched(initial, after, keeping=Keeping(str(tmp_path), True, "d"))
