@@ -3,6 +3,11 @@ from bigactors.pictures import draw_configuration as draw_configuration
 from bigactors.pictures import draw_trace as draw_trace
 from checker import Exploration as Exploration
 from checker import Limits as Limits
+from checker import MissionModel as MissionModel
+from checker import Model as Model
+from checker import ModelExploration as ModelExploration
+from checker import ModelStep as ModelStep
+from checker import ModelVerdict as ModelVerdict
 from checker import Outcome as Outcome
 from checker import Progress as Progress
 from checker import ReplayError as ReplayError

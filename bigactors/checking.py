@@ -18,6 +18,7 @@ from checker import (
     CheckpointError,
     Cluster,
     ClusterError,
+    CombinationError,
     CompilerError,
     Engine,
     Keeping,
@@ -29,7 +30,7 @@ from checker import (
     check,
     report_json,
 )
-from checker.engines.contract import EngineError, TickError
+from checker.engines.contract import TickError
 from checker.properties.findings import MOST_VIOLATIONS
 from semantics.state.canonical import digest
 from specs.elaboration import ElaboratedMission, Variation
@@ -45,12 +46,12 @@ REFUSALS: dict[type[Exception], tuple[Exit, str]] = {
         "set NUMBA_CACHE_DIR to a folder that you may write, or add --engine reference",
     ),
     TickError: (Exit.MISTAKE, "give timing a larger tick, or shorter times"),
-    EngineError: (Exit.MISTAKE, "leave out --engine, or the options that it refuses"),
+    CombinationError: (Exit.MISTAKE, ""),
     RefusedError: (Exit.MISTAKE, "check it without, or with the other reduction alone"),
     MachineError: (Exit.INCOMPLETE, "try again when less else runs here, or leave --engine out"),
     MemoryError: (Exit.INCOMPLETE, "explore less: --max-memory SIZE, --max-configurations N"),
 }
-"""The exit code and the hint for each refusal or failure of an exploration."""
+"""The exit code and the hint for each refusal or failure of an exploration; an exception's own `remedy` comes first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +149,7 @@ def check_mission(
         return Checked(name, mission, digest_of(mission), report, watch.interrupted)
     except tuple(REFUSALS) as refused:
         code, hint = next(said for kind, said in REFUSALS.items() if isinstance(refused, kind))
+        hint = getattr(refused, "remedy", hint)
         mistake = Mistake(str(refused) or "there is not enough memory", hint, name)
         tell(str(mistake))
         return FailedMission(name, code, mistake.message, mistake.details)

@@ -15,6 +15,7 @@ from bigactors.arguments import make_parser
 from bigactors.files import make_folder, write_text
 from bigactors.lsp.textmate import textmate_grammar
 from bigactors.terminal import safe_output, say
+from checker.engines.capabilities import unsupported_table
 from checker.reports.glossary import word_table
 from semantics.bigactor_rules import EXTENSION
 from semantics.bigactor_rules import say as say_rule
@@ -59,6 +60,14 @@ The output of `bigactors --help` and `bigactors COMMAND --help`. [json.md](json.
 `simulate` and `replay` write and read.
 """
 
+
+COMBINATIONS_HEAD = """
+### Combinations
+
+Options and properties combine freely, except for these pairs. A pair that is not accepted is a mistake (exit code 2)
+with this reason.
+
+"""
 
 RECORDING_HEAD = """\
 # Recordings of live runs
@@ -163,6 +172,8 @@ def cli_page() -> Iterator[str]:
         yield f"\n```text\n{whole.format_help().strip()}\n```\n"
         for name, parser in commands.items():
             yield f"\n## bigactors {name}\n\n```text\n{parser.format_help().strip()}\n```\n"
+            if name == "check":
+                yield f"{COMBINATIONS_HEAD}{unsupported_table()}"
 
 
 @contextmanager

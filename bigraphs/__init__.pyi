@@ -63,6 +63,7 @@ from .system import Rule as Rule
 from .system import System as System
 from .system import SystemKind as SystemKind
 from .system import Where as Where
+from .system_model import SystemModel as SystemModel
 from .text import draw_text as draw_text
 from .transitions import Transition as Transition
 from .transitions import TransitionSystem as TransitionSystem

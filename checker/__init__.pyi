@@ -1,5 +1,6 @@
 from .check import Checkable as Checkable
 from .check import check as check
+from .engines.capabilities import CombinationError as CombinationError
 from .engines.choose import explore as explore
 from .engines.cluster.crew import ClusterError as ClusterError
 from .engines.contract import CheckpointError as CheckpointError
@@ -14,6 +15,11 @@ from .limits import Bound as Bound
 from .limits import Interruption as Interruption
 from .limits import Limits as Limits
 from .limits import Stop as Stop
+from .models import MissionModel as MissionModel
+from .models import Model as Model
+from .models import ModelExploration as ModelExploration
+from .models import ModelStep as ModelStep
+from .models import ModelVerdict as ModelVerdict
 from .properties.ownership import owned as owned
 from .reduction import Reduction as Reduction
 from .reduction import RefusedError as RefusedError

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol, assert_never
 
+from checker.engines.capabilities import CombinationError, engines, features, require
 from checker.engines.choose import explore_by
 from checker.engines.contract import Cluster, Engine, Exploration, Keeping, Options, Reporter
 from checker.limits import BoundMet, CheckPart, Limits, Stop, bounded
@@ -104,6 +105,7 @@ def check(  # noqa: PLR0913 - independent options
         times: Whether the report says when flights may begin and end, for a mission with `timing`.
 
     Raises:
+        CombinationError: Two options do not work together, or one with the mission (`checker.engines.capabilities`).
         RefusedError: A reduction is unsound for the mission, or the mission has nothing to reduce. If a reduction is
             unsound for a single property, that property stays undecided unless a violation was found.
         TypeError: A configuration is given without properties.
@@ -111,13 +113,11 @@ def check(  # noqa: PLR0913 - independent options
     initial, asked, notes = _asked(start, properties, notes)
     initial, limits = watching(initial, asked), limits or Limits()
     formulas, reductions = [each.formula for each in asked if each.kind.has_proposition], tuple(reduce)
-    timed = initial.setting.timing is not None
-    if timed and reductions:
-        raise RefusedError(reductions[0], "it is not proved sound for missions with a section `timing`")
+    timing = initial.setting.timing is not None
+    wanted = features(limits, keeping, reductions, cluster=cluster, threads=threads, timing=timing)
+    able = engines(wanted, engine)
     runs = [each for each in asked if each.is_of_runs]
     reducer = _reduced(initial, reductions, formulas, runs) if reductions else None
-    if reducer is not None and engine is Engine.RAY:
-        raise RefusedError(reducer.names[0], "the ray explorer does not reduce; leave --engine out")
     kept, crew = keeping or Keeping(), cluster or Cluster()
     options = Options(limits, report, reduce=reducer, keeping=kept, cluster=crew, threads=threads)
 
@@ -126,14 +126,12 @@ def check(  # noqa: PLR0913 - independent options
         found = _Check(initial, asked, exploration, violations, times=times)
         return found.run(notes, limits)
 
-    if kept.folder is not None or (kept.doubted and reducer is None) or limits.spill is not None:
-        engine = engine or Engine.FAST
     impatient = limits.seconds is None or limits.seconds > PATIENCE
-    if engine is None and impatient:
-        tried = run(Engine.REFERENCE, replace(limits, seconds=PATIENCE))
+    if len(able) > 1 and impatient:
+        tried = run(able[0], replace(limits, seconds=PATIENCE))
         late = any(bound.stop is Stop.TIME for bound in tried.bounds)
-        return run(Engine.FAST, replace(limits, spent=limits.spent + tried.seconds)) if late else tried
-    return run(engine or Engine.REFERENCE, limits)
+        return run(able[1], replace(limits, spent=limits.spent + tried.seconds)) if late else tried
+    return run(able[0], limits)
 
 
 def _asked(
@@ -161,14 +159,14 @@ def _reduced(
 
 def reductions_of(start: Checkable) -> tuple[Reduction, ...]:
     """Return the reductions that are sound for a mission; they can be combined."""
-    if start.initial.setting.timing is not None:
-        return ()
+    timing = start.initial.setting.timing is not None
     formulas = [each.formula for each in start.properties if each.kind.has_proposition]
     initial, sound = watching(start.initial, start.properties), list[Reduction]()
     for reduction in Reduction:
         try:
+            require(features(Limits(), None, [reduction], cluster=None, threads=None, timing=timing))
             _reduced(initial, (reduction,), formulas)
-        except RefusedError:
+        except (CombinationError, RefusedError):
             continue
         sound.append(reduction)
     return tuple(sound)

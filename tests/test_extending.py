@@ -199,3 +199,12 @@ def test_a_command_of_the_program_more_works_and_is_in_the_help_and_hinted_at(co
     assert "\n  count       count the bigActors of a mission\n" in counting("--help").stdout
     assert "\nexamples:\n  bigactors count oil_spill\n" in counting("count", "--help").stdout
     assert counting("cuont").stderr.endswith("hint: did you mean 'count'?\n")
+
+
+# --- a model is explored as the page says (tests/checker/test_models.py) ---------------------------------------------
+
+
+def test_the_model_of_the_page_is_the_example():
+    text = re.search(r"<!-- file: philosophers.py -->\n```python\n(.+?)```", PAGE, re.DOTALL)[1]
+    assert text == read("examples/philosophers.py")
+    assert len(text.splitlines()) <= 60

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, assert_never, overload
 
+from checker.engines.capabilities import Feature, engines, features
 from checker.engines.contract import (
     Cluster,
     CompilerError,
     Engine,
-    EngineError,
     Exploration,
     Inspect,
     Keeping,
@@ -19,13 +19,15 @@ from checker.engines.contract import (
 from checker.engines.fast.numba_loading import load_numba
 from checker.engines.reference import explore_one_by_one
 from checker.limits import Limits
+from checker.models import Model, ModelExploration, State, explore_model
 from semantics.state.configuration import Configuration
 
 if TYPE_CHECKING:
     from checker.reduction.reducer import Reduced
 
 
-def explore(  # noqa: PLR0913 - independent options, passed by name
+@overload
+def explore(
     initial: Configuration,
     inspect: Iterable[Inspect] = (),
     limits: Limits | None = None,
@@ -38,25 +40,62 @@ def explore(  # noqa: PLR0913 - independent options, passed by name
     keeping: Keeping | None = None,
     cluster: Cluster | None = None,
     threads: int | None = None,
-) -> Exploration:
-    """Visit the reachable configurations, breadth-first.
+) -> Exploration: ...
+@overload
+def explore(
+    initial: Model[State],
+    *,
+    limits: Limits | None = None,
+    report: Reporter | None = None,
+    every: float = 0.5,
+) -> ModelExploration[State]: ...
+def explore(  # noqa: PLR0913 - independent options, passed by name
+    initial: Configuration | Model[State],
+    inspect: Iterable[Inspect] = (),
+    limits: Limits | None = None,
+    report: Reporter | None = None,
+    every: float = 0.5,
+    engine: Engine = Engine.REFERENCE,
+    *,
+    edges: bool = False,
+    reduce: Reduced | None = None,
+    keeping: Keeping | None = None,
+    cluster: Cluster | None = None,
+    threads: int | None = None,
+) -> Exploration | ModelExploration[State]:
+    """Visit the configurations that are reachable from one, or the states of a model, breadth-first.
 
     Each of `inspect` sees each configuration as it is expanded, in the order of discovery. The other arguments are the
-    attributes of `Options`.
+    attributes of `Options`. The transitions of a model are always kept.
+
+    Raises:
+        CombinationError: Two options do not work together, or one with the mission or the model.
+        TypeError: A model is given with inspections, which are about configurations.
     """
-    kept, crew = keeping or Keeping(), cluster or Cluster()
-    options = Options(limits or Limits(), report, every, engine, edges, reduce, kept, crew, threads)
+    is_model, names = not isinstance(initial, Configuration), () if reduce is None else reduce.names
+    options = Options(
+        limits or Limits(),
+        report,
+        every,
+        engine,
+        edges or is_model,
+        reduce,
+        keeping or Keeping(),
+        cluster or Cluster(),
+        threads,
+    )
+    asked = features(options.limits, keeping, names, cluster=cluster, threads=threads)
+    if not isinstance(initial, Configuration):
+        engines(asked | {Feature.MODEL}, engine)
+        if tuple(inspect):
+            raise TypeError("inspections are about configurations: ask the exploration of a model afterwards")
+        return explore_model(initial, options)
+    engines(asked if initial.setting.timing is None else asked | {Feature.TIMING}, engine)
     return explore_by(initial, tuple(inspect), options)
 
 
 def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
-    """Visit the reachable configurations with these options.
-
-    Raises:
-        EngineError: The engine, or its checkpoints, don't support the mission's timing; or the engine writes no files.
-    """
-    if options.engine is Engine.REFERENCE and _is_kept(options):
-        raise EngineError("the engine 'reference' explores in memory, without checkpoints and spilling")
+    """Visit the reachable configurations with these options, which work together."""
     if initial.setting.timing is not None:
         return _explore_in_time(initial, inspect, options)
     match options.engine:
@@ -72,16 +111,8 @@ def explore_by(initial: Configuration, inspect: tuple[Inspect, ...], options: Op
             assert_never(options.engine)
 
 
-def _is_kept(options: Options) -> bool:
-    return options.keeping.folder is not None or options.limits.spill is not None
-
-
 def _explore_in_time(initial: Configuration, inspect: tuple[Inspect, ...], options: Options) -> Exploration:
-    if options.engine is Engine.RAY:
-        raise EngineError("the engine 'ray' does not explore missions with a section 'timing' yet")
     if options.engine is Engine.FAST:
-        if options.keeping.doubted:
-            raise EngineError("missions with a section 'timing' are not checked again by the interpreter yet")
         load_numba()
         from checker.engines.zones.explorer import explore_in_zones  # noqa: PLC0415  # numba takes its time to load
 

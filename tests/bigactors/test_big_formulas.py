@@ -1,13 +1,13 @@
 import pytest
 from text_tables import rows
 
-from bigactors.commands.big.formulas import MOST_NESTED, parse_claim
 from bigactors.commands.big.temporal import Decider
 from bigraphs.claims import ClaimOutcome
 from bigraphs.errors import NotationError
 from bigraphs.exploration import explore
 from bigraphs.notation import read_system
 from bigraphs.notation.formulas import MOST_WORDS
+from checker.properties.temporal.claim_text import MOST_NESTED, claim_words_of, parse_claim
 
 SYSTEM = read_system("""\
 ctrl Room = 0; atomic ctrl Ball = 0; atomic fun ctrl Lamp(n) = 0;
@@ -25,6 +25,7 @@ begin brs
   preds = { lit(n), until, ball };
 end
 """)
+WORDS = claim_words_of(SYSTEM)
 
 
 @pytest.mark.parametrize(
@@ -47,7 +48,7 @@ end
     ],
 )
 def test_formulas_are_read_as_in_missions(logic, text, written):
-    assert str(parse_claim(text, logic, SYSTEM).formula) == written
+    assert str(parse_claim(text, logic, WORDS).formula) == written
 
 
 MISTAKES = r"""
@@ -71,7 +72,7 @@ def test_mistakes_are_shown_where_they_are(asked, said):
     (at, message), hint = said.partition(" | ")[0].split(" ", 1), said.partition(" | ")[2]
     column, width = map(int, at.split("+"))
     with pytest.raises(NotationError) as found:
-        parse_claim(text, logic, SYSTEM)
+        parse_claim(text, logic, WORDS)
     place, shown, mark, *advice = found.value.render(f"--{logic}").split("\n")
     assert place == f"--{logic}:1:{column}: {message}"
     assert (shown, mark) == (f"    1 | {text}", f"      | {' ' * (column - 1)}{'^' * width}")
@@ -92,11 +93,11 @@ def test_mistakes_are_shown_where_they_are(asked, said):
 )
 def test_formulas_are_bounded(logic, text):
     with pytest.raises(NotationError):
-        parse_claim(text, logic, SYSTEM)
+        parse_claim(text, logic, WORDS)
 
 
 def test_what_is_within_the_bounds_is_decided():
-    formula = parse_claim("not " * (MOST_WORDS - 1) + "ball", "ltl", SYSTEM).formula
+    formula = parse_claim("not " * (MOST_WORDS - 1) + "ball", "ltl", WORDS).formula
     verdict = Decider(explore(SYSTEM)).decide("ltl", "not " * (MOST_WORDS - 1) + "ball")
     assert str(formula).startswith("not not not")
     assert verdict.outcome is ClaimOutcome.VIOLATED

@@ -190,7 +190,7 @@ def stuck(self, number, configuration):
     print("stuck", file=sys.stderr, flush=True)
     while True:
         time.sleep(0.01)
-        if self.limits.interruption.is_due():
+        if self.search.limits.interruption.is_due():
             print("heard", file=sys.stderr, flush=True)
             time.sleep(3600)
 

@@ -20,8 +20,9 @@ TABLE = """\
 """
 
 
-def test_a_check_says_when_flights_begin_and_end(done):
-    out = done("check", "race_in_time", "--times", "--no-traces")
+@pytest.mark.parametrize("more", [(), ("--engine", "fast")], ids=["by ticks", "by zones"])
+def test_a_check_says_when_flights_begin_and_end(done, more):
+    out = done("check", "race_in_time", "--times", "--no-traces", *more)
     assert TABLE in out
 
 

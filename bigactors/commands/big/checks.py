@@ -75,10 +75,13 @@ def verdicts_on(options: Namespace, found: TransitionSystem) -> Iterator[Decided
 def check_formulas(options: Namespace, system: System) -> None:
     """Refuse an invalid formula before a long exploration, not after it."""
     for logic, text in asked_formulas(options):
-        from bigactors.commands.big.formulas import parse_claim  # geometry is slow to load
+        from checker.properties.temporal.claim_text import (  # geometry is slow to load
+            claim_words_of,
+            parse_claim,
+        )
 
         try:
-            parse_claim(text, logic, system)
+            parse_claim(text, logic, claim_words_of(system))
         except NotationError as error:
             raise _mistake(error, options, logic) from error
     if options.storm:

@@ -1,37 +1,25 @@
 """LTL and CTL on systems of bigraphs: the checker's engine on their transition systems.
 
-Runs are infinite: a run stays in a state without transitions. Runs are fair to a rule only if a formula declares it.
-A weight only makes a step possible.
+A weight only makes a step possible; `checker.properties.temporal.claim_decider` says which runs there are.
 """
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import cached_property
 from itertools import chain
-from typing import Final, cast
 
 import numpy as np
 
-from bigactors.commands.big.formulas import EACH_RULE, Claim, Occurs, fair_to, parse_claim
 from bigraphs.claims import ClaimOutcome, Decided, WitnessRun, WitnessStep
 from bigraphs.transitions import TransitionSystem
-from checker.engines.graph import STUTTER, Bools, Graph
-from checker.properties.temporal.components import Conditions
-from checker.properties.temporal.decision import Decision, FormulaDecider
-from checker.properties.temporal.fairness import classes, conditions_of
+from checker.engines.graph import STUTTER, Graph
+from checker.properties.temporal.claim_decider import ClaimDecider
+from checker.properties.temporal.claim_text import claim_words_of, parse_claim
+from checker.properties.temporal.decision import Decision
 from checker.properties.temporal.lassos import Lasso
-from checker.properties.temporal.truth import FormulaTruth
-from checker.verdicts import Outcome as Known
+from checker.verdicts import Outcome
 from physical.wordings import counted
-from semantics.properties.propositions import Proposition
-from semantics.properties.temporal import Fairness, Now, Steps, Temporal, atoms
 from semantics.state.configuration import Label
-
-ENOUGH: Final = {
-    f"{strength} fairness of {EACH_RULE}": (fair_to(strength == "strong", Steps(), EACH_RULE),)
-    for strength in ("weak", "strong")
-}
-"""Fairness assumptions that may make a violated formula true, the weakest first."""
 
 
 def decided_formulas(found: TransitionSystem, asked: Iterable[tuple[str, str]]) -> Iterator[Decided]:
@@ -68,45 +56,33 @@ class Decider:
         self.found = found
 
     @cached_property
-    def graph(self) -> Graph:
-        """The graph, with a self-loop at each state without transitions."""
-        return graph_of(self.found).total()
-
-    @cached_property
-    def formulas(self) -> FormulaDecider:
+    def claims(self) -> ClaimDecider:
         """The decision procedures, given the states in which predicates occur."""
         columns = zip(self.found.system.predicates, self.found.labels, strict=True)
         values = {
-            cast("Proposition", Occurs(predicate.label)): np.frombuffer(bytes(holds), dtype=np.uint8) > 0
-            for predicate, holds in columns
+            predicate.label: np.frombuffer(bytes(holds), dtype=np.uint8) > 0 for predicate, holds in columns
         }
-        truth = FormulaTruth(self.graph, values)
-
-        def is_still(formula: Temporal) -> bool:
-            asked = tuple(atoms(formula))
-            return all(isinstance(each, Now) and _is_constant(truth.here(each)) for each in asked)
-
-        return FormulaDecider(truth, self.found.complete, is_still)
+        return ClaimDecider(
+            graph_of(self.found), values, self.found.complete, claim_words_of(self.found.system)
+        )
 
     def decide(self, logic: str, text: str) -> Decided:
         """Decide a formula of a logic, `ltl` or `ctl`; raises NotationError for an invalid formula.
 
         On an incomplete system a formula can be violated, but never holds.
         """
-        claim = parse_claim(text, logic, self.found.system)
         said = f"{logic} {' '.join(text.split())}"
         if not len(self.found):
+            parse_claim(text, logic, claim_words_of(self.found.system))
             return Decided(said, ClaimOutcome.INCOMPLETE)
+        found = self.claims.decide(logic, text)
         linear = logic == "ltl"
-        decide = self.formulas.linear if linear else self.formulas.branching
-        found = decide(claim.formula, self.conditions(claim.fairness))
-        remarks = (*self.empty(claim.fairness), *found.remarks)
-        if found.outcome is Known.VIOLATED:
+        if found.outcome is Outcome.VIOLATED:
             assert found.run is not None
             shown = self.violated(said, found.run, linear)
-            notes = filter(None, (shown.note, *self.unfair(claim, linear)))
-            return replace(shown, note="; ".join(notes), remarks=remarks)
-        return replace(self.unviolated(said, found, linear), remarks=remarks)
+            notes = filter(None, (shown.note, found.note))
+            return replace(shown, note="; ".join(notes), remarks=found.remarks)
+        return replace(self.unviolated(said, found, linear), remarks=found.remarks)
 
     def violated(self, said: str, lasso: Lasso, linear: bool) -> Decided:
         """Return the verdict on a formula with a run that violates it."""
@@ -132,23 +108,6 @@ class Decider:
             )
         return Decided(said, outcome, run, "a run that shows it")
 
-    def unfair(self, claim: Claim, linear: bool) -> Iterator[str]:
-        """Yield a note if a violated formula without fairness holds under fairness."""
-        if not claim.fairness:
-            ways = ((words, self.conditions(each)) for words, each in ENOUGH.items())
-            if enough := self.formulas.enough(claim.formula, linear, ways):
-                yield f"only unfair runs violate it: it holds under {enough}"
-
-    def conditions(self, declared: Iterable[Fairness]) -> Conditions:
-        """Return the conditions that fair runs meet infinitely often."""
-        return conditions_of(declared, self.graph)
-
-    def empty(self, declared: Iterable[Fairness]) -> Iterator[str]:
-        """Yield each declared fairness without any step; none if the system is incomplete, as a step may follow."""
-        for each in declared if self.found.complete else ():
-            if not any(self.graph.taken(labels).any() for labels in classes(each, self.graph.labels)):
-                yield f"{each} covers no step of any run"
-
     def run(self, lasso: Lasso) -> WitnessRun:
         """Return a lasso of edges as a run."""
         return WitnessRun(tuple(self.steps(lasso)), len(lasso.stem) if lasso.loop else None)
@@ -156,10 +115,6 @@ class Decider:
     def steps(self, lasso: Lasso) -> Iterator[WitnessStep]:
         """Yield the steps of a lasso, with its loop taken once."""
         for edge in (*lasso.stem, *lasso.loop):
-            action = int(self.graph.actions[edge])
-            rules = () if action == STUTTER else (self.graph.labels[action].rule,)
-            yield WitnessStep(rules, int(self.graph.targets[edge]))
-
-
-def _is_constant(values: Bools) -> bool:
-    return bool(values.all() or not values.any())
+            action = int(self.claims.graph.actions[edge])
+            rules = () if action == STUTTER else (self.claims.graph.labels[action].rule,)
+            yield WitnessStep(rules, int(self.claims.graph.targets[edge]))

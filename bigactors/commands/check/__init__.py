@@ -65,7 +65,7 @@ def _report(parser: Parser) -> None:
         "--times",
         action="store_true",
         help="print the duration, the beginning and the end of each flight of a mission with timing, and when "
-        "each time property is first true: the earliest and the latest moment; this explores every tick",
+        "each time property is first true: the earliest and the latest moment",
     )
     group.add_argument("--no-traces", action="store_true", help="print a short report, without traces")
 

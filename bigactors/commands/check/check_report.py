@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from bigactors.check_outputs import Output, cautions_of, outputs_of, write_outputs
 from bigactors.checking import Checked, FailedMission, check_missions
-from bigactors.commands.check.settings import how_of, limits_of
+from bigactors.commands.check.settings import settings_of
 from bigactors.exits import Exit, worst
 from bigactors.files import check_writable, file_stem, make_folder, write_json
 from bigactors.mission_lookup import variation_of
@@ -47,7 +47,7 @@ WORDS = {
 def check_and_report(options: Namespace) -> Exit:
     """Check missions, with `--watch` at each save; print the reports and write the requested files."""
     ALONE.set(True)
-    limits, how = limits_of(options), how_of(options)
+    limits, how = settings_of(options)
     if options.trace:
         make_folder(options.trace)
     key = _check_verdict(options)

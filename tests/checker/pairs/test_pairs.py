@@ -11,15 +11,13 @@ import pytest
 from checked_missions import interrupted_at, load
 from covering import covering_array, pairs_of, spread
 from features import LANGUAGE, NO, OPTIONS, YES, text_of
+from option_pairs import spilled_rows
 from replaying import assert_replays
 from scale import IS_WHOLE
 
-import checker.limits
-from checker import Engine, Keeping, Limits, Reduction, check
+from checker import CombinationError, Engine, Keeping, Limits, Reduction, check
 from checker.check import reductions_of
-from checker.engines.contract import EngineError
 from checker.engines.fast import explorer
-from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import Space
 from checker.reduction.refusals import RefusedError
 from specs.diagnostics import MissionError
@@ -67,7 +65,7 @@ def reduced(mission, row):
         if each in reductions_of(mission):
             allowed.append(each)
             continue
-        with pytest.raises(RefusedError, match=f"the reduction '{each}' is refused: "):
+        with pytest.raises((CombinationError, RefusedError), match=f"the reduction '{each}' is refused: "):
             check(mission, limits=MOST, reduce=[each])
     return tuple(allowed)
 
@@ -75,16 +73,17 @@ def reduced(mission, row):
 def checked(mission, row, reductions, folder):
     """Check a mission as a row says."""
     engine = Engine(row["engine"])
-    options = {"engine": engine, "reduce": reductions, "threads": int(row["threads"])}
-    timed = mission.setting.timing is not None
-    if timed or engine is Engine.REFERENCE:
+    options = {"engine": engine, "reduce": reductions}
+    if engine is Engine.REFERENCE:
         for more in (
             {"keeping": Keeping(str(folder), digest="d")},
             {"limits": replace(MOST, spill=str(folder))},
+            {"threads": int(row["threads"])},
         ):
-            with pytest.raises(EngineError, match="in memory, without checkpoints"):
+            with pytest.raises(CombinationError, match="works with the fast"):
                 check(mission, **{"limits": MOST, **options, **more})
         return check(mission, limits=MOST, **options)
+    options["threads"] = int(row["threads"])
     limits = MOST
     if row["spill"] == YES:
         (folder / "spill").mkdir()
@@ -99,22 +98,15 @@ def checked(mission, row, reductions, folder):
 
 @pytest.fixture
 def rows_that_move(monkeypatch):
-    """Let memory end until rows are in files, and return what lets them be compressed amid the search."""
-    spill, spilled = Rows.spill, []
-
-    def noted(*given):
-        spill(*given)
-        spilled.append(given)
-
-    monkeypatch.setattr(Rows, "spill", noted)
-    monkeypatch.setattr(checker.limits, "memory_taken", lambda: 0 if spilled else 2)
+    """Let memory end until rows are in files, and yield what lets them be compressed amid the search."""
     monkeypatch.setattr(explorer, "CHUNK", 8)
 
     def compress():
         monkeypatch.setattr(Space, "PLAIN", 1)
         monkeypatch.setattr(Space, "COMPRESSED_FROM", 8)
 
-    return compress
+    with spilled_rows():
+        yield compress
 
 
 @pytest.mark.fuzz

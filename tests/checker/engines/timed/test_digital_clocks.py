@@ -14,7 +14,7 @@ from scale import IS_WHOLE, examples
 from shipped import TIMED
 from timed_missions import ANSWERS, FLIGHT, SOUTH, timed_missions, timed_programs, with_timing, within
 
-from checker import Limits, Reduction, RefusedError, check, replay
+from checker import CombinationError, Limits, Reduction, check, replay
 from checker.check import BY_LOOKING
 from checker.engines.choose import explore
 from checker.engines.contract import Engine, EngineError
@@ -281,11 +281,11 @@ environment { someone says "go" to b }
 
 def test_other_engines_and_reductions_are_refused_by_name(flight):
     with pytest.raises(
-        EngineError, match="the engine 'ray' does not explore missions with a section 'timing' yet"
+        CombinationError, match="the engine 'ray' does not explore missions with a section 'timing' yet"
     ):
         check(flight, (when(),), engine=Engine.RAY)
     with pytest.raises(
-        RefusedError, match="the reduction 'por' is refused: it is not proved sound for missions"
+        CombinationError, match="the reduction 'por' is refused: it is not sound for missions with a section"
     ):
         check(flight, (when(),), reduce=(Reduction.POR,))
 

@@ -1,10 +1,11 @@
-"""Temporal formulas over a system's predicates and rules, in the syntax of a mission's `ltl` and `ctl`.
+"""Temporal formulas over named predicates and rules, in the syntax of a mission's `ltl` and `ctl`.
 
-Atoms are the predicates of the system, and `taken` and `enabled` with a rule of it. A prefix may restrict the formula
+They are about systems of bigraphs, and about models of a user's own. Atoms are predicates, and `taken` and `enabled`
+with a rule. A prefix may restrict the formula
 to fair runs: `under weak fairness of walk and strong fairness of rules: <> meeting`.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Final, NamedTuple, cast
@@ -70,9 +71,37 @@ def fair_to(strong: bool, steps: t.Steps, word: str) -> t.Fairness:
     return t.Fairness(strong, steps, ("rule",), word)
 
 
-def parse_claim(text: str, logic: str, system: System) -> Claim:
-    """Parse a formula of a logic, `ltl` or `ctl`, about a system; raises NotationError for an invalid formula."""
-    elaboration = _Elaboration(text, logic, system)
+class ClaimWords(NamedTuple):
+    """The words of formulas.
+
+    Attributes:
+        predicates: The names of the predicates.
+        rules: The names of single rules and of groups of rules.
+        single: The names of single rules: the `rule` of a label. A group is the `agent` of a label.
+        instantaneous: The names of rules that are no steps of their own.
+    """
+
+    predicates: tuple[str, ...]
+    rules: tuple[str, ...]
+    single: Collection[str]
+    instantaneous: Collection[str] = ()
+
+
+def claim_words_of(system: System) -> ClaimWords:
+    """Return the vocabulary of a system of bigraphs; a group has the rules of one name."""
+    rules = [rule for each in system.classes if not each.instantaneous for rule in each.rules]
+    at_once = [rule for each in system.classes if each.instantaneous for rule in each.rules]
+    return ClaimWords(
+        tuple(predicate.label for predicate in system.predicates),
+        tuple(dict.fromkeys(chain.from_iterable((rule.name, rule.label) for rule in rules))),
+        {rule.label for rule in rules},
+        {name for rule in at_once for name in (rule.name, rule.label)},
+    )
+
+
+def parse_claim(text: str, logic: str, words: ClaimWords) -> Claim:
+    """Parse a formula of a logic, `ltl` or `ctl`; raises NotationError for an invalid formula."""
+    elaboration = _Elaboration(text, logic, words)
     term = s.parse_formula(text)
     fairness: tuple[t.Fairness, ...] = ()
     if term.kind == "under":
@@ -105,19 +134,8 @@ class _Part:
 class _Elaboration:
     """Builds the formulas of one logic from syntax trees."""
 
-    def __init__(self, text: str, logic: str, system: System) -> None:
-        self.text, self.logic = text, logic
-        self.predicates = tuple(predicate.label for predicate in system.predicates)
-        rules = [rule for each in system.classes if not each.instantaneous for rule in each.rules]
-        self.instantaneous = {
-            name
-            for each in system.classes
-            if each.instantaneous
-            for rule in each.rules
-            for name in (rule.name, rule.label)
-        }
-        self.rules = tuple(dict.fromkeys(chain.from_iterable((rule.name, rule.label) for rule in rules)))
-        self.labels = {rule.label for rule in rules}
+    def __init__(self, text: str, logic: str, words: ClaimWords) -> None:
+        self.text, self.logic, self.words = text, logic, words
 
     def state(self, part: _Part) -> t.Temporal:
         """Return a state formula; in CTL, all formulas are state formulas except those directly after A and E."""
@@ -142,7 +160,7 @@ class _Elaboration:
         return _part(t.Now(Always(word.text == "true")), at)
 
     def predicate(self, at: s.Term, word: s.FormulaWord) -> _Part:
-        label = self.known(word, self.predicates, "predicate")
+        label = self.known(word, self.words.predicates, "predicate")
         return _part(occurs(label), at)
 
     def taken(self, at: s.Term, word: s.FormulaWord) -> _Part:
@@ -162,13 +180,13 @@ class _Elaboration:
             yield fair_to(strength.text == "strong", steps, word.text)
 
     def steps(self, word: s.FormulaWord) -> t.Steps:
-        """Return the steps of a rule, or of all rules of a name (see `temporal.graph_of`)."""
+        """Return the steps of a rule, or of all rules of a name (see `ClaimWords`)."""
         name = _unquoted(word.text)
-        if name not in self.rules and name in self.instantaneous:
+        if name not in self.words.rules and name in self.words.instantaneous:
             message = f"the rule '{name}' is instantaneous, so no step is its own"
             raise self.wrong("rule", message, word, "name the ordinary rule that it follows")
-        label = self.known(word, self.rules, "rule")
-        return t.Steps((label,)) if label in self.labels else t.Steps((), label)
+        label = self.known(word, self.words.rules, "rule")
+        return t.Steps((label,)) if label in self.words.single else t.Steps((), label)
 
     def known(self, word: s.FormulaWord, labels: tuple[str, ...], sort: str) -> str:
         """Return the label that a word names; spaces in its parameters are ignored."""
