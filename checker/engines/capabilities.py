@@ -125,10 +125,10 @@ UNSUPPORTED: Final = (
         "leave reduce out"),
     _P(_F.THREADS, _F.POR, _W.IDLE, "the search runs on one thread", ""),
     _P(_F.THREADS, _F.TIMING, _W.IDLE, "the search runs on one thread", ""),
-    _P(_F.RUNS, _F.POR, _W.UNDECIDED, "what depends on the order of independent steps stays incomplete, by mathematics: "
-        "X, enabled, fairness, progress (docs/explanation/reduction.md)", _REDUCE),
-    _P(_F.RUNS, _F.SYMMETRY, _W.UNDECIDED, "what tells interchangeable entities apart stays incomplete, by mathematics, and "
-        "so does progress (docs/explanation/reduction.md)", _REDUCE),
+    _P(_F.RUNS, _F.POR, _W.UNDECIDED, "what depends on the order of independent steps stays incomplete, by "
+        "mathematics: X, enabled, fairness, progress (docs/explanation/reduction.md)", _REDUCE),
+    _P(_F.RUNS, _F.SYMMETRY, _W.UNDECIDED, "what tells interchangeable entities apart stays incomplete, by "
+        "mathematics, and so does progress (docs/explanation/reduction.md)", _REDUCE),
 )  # fmt: skip
 """The pairs without a tick; the first one that is met is the error."""
 
