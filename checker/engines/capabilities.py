@@ -112,8 +112,6 @@ UNSUPPORTED: Final = (
         "section 'timing', whose one clock makes the order of independent steps observable", _REDUCE),
     _P(_F.SYMMETRY, _F.TIMING, _W.UNBUILT,
         "the reduction 'symmetry' is refused: it is not proved sound for missions with a section 'timing'", _REDUCE),
-    _P(_F.TIMING, _F.PARANOID, _W.UNBUILT,
-        "missions with a section 'timing' are not re-checked by --paranoid", "leave --paranoid out"),
     _P(_F.TIMING, _F.RUNS, _W.UNDECIDED,
         "properties of runs without times are not decided beside a section 'timing'", "ask for times: within, time"),
     _P(_F.MODEL, _F.FAST, _W.DESIGN, "a model of your own is explored by the reference engine: the others learn the "

@@ -65,7 +65,7 @@ def test_what_is_doubted_is_bounded():
     mission = load_mission("surveillance")
     space = explore(mission.initial, engine=Engine.FAST).survey.space
     with bounded(Limits(seconds=-1.0)), pytest.raises(BoundMet):
-        crosscheck.crosscheck(space, 1)
+        crosscheck.crosscheck(space, [0])
 
 
 def test_what_was_explored_and_not_looked_at_does_not_hold(clock, monkeypatch):

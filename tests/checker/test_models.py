@@ -63,7 +63,9 @@ def naive(model):
     return distances, transitions
 
 
-@pytest.mark.parametrize("model", [Counter(4), table(3), table(5, last_is_left_handed=True)], ids=["counter", "three", "five"])
+@pytest.mark.parametrize(
+    "model", [Counter(4), table(3), table(5, last_is_left_handed=True)], ids=["counter", "three", "five"]
+)
 def test_all_states_are_found_by_shortest_paths(model):
     found, (distances, transitions) = explore(model), naive(model)
     assert found.complete

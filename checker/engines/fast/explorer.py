@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bigraphs.resources import cores
-from checker.engines.contract import Exploration, Inspect, Options, Progress
+from checker.engines.contract import Exploration, Inspect, Options, Progress, sample
 from checker.engines.estimate import estimate
 from checker.engines.fast.checkpoint import Journey, resume, save
 from checker.engines.fast.compile_progress import compilation_uncounted
@@ -165,7 +165,7 @@ class _Explorer:
             if self.keeping.doubted:
                 from checker.engines.fast.crosscheck import crosscheck  # noqa: PLC0415  # for --paranoid only
 
-                crosscheck(self.space, self.keeping.doubted, self.reduce)
+                crosscheck(self.space, sample(self.space.expanded, self.keeping.doubted), self.reduce)
             inspect_fast(survey, inspect)
         except BoundMet as met:
             self.bounds.append(met.bound.met_in(CheckPart.LOOKING))

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError
+from checker.engines.contract import Exploration, Inspect, Options, Progress, TickError, sample
 from checker.engines.fast.compile_progress import compilation_uncounted
 from checker.engines.made_on_access import MadeOnAccess
 from checker.engines.timed.zone_answers import ZoneTimes
@@ -96,6 +96,7 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
             within = counted.limits if counted.limits.spill is None else replace(counted.limits, memory=None)
             with bounded(within, started):
                 _visit_all(network, search, files, found, counted, started)
+                _doubt(network, options.keeping.doubted)
             found.bounds += files.keep(time.monotonic() - started, always=True)
     except BoundMet as met:  # within the learning of rules
         found.bounds.append(met.bound)
@@ -108,6 +109,20 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
     inspect_zones(times, inspect)
     found.seconds, found.compiling = time.monotonic() - started, uncounted.seconds
     return found
+
+
+def _doubt(network: Network, count: int) -> None:
+    """Compare the learned successors of some rows with the interpreter's.
+
+    Raises:
+        Disagreement: They differ.
+    """
+    if count:
+        from checker.engines.fast.crosscheck import crosscheck  # noqa: PLC0415  # for --paranoid only
+
+        automaton = network.automaton
+        rows = np.unique(automaton.rows.used[automaton.left()])
+        crosscheck(network, rows[sample(len(rows), count)].tolist())
 
 
 def _visit_all(
