@@ -15,7 +15,7 @@ import pytest
 from checker import CheckpointError, Engine, Keeping, Limits, check, explore
 from checker.engines.contract import sample
 from checker.engines.fast.crosscheck import Disagreement, crosscheck
-from checker.engines.zones.timed_automaton_of import Network
+from checker.engines.zones import explorer as timed_explorer
 from specs.elaboration import load_mission
 
 ROOT = Path(__file__).parents[4]
@@ -90,18 +90,17 @@ def test_the_cross_check_finds_what_was_learned_wrong():
 
 @pytest.mark.parametrize("is_right", [True, False])
 def test_timed_missions_are_checked_again(monkeypatch, is_right):
-    left = Network.leave
+    doubt = timed_explorer._doubt
 
-    def leave_and_spoil(network, locations):
-        left(network, locations)
+    def spoil_and_doubt(network, count):
         if not is_right:
             masks = network.masks.used.reshape(-1, 2, network.packing.words)
             masks[:, 0], masks[:, 1] = ~np.uint64(0), 0  # nothing is written
+        doubt(network, count)
 
-    monkeypatch.setattr(Network, "leave", leave_and_spoil)
-    keeping = Keeping(doubted=10)
+    monkeypatch.setattr(timed_explorer, "_doubt", spoil_and_doubt)
     with nullcontext() if is_right else pytest.raises(Disagreement):
-        explored(start("handover_timed"), keeping=keeping)
+        explored(start("handover_timed"), keeping=Keeping(doubted=10))
 
 
 ROOMY = """
