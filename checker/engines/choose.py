@@ -70,8 +70,12 @@ def explore(  # noqa: PLR0913 - independent options, passed by name
 
     Raises:
         CombinationError: Two options do not work together, or one with the mission or the model.
-        TypeError: A model is given with inspections, which are about configurations.
+        TypeError: A model is given with inspections, which are about configurations; or neither is given.
     """
+    if not isinstance(initial, Configuration) and not hasattr(initial, "successors"):
+        raise TypeError(
+            "explore takes a configuration, or a model with `successors`; of a mission take `.initial`"
+        )
     is_model, names = not isinstance(initial, Configuration), () if reduce is None else reduce.names
     options = Options(
         limits or Limits(),

@@ -206,3 +206,8 @@ def test_a_label_may_be_a_word():
     assert set(explore(Counter(1)).graph.labels) == {
         Label("up", "up"), Label("back", "back"), Label("break", "break")
     }  # fmt: skip
+
+
+def test_a_mission_is_explored_from_its_initial_configuration():
+    with pytest.raises(TypeError, match=r"of a mission take `\.initial`"):
+        explore(load_mission("oil_spill"))

@@ -19,6 +19,7 @@ from checker import CombinationError, Engine, Keeping, Limits, Reduction, check
 from checker.check import reductions_of
 from checker.engines.fast import explorer
 from checker.engines.fast.space import Space
+from checker.engines.zones import explorer as timed_explorer
 from checker.reduction.refusals import RefusedError
 from specs.diagnostics import MissionError
 
@@ -88,11 +89,11 @@ def checked(mission, row, reductions, folder):
     if row["spill"] == YES:
         (folder / "spill").mkdir()
         limits = replace(limits, memory=1, spill=str(folder / "spill"))
-    if row["resumed"] == YES and not reductions:
+    if row["resumed"] == YES:
         kept = Keeping(str(folder), digest="d", every=0.0)
         early, stop = interrupted_at(15, limits)
         check(mission, limits=early, report=stop, keeping=kept, **options)
-        options["keeping"] = replace(kept, resumed=(folder / "exploration.checkpoint").exists())
+        options["keeping"] = replace(kept, resumed=any(folder.glob("*.checkpoint")))
     return check(mission, limits=limits, **options)
 
 
@@ -100,6 +101,7 @@ def checked(mission, row, reductions, folder):
 def rows_that_move(monkeypatch):
     """Let memory end until rows are in files, and yield what lets them be compressed amid the search."""
     monkeypatch.setattr(explorer, "CHUNK", 8)
+    monkeypatch.setattr(timed_explorer, "CHUNK", 8)
 
     def compress():
         monkeypatch.setattr(Space, "PLAIN", 1)
