@@ -8,7 +8,7 @@ from contextlib import redirect_stderr, redirect_stdout
 from io import StringIO
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).parent.parent / "tests" / "checker" / "pairs"))
+sys.path.extend(map(str, (Path(__file__).parent.parent / "tests" / "checker").glob("**")))
 
 from option_pairs import FEATURES, WRONG, Feature, folded, marked, of_system
 

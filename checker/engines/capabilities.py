@@ -99,7 +99,6 @@ UNSUPPORTED: Final = (
     _P(_F.REFERENCE, _F.CHECKPOINT, _W.DESIGN, "--checkpoint works with the fast and Ray engines only", _ENGINE),
     _P(_F.REFERENCE, _F.SPILL, _W.DESIGN,
         "--spill works with the fast engine only: the reference engine explores in memory", _ENGINE),
-    _P(_F.RAY, _F.SPILL, _W.UNBUILT, "--spill works with the fast engine only", _ENGINE),
     _P(_F.REFERENCE, _F.PARANOID, _W.DESIGN, "--paranoid works with the fast engine and with reductions only: "
         "the reference engine is the interpreter", _ENGINE, frozenset({_F.POR, _F.SYMMETRY})),
     _P(_F.RAY, _F.PARANOID, _W.UNBUILT, "--paranoid works with the fast engine and with reductions only", _ENGINE),

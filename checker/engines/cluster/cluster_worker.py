@@ -84,6 +84,15 @@ class Worker:
         shard = self.shard
         return self.told(mark(shard.size, shard.expanded, shard.end, is_late=is_late))
 
+    def spill(self, folder: str) -> tuple[str, ShardProgress]:
+        """Move the rows to files in a folder of this machine; return why that failed, if it did, and the progress."""
+        failure = ""
+        try:
+            self.shard.spill(Path(folder))
+        except OSError as error:
+            failure = str(error.strerror)
+        return failure, self.shard.standing()
+
     # --- checkpoints ----------------------------------------------------------------------------------------------
 
     def save(self, folder: str, number: int, digest: str) -> None:

@@ -53,6 +53,7 @@ class Expedition:
         bounds: The bounds that ended the exploration early.
         is_lost: Whether the workers must begin, or return to a checkpoint.
         is_kept: Whether the last checkpoint has the present state.
+        is_spilled: Whether the workers' rows are in files.
     """
 
     def __init__(
@@ -71,7 +72,7 @@ class Expedition:
         self.standings: list[ShardProgress] = []
         self.bounds: list[Bound] = []
         self.is_lost = True
-        self.is_kept = False
+        self.is_kept = self.is_spilled = False
         self.losses = 0
         self.began = time.monotonic() - (self.latest.seconds if self.latest else 0.0)
         self.reported = self.kept = time.monotonic()
@@ -165,6 +166,7 @@ class Expedition:
         if self.bounds and not self.is_kept:
             raise MachineError("a worker was lost when a bound was met, and its rows were not kept")
         self.crew.revive()
+        self.is_spilled = False
         if self.latest is None:
             self.layer, self.standings = 0, self.crew.every("start")
         else:
@@ -207,8 +209,24 @@ class Expedition:
         limits = self.limits
         if (end := limits.end(seconds)) is not None:
             self.bounds.append(end)
-        elif limits.memory is not None and max(each.memory for each in self.standings) > limits.memory:
-            self.bounds.append(limits.bound(Stop.MEMORY))
+        elif self.is_full():
+            self.bounds += self.spill()
+            if self.is_full() and not self.bounds:
+                self.bounds.append(limits.bound(Stop.MEMORY))
+
+    def is_full(self) -> bool:
+        """Return whether some worker exceeds the memory limit."""
+        most = self.limits.memory
+        return most is not None and max(each.memory for each in self.standings) > most
+
+    def spill(self) -> list[Bound]:
+        """Let the workers move their rows to files, if that is enabled and not done yet; return why some could not."""
+        folder = self.limits.spill
+        if folder is None or self.is_spilled:
+            return []
+        told = self.crew.every("spill", str(Path(folder).resolve()))
+        self.is_spilled, self.standings = True, [standing for _, standing in told]
+        return [Bound(Stop.NO_ROOM, (folder, failure)) for failure, _ in told if failure][:1]
 
     def progress(self, seconds: float) -> Progress:
         """Return the progress of all workers together."""

@@ -11,6 +11,8 @@ from itertools import combinations
 from pathlib import Path
 from unittest.mock import patch
 
+from local_crew import LocalCrew
+
 import checker.limits
 from bigactors.cli import main
 from bigraphs import SystemModel, find_matches
@@ -28,6 +30,8 @@ from checker import (
     explore,
 )
 from checker.engines.capabilities import Feature, Why, pair_of
+from checker.engines.cluster import ray_crew, rounds, shard
+from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Cluster
 from checker.engines.fast.rows import Rows
 from checker.engines.fast.space import Space
@@ -125,11 +129,19 @@ def spilled_rows():
         spill(*given)
         moves.append(given)
 
-    with (
-        patch.object(Rows, "spill", noted),
-        patch.object(checker.limits, "memory_taken", lambda: 0 if moves else 2),
-    ):
+    def taken():
+        return 0 if moves else 2
+
+    with contextlib.ExitStack() as patches:
+        patches.enter_context(patch.object(Rows, "spill", noted))
+        for each in (checker.limits, rounds, shard):
+            patches.enter_context(patch.object(each, "memory_taken", taken))
         yield moves
+
+
+def explore_in_threads(initial, inspect, options):
+    """Explore as the engine Ray does, with workers in this process."""
+    return Expedition(LocalCrew(initial, 2, options.limits.pending), initial, options).run(inspect)
 
 
 def run(mission, asked):
@@ -137,7 +149,7 @@ def run(mission, asked):
     with patch.object(zones, "CHUNK", 8):
         if Feature.SPILL not in asked:
             return _run(mission, asked)
-        with spilled_rows() as moves:
+        with spilled_rows() as moves, patch.object(ray_crew, "explore_with_ray", explore_in_threads):
             report = _run(mission, asked)
         assert moves
         return report

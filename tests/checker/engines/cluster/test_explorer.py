@@ -1,5 +1,7 @@
 """Exploring with several workers, here in one process: the same as alone, whoever is lost on the way."""
 
+from dataclasses import replace
+
 import pytest
 from checked_missions import visited
 from hypothesis import given
@@ -8,10 +10,11 @@ from scale import IS_WHOLE, examples
 
 from checker import CheckpointError, Engine, Keeping, Limits, MachineError, explore
 from checker.engines.archive import read_archive, write_archive
-from checker.engines.cluster import explorer, shard
+from checker.engines.cluster import explorer, rounds, shard
 from checker.engines.cluster.checkpoints import KINDS, SCHEMA
 from checker.engines.cluster.explorer import Expedition
 from checker.engines.contract import Options
+from checker.engines.fast.rows import Rows
 from checker.properties.coverage import Visited
 from checker.properties.inspections import Arrival, Computation, DeadlockFreedom, LocalConsistency
 from checker.properties.races import ControlRaces
@@ -132,6 +135,30 @@ def test_without_time_or_memory_the_search_is_incomplete():
     found = together(initial, 2, limits=Limits(memory=1_000_000))
     assert list(map(str, found.bounds)) == ["the memory limit of 1 MB"]
     assert kept_graph(found).open.tolist() == [True]
+
+
+@pytest.mark.usefixtures("small_rounds")
+def test_rows_of_workers_go_over_to_files(tmp_path, monkeypatch):
+    initial, spill, moved = start("surveillance"), Rows.spill, []
+
+    def noted(rows, folder, used):
+        spill(rows, folder, used)
+        moved.append(used)
+
+    monkeypatch.setattr(Rows, "spill", noted)
+    for each in (rounds, shard):
+        monkeypatch.setattr(each, "memory_taken", lambda: 0 if moved else 2)
+    found = together(initial, 3, limits=replace(LIMITS, memory=1, spill=str(tmp_path)))
+    assert counted(found) == counted(together(initial, 3))
+    assert len(moved) == 3
+    assert sum(moved) < len(found.configurations)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_without_room_for_the_rows_of_workers_is_a_bound(tmp_path):
+    limits = replace(LIMITS, memory=1, spill=str(tmp_path / "missing"))
+    [bound] = together(start("surveillance"), 2, limits=limits).bounds
+    assert str(bound).endswith("missing: No such file or directory")
 
 
 @pytest.mark.parametrize("when", [1, 4])
