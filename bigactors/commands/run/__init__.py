@@ -144,8 +144,7 @@ def _safety(parser: Parser) -> None:
         metavar="PLACE",
         default="world",
         help="the geofence of the vehicles, sent before they are armed: a place of the mission, 'none', or "
-        "'world' (default: the smallest place that contains all possible places of vehicles, or a box "
-        "around these)",
+        "'world' (default: the smallest place around all possible places of vehicles, or a box)",
     )
     group.add_argument(
         "--key",
