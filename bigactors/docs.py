@@ -22,7 +22,7 @@ from semantics.bigactor_rules import say as say_rule
 from semantics.rules import RULES, TIMED_RULES, env
 from semantics.state.station_partition import PASSING
 from specs import code_table
-from specs.language_reference import language_reference
+from specs.language_reference import language_reference, whole_mission
 
 FOLDER = Path(__file__).parent.parent / "docs"
 WIDTH = 100
@@ -123,6 +123,7 @@ def pages() -> dict[str, str]:
         "reference/cli.md": "".join(cli_page()),
         "reference/codes.md": f"{GENERATED}{CODES_HEAD}\n{code_table()}{WORDS_HEAD}{word_table()}",
         "reference/language.md": f"{GENERATED}{language_reference()}",
+        "reference/whole.mission": whole_mission(),
         "reference/recording.md": "".join(recording_page()),
         "reference/rules.md": "".join(rules_page()),
         "../editors/vscode/syntaxes/mission.tmLanguage.json": textmate_grammar(),
