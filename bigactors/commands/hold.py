@@ -16,7 +16,8 @@ from bigactors.terminal import say, tell
 if TYPE_CHECKING:
     from adapters.live.operator_socket import Fates
 
-ORDER: Final = """\
+DESCRIPTION: Final = """\
+Order a vehicle to hold its position; a plane circles.
 The order is sent at once; to a silent vehicle, as soon as it is heard. The mission then does not command the vehicle
 until `bigactors give-back VEHICLE`: requests to it stay pending, and no position is an arrival. The rest of the mission
 goes on. `--all` leaves out vehicles that a pilot or a fail-safe has taken over; an order by name overrules them. Order
@@ -24,11 +25,6 @@ another station's vehicle at that station.
 
 The command waits 10 s. Its exit code is 0 if the vehicle obeys, 1 if it refuses, 3 if neither is known. A refused order
 is repeated until the vehicle obeys, and the run then prints a line."""
-"""The paragraph of help that `hold` and `return` share."""
-
-DESCRIPTION: Final = f"""\
-Order a vehicle to hold its position; a plane circles.
-{ORDER}"""
 
 EXAMPLES: Final = ("bigactors hold uav0", "bigactors hold --all --by Ana")
 

@@ -5,7 +5,6 @@ from argparse import Namespace
 from typing import Final
 
 from bigactors.arguments.options import (
-    EXITS,
     MISSION,
     add_checkpoints,
     add_memory,
@@ -16,12 +15,10 @@ from bigactors.arguments.parser import Parser
 from bigactors.arguments.values import FORMATS, at_least_one, named, output, reductions, seconds
 from bigactors.exits import Exit
 
-DESCRIPTION: Final = f"""\
+DESCRIPTION: Final = """\
 Explore every interleaving of a mission and decide its properties, with a shortest trace for each that fails and a
 witness for each that holds. Ctrl-C, SIGTERM and SIGHUP end it within seconds with the results so far; a second one
-ends it at once.
-
-{EXITS}"""
+ends it at once. `bigactors --help` lists the exit codes."""
 
 EXAMPLES: Final = (
     "bigactors check oil_spill.mission",
