@@ -22,7 +22,7 @@ from semantics.bigactor_rules import say as say_rule
 from semantics.rules import RULES, TIMED_RULES, env
 from semantics.state.station_partition import PASSING
 from specs import code_table
-from specs.language_reference import language_reference
+from specs.language_reference import language_reference, whole_mission
 
 FOLDER = Path(__file__).parent.parent / "docs"
 WIDTH = 100
@@ -84,13 +84,12 @@ so a replay needs no arrivals. The telemetry log records at most 1,000 received 
 counts the rest.
 
 `bigactors replay FILE.mcap` runs the steps again through the rules. If the rules don't allow a step, or if it leads to
-another configuration (`digest`), replay names the step and exits with code 1. `run --resume FILE.mcap` continues a
-killed run. `show --trace FILE.mcap` draws a configuration (`--step K`), or writes every position for QGIS and others
-(`--output tracks.geojson`).
+another configuration (`digest`), replay names the step and exits with code 1.
+[`run --resume`](../explanation/live.md#failures) and [`show --trace`](../how-to/geojson.md#tracks-of-a-flight) read it,
+too.
 
 [Foxglove](https://foxglove.dev) and Lichtblick show its map and its log: add a Map panel and a Log panel. They warn
-that the file has no index. The topics that begin with `/` are for them, in Foxglove's schemas. They follow from the
-other topics, and `bigactors` passes over them:
+that the file has no index. The topics that begin with `/` are for them alone, in Foxglove's schemas:
 
 - `/NAME/fix` (`foxglove.LocationFix`): where an entity was observed, at most once a second; `arrivals` has all.
 - `/PLUGIN/others/fix`: the same of all entities that the mission does not name; `frame_id` has the name.
@@ -123,6 +122,7 @@ def pages() -> dict[str, str]:
         "reference/cli.md": "".join(cli_page()),
         "reference/codes.md": f"{GENERATED}{CODES_HEAD}\n{code_table()}{WORDS_HEAD}{word_table()}",
         "reference/language.md": f"{GENERATED}{language_reference()}",
+        "reference/whole.mission": whole_mission(),
         "reference/recording.md": "".join(recording_page()),
         "reference/rules.md": "".join(rules_page()),
         "../editors/vscode/syntaxes/mission.tmLanguage.json": textmate_grammar(),

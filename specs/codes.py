@@ -107,8 +107,8 @@ class Code(Enum):
     UNKNOWN_CHARACTER = (
         "LS106",
         "unknown character",
-        """This character has no meaning here. Quotes pasted from a document are often typographic; strings need
-        straight double quotes. Of operators there are `+`, `-`, comparisons, `and`, `or`, `not`, `in` and `of`.""",
+        """This character has no meaning here. Strings need straight double quotes, not typographic ones. Of operators
+        there are `+`, `-`, comparisons, `and`, `or`, `not`, `in` and `of`.""",
     )
     MISSING_ARROW = (
         "LS107",
@@ -452,8 +452,7 @@ class Code(Enum):
         """Quantifiers are written out, and `<->` doubles its sides. After that, the properties of a mission may have
          at most fifty thousand atoms. Parts of `invariant`, `reachable` and `within` about entities alone are not
         written out: `forall x, y: UAV . x != y -> forall c: Cell . not (x in c and y in c)` may be asked of fifty
-        vehicles on two hundred places, since each is in a few. It may ask two hundred thousand atoms of a
-        configuration.""",
+        vehicles on two hundred places. It may ask two hundred thousand atoms of a configuration.""",
     )
     NOT_QUANTIFIED = (
         "LS608",
@@ -504,16 +503,16 @@ class Code(Enum):
     NO_BIGACTOR = (
         "LS615",
         "mission without a bigActor",
-        """A check is about the steps of bigActors. A mission without bigActors can be shown, and recordings can be
-        replayed in its places, but a verdict on it would be empty.""",
+        """A mission without bigActors can be shown, and recordings can be replayed in its places, but a verdict on it
+        would be empty.""",
     )
     # --- LS7: warnings
     NOTHING_QUANTIFIED = (
         "LS701",
         "quantifier over nothing",
         """A property quantifies over a kind that has no entity, or over bigActors that do not exist: `forall` is
-        always true, `exists` never. Or a family goes through such a kind, and has no member. Declare one (an entity
-        may be `absent` at first), or quantify over others.""",
+        always true, `exists` never. Or a family of such a kind has no member. Declare one (an entity may be `absent`
+        at first), or quantify over others.""",
     )
 
     FAR_FROM_THE_REST = (
@@ -527,7 +526,7 @@ class Code(Enum):
         "LS703",
         "variable of two types",
         """A variable is given values of different types, and one of them cannot be taken where the variable is used.
-        It is no mistake if the other one is always there then; a variable of its own for each is easier to check.""",
+        It is no mistake if the other one is always there then; use a variable for each.""",
     )
 
     ALWAYS_THE_SAME = (
@@ -540,8 +539,8 @@ class Code(Enum):
     NEVER_INSIDE = (
         "LS706",
         "containment that the signature forbids",
-        """A formula asks whether one entity is in another, and no entity of the one kind can ever be there: the other
-        kind neither contains nor carries it, nor anything that could contain it. So the claim is always false.""",
+        """A formula asks whether one entity is in another, which is always false: the other kind neither contains nor
+        carries it, nor anything that could contain it.""",
     )
 
     PROBABLY_SWAPPED = (
@@ -549,8 +548,8 @@ class Code(Enum):
         "probably all swapped",
         """All of a world seems to have latitude and longitude exchanged: everything that floats (a Vessel, a Boat)
         stands on land, 100 km from any water, or everything is far out at sea, and exchanged it would be near a
-        coast. Missions use (latitude, longitude), GeoJSON uses [longitude, latitude]. Coasts and lakes are known to
-        a kilometre, rivers and canals are not: nearer to a coast, boats on land are taken to be on one.""",
+        coast. Missions use (latitude, longitude), GeoJSON uses [longitude, latitude]. Rivers and canals
+        are not known: nearer to a coast, boats on land are taken to be on one.""",
     )
 
     BOUNDS_NOTHING = (
@@ -563,23 +562,22 @@ class Code(Enum):
     NEVER_WAITS = (
         "LS708",
         "loop that asks and never waits",
-        """A loop makes a request in each turn and goes on at once, so its requests pile up. An exploration
-        stops at more than 64 requests of one bigActor (`--max-pending`). Let each turn wait for its answer.""",
+        """The requests of the loop pile up. An exploration stops at more than 64 requests of one bigActor
+        (`--max-pending`). Let each turn wait for its answer.""",
     )
 
     MAY_CROSS = (
         "LS709",
         "flight that may cross a forbidden place",
         """An invariant keeps a vehicle out of a place, and the straight way of one of its flights may lead through it.
-        In transit a vehicle is in no place that it only crosses, so the invariant does not cover that. Lead the flight
-        around by VIA, or in several moves.""",
+        The invariant does not cover a vehicle in transit. Lead the flight around by VIA, or in several moves.""",
     )
 
     HIDES_AN_ENTITY = (
         "LS710",
         "pattern that takes anything for an entity's name",
-        """A name in a pattern is a new variable, which takes any value. One that is called like an entity looks as if
-        it compared with that entity, and hides it in the case. `=spill` compares; another name takes any value.""",
+        """A name in a pattern is a new variable, which takes any value. One that is called like an entity hides it in
+        the case. `=spill` compares; another name takes any value.""",
     )
 
     # --- LS8: timing
@@ -598,8 +596,7 @@ class Code(Enum):
     NOT_TIMED = (
         "LS803",
         "timing of control that takes no time",
-        """With `control atomic` a vehicle is at its destination at once, and no flight takes any time. A mission
-        with `timing` needs `control timed`.""",
+        """With `control atomic` no flight takes any time. A mission with `timing` needs `control timed`.""",
     )
     NO_TIMING = (
         "LS804",

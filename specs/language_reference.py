@@ -23,14 +23,15 @@ A file has at most one megabyte and sixty thousand words; a word has at most ten
 hundred deep. [codes.md](codes.md) lists the diagnostics, with meaning and remedy.
 
 The grammar is in EBNF: words in quotes are literal, `[x]` is optional, `x*` repeats any number of times, `x+` at least
-once. `bigactors fmt` writes a mission in the layout used here. The examples are parts of
-[one mission](#a-whole-mission); that of [timing](#timing) is a part of `endurance`, which ships.
+once. `bigactors fmt` writes a mission in the layout used here. The examples are parts of one mission,
+[whole.mission](whole.mission), which reads [a file](#a-file-of-places). That of [timing](#timing) is a part of
+`endurance`, which ships.
 """
 
-WHOLE: Final = """\
-## A whole mission
+PLACES: Final = """\
+## A file of places
 
-The examples of this page together, with the file that its world names, `harbour.geojson`:
+The file `harbour.geojson`, which the world of the examples names:
 
 <!-- file: harbour.geojson -->
 ```json
@@ -53,8 +54,6 @@ The examples of this page together, with the file that its world names, `harbour
   ]
 }
 ```
-
-<!-- file: whole.mission -->
 """
 
 WORDS: Final = r"""A name is a letter, followed by letters, digits and underscores. A channel's name may begin with a
@@ -238,7 +237,12 @@ def language_reference() -> str:
             parts += ["Example:\n", "<!-- frame: whole.mission -->", _fenced(EXAMPLES[heading], "mission")]
     reserved = ", ".join(f"`{word}`" for word in sorted(RESERVED))
     parts += ["## Words\n", WORDS, f"{reserved}\n"]
-    return "\n".join([*parts, WHOLE + _fenced("\n".join(EXAMPLES.values()), "mission")])
+    return "\n".join([*parts, PLACES])
+
+
+def whole_mission() -> str:
+    """Return the mission of the examples."""
+    return "\n".join(EXAMPLES.values())
 
 
 def grammar_parts() -> Iterator[tuple[str, str]]:

@@ -5,7 +5,8 @@ A page is one session: its blocks run in their order, in a folder of their own, 
 Comments above a block say what is special about it:
 
     <!-- file: patrol.mission -->    the block is the content of this file
-    <!-- frame: oil_spill -->        its declarations take the places of those in this mission, or join them
+    <!-- frame: oil_spill -->        its declarations take the places of those in this mission, or join them: a shipped
+                                     mission, a file of the page, or one beside it
     <!-- not run: needs a radio -->  the reason why it is only shown
 """
 
@@ -42,7 +43,7 @@ LONG = {
 }
 """Pages that fly, or show many commands one after the other."""
 
-NOT_RUN = 44
+NOT_RUN = 45
 """How many blocks are only shown; each says why."""
 
 FENCE = re.compile(r"^((?:<!-- [^\n]+ -->\n)*)```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -97,8 +98,9 @@ def framed(block, folder):
     if "frame" not in block.notes:
         return block.text
     name = block.notes["frame"]
-    frame = shipped_missions().get(name, folder / name).read_text(encoding="utf-8")
-    whole = declarations(frame) | declarations(block.text)
+    beside = (ROOT / block.place).parent / name
+    path = beside if beside.exists() else shipped_missions().get(name, folder / name)
+    whole = declarations(path.read_text(encoding="utf-8")) | declarations(block.text)
     return "\n\n".join(piece.strip() for piece in whole.values() if piece.strip()) + "\n"
 
 

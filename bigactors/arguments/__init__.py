@@ -25,7 +25,7 @@ examples:
   bigactors check --watch patrol.mission     check it at every save
 
 bigactors COMMAND --help describes a command, with examples. FILE is a mission file, or the name of a mission that
-ships."""
+ships. --color auto colours terminals without NO_COLOR, and pipes with FORCE_COLOR."""
 
 GONE: Final = {
     "bigactors check --hash-compact": "it is gone, since a configuration takes some 24 bytes: --max-memory SIZE "

@@ -16,7 +16,7 @@ exit codes:
 
 For several missions the gravest code counts: 4, then 2, 1, 3, 0."""
 
-MISSION: Final = "a mission file, or the name of a mission that ships with bigactors, such as oil_spill"
+MISSION: Final = "a mission file, or the name of a shipped mission, such as oil_spill"
 
 
 def add_variation(parser: Parser) -> None:
@@ -25,12 +25,12 @@ def add_variation(parser: Parser) -> None:
     group.add_argument(
         "--scheduler",
         choices=("program_order", "unordered", "fcfs"),
-        help="the order in which requests are served (default: the mission's)",
+        help="the order of requests (default: the mission's)",
     )
     group.add_argument(
         "--control",
         choices=("atomic", "timed"),
-        help="whether a control is one step (atomic) or takes time (timed; default: the mission's)",
+        help="controls are one step (atomic) or take time (timed; default: the mission's)",
     )
     add_source(group)
 
@@ -55,7 +55,7 @@ def add_foreign_names(parser: Parser) -> None:
         action="append",
         default=[],
         type=identity,
-        help="the name in the mission of a source in a recording by other programs, such as mavlink:1=uav0 or "
+        help="the mission's name of a source in another program's recording, such as mavlink:1=uav0 or "
         "mmsi:244660274=drifter0; may be repeated",
     )
 
@@ -66,8 +66,7 @@ def add_memory(parser: argparse._ActionsContainer) -> None:
         "--max-memory",
         metavar="SIZE",
         type=size,
-        help="stop when the process or a worker takes more than SIZE bytes of memory, such as 800M or 12G "
-        "(default: no limit)",
+        help="stop when the process or a worker takes more than SIZE bytes, such as 800M or 12G (default: no limit)",
     )
 
 
@@ -135,8 +134,7 @@ def add_serving(parser: argparse._ActionsContainer) -> None:
         "--tiles",
         metavar="FILE",
         type=named,
-        help="a background map for the console, as PMTiles: vector tiles of the Protomaps schema, or pictures "
-        "(default: none)",
+        help="a background map, as PMTiles: vector tiles of the Protomaps schema, or pictures (default: none)",
     )
     parser.add_argument(
         "--tls",
@@ -148,6 +146,5 @@ def add_serving(parser: argparse._ActionsContainer) -> None:
     parser.add_argument(
         "--insecure",
         action="store_true",
-        help="let other machines reach the console without --tls: everybody on the network can then read its "
-        "token",
+        help="let other machines reach the console without --tls: the whole network can then read its token",
     )

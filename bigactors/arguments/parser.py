@@ -60,8 +60,7 @@ class Parser(argparse.ArgumentParser):
             choices=("auto", "always", "never"),
             metavar="WHEN",
             default=argparse.SUPPRESS,
-            help="colour the output: always, never or auto (default: terminals, without NO_COLOR, and pipes with "
-            "FORCE_COLOR)",
+            help="colours: always, never or auto (default)",
         )
         self.color = False  # since Python 3.14 argparse colours help, and so would the pages of docs/
 

@@ -16,19 +16,15 @@ from bigactors.terminal import say, tell
 if TYPE_CHECKING:
     from adapters.live.operator_socket import Fates
 
-ORDER: Final = """\
-The order is sent at once. From then on the mission does not command the vehicle until `bigactors give-back VEHICLE`:
-requests to it stay pending, and none of its positions is an arrival. The rest of the mission goes on. `--all` leaves
-out vehicles that a pilot or a fail-safe has taken over; an order by name overrules them. A silent vehicle gets the
-order as soon as it is heard. A vehicle of another station is ordered at that station.
-
-The command waits 10 s for the vehicle. Its exit code is 0 if the vehicle obeys, 1 if it refuses, and 3 if neither is
-known. A refused order is sent again until the vehicle obeys, and the run then prints a line."""
-"""The paragraph of help that `hold` and `return` share."""
-
-DESCRIPTION: Final = f"""\
+DESCRIPTION: Final = """\
 Order a vehicle to hold its position; a plane circles.
-{ORDER}"""
+The order is sent at once; to a silent vehicle, as soon as it is heard. The mission then does not command the vehicle
+until `bigactors give-back VEHICLE`: requests to it stay pending, and no position is an arrival. The rest of the mission
+goes on. `--all` leaves out vehicles that a pilot or a fail-safe has taken over; an order by name overrules them. Order
+another station's vehicle at that station.
+
+The command waits 10 s. Its exit code is 0 if the vehicle obeys, 1 if it refuses, 3 if neither is known. A refused order
+is repeated until the vehicle obeys, and the run then prints a line."""
 
 EXAMPLES: Final = ("bigactors hold uav0", "bigactors hold --all --by Ana")
 
@@ -40,7 +36,7 @@ def add_arguments(parser: Parser) -> None:
     which.add_argument(
         "--all",
         action="store_true",
-        help="every vehicle that this station commands, except those that others have taken over",
+        help="every vehicle of this station, except those that others have taken over",
     )
     add_speaker(parser)
     add_socket(parser)

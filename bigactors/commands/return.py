@@ -3,12 +3,12 @@
 
 from typing import Final
 
-from bigactors.commands.hold import ORDER, add_arguments, run
+from bigactors.commands.hold import add_arguments, run
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "run"]
 
-DESCRIPTION: Final = f"""\
-Order a vehicle to return to its own home, in its mode RTL.
-{ORDER}"""
+DESCRIPTION: Final = """\
+Order a vehicle to return to its own home, in its mode RTL. From then on the mission does not command it until
+`bigactors give-back VEHICLE`. `bigactors hold --help` has the rest, which is the same for both orders."""
 
 EXAMPLES: Final = ("bigactors return uav0", "bigactors return --all --by Ana")

@@ -41,7 +41,7 @@ class Why(Enum):
     DESIGN = "by design"
     UNBUILT = "not built yet"
     IDLE = "accepted, without effect"
-    UNDECIDED = "accepted, and some properties stay incomplete"
+    UNDECIDED = "accepted; some properties stay incomplete"
 
     @property
     def is_refusal(self) -> bool:
@@ -97,10 +97,9 @@ UNSUPPORTED: Final = (
     _P(_F.RAY, _F.THREADS, _W.DESIGN, "--threads works with the fast engine only",
         "leave --engine out, or give --workers with --engine ray"),
     _P(_F.REFERENCE, _F.CHECKPOINT, _W.DESIGN, "--checkpoint works with the fast and Ray engines only", _ENGINE),
-    _P(_F.REFERENCE, _F.SPILL, _W.DESIGN,
-        "--spill works with the fast engine only: the reference engine explores in memory", _ENGINE),
-    _P(_F.REFERENCE, _F.PARANOID, _W.DESIGN, "--paranoid works with the fast engine and with reductions only: "
-        "the reference engine is the interpreter", _ENGINE, frozenset({_F.POR, _F.SYMMETRY})),
+    _P(_F.REFERENCE, _F.SPILL, _W.DESIGN, "--spill works with the fast and Ray engines only", _ENGINE),
+    _P(_F.REFERENCE, _F.PARANOID, _W.DESIGN, "--paranoid works with the fast engine and with reductions only",
+        _ENGINE, frozenset({_F.POR, _F.SYMMETRY})),
     _P(_F.RAY, _F.PARANOID, _W.UNBUILT, "--paranoid works with the fast engine and with reductions only", _ENGINE),
     _P(_F.RAY, _F.POR, _W.UNBUILT, "the reduction 'por' is refused: the ray explorer does not reduce", _ENGINE),
     _P(_F.RAY, _F.SYMMETRY, _W.UNBUILT,
@@ -108,24 +107,22 @@ UNSUPPORTED: Final = (
     _P(_F.RAY, _F.TIMING, _W.UNBUILT,
         "the engine 'ray' does not explore missions with a section 'timing' yet", _ENGINE),
     _P(_F.POR, _F.TIMING, _W.MATHEMATICS, "the reduction 'por' is refused: it is not sound for missions with a "
-        "section 'timing', whose one clock makes the order of independent steps observable", _REDUCE),
+        "section 'timing', whose clock orders independent steps", _REDUCE),
     _P(_F.SYMMETRY, _F.TIMING, _W.UNBUILT,
-        "the reduction 'symmetry' is refused: it is not proved sound for missions with a section 'timing'", _REDUCE),
+        "the reduction 'symmetry' is refused: it is not proved sound with a section 'timing'", _REDUCE),
     _P(_F.TIMING, _F.RUNS, _W.UNDECIDED,
-        "properties of runs without times are not decided beside a section 'timing'", "ask for times: within, time"),
-    _P(_F.MODEL, _F.FAST, _W.DESIGN, "a model of your own is explored by the reference engine: the others learn the "
-        "rules of missions", "leave engine out"),
-    _P(_F.MODEL, _F.RAY, _W.DESIGN, "a model of your own is explored by the reference engine: the others learn the "
-        "rules of missions", "leave engine out"),
+        "properties of runs without times are not decided", "ask for times: within, time"),
+    _P(_F.MODEL, _F.FAST, _W.DESIGN, "the other engines learn the rules of missions", "leave engine out"),
+    _P(_F.MODEL, _F.RAY, _W.DESIGN, "the other engines learn the rules of missions", "leave engine out"),
     _P(_F.MODEL, _F.POR, _W.DESIGN, "the reduction 'por' is made for the rules of missions", "leave reduce out"),
     _P(_F.MODEL, _F.SYMMETRY, _W.DESIGN, "the reduction 'symmetry' is made for the rules of missions",
         "leave reduce out"),
     _P(_F.THREADS, _F.POR, _W.IDLE, "the search runs on one thread", ""),
     _P(_F.THREADS, _F.TIMING, _W.IDLE, "the search runs on one thread", ""),
-    _P(_F.RUNS, _F.POR, _W.UNDECIDED, "what depends on the order of independent steps stays incomplete, by "
-        "mathematics: X, enabled, fairness, progress (docs/explanation/reduction.md)", _REDUCE),
-    _P(_F.RUNS, _F.SYMMETRY, _W.UNDECIDED, "what tells interchangeable entities apart stays incomplete, by "
-        "mathematics, and so does progress (docs/explanation/reduction.md)", _REDUCE),
+    _P(_F.RUNS, _F.POR, _W.UNDECIDED, "X, enabled, fairness and progress depend on the order of "
+        "independent steps (docs/explanation/reduction.md)", _REDUCE),
+    _P(_F.RUNS, _F.SYMMETRY, _W.UNDECIDED, "progress and some formulas distinguish interchangeable entities "
+        "(docs/explanation/reduction.md)", _REDUCE),
 )  # fmt: skip
 """The pairs without a tick; the first one that is met is the error."""
 

@@ -252,9 +252,8 @@ Formula: TypeAlias = (
 class Fairness(Node):
     """`weak fairness of a, b`, `strong fairness of actuate`.
 
-    Only fair runs count. Weak: steps that are enabled for ever from some time on are taken infinitely often. Strong:
-    steps that are enabled infinitely often are taken infinitely often. A rule, `agents`, `rules` and `requests` mean
-    each bigActor, rule or request by itself.
+    Only fair runs count: those that take the steps infinitely often if they are enabled from some time on (weak), or
+    again and again (strong).
     """
 
     strength: str

@@ -25,7 +25,7 @@ check race.mission --engine reference --paranoid 1  # --paranoid works with the 
 check race.mission --engine reference --checkpoint there  # --checkpoint works with the fast and Ray engines only
 check race.mission --hash-compact 32  # it is gone, since a configuration takes some 24 bytes: --max-memory
 check race.mission --spill there  # --spill needs a limit on memory
-check race.mission --spill there --max-memory 1G --engine reference  # --spill works with the fast engine only
+check race.mission --spill there --max-memory 1G --engine reference  # --spill works with the fast and Ray engines only
 check race.mission --spill holds.mission --max-memory 1G  # there is a file where a folder should be
 check oil_spill --reduce por --scheduler fcfs  # 'por' is refused: under 'scheduler fcfs'
 check rendezvous --reduce symmetry  # the reduction 'symmetry' is refused: nothing in the mission is

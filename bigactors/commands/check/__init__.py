@@ -5,7 +5,6 @@ from argparse import Namespace
 from typing import Final
 
 from bigactors.arguments.options import (
-    EXITS,
     MISSION,
     add_checkpoints,
     add_memory,
@@ -16,12 +15,10 @@ from bigactors.arguments.parser import Parser
 from bigactors.arguments.values import FORMATS, at_least_one, named, output, reductions, seconds
 from bigactors.exits import Exit
 
-DESCRIPTION: Final = f"""\
+DESCRIPTION: Final = """\
 Explore every interleaving of a mission and decide its properties, with a shortest trace for each that fails and a
 witness for each that holds. Ctrl-C, SIGTERM and SIGHUP end it within seconds with the results so far; a second one
-ends it at once.
-
-{EXITS}"""
+ends it at once. `bigactors --help` lists the exit codes."""
 
 EXAMPLES: Final = (
     "bigactors check oil_spill.mission",
@@ -39,7 +36,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--watch",
         action="store_true",
-        help="check now, and at every save of a mission or of a file of its world, and print the changes first; "
+        help="check now, and at every save of a mission or a file of its world; print the changes first; "
         "Ctrl-C ends it with the exit code of the last check",
     )
     _report(parser)
@@ -58,14 +55,13 @@ def _report(parser: Parser) -> None:
         metavar="N",
         type=at_least_one,
         default=5,
-        help="print at most N different violations of each property, each with a shortest trace, and count the "
-        "others (default: 5)",
+        help="print at most N different violations of each property, and count the others (default: 5)",
     )
     group.add_argument(
         "--times",
         action="store_true",
-        help="print the duration, the beginning and the end of each flight of a mission with timing, and when "
-        "each time property is first true: the earliest and the latest moment",
+        help="print the earliest and the latest moment at which each flight of a mission with timing begins and ends, "
+        "and each time property is first true",
     )
     group.add_argument("--no-traces", action="store_true", help="print a short report, without traces")
 
@@ -146,8 +142,8 @@ def _exploring(parser: Parser) -> None:
         "--threads",
         metavar="N",
         type=at_least_one,
-        help="let the fast engine use at most N threads; the results are the same for every N (default: one a "
-        "core; with --reduce por one)",
+        help="let the fast engine use at most N threads, with the same results for every N (default: one a core; "
+        "with --reduce por one)",
     )
     group.add_argument(
         "--reduce",
@@ -167,8 +163,8 @@ def _long_runs(parser: Parser) -> None:
         "--paranoid",
         metavar="N",
         type=at_least_one,
-        help="let the interpreter re-check the successors of N configurations, and stop at a difference; with "
-        "--reduce, also re-check the assumptions of the reduction there (not with --engine ray; default: none)",
+        help="let the interpreter re-check the successors of N configurations, with --reduce also the reduction's "
+        "assumptions, and stop at a difference (not with --engine ray; default: none)",
     )
 
 

@@ -74,7 +74,7 @@ def _vehicles_and_feeds(parser: Parser) -> None:
         default=[],
         type=feed,
         help="a source of positions, such as ais=udp:10110 or ais=file:harbour.nmea; the kinds are ais, places, "
-        "detections, locations, ros, and those of installed plugins (`bigactors plugins`); may be repeated",
+        "detections, locations, ros, and those of `bigactors plugins`; may be repeated",
     )
     group.add_argument(
         "--publish",
@@ -144,8 +144,7 @@ def _safety(parser: Parser) -> None:
         metavar="PLACE",
         default="world",
         help="the geofence of the vehicles, sent before they are armed: a place of the mission, 'none', or "
-        "'world' (default: the smallest place that contains all possible places of vehicles, or a box "
-        "around these)",
+        "'world' (default: the smallest place around all possible places of vehicles, or a box)",
     )
     group.add_argument(
         "--key",
@@ -157,7 +156,7 @@ def _safety(parser: Parser) -> None:
     group.add_argument(
         "--take-over",
         action="store_true",
-        help="also command vehicles that already fly another mission, or one of an earlier run",
+        help="also command vehicles that already fly another mission, or an earlier run's",
     )
 
 
