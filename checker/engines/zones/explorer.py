@@ -94,12 +94,15 @@ def explore_in_zones(initial: Configuration, inspect: Iterable[Inspect], options
             started -= files.seconds
             search = _Learning(network)
             within = counted.limits if counted.limits.spill is None else replace(counted.limits, memory=None)
-            with bounded(within, started):
-                _visit_all(network, search, files, found, counted, started)
-                _doubt(network, options.keeping.doubted)
+            try:
+                with bounded(within, started):
+                    _visit_all(network, search, files, found, counted, started)
+                    _doubt(network, options.keeping.doubted)
+            except BoundMet as met:
+                found.bounds.append(met.bound)
+            except OSError as error:  # files or memory have no room for growth
+                found.bounds.append(Bound(Stop.NO_ROOM, (options.limits.spill or "memory", error.strerror)))
             found.bounds += files.keep(time.monotonic() - started, always=True)
-    except BoundMet as met:  # within the learning of rules
-        found.bounds.append(met.bound)
     except ConstantTooLargeError as error:
         raise TickError(str(error)) from error
     times = ZoneTimes(network, search)

@@ -79,6 +79,12 @@ def test_the_interpreter_agrees_with_what_was_learned(name):
     crosscheck(found.survey.space, sample(found.expanded, 60))
 
 
+@pytest.mark.parametrize("name", ["takeover", "oil_spill_timed"])
+def test_configurations_with_too_much_pending_have_no_successors_to_check(name):
+    found = explored(start(name), limits=Limits(pending=1), keeping=Keeping(doubted=300))
+    assert any("pending" in str(bound) for bound in found.bounds)
+
+
 def test_the_cross_check_finds_what_was_learned_wrong():
     space = explored(start("oil_spill")).survey.space
     wrong = int(np.flatnonzero(space.counts.used)[-1])  # some that was taken
