@@ -192,7 +192,7 @@ def test_another_engine_is_refused_by_the_table(engine):
     row = next(
         pair for pair in UNSUPPORTED if {pair.one, pair.other} == {Feature.MODEL, Feature[engine.name]}
     )
-    with pytest.raises(CombinationError, match="explored by the reference engine") as refused:
+    with pytest.raises(CombinationError, match="learn the rules of missions") as refused:
         explore(Counter(2), engine=engine)
     assert (str(refused.value), refused.value.remedy) == (row.reason, row.remedy)
 
