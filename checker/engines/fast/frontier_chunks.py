@@ -55,11 +55,12 @@ class FrontierChunks:
     def _chunk(self, begin: int, end: int) -> RowChunk:
         """Return rows as a chunk, with the trees known now."""
         model, store = self.expander.model, self.store
-        known = (model.loops, model.symmetry[0]) if self.pipeline.threads == 1 else model.snapshot()
+        is_alone = self.pipeline.threads == 1
+        tables, exchanges = (model.loops, model.symmetry[0]) if is_alone else model.snapshot()
         store.show()
         state = store.state.copy()
         state[[AT, GATHERED, PUT_OFF]] = begin, 0, 0
-        return RowChunk(begin, end, model.epoch, *known, self._batch(), state)
+        return RowChunk(begin, end, model.epoch, tables, exchanges, self._batch(), state)
 
     def _batch(self) -> SuccessorBatch:
         """Return an empty batch."""
